@@ -1,0 +1,75 @@
+# What the library is built from: targets partwheel_cgal (CGAL, Boost, Eigen: headers) and partwheel_tetgen.
+# First what scripts/setup.sh put under PARTWHEEL_DEPS, then the system.
+
+set(fix "Run scripts/build, which installs what is missing, or . scripts/setup.sh && setup_build for that alone.")
+
+# Sets VARIABLE to the directory to include for a header.
+function(find_headers variable name header)
+  find_path(${variable} ${header} PATHS "${PARTWHEEL_DEPS}/root/usr/include" PATH_SUFFIXES eigen3 NO_DEFAULT_PATH)
+  find_path(${variable} ${header} PATH_SUFFIXES eigen3)
+  if(NOT ${variable})
+    message(FATAL_ERROR "${name} was not found: no ${header} under ${PARTWHEEL_DEPS}/root/usr/include, nor installed. "
+                        "${fix}")
+  endif()
+endfunction()
+
+# Ends the configuration if a version is too old.
+function(require_version name found least where)
+  if(NOT found OR found VERSION_LESS least)
+    message(FATAL_ERROR "${name} ${found} in ${where} is too old: ${least} or newer is needed. ${fix}")
+  endif()
+  message(STATUS "${name} ${found} in ${where}")
+endfunction()
+
+find_headers(CGAL_INCLUDE CGAL CGAL/version.h)
+find_headers(BOOST_INCLUDE Boost boost/version.hpp)
+find_headers(EIGEN_INCLUDE Eigen Eigen/Core)
+
+file(STRINGS "${CGAL_INCLUDE}/CGAL/version.h" line REGEX "^#define CGAL_VERSION [0-9]")
+string(REGEX MATCH "[0-9]+(\\.[0-9]+)+" found "${line}")
+require_version(CGAL "${found}" 5.5 "${CGAL_INCLUDE}")
+
+file(STRINGS "${BOOST_INCLUDE}/boost/version.hpp" line REGEX "^#define BOOST_LIB_VERSION ")
+string(REGEX MATCH "[0-9]+_[0-9]+" found "${line}")
+string(REPLACE "_" "." found "${found}")
+# With an older Boost and no GMP, CGAL falls back to slow number types.
+require_version(Boost "${found}" 1.81 "${BOOST_INCLUDE}")
+
+file(STRINGS "${EIGEN_INCLUDE}/Eigen/src/Core/util/Macros.h" lines REGEX "^#define EIGEN_[A-Z]+_VERSION [0-9]+")
+string(REGEX MATCHALL "[0-9]+" found "${lines}")
+list(JOIN found "." found)
+require_version(Eigen "${found}" 3.4 "${EIGEN_INCLUDE}")
+
+add_library(partwheel_cgal INTERFACE)
+target_include_directories(partwheel_cgal SYSTEM INTERFACE "${CGAL_INCLUDE}" "${BOOST_INCLUDE}" "${EIGEN_INCLUDE}")
+# Without GMP and MPFR there is nothing to ship beside the library, and numbers are the same everywhere.
+target_compile_definitions(partwheel_cgal INTERFACE CGAL_DISABLE_GMP=1 CGAL_DISABLE_MPFR=1)
+
+if(PARTWHEEL_SYSTEM_TETGEN)
+  find_path(TETGEN_INCLUDE tetgen.h)
+  find_library(TETGEN_LIBRARY NAMES tet tetgen)
+  if(NOT TETGEN_INCLUDE OR NOT TETGEN_LIBRARY)
+    message(FATAL_ERROR "TetGen was not found: no tetgen.h or no libtet. Install TetGen 1.6, or configure with "
+                        "-DPARTWHEEL_SYSTEM_TETGEN=OFF to compile the pinned sources.")
+  endif()
+  set(tetgen_include "${TETGEN_INCLUDE}")
+  add_library(partwheel_tetgen INTERFACE)
+  target_link_libraries(partwheel_tetgen INTERFACE "${TETGEN_LIBRARY}")
+else()
+  set(tetgen_include "${PARTWHEEL_TETGEN_SOURCE}")
+  if(NOT EXISTS "${tetgen_include}/tetgen.cxx")
+    message(FATAL_ERROR "TetGen was not found: no ${tetgen_include}/tetgen.cxx. ${fix}")
+  endif()
+  add_library(partwheel_tetgen STATIC "${tetgen_include}/tetgen.cxx" "${tetgen_include}/predicates.cxx")
+  target_compile_options(partwheel_tetgen PRIVATE -w)
+  target_compile_definitions(partwheel_tetgen PRIVATE NDEBUG)
+endif()
+file(STRINGS "${tetgen_include}/tetgen.h" line REGEX "^// Version [0-9]")
+string(REGEX MATCH "[0-9]+(\\.[0-9]+)+" found "${line}")
+# Earlier versions free memory twice on input they refuse.
+require_version(TetGen "${found}" 1.6 "${tetgen_include}")
+target_include_directories(partwheel_tetgen SYSTEM INTERFACE "${tetgen_include}")
+target_compile_definitions(partwheel_tetgen INTERFACE TETLIBRARY)
+if(NOT PARTWHEEL_SYSTEM_TETGEN)
+  target_compile_definitions(partwheel_tetgen PRIVATE TETLIBRARY)
+endif()

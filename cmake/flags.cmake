@@ -1,0 +1,28 @@
+# How our own code is compiled: target partwheel_flags; and what holds for third-party sources too.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+
+find_package(Threads REQUIRED)
+
+# No fused multiply-adds: they break exact predicates, and results are to be the same on every machine.
+add_compile_options(-ffp-contract=off -ffunction-sections -fdata-sections)
+add_link_options(LINKER:--gc-sections)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # CGAL's interval arithmetic changes the rounding mode.
+  add_compile_options(-frounding-math)
+endif()
+
+if(PARTWHEEL_SANITIZE)
+  add_compile_options(-fsanitize=${PARTWHEEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${PARTWHEEL_SANITIZE})
+endif()
+
+add_library(partwheel_flags INTERFACE)
+target_compile_options(partwheel_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Woverloaded-virtual -Werror)

@@ -1,0 +1,34 @@
+# The native tests: each tests/native/*_test.cpp is a program of its own, the other sources there are linked to all.
+# They see the engine's rooms and the shared library's C API; PARTWHEEL_MESHES is the directory of the real models.
+
+find_package(GTest)
+if(NOT GTest_FOUND)
+  message(FATAL_ERROR "GoogleTest was not found. ${fix} Or configure with -DPARTWHEEL_TESTS=OFF.")
+endif()
+include(GoogleTest)
+
+file(GLOB sources CONFIGURE_DEPENDS tests/native/*.cpp)
+set(programs ${sources})
+list(FILTER programs INCLUDE REGEX "_test\\.cpp$")
+list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
+
+add_library(partwheel_test_support INTERFACE)
+target_include_directories(partwheel_test_support INTERFACE tests/native)
+target_link_libraries(partwheel_test_support INTERFACE partwheel_engine partwheel GTest::gtest GTest::gtest_main)
+target_compile_definitions(partwheel_test_support INTERFACE PARTWHEEL_MESHES="${PARTWHEEL_MESHES}")
+if(sources)
+  add_library(partwheel_test_sources STATIC ${sources})
+  target_link_libraries(partwheel_test_sources PUBLIC partwheel_test_support)
+endif()
+
+foreach(source ${programs})
+  get_filename_component(name "${source}" NAME_WE)
+  add_executable(${name} "${source}")
+  target_link_libraries(${name} PRIVATE $<TARGET_NAME_IF_EXISTS:partwheel_test_sources> partwheel_test_support)
+  gtest_discover_tests(${name} TEST_PREFIX "${name}:" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+                       PROPERTIES TIMEOUT 600)
+endforeach()
+
+add_test(NAME exports COMMAND "${CMAKE_COMMAND}" -DNM=${CMAKE_NM} -DLIBRARY=$<TARGET_FILE:partwheel>
+                              -DHEADER=${PROJECT_SOURCE_DIR}/native/include/partwheel.h
+                              -P "${PROJECT_SOURCE_DIR}/cmake/check_exports.cmake")
