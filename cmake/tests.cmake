@@ -1,4 +1,4 @@
-# The native tests: each tests/native/*_test.cpp is a program of its own, the other sources there are linked to all.
+# The native tests: each tests/native/*_test.cpp is a program of its own, linked with support/*.cpp.
 # They see the engine's rooms and the shared library's C API; PARTWHEEL_MESHES is the directory of the real models.
 
 find_package(GTest)
@@ -7,10 +7,8 @@ if(NOT GTest_FOUND)
 endif()
 include(GoogleTest)
 
-file(GLOB sources CONFIGURE_DEPENDS tests/native/*.cpp)
-set(programs ${sources})
-list(FILTER programs INCLUDE REGEX "_test\\.cpp$")
-list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
+file(GLOB programs CONFIGURE_DEPENDS tests/native/*_test.cpp)
+file(GLOB sources CONFIGURE_DEPENDS tests/native/support/*.cpp)
 
 add_library(partwheel_test_support INTERFACE)
 target_include_directories(partwheel_test_support INTERFACE tests/native)

@@ -1,0 +1,173 @@
+# shellcheck shell=bash
+# Sets up what the other scripts need: to be sourced, by bash. Each setup_* function installs only what is missing, so
+# that a second call is quick and needs no network. Debian 12; Ubuntu 24.04 (not tried).
+#
+#   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
+#   setup_core      build/venv/core: Python with numpy, trimesh, pytest
+#   setup_bpy       build/venv/bpy-VERSION for each of $bpy_versions
+#   setup_blender   the distribution's Blender
+#   setup_display   a virtual screen with software OpenGL, and tools to click on it
+#
+# Packages come from the distribution (root or sudo) and from PyPI; everything else stays under build/.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+deps=$root/build/deps
+setup_log=$root/build/setup.log
+bpy_versions="4.2 4.5 5.0"
+
+# The distribution's own tools only: another Python on the PATH breaks Debian's Blender.
+export PATH=/usr/sbin:/usr/bin:/sbin:/bin
+unset PYTHONPATH PYTHONHOME PYTHONSTARTUP VIRTUAL_ENV
+
+say() { printf '%s\n' "$*"; }
+
+# fail SENTENCE...: says what is wrong; for use as: command || fail "..." || return
+fail() {
+    printf 'setup: %s\n' "$*" >&2
+    return 1
+}
+
+# logged COMMAND...: its output goes to the log, and to the screen if it fails for the third time.
+logged() {
+    local attempt from
+    for attempt in 1 2 3; do
+        from=$(($(wc -c <"$setup_log") + 1))
+        printf '\n$ %s\n' "$*" >>"$setup_log"
+        "$@" >>"$setup_log" 2>&1 && return
+        [ "$attempt" = 3 ] || sleep $((attempt * 5)) # a mirror or the network may recover
+    done
+    tail -c "+$from" "$setup_log" | tail -n 30 >&2
+    fail "this failed three times: $*"
+}
+
+as_root() {
+    if [ "$(id -u)" = 0 ]; then
+        env DEBIAN_FRONTEND=noninteractive "$@"
+    elif command -v sudo >/dev/null; then
+        sudo env DEBIAN_FRONTEND=noninteractive "$@"
+    else
+        fail "neither root nor sudo: run as root once: $*"
+    fi
+}
+
+# Refreshes the package lists, once a run.
+update_lists() {
+    [ -n "${lists_updated:-}" ] && return
+    logged as_root apt-get -o DPkg::Lock::Timeout=300 update || return
+    lists_updated=1
+}
+
+# packages NAME...: installs those that are missing.
+packages() {
+    local name missing=()
+    for name in "$@"; do
+        [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
+    done
+    [ ${#missing[@]} = 0 ] && return
+    say "setup: installing ${missing[*]}"
+    update_lists || return
+    logged as_root apt-get -o DPkg::Lock::Timeout=300 install -y --no-install-recommends "${missing[@]}"
+}
+
+# unpack DIRECTORY PACKAGE...: the packages' files under DIRECTORY, without installing them.
+unpack() {
+    local directory=$1 work
+    shift
+    say "setup: unpacking $*"
+    update_lists || return
+    work=$(mktemp -d "$deps/unpack.XXXXXX") || return
+    (
+        cd "$work" || exit
+        logged apt-get -o APT::Sandbox::User= download "$@" || exit
+        mkdir files || exit
+        for file in *.deb; do
+            dpkg-deb -x "$file" files || exit
+        done
+        mkdir -p "$directory" && cp -a files/. "$directory"
+    )
+    local status=$?
+    rm -rf "$work"
+    return $status
+}
+
+# into DIRECTORY FUNCTION: unless it exists, makes it whole or not at all; FUNCTION fills the directory it is given.
+into() {
+    [ -e "$1" ] && return
+    mkdir -p "$deps" && rm -rf "$1.partial" && mkdir "$1.partial" && "$2" "$1.partial" && mv "$1.partial" "$1"
+}
+
+# CGAL, Boost and Eigen, unpacked: libboost1.81-dev can't be installed beside the libcgal-dev of Debian 12.
+fill_headers() {
+    update_lists || return
+    local name boost=
+    for name in $(apt-cache search --names-only '^libboost1\.[0-9]+-dev$' | cut -d ' ' -f 1 | sort -V); do
+        dpkg --compare-versions "${name//[^0-9.]/}" ge 1.81 && boost=$name && break
+    done
+    [ -n "$boost" ] || fail "this distribution has no Boost 1.81 or newer (libboost1.*-dev)" || return
+    unpack "$1" libcgal-dev "$boost" libeigen3-dev
+}
+
+# The models of CGAL's demos.
+fill_meshes() {
+    unpack "$1/package" libcgal-demo || return
+    local archive
+    archive=$(find "$1/package" -name data.tar.gz) # below the name of another package, in some versions
+    [ -f "$archive" ] || fail "libcgal-demo holds no data.tar.gz" || return
+    tar -xzf "$archive" -C "$1" --strip-components=2 data/meshes && rm -r "$1/package"
+}
+
+# TetGen 1.6.0's sources, as PyPI's tetgen carries them.
+fill_tetgen() {
+    local archive=$1/tetgen-0.8.0.tar.gz sum=9a4908250d21bfbefbf9c4e3fbd2ea12862a79369b2f8742ef2325127f68bbd0
+    say "setup: downloading TetGen"
+    # Only tetgen itself as source: pip also fetches what its build would need.
+    logged /usr/bin/python3 -m pip download --no-deps --no-binary tetgen --dest "$1" tetgen==0.8.0 || return
+    sha256sum --quiet --check <<<"$sum  $archive" || fail "$archive is not the file that was expected" || return
+    tar -xzf "$archive" -C "$1" --strip-components=1 && rm "$archive"
+}
+
+# venv NAME PYTHON REQUIREMENT...: build/venv/NAME with these installed.
+venv() {
+    local name=$1 python=$2 directory=$root/build/venv/$1
+    shift 2
+    # What was installed is written down last, so that a broken attempt is taken up again.
+    [ "$(cat "$directory/installed" 2>/dev/null)" = "$*" ] && return
+    say "setup: installing $* into build/venv/$name"
+    logged "$python" -m venv "$directory" && logged "$directory/bin/python" -m pip install "$@" &&
+        printf '%s\n' "$*" >"$directory/installed"
+}
+
+start_setup() {
+    mkdir -p "$root/build" && touch "$setup_log"
+}
+
+setup_build() {
+    start_setup && packages g++ clang cmake ninja-build ccache libgtest-dev libbenchmark-dev \
+        python3 python3-venv python3-pip ca-certificates || return
+    into "$deps/root" fill_headers && into "$deps/tetgen-0.8.0" fill_tetgen && into "$deps/meshes" fill_meshes
+}
+
+setup_core() {
+    start_setup && packages python3 python3-venv ca-certificates || return
+    venv core /usr/bin/python3 numpy scipy trimesh pytest
+}
+
+setup_bpy() {
+    start_setup && packages python3 python3-venv ca-certificates libgl1 libgomp1 libsm6 libx11-6 libxext6 libxfixes3 \
+        libxi6 libxkbcommon0 libxrender1 libxxf86vm1 || return
+    local version python=/usr/bin/python3.11
+    [ -x $python ] || fail "bpy $bpy_versions need Python 3.11 at $python. Debian 12 has it; on Ubuntu install" \
+        "python3.11 and python3.11-venv from the archive ppa:deadsnakes/ppa." || return
+    for version in $bpy_versions; do
+        venv "bpy-$version" $python "bpy==$version.*" || return
+    done
+}
+
+# python3-numpy is only recommended by Debian's Blender, but its importers and our add-on need it.
+setup_blender() {
+    start_setup && packages blender python3-numpy
+}
+
+setup_display() {
+    start_setup && packages xvfb xauth xdotool imagemagick libgl1-mesa-dri libegl1 libgl1 libglx-mesa0
+}
