@@ -1,0 +1,245 @@
+/* Partwheel's whole C API: a triangle mesh in, a hierarchy of its nearly convex parts out.
+ *
+ * The method is "Hierarchical Convex Approximation of 3D Shapes for Fast Region Selection" (Attene, Mortara,
+ * Spagnuolo, Falcidieno 2008), called "the paper" below.
+ *
+ * Habits, true of every function unless its own comment says otherwise:
+ *  - It returns a pw_status; results come through pointers, which are written only when it returns PW_OK.
+ *  - On any other status pw_error_message() says, to the calling thread, what went wrong and what to do about it.
+ *  - No C++ exception, exit() or abort() of ours leaves it.
+ *  - Handles are opaque, made by one function and ended by the matching _free; _free(NULL) does nothing.
+ *  - Lengths are in the unit of the caller's coordinates, volumes in that unit cubed. Coordinates are doubles (x, y, z).
+ *  - A pw_hierarchy never changes once made: any number of threads may ask it questions at the same time.
+ *  - Buffers handed in are only read, and only during the call.
+ */
+#ifndef PARTWHEEL_H
+#define PARTWHEEL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(_WIN32)
+#if defined(PW_BUILDING)
+#define PW_API __declspec(dllexport)
+#else
+#define PW_API __declspec(dllimport)
+#endif
+#else
+#define PW_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define PW_VERSION "0.1.0"
+
+/* Largest number of vertices, triangles, faces or tetrahedra that one hierarchy holds: what int32_t can number. */
+#define PW_MAX_COUNT 1000000000
+
+typedef enum pw_status {
+    PW_OK = 0,
+    PW_ERROR_ARGUMENT = 1,          /* a null pointer, a size or an option outside what the function documents */
+    PW_ERROR_EMPTY = 2,             /* no vertices or no triangles */
+    PW_ERROR_NOT_FINITE = 3,        /* a coordinate is NaN or infinite, or too large to be measured */
+    PW_ERROR_INDEX = 4,             /* a triangle names a vertex or a face that does not exist */
+    PW_ERROR_DEGENERATE = 5,        /* a triangle without area: repeated corners, or corners on one line */
+    PW_ERROR_OPEN = 6,              /* an edge with a triangle on one side only: the surface encloses nothing */
+    PW_ERROR_NON_MANIFOLD = 7,      /* an edge of three or more triangles, or a vertex where sheets only touch */
+    PW_ERROR_ORIENTATION = 8,       /* two neighbouring triangles wind against each other */
+    PW_ERROR_SELF_INTERSECTION = 9, /* triangles meet elsewhere than at the vertices and edges they share */
+    PW_ERROR_NO_VOLUME = 10,        /* the surface is closed but encloses no volume */
+    PW_ERROR_TETRAHEDRA = 11,       /* the mesher failed on a surface that passed every check */
+    PW_ERROR_CANCELLED = 12,        /* pw_context_cancel() was called */
+    PW_ERROR_MEMORY = 13,           /* out of memory */
+    PW_ERROR_DATA = 14,             /* bytes that are not a saved hierarchy, or a damaged or newer one */
+    PW_ERROR_INTERNAL = 15          /* a bug of ours, please report it */
+} pw_status;
+
+/* The stages of a build, in their order; each is a source file of the library. */
+typedef enum pw_stage {
+    PW_STAGE_SURFACE = 0,    /* checks of the input */
+    PW_STAGE_TETRAHEDRA = 1, /* TetGen */
+    PW_STAGE_CLUSTER = 2,    /* Listing 1 of the paper */
+    PW_STAGE_DENDROGRAM = 3, /* Listing 2 of the paper */
+    PW_STAGE_HIERARCHY = 4,  /* flat arrays */
+    PW_STAGE_COUNT = 5
+} pw_stage;
+
+/* Version of the library, "major.minor.patch". Never null; owned by the library. */
+PW_API const char *pw_version(void);
+
+/* A status in one or two words, lower case, stable ("self-intersection"). Never null; owned by the library. */
+PW_API const char *pw_status_name(pw_status status);
+
+/* The name of a stage ("tetrahedra"). Never null; owned by the library. */
+PW_API const char *pw_stage_name(pw_stage stage);
+
+/* What went wrong in the calling thread's last call that did not return PW_OK: sentences a user can act on, UTF-8.
+ * Never null ("" if nothing did); owned by the library, valid until the thread's next failing call. */
+PW_API const char *pw_error_message(void);
+
+/* ---- Context: watching and stopping a long call --------------------------------------------------------------- */
+
+/* Progress, cancellation and timing of one build at a time. Every function that takes one may be called from any
+ * thread while the build runs, except pw_context_free. */
+typedef struct pw_context pw_context;
+
+PW_API pw_status pw_context_create(pw_context **context);
+PW_API void pw_context_free(pw_context *context);
+
+/* Asks the running build (or, if none runs, the next one) to stop with PW_ERROR_CANCELLED. Honoured within 100 ms,
+ * except while TetGen or the self-intersection test runs, which can't be interrupted: at the end of that stage. Run
+ * builds in a process of their own where that matters. */
+PW_API pw_status pw_context_cancel(pw_context *context);
+
+/* fraction: 0..1 of the whole build, never falling during a build. stage: where it is. Either may be null. */
+PW_API pw_status pw_context_progress(const pw_context *context, double *fraction, pw_stage *stage);
+
+/* Wall-clock seconds that each stage of the last build took, a failed stage included, 0 for stages not reached.
+ * seconds: PW_STAGE_COUNT doubles. */
+PW_API pw_status pw_context_seconds(const pw_context *context, double *seconds);
+
+/* ---- Building ------------------------------------------------------------------------------------------------- */
+
+typedef struct pw_build_options {
+    /* sizeof(pw_build_options), so that later versions can tell. */
+    size_t struct_size;
+    /* 0: no points are added inside the solid (the paper's choice; TetGen may still need a few to mesh it at all).
+     * 1.1 or more: points are added inside until every tetrahedron's circumradius is at most this many times its
+     * shortest edge, away from the surface, which never changes (the paper's Figure 9). 1.4 is usual. */
+    double quality;
+} pw_build_options;
+
+typedef struct pw_hierarchy pw_hierarchy;
+
+/* Builds the hierarchy of a closed surface.
+ *
+ * context         may be null.
+ * vertices        vertex_count x 3 coordinates, at most 1e100 in size. Vertices that no triangle uses are allowed.
+ * triangles       triangle_count x 3 indices into vertices, counter-clockwise seen from outside. A surface whose
+ *                 triangles all wind the other way is accepted and taken as it was meant.
+ * faces           triangle_count source faces: triangles of one polygon carry its index, 0 <= index < face_count.
+ *                 Null: every triangle is a face of its own and face_count must equal triangle_count.
+ * face_count      number of source faces. Each must have at least one triangle.
+ * options         null: defaults.
+ * hierarchy       receives a new handle, to be freed with pw_hierarchy_free.
+ *
+ * The surface must be closed, manifold, consistently oriented and free of self-intersection; else the status names
+ * what is wrong and the message where. Any number of components and cavities is fine; a region is solid where the
+ * winding number of the surface about it is not 0. No vertex of the surface is moved and none is added to it.
+ *
+ * The result does not depend on the order of the vertices or triangles, nor on the corner a triangle starts with. */
+PW_API pw_status pw_build(pw_context *context, const double *vertices, size_t vertex_count, const int32_t *triangles,
+                          size_t triangle_count, const int32_t *faces, size_t face_count,
+                          const pw_build_options *options, pw_hierarchy **hierarchy);
+
+PW_API void pw_hierarchy_free(pw_hierarchy *hierarchy);
+
+/* ---- The hierarchy's arrays ----------------------------------------------------------------------------------- */
+
+/* The dendrogram (the paper's pruned tree) as flat arrays. All pointers belong to the hierarchy and live as long as
+ * it does.
+ *
+ * Tetrahedra stand in the depth-first order of the tree, source faces sorted by their tetrahedron; so every node's
+ * tetrahedra, and its faces, are one contiguous slice of one array. A face belongs to the tetrahedron behind it; a
+ * polygon whose triangles have different tetrahedra to the one behind most of its area.
+ *
+ * Nodes: the leaves come first, leaf i being tetrahedron i; then the others, each after its children; the root is
+ * the last. */
+typedef struct pw_arrays {
+    size_t face_count;        /* F, source faces */
+    size_t node_count;        /* N, nodes of the dendrogram */
+    size_t tetrahedron_count; /* T, leaves */
+    size_t vertex_count;      /* V, vertices of the tetrahedra */
+
+    const int32_t *order;      /* (F,)   source faces, sorted by tetrahedron */
+    const int32_t *leaf;       /* (F,)   the leaf of each source face */
+    const int32_t *parent;     /* (N,)   -1 at the root */
+    const int32_t *first;      /* (N,)   node n holds the faces order[first[n] : last[n]], possibly none */
+    const int32_t *last;       /* (N,)   */
+    const int32_t *tet_first;  /* (N,)   node n holds tetrahedra[tet_first[n] : tet_last[n]], at least one */
+    const int32_t *tet_last;   /* (N,)   */
+    const uint8_t *cost_class; /* (N,)   Eq. 3 of the paper: 0 convex, 1 not; 0 for leaves */
+    const double *cost;        /* (N,)   Eq. 3: C2 (Eq. 2) in class 0, the concavity (Eq. 1) in class 1; 0 for leaves */
+    const double *height;      /* (N,)   the node's place in the dendrogram: its concavity, 0 in class 0 */
+    const double *volume;      /* (N,)   of the node's tetrahedra */
+    const double *area;        /* (N,)   of the node's source faces */
+    const double *vertices;    /* (V,3)  the used source vertices, unchanged, in a canonical order; then added ones */
+    const int32_t *source;     /* (V,)   the source vertex of each vertex, -1 for points that were added inside */
+    const int32_t *tetrahedra; /* (T,4)  positively oriented: vertex 3 sees 0, 1, 2 counter-clockwise */
+    const int32_t *merges;     /* (T-1,2) the unpruned binary tree, in the order of merging: merge m joins the two
+                                *         clusters named, i < T being leaf i and T + j what merge j made */
+} pw_arrays;
+
+PW_API pw_status pw_hierarchy_arrays(const pw_hierarchy *hierarchy, pw_arrays *arrays);
+
+typedef struct pw_summary {
+    size_t components;     /* parts of the solid that share no facet with each other */
+    size_t cavities;       /* regions enclosed by the solid that are not part of it */
+    size_t added_vertices; /* points that the mesher added inside */
+    double volume;         /* of the solid */
+    double hull_volume;    /* of its convex hull */
+} pw_summary;
+
+PW_API pw_status pw_hierarchy_summary(const pw_hierarchy *hierarchy, pw_summary *summary);
+
+/* ---- Questions ------------------------------------------------------------------------------------------------ */
+
+/* Functions that fill a caller's array take its capacity in elements and always set *count to the number needed,
+ * if the arguments are valid; with too small a capacity (0 and a null array included) nothing is written to the
+ * array and the status is PW_OK: compare *count with the capacity. */
+
+/* The nodes that hold a source face, from its leaf up to the root. */
+PW_API pw_status pw_hierarchy_path(const pw_hierarchy *hierarchy, size_t face, int32_t *nodes, size_t capacity,
+                                   size_t *count);
+
+/* The stops of the mouse wheel after a click on a source face: nodes of its path, growing, the last one the root.
+ * Each stop has at least 10 % more visible area than the one before, the last perhaps less; each holds the face.
+ * start: index into nodes of the part that a click alone takes. */
+PW_API pw_status pw_hierarchy_wheel(const pw_hierarchy *hierarchy, size_t face, int32_t *nodes, size_t capacity,
+                                    size_t *count, size_t *start);
+
+/* A node's source faces: a slice of pw_arrays.order, owned by the hierarchy. */
+PW_API pw_status pw_hierarchy_faces(const pw_hierarchy *hierarchy, size_t node, const int32_t **faces, size_t *count);
+
+/* A cut divides the tetrahedra into parts, each a slice of pw_arrays.tetrahedra: part k holds
+ * tetrahedra[bounds[k] : bounds[k+1]], bounds[0] = 0 and bounds[parts] = T. Below, bounds has room for capacity
+ * elements and *count becomes parts + 1. */
+
+/* The dendrogram cut by a horizontal line: the largest nodes of at most this height (the paper, section 3.2.3). A
+ * height of 0 gives the convex parts, an infinite one the whole. height: a number >= 0. */
+PW_API pw_status pw_hierarchy_cut_height(const pw_hierarchy *hierarchy, double height, int32_t *bounds,
+                                         size_t capacity, size_t *count);
+
+/* The cut of the unpruned tree into this many parts that has the least total concavity. 1 <= parts <= min(T, 4096). */
+PW_API pw_status pw_hierarchy_cut_parts(const pw_hierarchy *hierarchy, size_t parts, int32_t *bounds, size_t capacity,
+                                        size_t *count);
+
+/* A triangle mesh that the library made. */
+typedef struct pw_mesh pw_mesh;
+
+/* The convex hull of tetrahedra[tet_first : tet_last], for a node or a part of a cut: closed, convex, outward. Its
+ * vertices are exactly the extreme points. Free it with pw_mesh_free. */
+PW_API pw_status pw_hierarchy_hull(const pw_hierarchy *hierarchy, size_t tet_first, size_t tet_last, pw_mesh **mesh);
+
+PW_API void pw_mesh_free(pw_mesh *mesh);
+
+/* vertices: vertex_count x 3. triangles: triangle_count x 3 indices into them. All owned by the mesh. */
+PW_API pw_status pw_mesh_arrays(const pw_mesh *mesh, const double **vertices, size_t *vertex_count,
+                                const int32_t **triangles, size_t *triangle_count);
+
+/* ---- Saving --------------------------------------------------------------------------------------------------- */
+
+/* The hierarchy as bytes, the same on every machine. The same rule for capacity and *count (bytes here) as above. */
+PW_API pw_status pw_hierarchy_save(const pw_hierarchy *hierarchy, uint8_t *bytes, size_t capacity, size_t *count);
+
+/* A hierarchy from such bytes. Nothing in them is trusted: whatever is damaged, cut short or foreign gives
+ * PW_ERROR_DATA. */
+PW_API pw_status pw_hierarchy_load(const uint8_t *bytes, size_t count, pw_hierarchy **hierarchy);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

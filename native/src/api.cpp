@@ -1,0 +1,306 @@
+// The C functions: argument checks and calls into the rooms, nothing else.
+#include "partwheel.h"
+
+#include "hierarchy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+
+using namespace partwheel;
+
+struct pw_context {
+    Progress progress;
+};
+
+struct pw_hierarchy {
+    Hierarchy hierarchy;
+};
+
+struct pw_mesh {
+    TriangleMesh mesh;
+};
+
+namespace {
+
+constexpr double smallest_quality = 1.1;
+constexpr size_t most_parts = 4096;
+
+thread_local std::string last_message;
+
+// Runs the body of a function; whatever it throws becomes a status and a message.
+template <class Body>
+pw_status guarded(Body&& body) noexcept {
+    try {
+        try {
+            body();
+            return PW_OK;
+        } catch (const Error& e) {
+            last_message = e.what();
+            return e.status();
+        } catch (const std::bad_alloc&) {
+            last_message = "There is not enough memory. Close other programs, or decimate the mesh.";
+            return PW_ERROR_MEMORY;
+        } catch (const std::exception& e) {
+            last_message = std::string("Something unforeseen happened (") + e.what() + "). Please report this mesh.";
+        } catch (...) {
+            last_message = "Something unforeseen happened. Please report this mesh.";
+        }
+    } catch (...) {  // no memory even for the message
+        last_message.clear();
+    }
+    return PW_ERROR_INTERNAL;
+}
+
+void require(bool holds, const char* sentence) {
+    if (!holds) throw Error(PW_ERROR_ARGUMENT, sentence);
+}
+
+// Copies values to a caller's array if they fit, and always says how many there are.
+template <class T>
+void hand_out(std::span<const T> values, T* out, size_t capacity, size_t* count) {
+    *count = values.size();
+    if (capacity >= values.size()) std::copy(values.begin(), values.end(), out);
+}
+
+void require_room(const void* out, size_t capacity, const size_t* count) {
+    require(count != nullptr, "count must not be null.");
+    require(out != nullptr || capacity == 0, "The array to fill is null, but its capacity is not 0.");
+}
+
+void require_face(const pw_hierarchy* hierarchy, size_t face) {
+    require(hierarchy != nullptr, "The hierarchy must not be null.");
+    require(face < hierarchy->hierarchy.face_count(), "There is no face of this index in the hierarchy.");
+}
+
+// Ends what Progress::begin() began, however the build ends.
+class Watch {
+public:
+    explicit Watch(Progress& progress) : progress_(progress) { progress_.begin(); }
+    ~Watch() { progress_.end(); }
+    Watch(const Watch&) = delete;
+    Watch& operator=(const Watch&) = delete;
+
+private:
+    Progress& progress_;
+};
+
+Hierarchy build(const MeshView& mesh, double quality, Progress& progress) {
+    progress.enter(PW_STAGE_SURFACE);
+    const Surface surface = check_surface(mesh, progress);
+    progress.enter(PW_STAGE_TETRAHEDRA);
+    const TetMesh tets = tetrahedralize(surface, quality, progress);
+    progress.enter(PW_STAGE_CLUSTER);
+    const BinaryTree tree = cluster(tets, progress);
+    progress.enter(PW_STAGE_DENDROGRAM);
+    const std::vector<uint8_t> kept = prune(tree.merges);
+    progress.enter(PW_STAGE_HIERARCHY);
+    Hierarchy hierarchy(surface, tets, tree, kept, mesh.vertices);
+    progress.advance(1);
+    return hierarchy;
+}
+
+}  // namespace
+
+const char* pw_version(void) { return PW_VERSION; }
+
+const char* pw_status_name(pw_status status) {
+    switch (status) {
+        case PW_OK: return "ok";
+        case PW_ERROR_ARGUMENT: return "argument";
+        case PW_ERROR_EMPTY: return "empty";
+        case PW_ERROR_NOT_FINITE: return "not finite";
+        case PW_ERROR_INDEX: return "index";
+        case PW_ERROR_DEGENERATE: return "degenerate";
+        case PW_ERROR_OPEN: return "open";
+        case PW_ERROR_NON_MANIFOLD: return "non-manifold";
+        case PW_ERROR_ORIENTATION: return "orientation";
+        case PW_ERROR_SELF_INTERSECTION: return "self-intersection";
+        case PW_ERROR_NO_VOLUME: return "no volume";
+        case PW_ERROR_TETRAHEDRA: return "tetrahedra";
+        case PW_ERROR_CANCELLED: return "cancelled";
+        case PW_ERROR_MEMORY: return "memory";
+        case PW_ERROR_DATA: return "data";
+        case PW_ERROR_INTERNAL: return "internal";
+    }
+    return "unknown";
+}
+
+const char* pw_stage_name(pw_stage stage) {
+    switch (stage) {
+        case PW_STAGE_SURFACE: return "surface";
+        case PW_STAGE_TETRAHEDRA: return "tetrahedra";
+        case PW_STAGE_CLUSTER: return "cluster";
+        case PW_STAGE_DENDROGRAM: return "dendrogram";
+        case PW_STAGE_HIERARCHY: return "hierarchy";
+        case PW_STAGE_COUNT: break;
+    }
+    return "unknown";
+}
+
+const char* pw_error_message(void) { return last_message.c_str(); }
+
+pw_status pw_context_create(pw_context** context) {
+    return guarded([&] {
+        require(context != nullptr, "context must not be null.");
+        *context = new pw_context;
+    });
+}
+
+void pw_context_free(pw_context* context) { delete context; }
+
+pw_status pw_context_cancel(pw_context* context) {
+    return guarded([&] {
+        require(context != nullptr, "context must not be null.");
+        context->progress.cancel();
+    });
+}
+
+pw_status pw_context_progress(const pw_context* context, double* fraction, pw_stage* stage) {
+    return guarded([&] {
+        require(context != nullptr, "context must not be null.");
+        if (fraction) *fraction = context->progress.fraction();
+        if (stage) *stage = context->progress.stage();
+    });
+}
+
+pw_status pw_context_seconds(const pw_context* context, double* seconds) {
+    return guarded([&] {
+        require(context != nullptr && seconds != nullptr, "context and seconds must not be null.");
+        for (int s = 0; s < PW_STAGE_COUNT; ++s) seconds[s] = context->progress.seconds(static_cast<pw_stage>(s));
+    });
+}
+
+pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_count, const int32_t* triangles,
+                   size_t triangle_count, const int32_t* faces, size_t face_count, const pw_build_options* options,
+                   pw_hierarchy** hierarchy) {
+    return guarded([&] {
+        require(hierarchy != nullptr, "hierarchy must not be null.");
+        require(vertices != nullptr || vertex_count == 0, "vertices is null, but vertex_count is not 0.");
+        require(triangles != nullptr || triangle_count == 0, "triangles is null, but triangle_count is not 0.");
+        double quality = 0;
+        if (options) {
+            require(options->struct_size == sizeof(pw_build_options),
+                    "pw_build_options::struct_size is not that of this version of the library.");
+            quality = options->quality;
+            require(quality == 0 || (quality >= smallest_quality && std::isfinite(quality)),
+                    "quality must be 0, or a number of at least 1.1.");
+        }
+        Progress unwatched;
+        Progress& progress = context ? context->progress : unwatched;
+        const Watch watch(progress);
+        const MeshView mesh{vertices, vertex_count, triangles, triangle_count, faces, face_count};
+        *hierarchy = new pw_hierarchy{build(mesh, quality, progress)};
+    });
+}
+
+void pw_hierarchy_free(pw_hierarchy* hierarchy) { delete hierarchy; }
+
+pw_status pw_hierarchy_arrays(const pw_hierarchy* hierarchy, pw_arrays* arrays) {
+    return guarded([&] {
+        require(hierarchy != nullptr && arrays != nullptr, "hierarchy and arrays must not be null.");
+        *arrays = hierarchy->hierarchy.arrays();
+    });
+}
+
+pw_status pw_hierarchy_summary(const pw_hierarchy* hierarchy, pw_summary* summary) {
+    return guarded([&] {
+        require(hierarchy != nullptr && summary != nullptr, "hierarchy and summary must not be null.");
+        *summary = hierarchy->hierarchy.summary();
+    });
+}
+
+pw_status pw_hierarchy_path(const pw_hierarchy* hierarchy, size_t face, int32_t* nodes, size_t capacity,
+                            size_t* count) {
+    return guarded([&] {
+        require_face(hierarchy, face);
+        require_room(nodes, capacity, count);
+        hand_out<int32_t>(hierarchy->hierarchy.path(face), nodes, capacity, count);
+    });
+}
+
+pw_status pw_hierarchy_wheel(const pw_hierarchy* hierarchy, size_t face, int32_t* nodes, size_t capacity,
+                             size_t* count, size_t* start) {
+    return guarded([&] {
+        require_face(hierarchy, face);
+        require_room(nodes, capacity, count);
+        require(start != nullptr, "start must not be null.");
+        const WheelStops wheel = hierarchy->hierarchy.wheel(face);
+        hand_out<int32_t>(wheel.stops, nodes, capacity, count);
+        *start = wheel.start;
+    });
+}
+
+pw_status pw_hierarchy_faces(const pw_hierarchy* hierarchy, size_t node, const int32_t** faces, size_t* count) {
+    return guarded([&] {
+        require(hierarchy != nullptr && faces != nullptr && count != nullptr,
+                "hierarchy, faces and count must not be null.");
+        require(node < hierarchy->hierarchy.node_count(), "There is no node of this index in the hierarchy.");
+        const std::span<const int32_t> slice = hierarchy->hierarchy.faces(node);
+        *faces = slice.data();
+        *count = slice.size();
+    });
+}
+
+pw_status pw_hierarchy_cut_height(const pw_hierarchy* hierarchy, double height, int32_t* bounds, size_t capacity,
+                                  size_t* count) {
+    return guarded([&] {
+        require(hierarchy != nullptr, "hierarchy must not be null.");
+        require(height >= 0, "height must be a number of at least 0.");
+        require_room(bounds, capacity, count);
+        hand_out<int32_t>(hierarchy->hierarchy.cut_height(height), bounds, capacity, count);
+    });
+}
+
+pw_status pw_hierarchy_cut_parts(const pw_hierarchy* hierarchy, size_t parts, int32_t* bounds, size_t capacity,
+                                 size_t* count) {
+    return guarded([&] {
+        require(hierarchy != nullptr, "hierarchy must not be null.");
+        require(parts >= 1 && parts <= std::min(most_parts, hierarchy->hierarchy.tetrahedron_count()),
+                "The number of parts must be at least 1, and at most the number of tetrahedra and 4096.");
+        require_room(bounds, capacity, count);
+        hand_out<int32_t>(hierarchy->hierarchy.cut_parts(parts), bounds, capacity, count);
+    });
+}
+
+pw_status pw_hierarchy_hull(const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last, pw_mesh** mesh) {
+    return guarded([&] {
+        require(hierarchy != nullptr && mesh != nullptr, "hierarchy and mesh must not be null.");
+        require(tet_first < tet_last && tet_last <= hierarchy->hierarchy.tetrahedron_count(),
+                "The tetrahedra must be a slice that is not empty: tet_first < tet_last <= their number.");
+        *mesh = new pw_mesh{hierarchy->hierarchy.hull(tet_first, tet_last)};
+    });
+}
+
+void pw_mesh_free(pw_mesh* mesh) { delete mesh; }
+
+pw_status pw_mesh_arrays(const pw_mesh* mesh, const double** vertices, size_t* vertex_count, const int32_t** triangles,
+                         size_t* triangle_count) {
+    return guarded([&] {
+        require(mesh && vertices && vertex_count && triangles && triangle_count, "No pointer may be null.");
+        *vertices = reinterpret_cast<const double*>(mesh->mesh.vertices.data());
+        *vertex_count = mesh->mesh.vertices.size();
+        *triangles = reinterpret_cast<const int32_t*>(mesh->mesh.triangles.data());
+        *triangle_count = mesh->mesh.triangles.size();
+    });
+}
+
+pw_status pw_hierarchy_save(const pw_hierarchy* hierarchy, uint8_t* bytes, size_t capacity, size_t* count) {
+    return guarded([&] {
+        require(hierarchy != nullptr, "hierarchy must not be null.");
+        require_room(bytes, capacity, count);
+        hand_out<uint8_t>(hierarchy->hierarchy.save(), bytes, capacity, count);
+    });
+}
+
+pw_status pw_hierarchy_load(const uint8_t* bytes, size_t count, pw_hierarchy** hierarchy) {
+    return guarded([&] {
+        require(hierarchy != nullptr, "hierarchy must not be null.");
+        require(bytes != nullptr || count == 0, "bytes is null, but count is not 0.");
+        *hierarchy = new pw_hierarchy{Hierarchy::load({bytes, count})};
+    });
+}

@@ -1,0 +1,259 @@
+// Hierarchical tet clustering (the paper's Listing 1): hulls from hulls, costs only where the queue asks for them.
+#include "cluster.h"
+
+#include "hull.h"
+
+#include <boost/geometry.hpp>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+#include <utility>
+
+namespace partwheel {
+
+double ranked_concavity(double hull_volume, double volume) {
+    const double concavity = hull_volume - volume;
+    if (!(concavity > convex_tolerance * hull_volume)) return 0;
+    int exponent = 0;
+    const double mantissa = std::frexp(concavity, &exponent);
+    return std::ldexp(std::nearbyint(std::ldexp(mantissa, concavity_bits)), exponent - concavity_bits);
+}
+
+namespace {
+
+// Volumes of hulls that were come by differently agree to far better than this: what a lower bound gives away so that
+// it stays one in spite of rounding.
+constexpr double bound_slack = 1e-11;
+
+constexpr size_t nearest_components = 16;
+
+struct Link {
+    int32_t cluster;  // the neighbour
+    int32_t edge;
+};
+
+struct Cluster {
+    Hull hull;
+    double volume = 0;
+    int32_t size = 1;    // in tetrahedra
+    int32_t low = 0;     // its lowest tetrahedron
+    int32_t number = 0;  // in the tree, see Merge
+    std::vector<Link> links;
+    bool alive = true;
+};
+
+struct Edge {
+    int32_t a, b;             // clusters
+    double hull_volume = 0;   // of their union, or a lower bound of it
+    uint32_t version = 0;     // queue entries of other versions are void
+    bool exact = false;
+};
+
+struct Entry {
+    Cost cost;
+    int32_t edge;
+    uint32_t version;
+};
+
+struct CheapestFirst {
+    bool operator()(const Entry& x, const Entry& y) const { return x.cost > y.cost; }
+};
+
+class Clustering {
+public:
+    Clustering(const TetMesh& mesh, Progress& progress);
+    BinaryTree run();
+
+private:
+    Cluster& at(int32_t c) { return clusters_[static_cast<size_t>(c)]; }
+    const Cluster& at(int32_t c) const { return clusters_[static_cast<size_t>(c)]; }
+
+    void add_edge(int32_t a, int32_t b);
+    void push(int32_t edge);
+    Cost cost(const Edge& edge) const;
+    void evaluate(Edge& edge);
+    void contract_all();
+    void contract(const Edge& edge);
+    void join_components();
+
+    Progress& progress_;
+    HullKernel kernel_;
+    std::vector<Cluster> clusters_;
+    std::vector<Edge> edges_;
+    std::priority_queue<Entry, std::vector<Entry>, CheapestFirst> queue_;
+    std::vector<int32_t> link_of_;  // scratch of contract(): cluster -> position in the merged links, or -1
+    BinaryTree tree_;
+};
+
+Clustering::Clustering(const TetMesh& mesh, Progress& progress)
+    : progress_(progress), kernel_(mesh.vertices), clusters_(mesh.tetrahedra.size()),
+      link_of_(mesh.tetrahedra.size(), -1) {
+    const auto count = static_cast<int32_t>(mesh.tetrahedra.size());
+    for (int32_t t = 0; t < count; ++t) {
+        Cluster& c = at(t);
+        const Tetrahedron& tet = mesh.tetrahedra[static_cast<size_t>(t)];
+        c.hull = kernel_.build(tet);
+        c.volume = c.hull.volume;
+        c.low = c.number = t;
+        c.links.reserve(4);
+    }
+    edges_.reserve(2 * mesh.tetrahedra.size());
+    for (int32_t t = 0; t < count; ++t) {
+        for (int32_t other : mesh.neighbours[static_cast<size_t>(t)])
+            if (other > t) add_edge(t, other);
+        if (t % 1024 == 0) progress_.advance(0.2 * t / count);
+    }
+}
+
+void Clustering::add_edge(int32_t a, int32_t b) {
+    const auto edge = static_cast<int32_t>(edges_.size());
+    edges_.push_back({a, b});
+    at(a).links.push_back({b, edge});
+    at(b).links.push_back({a, edge});
+    evaluate(edges_.back());
+    push(edge);
+}
+
+void Clustering::push(int32_t edge) {
+    const Edge& e = edges_[static_cast<size_t>(edge)];
+    queue_.push({cost(e), edge, e.version});
+}
+
+Cost Clustering::cost(const Edge& edge) const {
+    const Cluster &a = at(edge.a), &b = at(edge.b);
+    const double hull_volume = edge.exact ? edge.hull_volume : edge.hull_volume * (1 - bound_slack);
+    const auto square = [](int32_t n) { return static_cast<double>(n) * static_cast<double>(n); };
+    const auto [low, high] = std::minmax(a.low, b.low);
+    return {ranked_concavity(hull_volume, a.volume + b.volume), square(a.size) + square(b.size), low, high};
+}
+
+void Clustering::evaluate(Edge& edge) {
+    const bool ordered = at(edge.a).low < at(edge.b).low;
+    const Cluster &first = at(ordered ? edge.a : edge.b), &second = at(ordered ? edge.b : edge.a);
+    edge.hull_volume = kernel_.united_volume(first.hull, second.hull);
+    edge.exact = true;
+}
+
+void Clustering::contract_all() {
+    while (!queue_.empty()) {
+        const Entry top = queue_.top();
+        queue_.pop();
+        Edge& edge = edges_[static_cast<size_t>(top.edge)];
+        if (edge.version != top.version) continue;
+        if (!edge.exact) {
+            evaluate(edge);
+            if (!queue_.empty() && cost(edge) > queue_.top().cost) {
+                push(top.edge);
+                continue;
+            }
+        }
+        contract(edge);
+        if (tree_.merges.size() % 256 == 0)
+            progress_.advance(0.2 + 0.8 * static_cast<double>(tree_.merges.size()) /
+                                        static_cast<double>(clusters_.size()));
+    }
+}
+
+void Clustering::contract(const Edge& edge) {
+    // The cluster with more links stays and takes in the other.
+    const bool stay_a = at(edge.a).links.size() >= at(edge.b).links.size();
+    const int32_t stay = stay_a ? edge.a : edge.b, go = stay_a ? edge.b : edge.a;
+    Cluster &m = at(stay), &g = at(go);
+
+    const bool ordered = m.low < g.low;
+    Cluster &first = ordered ? m : g, &second = ordered ? g : m;
+    Merge merge;
+    merge.left = first.number;
+    merge.right = second.number;
+    merge.concavity = ranked_concavity(edge.hull_volume, first.volume + second.volume);
+    merge.hull_volume = edge.hull_volume;
+    m.hull = kernel_.unite(first.hull, second.hull);
+    m.volume = first.volume + second.volume;
+    m.size += g.size;
+    m.low = first.low;
+    m.number = static_cast<int32_t>(clusters_.size() + tree_.merges.size());
+    tree_.merges.push_back(merge);
+
+    std::erase_if(m.links, [&](const Link& l) { return l.cluster == go; });
+    for (size_t i = 0; i < m.links.size(); ++i) link_of_[static_cast<size_t>(m.links[i].cluster)] = static_cast<int32_t>(i);
+    for (const Link& link : g.links) {
+        if (link.cluster == stay) continue;
+        Cluster& other = at(link.cluster);
+        Edge& moved = edges_[static_cast<size_t>(link.edge)];
+        const auto back = std::find_if(other.links.begin(), other.links.end(),
+                                       [&](const Link& l) { return l.cluster == go; });
+        const int32_t twin = link_of_[static_cast<size_t>(link.cluster)];
+        if (twin < 0) {
+            back->cluster = stay;
+            (moved.a == go ? moved.a : moved.b) = stay;
+            m.links.push_back(link);
+        } else {
+            Edge& kept = edges_[static_cast<size_t>(m.links[static_cast<size_t>(twin)].edge)];
+            kept.hull_volume = std::max(kept.hull_volume, moved.hull_volume);
+            ++moved.version;
+            other.links.erase(back);
+        }
+    }
+    for (const Link& link : m.links) link_of_[static_cast<size_t>(link.cluster)] = -1;
+    g = Cluster{};
+    g.alive = false;
+
+    for (const Link& link : m.links) {
+        Edge& e = edges_[static_cast<size_t>(link.edge)];
+        e.hull_volume = std::max({e.hull_volume, m.hull.volume, at(link.cluster).hull.volume});
+        e.exact = false;
+        ++e.version;
+        push(link.edge);
+    }
+}
+
+// Called when no edge is left: makes candidates of the clusters that remain.
+void Clustering::join_components() {
+    std::vector<int32_t> rest;
+    for (size_t c = 0; c < clusters_.size(); ++c)
+        if (clusters_[c].alive) rest.push_back(static_cast<int32_t>(c));
+    std::sort(rest.begin(), rest.end(), [&](int32_t a, int32_t b) { return at(a).low < at(b).low; });
+    const auto count = static_cast<int32_t>(rest.size());
+    if (count <= all_pairs_components) {
+        for (int32_t i = 0; i < count; ++i)
+            for (int32_t j = i + 1; j < count; ++j) add_edge(rest[static_cast<size_t>(i)], rest[static_cast<size_t>(j)]);
+        return;
+    }
+
+    namespace bg = boost::geometry;
+    using Corner = bg::model::point<double, 3, bg::cs::cartesian>;
+    using Box = bg::model::box<Corner>;
+    std::vector<std::pair<Box, int32_t>> boxes;
+    for (int32_t i = 0; i < count; ++i) {
+        const auto [low, high] = kernel_.bounds(at(rest[static_cast<size_t>(i)]).hull);
+        boxes.push_back({Box({low[0], low[1], low[2]}, {high[0], high[1], high[2]}), i});
+    }
+    const bg::index::rtree<std::pair<Box, int32_t>, bg::index::rstar<16>> tree(boxes);
+    std::vector<std::pair<int32_t, int32_t>> pairs;
+    for (const auto& [box, i] : boxes)
+        for (auto q = tree.qbegin(bg::index::nearest(box, nearest_components + 1)); q != tree.qend(); ++q)
+            if (q->second != i) pairs.push_back(std::minmax(i, q->second));
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    for (const auto& [i, j] : pairs) add_edge(rest[static_cast<size_t>(i)], rest[static_cast<size_t>(j)]);
+}
+
+BinaryTree Clustering::run() {
+    contract_all();
+    tree_.components = clusters_.size() - tree_.merges.size();
+    while (tree_.merges.size() + 1 < clusters_.size()) {
+        join_components();
+        contract_all();
+    }
+    return std::move(tree_);
+}
+
+}  // namespace
+
+BinaryTree cluster(const TetMesh& mesh, Progress& progress) { return Clustering(mesh, progress).run(); }
+
+}  // namespace partwheel

@@ -1,0 +1,99 @@
+// The dendrogram: pruning, cuts, wheel stops.
+#include "dendrogram.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace partwheel {
+
+std::vector<uint8_t> prune(std::span<const Merge> merges) {
+    const size_t leaves = merges.size() + 1;
+    std::vector<uint8_t> kept(merges.size(), 0);
+    // What each merge would hang from is known once its parent has been decided: from the root down.
+    std::vector<double> ceiling(merges.size(), std::numeric_limits<double>::infinity());
+    for (size_t m = merges.size(); m-- > 0;) {
+        kept[m] = merges[m].concavity < ceiling[m];
+        const double below = kept[m] ? merges[m].concavity : ceiling[m];
+        for (int32_t child : {merges[m].left, merges[m].right})
+            if (static_cast<size_t>(child) >= leaves) ceiling[static_cast<size_t>(child) - leaves] = below;
+    }
+    return kept;
+}
+
+std::vector<int32_t> cut_into_parts(std::span<const Merge> merges, size_t parts) {
+    const size_t leaves = merges.size() + 1;
+    // least[c][k - 1]: the least total concavity of cluster c in k parts; split[m][k - 2]: how many of them are left.
+    std::vector<std::vector<double>> least(leaves + merges.size());
+    std::vector<std::vector<uint16_t>> split(merges.size());
+    for (size_t i = 0; i < leaves; ++i) least[i] = {0.0};
+    for (size_t m = 0; m < merges.size(); ++m) {
+        std::vector<double>& left = least[static_cast<size_t>(merges[m].left)];
+        std::vector<double>& right = least[static_cast<size_t>(merges[m].right)];
+        std::vector<double>& both = least[leaves + m];
+        const size_t most = std::min(parts, left.size() + right.size());
+        both.assign(most, std::numeric_limits<double>::infinity());
+        both[0] = merges[m].concavity;
+        split[m].assign(most - 1, 0);
+        for (size_t i = 1; i <= left.size(); ++i)
+            for (size_t j = 1; j <= right.size() && i + j <= most; ++j) {
+                const double total = left[i - 1] + right[j - 1];
+                if (total < both[i + j - 1]) {
+                    both[i + j - 1] = total;
+                    split[m][i + j - 2] = static_cast<uint16_t>(i);
+                }
+            }
+        left = {};
+        right = {};
+    }
+
+    std::vector<int32_t> cut;
+    std::vector<std::pair<size_t, size_t>> todo = {{leaves + merges.size() - 1, parts}};
+    while (!todo.empty()) {
+        const auto [c, k] = todo.back();
+        todo.pop_back();
+        if (k == 1) {
+            cut.push_back(static_cast<int32_t>(c));
+            continue;
+        }
+        const Merge& merge = merges[c - leaves];
+        const size_t left = split[c - leaves][k - 2];
+        todo.push_back({static_cast<size_t>(merge.right), k - left});
+        todo.push_back({static_cast<size_t>(merge.left), left});
+    }
+    return cut;
+}
+
+WheelStops wheel_stops(std::span<const double> areas, std::span<const double> heights) {
+    constexpr double growth = 1.1, smallest_start = 0.01, largest_start = 0.6;
+    const size_t root = areas.size() - 1;
+    WheelStops wheel;
+    wheel.stops.push_back(0);
+    for (size_t i = 1; i <= root; ++i)
+        if (areas[i] >= growth * areas[static_cast<size_t>(wheel.stops.back())])
+            wheel.stops.push_back(static_cast<int32_t>(i));
+    if (static_cast<size_t>(wheel.stops.back()) != root) {
+        if (areas[root] > areas[static_cast<size_t>(wheel.stops.back())] || root == 0)
+            wheel.stops.push_back(static_cast<int32_t>(root));
+        else
+            wheel.stops.back() = static_cast<int32_t>(root);
+    }
+
+    // Convex nodes have height 0: a floor far below any real part's keeps the factor finite.
+    const double floor = 1e-9 * heights[root];
+    double clearest = 0;
+    wheel.start = wheel.stops.size() - 1;
+    for (size_t s = 0; s + 1 < wheel.stops.size(); ++s) {
+        const auto i = static_cast<size_t>(wheel.stops[s]);
+        if (areas[i] < smallest_start * areas[root]) continue;
+        if (areas[i] > largest_start * areas[root]) break;
+        const double factor = heights[i + 1] / std::max(heights[i], floor);
+        if (factor > clearest) {
+            clearest = factor;
+            wheel.start = s;
+        }
+    }
+    return wheel;
+}
+
+}  // namespace partwheel

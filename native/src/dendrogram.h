@@ -1,0 +1,29 @@
+// The binary tree pruned to a dendrogram (the paper's Listing 2), cuts of it, and the stops of the mouse wheel.
+#pragma once
+
+#include "cluster.h"
+
+#include <span>
+
+namespace partwheel {
+
+// Which merges survive Listing 2: a node goes if it is at least as high as the ancestor it would hang from. Height is
+// the concavity, 0 for convex nodes: C2 orders merges, but is no property of a shape.
+std::vector<uint8_t> prune(std::span<const Merge> merges);
+
+// The cut of the binary tree into `parts` subtrees with the least total concavity, by dynamic programming over the
+// tree: O(T parts) time at most. Returns the clusters' numbers (see Merge), in depth-first order. 1 <= parts <= T.
+std::vector<int32_t> cut_into_parts(std::span<const Merge> merges, size_t parts);
+
+// A path's wheel stops, as indices into the path, and which of them a click alone takes (an index into stops).
+struct WheelStops {
+    std::vector<int32_t> stops;
+    size_t start = 0;
+};
+
+// The path runs from a leaf to the root; areas (growing, the first one above 0) and heights (growing) are those of its
+// nodes. Each stop has at least 10 % more area than the one before; the last is the root. The click takes the stop
+// between 1 % and 60 % of the area that is the clearest part: whose parent is higher than itself by the largest factor.
+WheelStops wheel_stops(std::span<const double> areas, std::span<const double> heights);
+
+}  // namespace partwheel

@@ -1,0 +1,443 @@
+// The finished hierarchy: flat arrays, questions, saving and loading.
+#include "hierarchy.h"
+
+#include "hull.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// The tetrahedra in depth-first order of the tree.
+std::vector<int32_t> depth_first(std::span<const Merge> merges) {
+    const size_t leaves = merges.size() + 1;
+    std::vector<int32_t> order, todo = {static_cast<int32_t>(leaves + merges.size() - 1)};
+    order.reserve(leaves);
+    while (!todo.empty()) {
+        const auto c = static_cast<size_t>(todo.back());
+        todo.pop_back();
+        if (c < leaves) {
+            order.push_back(static_cast<int32_t>(c));
+        } else {
+            todo.push_back(merges[c - leaves].right);
+            todo.push_back(merges[c - leaves].left);
+        }
+    }
+    return order;
+}
+
+// The tetrahedron behind most of each face's area, and the areas.
+void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const int32_t> leaf_of_tet,
+                  std::vector<int32_t>& leaf, std::vector<double>& face_area) {
+    std::vector<int32_t> triangles(surface.triangles.size());
+    std::iota(triangles.begin(), triangles.end(), 0);
+    const auto face_of = [&](int32_t t) { return surface.source_face[static_cast<size_t>(t)]; };
+    const auto leaf_behind = [&](int32_t t) {
+        return leaf_of_tet[static_cast<size_t>(mesh.tet_of_triangle[static_cast<size_t>(t)])];
+    };
+    std::sort(triangles.begin(), triangles.end(), [&](int32_t a, int32_t b) {
+        return std::tuple(face_of(a), leaf_behind(a), a) < std::tuple(face_of(b), leaf_behind(b), b);
+    });
+    leaf.assign(surface.face_count, -1);
+    face_area.assign(surface.face_count, 0);
+    std::vector<double> most(surface.face_count, -1);
+    for (size_t i = 0; i < triangles.size();) {
+        const int32_t f = face_of(triangles[i]), l = leaf_behind(triangles[i]);
+        double shared = 0;
+        for (; i < triangles.size() && face_of(triangles[i]) == f && leaf_behind(triangles[i]) == l; ++i) {
+            const Triangle& t = surface.triangles[static_cast<size_t>(triangles[i])];
+            const auto at = [&](size_t k) { return surface.vertices[static_cast<size_t>(t[k])]; };
+            shared += area(at(0), at(1), at(2));
+        }
+        const auto face = static_cast<size_t>(f);
+        face_area[face] += shared;
+        if (shared > most[face]) {
+            most[face] = shared;
+            leaf[face] = l;
+        }
+    }
+}
+
+}  // namespace
+
+Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const BinaryTree& tree,
+                     std::span<const uint8_t> kept, const double* caller_vertices) {
+    const Frame& frame = surface.frame;
+    source_ = surface.source_vertex;
+    for (int32_t v : source_) {
+        const double* p = caller_vertices + 3 * static_cast<size_t>(v);
+        vertices_.push_back({p[0], p[1], p[2]});
+    }
+    for (size_t v = vertices_.size(); v < mesh.vertices.size(); ++v) {
+        vertices_.push_back(frame.to_caller(mesh.vertices[v]));
+        source_.push_back(-1);
+    }
+
+    const size_t leaves = mesh.tetrahedra.size();
+    const std::vector<int32_t> order = depth_first(tree.merges);
+    std::vector<int32_t> leaf_of_tet(leaves);
+    for (size_t i = 0; i < leaves; ++i) {
+        leaf_of_tet[static_cast<size_t>(order[i])] = static_cast<int32_t>(i);
+        const Tetrahedron& t = mesh.tetrahedra[static_cast<size_t>(order[i])];
+        const auto at = [&](size_t k) { return mesh.vertices[static_cast<size_t>(t[k])]; };
+        tetrahedra_.push_back(t);
+        tet_volume_.push_back(frame.volume_to_caller(six_volumes(at(0), at(1), at(2), at(3)) / 6));
+    }
+    merges_ = tree.merges;
+    const auto renumber = [&](int32_t c) {
+        return static_cast<size_t>(c) < leaves ? leaf_of_tet[static_cast<size_t>(c)] : c;
+    };
+    for (Merge& m : merges_)
+        m = {renumber(m.left), renumber(m.right), frame.volume_to_caller(m.concavity),
+             frame.volume_to_caller(m.hull_volume)};
+
+    assign_faces(surface, mesh, leaf_of_tet, leaf_, face_area_);
+    for (double& a : face_area_) a = frame.area_to_caller(a);
+
+    summary_.components = tree.components;
+    summary_.cavities = mesh.cavities;
+    finish(kept);
+}
+
+// Everything that follows from the stored arrays, which are known to be sound.
+void Hierarchy::finish(std::span<const uint8_t> kept) {
+    const size_t leaves = tetrahedra_.size(), merges = merges_.size(), faces = leaf_.size();
+
+    // Bottom up over the unpruned tree. Leaves are in depth-first order, so slices are a matter of their ends.
+    std::vector<double> volume = tet_volume_, area(leaves, 0);
+    for (size_t f = 0; f < faces; ++f) area[static_cast<size_t>(leaf_[f])] += face_area_[f];
+    volume.resize(leaves + merges);
+    area.resize(leaves + merges);
+    merge_first_.resize(merges);
+    merge_last_.resize(merges);
+    const auto begin = [&](int32_t c) {
+        return static_cast<size_t>(c) < leaves ? c : merge_first_[static_cast<size_t>(c) - leaves];
+    };
+    const auto end = [&](int32_t c) {
+        return static_cast<size_t>(c) < leaves ? c + 1 : merge_last_[static_cast<size_t>(c) - leaves];
+    };
+    for (size_t m = 0; m < merges; ++m) {
+        const Merge& merge = merges_[m];
+        const auto left = static_cast<size_t>(merge.left), right = static_cast<size_t>(merge.right);
+        merge_pairs_.push_back(merge.left);
+        merge_pairs_.push_back(merge.right);
+        merge_first_[m] = begin(merge.left);
+        merge_last_[m] = end(merge.right);
+        volume[leaves + m] = volume[left] + volume[right];
+        area[leaves + m] = area[left] + area[right];
+    }
+
+    // Faces sorted by leaf; face_begin[l] is where leaf l's start.
+    std::vector<int32_t> face_begin(leaves + 1, 0);
+    for (int32_t l : leaf_) ++face_begin[static_cast<size_t>(l) + 1];
+    std::partial_sum(face_begin.begin(), face_begin.end(), face_begin.begin());
+    order_.resize(faces);
+    std::vector<int32_t> next(face_begin.begin(), face_begin.end() - 1);
+    for (size_t f = 0; f < faces; ++f)
+        order_[static_cast<size_t>(next[static_cast<size_t>(leaf_[f])]++)] = static_cast<int32_t>(f);
+
+    // Nodes: all leaves, then the merges that were kept.
+    std::vector<int32_t> node(leaves + merges, -1);
+    size_t nodes = leaves;
+    for (size_t c = 0; c < leaves + merges; ++c) {
+        const bool leaf = c < leaves;
+        if (!leaf && !kept[c - leaves]) continue;
+        node[c] = static_cast<int32_t>(leaf ? c : nodes++);
+        const auto c32 = static_cast<int32_t>(c);
+        tet_first_.push_back(begin(c32));
+        tet_last_.push_back(end(c32));
+        first_.push_back(face_begin[static_cast<size_t>(begin(c32))]);
+        last_.push_back(face_begin[static_cast<size_t>(end(c32))]);
+        volume_.push_back(volume[c]);
+        area_.push_back(area[c]);
+        const double height = leaf ? 0 : merges_[c - leaves].concavity;
+        height_.push_back(height);
+        cost_class_.push_back(height > 0);
+        double cost = height;
+        if (!leaf && height == 0) {  // Eq. 2
+            const auto share = [&](int32_t child) { return double(end(child) - begin(child)) / double(leaves); };
+            const double left = share(merges_[c - leaves].left), right = share(merges_[c - leaves].right);
+            cost = left * left + right * right;
+        }
+        cost_.push_back(cost);
+    }
+    parent_.assign(nodes, -1);
+    for (size_t m = merges; m-- > 0;) {
+        // node[] of a pruned merge becomes the node that its children hang from.
+        for (int32_t child : {merges_[m].left, merges_[m].right}) {
+            int32_t& below = node[static_cast<size_t>(child)];
+            if (below < 0)
+                below = node[leaves + m];
+            else
+                parent_[static_cast<size_t>(below)] = node[leaves + m];
+        }
+    }
+
+    frame_ = Frame::around(vertices_);
+    summary_.added_vertices = static_cast<size_t>(std::count(source_.begin(), source_.end(), -1));
+    summary_.volume = volume.back();
+    summary_.hull_volume = merges_.empty() ? volume.back() : merges_.back().hull_volume;
+}
+
+pw_arrays Hierarchy::arrays() const {
+    pw_arrays a{};
+    a.face_count = leaf_.size();
+    a.node_count = parent_.size();
+    a.tetrahedron_count = tetrahedra_.size();
+    a.vertex_count = vertices_.size();
+    a.order = order_.data();
+    a.leaf = leaf_.data();
+    a.parent = parent_.data();
+    a.first = first_.data();
+    a.last = last_.data();
+    a.tet_first = tet_first_.data();
+    a.tet_last = tet_last_.data();
+    a.cost_class = cost_class_.data();
+    a.cost = cost_.data();
+    a.height = height_.data();
+    a.volume = volume_.data();
+    a.area = area_.data();
+    a.vertices = vertices_.data()->data();
+    a.source = source_.data();
+    a.tetrahedra = tetrahedra_.data()->data();
+    a.merges = merge_pairs_.data();
+    return a;
+}
+
+std::vector<int32_t> Hierarchy::path(size_t face) const {
+    std::vector<int32_t> nodes;
+    for (int32_t n = leaf_[face]; n >= 0; n = parent_[static_cast<size_t>(n)]) nodes.push_back(n);
+    return nodes;
+}
+
+WheelStops Hierarchy::wheel(size_t face) const {
+    const std::vector<int32_t> nodes = path(face);
+    std::vector<double> areas, heights;
+    for (int32_t n : nodes) {
+        areas.push_back(area_[static_cast<size_t>(n)]);
+        heights.push_back(height_[static_cast<size_t>(n)]);
+    }
+    WheelStops wheel = wheel_stops(areas, heights);
+    for (int32_t& stop : wheel.stops) stop = nodes[static_cast<size_t>(stop)];
+    return wheel;
+}
+
+std::span<const int32_t> Hierarchy::faces(size_t node) const {
+    return std::span(order_).subspan(static_cast<size_t>(first_[node]),
+                                     static_cast<size_t>(last_[node] - first_[node]));
+}
+
+std::vector<int32_t> Hierarchy::cut_height(double height) const {
+    std::vector<int32_t> bounds = {0};
+    while (static_cast<size_t>(bounds.back()) < tetrahedra_.size()) {
+        auto n = static_cast<size_t>(bounds.back());
+        while (parent_[n] >= 0 && height_[static_cast<size_t>(parent_[n])] <= height)
+            n = static_cast<size_t>(parent_[n]);
+        bounds.push_back(tet_last_[n]);
+    }
+    return bounds;
+}
+
+std::vector<int32_t> Hierarchy::cut_parts(size_t parts) const {
+    std::vector<int32_t> bounds = {0};
+    for (int32_t c : cut_into_parts(merges_, parts)) {
+        const size_t leaves = tetrahedra_.size(), i = static_cast<size_t>(c);
+        bounds.push_back(i < leaves ? c + 1 : merge_last_[i - leaves]);
+    }
+    return bounds;
+}
+
+TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last) const {
+    std::vector<int32_t> used;
+    for (size_t t = tet_first; t < tet_last; ++t) used.insert(used.end(), tetrahedra_[t].begin(), tetrahedra_[t].end());
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    std::vector<Point> points;
+    for (int32_t v : used) points.push_back(frame_.to_working(vertices_[static_cast<size_t>(v)]));
+    std::vector<int32_t> all(points.size());
+    std::iota(all.begin(), all.end(), 0);
+    const Hull hull = HullKernel(points).build(all);
+
+    TriangleMesh mesh;
+    std::vector<int32_t> number(points.size(), -1);
+    for (int32_t v : hull.vertices) {
+        number[static_cast<size_t>(v)] = static_cast<int32_t>(mesh.vertices.size());
+        mesh.vertices.push_back(vertices_[static_cast<size_t>(used[static_cast<size_t>(v)])]);
+    }
+    for (Triangle t : hull.facets) {
+        for (int32_t& v : t) v = number[static_cast<size_t>(v)];
+        mesh.triangles.push_back(t);
+    }
+    return mesh;
+}
+
+// ---- Saved form: magic, version, counts, the stored arrays, a hash of all that came before. Little-endian. ----
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the saved form is written as memory holds it");
+
+constexpr std::array<char, 8> magic = {'P', 'W', 'H', 'I', 'E', 'R', '\r', '\n'};
+constexpr uint32_t format_version = 1;
+
+// FNV-1a, by words of 8 bytes where they last: any single changed byte changes the hash.
+uint64_t hash(std::span<const uint8_t> bytes) {
+    constexpr uint64_t prime = 0x100000001b3;
+    uint64_t h = 0xcbf29ce484222325;
+    size_t i = 0;
+    for (; i + 8 <= bytes.size(); i += 8) {
+        uint64_t word;
+        std::memcpy(&word, bytes.data() + i, 8);
+        h = std::rotl((h ^ word) * prime, 29);
+    }
+    for (; i < bytes.size(); ++i) h = (h ^ bytes[i]) * prime;
+    return h;
+}
+
+[[noreturn]] void refuse(const char* why) {
+    throw Error(PW_ERROR_DATA, std::string("This is not a hierarchy that can be used: ") + why + ". Build it again.");
+}
+
+class Writer {
+public:
+    template <class T>
+    void put(const T* values, size_t count) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        const auto* p = reinterpret_cast<const uint8_t*>(values);
+        bytes.insert(bytes.end(), p, p + count * sizeof(T));
+    }
+    std::vector<uint8_t> bytes;
+};
+
+class Reader {
+public:
+    explicit Reader(std::span<const uint8_t> bytes) : bytes_(bytes) {}
+
+    template <class T>
+    void get(T* values, size_t count) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        if (count > bytes_.size() / sizeof(T)) refuse("it is cut short");
+        if (count) std::memcpy(values, bytes_.data(), count * sizeof(T));
+        bytes_ = bytes_.subspan(count * sizeof(T));
+    }
+    template <class T>
+    std::vector<T> get_vector(size_t count) {
+        if (count > bytes_.size() / sizeof(T)) refuse("it is cut short");
+        std::vector<T> values(count);
+        get(values.data(), count);
+        return values;
+    }
+    bool at_end() const { return bytes_.empty(); }
+
+private:
+    std::span<const uint8_t> bytes_;
+};
+
+struct Header {
+    std::array<char, 8> magic = partwheel::magic;
+    uint32_t version = format_version;
+    uint32_t reserved = 0;
+    uint64_t faces = 0, tetrahedra = 0, vertices = 0, components = 0, cavities = 0;
+};
+
+static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Merge) == 24 && sizeof(Header) == 56);
+
+}  // namespace
+
+std::vector<uint8_t> Hierarchy::save() const {
+    Header header;
+    header.faces = leaf_.size();
+    header.tetrahedra = tetrahedra_.size();
+    header.vertices = vertices_.size();
+    header.components = summary_.components;
+    header.cavities = summary_.cavities;
+    Writer out;
+    out.put(&header, 1);
+    out.put(vertices_.data(), vertices_.size());
+    out.put(source_.data(), source_.size());
+    out.put(tetrahedra_.data(), tetrahedra_.size());
+    out.put(tet_volume_.data(), tet_volume_.size());
+    out.put(leaf_.data(), leaf_.size());
+    out.put(face_area_.data(), face_area_.size());
+    out.put(merges_.data(), merges_.size());
+    const uint64_t h = hash(out.bytes);
+    out.put(&h, 1);
+    return std::move(out.bytes);
+}
+
+Hierarchy Hierarchy::load(std::span<const uint8_t> bytes) {
+    Reader in(bytes);
+    Header header;
+    in.get(&header, 1);
+    if (header.magic != magic) refuse("it is something else");
+    if (header.version != format_version) refuse("it was written by another version of Partwheel");
+    if (header.reserved != 0) refuse("it is damaged");
+    uint64_t stored_hash;
+    if (bytes.size() < sizeof header + sizeof stored_hash) refuse("it is cut short");
+    std::memcpy(&stored_hash, bytes.data() + bytes.size() - sizeof stored_hash, sizeof stored_hash);
+    if (hash(bytes.first(bytes.size() - sizeof stored_hash)) != stored_hash) refuse("it is damaged");
+    for (uint64_t n : {header.faces, header.tetrahedra, header.vertices})
+        if (n == 0 || n > PW_MAX_COUNT) refuse("its sizes are impossible");
+
+    Hierarchy h;
+    h.vertices_ = in.get_vector<Point>(header.vertices);
+    h.source_ = in.get_vector<int32_t>(header.vertices);
+    h.tetrahedra_ = in.get_vector<Tetrahedron>(header.tetrahedra);
+    h.tet_volume_ = in.get_vector<double>(header.tetrahedra);
+    h.leaf_ = in.get_vector<int32_t>(header.faces);
+    h.face_area_ = in.get_vector<double>(header.faces);
+    h.merges_ = in.get_vector<Merge>(header.tetrahedra - 1);
+    h.summary_.components = header.components;
+    h.summary_.cavities = header.cavities;
+    in.get(&stored_hash, 1);
+    if (!in.at_end()) refuse("it goes on after its end");
+    h.check_stored();
+    h.finish(prune(h.merges_));
+    return h;
+}
+
+// A hash can be forged: what finish() and the questions rely on is checked as well.
+void Hierarchy::check_stored() const {
+    const size_t leaves = tetrahedra_.size(), merges = merges_.size();
+    const auto below = [](int32_t i, size_t size) { return i >= 0 && static_cast<size_t>(i) < size; };
+    const auto measure = [](double x) { return x >= 0 && std::isfinite(x); };
+    for (const Point& p : vertices_)
+        for (double c : p)
+            if (!std::isfinite(c)) refuse("a vertex is not finite");
+    for (int32_t s : source_)
+        if (s < -1 || s >= PW_MAX_COUNT) refuse("a vertex has no source");
+    for (const Tetrahedron& t : tetrahedra_)
+        for (int32_t v : t)
+            if (!below(v, vertices_.size())) refuse("a tetrahedron names a missing vertex");
+    for (double v : tet_volume_)
+        if (!measure(v)) refuse("a volume is impossible");
+    for (int32_t l : leaf_)
+        if (!below(l, leaves)) refuse("a face names a missing tetrahedron");
+    for (double a : face_area_)
+        if (!measure(a)) refuse("an area is impossible");
+    if (summary_.components == 0 || summary_.components > leaves) refuse("its counts are impossible");
+
+    std::vector<std::pair<int32_t, int32_t>> slice(leaves + merges);
+    std::vector<bool> used(leaves + merges, false);
+    for (size_t i = 0; i < leaves; ++i) slice[i] = {static_cast<int32_t>(i), static_cast<int32_t>(i + 1)};
+    for (size_t m = 0; m < merges; ++m) {
+        for (int32_t child : {merges_[m].left, merges_[m].right}) {
+            if (!below(child, leaves + m) || used[static_cast<size_t>(child)]) refuse("its tree is not a tree");
+            used[static_cast<size_t>(child)] = true;
+        }
+        const auto left = slice[static_cast<size_t>(merges_[m].left)], right = slice[static_cast<size_t>(merges_[m].right)];
+        if (left.second != right.first) refuse("its tree is out of order");
+        slice[leaves + m] = {left.first, right.second};
+        if (!measure(merges_[m].concavity) || !measure(merges_[m].hull_volume)) refuse("a volume is impossible");
+    }
+}
+
+}  // namespace partwheel

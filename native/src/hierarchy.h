@@ -1,0 +1,67 @@
+// The finished, immutable hierarchy: flat arrays, questions, saving and loading.
+#pragma once
+
+#include "dendrogram.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace partwheel {
+
+struct TriangleMesh {
+    std::vector<Point> vertices;
+    std::vector<Triangle> triangles;
+};
+
+// pw_arrays documents the arrays, pw_hierarchy_* the questions; arguments are checked by api.
+class Hierarchy {
+public:
+    // From what the rooms before it made. kept is prune()'s, caller_vertices are the caller's own.
+    Hierarchy(const Surface& surface, const TetMesh& mesh, const BinaryTree& tree, std::span<const uint8_t> kept,
+              const double* caller_vertices);
+
+    // Throws Error(PW_ERROR_DATA) for anything but what save() makes.
+    static Hierarchy load(std::span<const uint8_t> bytes);
+    std::vector<uint8_t> save() const;
+
+    pw_arrays arrays() const;
+    const pw_summary& summary() const { return summary_; }
+    size_t face_count() const { return leaf_.size(); }
+    size_t node_count() const { return parent_.size(); }
+    size_t tetrahedron_count() const { return tetrahedra_.size(); }
+
+    std::vector<int32_t> path(size_t face) const;
+    WheelStops wheel(size_t face) const;  // its stops are nodes
+    std::span<const int32_t> faces(size_t node) const;
+    std::vector<int32_t> cut_height(double height) const;   // bounds, as the C API documents
+    std::vector<int32_t> cut_parts(size_t parts) const;     // likewise
+    TriangleMesh hull(size_t tet_first, size_t tet_last) const;
+
+private:
+    Hierarchy() = default;
+    void check_stored() const;
+    void finish(std::span<const uint8_t> kept);
+
+    // Stored: all else follows from these. Tetrahedra are in depth-first order, lengths and volumes in the caller's
+    // unit.
+    std::vector<Point> vertices_;
+    std::vector<int32_t> source_;
+    std::vector<Tetrahedron> tetrahedra_;
+    std::vector<double> tet_volume_;
+    std::vector<int32_t> leaf_;      // of each face
+    std::vector<double> face_area_;
+    std::vector<Merge> merges_;
+    pw_summary summary_{};
+
+    // Derived by finish().
+    Frame frame_;
+    std::vector<int32_t> merge_pairs_;
+    std::vector<int32_t> merge_first_, merge_last_;  // each merge's slice of the tetrahedra
+    std::vector<int32_t> order_, parent_, first_, last_, tet_first_, tet_last_;
+    std::vector<uint8_t> cost_class_;
+    std::vector<double> cost_, height_, volume_, area_;
+};
+
+}  // namespace partwheel

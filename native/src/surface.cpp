@@ -1,0 +1,256 @@
+// The input triangles, checked and put in a canonical order.
+#include "surface.h"
+
+#include "predicates.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Surface_mesh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+constexpr double largest_coordinate = 1e100;
+
+std::string counted(size_t n, const char* one, const char* many) {
+    return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+void check_arrays(const MeshView& mesh) {
+    if (mesh.vertex_count == 0 || mesh.triangle_count == 0 || mesh.face_count == 0)
+        throw Error(PW_ERROR_EMPTY, "The mesh has no faces. Choose a mesh object that has some.");
+    if (std::max({mesh.vertex_count, mesh.triangle_count, mesh.face_count}) > PW_MAX_COUNT)
+        throw Error(PW_ERROR_ARGUMENT, "The mesh is too large: the limit is " + std::to_string(PW_MAX_COUNT) +
+                                           " vertices or triangles. Decimate it first.");
+    if (!mesh.faces && mesh.face_count != mesh.triangle_count)
+        throw Error(PW_ERROR_ARGUMENT, "Without source faces, face_count must equal triangle_count.");
+
+    for (size_t i = 0; i < 3 * mesh.vertex_count; ++i)
+        if (!(std::fabs(mesh.vertices[i]) <= largest_coordinate))
+            throw Error(PW_ERROR_NOT_FINITE, "Vertex " + std::to_string(i / 3) +
+                                                 " has a coordinate that is not a number, or is too large. Delete or "
+                                                 "move that vertex.");
+
+    const auto vertex_count = static_cast<int64_t>(mesh.vertex_count);
+    for (size_t i = 0; i < 3 * mesh.triangle_count; ++i)
+        if (mesh.triangles[i] < 0 || mesh.triangles[i] >= vertex_count)
+            throw Error(PW_ERROR_INDEX, "Triangle " + std::to_string(i / 3) + " names vertex " +
+                                            std::to_string(mesh.triangles[i]) + ", but there are " +
+                                            std::to_string(vertex_count) + ". The mesh data are damaged.");
+    if (!mesh.faces) return;
+    const auto face_count = static_cast<int64_t>(mesh.face_count);
+    std::vector<bool> used(mesh.face_count, false);
+    for (size_t t = 0; t < mesh.triangle_count; ++t) {
+        if (mesh.faces[t] < 0 || mesh.faces[t] >= face_count)
+            throw Error(PW_ERROR_INDEX, "Triangle " + std::to_string(t) + " names face " +
+                                            std::to_string(mesh.faces[t]) + ", but there are " +
+                                            std::to_string(face_count) + ". The mesh data are damaged.");
+        used[static_cast<size_t>(mesh.faces[t])] = true;
+    }
+    const auto unused = std::find(used.begin(), used.end(), false);
+    if (unused != used.end())
+        throw Error(PW_ERROR_INDEX, "Face " + std::to_string(unused - used.begin()) +
+                                        " has no triangle. The mesh data are damaged.");
+}
+
+// The vertices in use, sorted by their coordinates, and the triangles in terms of them, sorted as well.
+Surface canonical(const MeshView& mesh) {
+    const auto caller_point = [&](int32_t v) {
+        const double* p = mesh.vertices + 3 * static_cast<size_t>(v);
+        return Point{p[0], p[1], p[2]};
+    };
+    Surface surface;
+    surface.face_count = mesh.face_count;
+
+    std::vector<int32_t>& source = surface.source_vertex;
+    source.assign(mesh.triangles, mesh.triangles + 3 * mesh.triangle_count);
+    std::sort(source.begin(), source.end());
+    source.erase(std::unique(source.begin(), source.end()), source.end());
+    std::sort(source.begin(), source.end(), [&](int32_t a, int32_t b) {
+        return std::pair(caller_point(a), a) < std::pair(caller_point(b), b);
+    });
+    for (int32_t v : source) surface.vertices.push_back(caller_point(v));
+    surface.frame = Frame::around(surface.vertices);
+    for (Point& p : surface.vertices) p = surface.frame.to_working(p);
+
+    std::vector<int32_t> number(mesh.vertex_count, -1);
+    for (size_t i = 0; i < source.size(); ++i) number[static_cast<size_t>(source[i])] = static_cast<int32_t>(i);
+    std::vector<std::pair<Triangle, int32_t>> triangles(mesh.triangle_count);
+    for (size_t t = 0; t < mesh.triangle_count; ++t) {
+        Triangle& tri = triangles[t].first;
+        for (size_t k = 0; k < 3; ++k) tri[k] = number[static_cast<size_t>(mesh.triangles[3 * t + k])];
+        std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
+        triangles[t].second = mesh.faces ? mesh.faces[t] : static_cast<int32_t>(t);
+    }
+    std::sort(triangles.begin(), triangles.end());
+    for (const auto& [tri, face] : triangles) {
+        surface.triangles.push_back(tri);
+        surface.source_face.push_back(face);
+    }
+    return surface;
+}
+
+// How many things are wrong in one way, and the lowest source face that has it.
+struct Finding {
+    size_t count = 0;
+    int32_t face = std::numeric_limits<int32_t>::max();
+
+    void add(int32_t at) {
+        ++count;
+        face = std::min(face, at);
+    }
+    std::string where() const { return count == 1 ? "at face " + std::to_string(face) : "the first at face " + std::to_string(face); }
+};
+
+void check_degenerate(const Surface& surface) {
+    Finding flat;
+    for (size_t t = 0; t < surface.triangles.size(); ++t) {
+        const Triangle& tri = surface.triangles[t];
+        const auto at = [&](size_t k) { return surface.vertices[static_cast<size_t>(tri[k])]; };
+        if (collinear(at(0), at(1), at(2))) flat.add(surface.source_face[t]);
+    }
+    if (flat.count)
+        throw Error(PW_ERROR_DEGENERATE, counted(flat.count, "triangle has", "triangles have") + " no area, " +
+                                             flat.where() + ". Merge vertices by distance or dissolve degenerate "
+                                                            "geometry.");
+}
+
+struct HalfEdge {
+    uint64_t key;  // of the undirected edge
+    uint32_t half;  // 3 * triangle + k: from corner k to corner k + 1
+    bool forward;   // from the lower to the higher vertex
+};
+
+// Closed, manifold, oriented: every edge has two triangles that run through it in opposite directions, and the
+// triangles of every vertex are one fan.
+void check_manifold(const Surface& surface) {
+    const size_t count = surface.triangles.size();
+    std::vector<HalfEdge> edges;
+    edges.reserve(3 * count);
+    for (size_t t = 0; t < count; ++t)
+        for (size_t k = 0; k < 3; ++k) {
+            const int32_t from = surface.triangles[t][k], to = surface.triangles[t][(k + 1) % 3];
+            const auto [low, high] = std::minmax(static_cast<uint32_t>(from), static_cast<uint32_t>(to));
+            edges.push_back({uint64_t{low} << 32 | high, static_cast<uint32_t>(3 * t + k), from < to});
+        }
+    std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
+        return std::pair(a.key, a.half) < std::pair(b.key, b.half);
+    });
+
+    Finding open, crowded, turned;
+    std::vector<uint32_t> twin(3 * count);
+    for (size_t i = 0; i < edges.size();) {
+        size_t end = i + 1;
+        while (end < edges.size() && edges[end].key == edges[i].key) ++end;
+        const int32_t face = surface.source_face[edges[i].half / 3];
+        if (end - i == 1)
+            open.add(face);
+        else if (end - i > 2)
+            crowded.add(face);
+        else if (edges[i].forward == edges[i + 1].forward)
+            turned.add(face);
+        else {
+            twin[edges[i].half] = edges[i + 1].half;
+            twin[edges[i + 1].half] = edges[i].half;
+        }
+        i = end;
+    }
+    if (open.count)
+        throw Error(PW_ERROR_OPEN, "The surface is open: " +
+                                       counted(open.count, "edge has a face", "edges have a face") +
+                                       " on one side only, " + open.where() +
+                                       ". Fill the holes, and merge vertices by distance if the faces only seem "
+                                       "joined.");
+    if (crowded.count)
+        throw Error(PW_ERROR_NON_MANIFOLD, counted(crowded.count, "edge joins", "edges join") +
+                                               " more than two faces, " + crowded.where() +
+                                               ". Remove inner faces, so that each edge joins exactly two.");
+    if (turned.count)
+        throw Error(PW_ERROR_ORIENTATION, counted(turned.count, "edge joins faces", "edges join faces") +
+                                              " that look in opposite directions, " + turned.where() +
+                                              ". Recalculate the normals to the outside.");
+
+    Finding pinched;
+    std::vector<bool> visited(3 * count, false), has_fan(surface.vertices.size(), false);
+    for (uint32_t start = 0; start < 3 * count; ++start) {
+        if (visited[start]) continue;
+        for (uint32_t h = start; !visited[h]; h = twin[h / 3 * 3 + (h + 2) % 3]) visited[h] = true;
+        const auto v = static_cast<size_t>(surface.triangles[start / 3][start % 3]);
+        if (has_fan[v]) pinched.add(surface.source_face[start / 3]);
+        has_fan[v] = true;
+    }
+    if (pinched.count)
+        throw Error(PW_ERROR_NON_MANIFOLD, "Parts of the surface touch in " +
+                                               counted(pinched.count, "single vertex, ", "single vertices, ") +
+                                               pinched.where() + ". Split or merge them there.");
+}
+
+void check_self_intersection(const Surface& surface) {
+    namespace pmp = CGAL::Polygon_mesh_processing;
+    using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+    using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+    Mesh mesh;
+    for (const Point& p : surface.vertices) mesh.add_vertex({p[0], p[1], p[2]});
+    const auto vertex = [](int32_t v) { return Mesh::Vertex_index(static_cast<Mesh::size_type>(v)); };
+    for (const Triangle& t : surface.triangles)
+        if (mesh.add_face(vertex(t[0]), vertex(t[1]), vertex(t[2])) == Mesh::null_face())
+            throw Error(PW_ERROR_INTERNAL, "A manifold surface was not taken as one. Please report this mesh.");
+
+    std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
+    pmp::self_intersections<CGAL::Sequential_tag>(mesh.faces(), mesh, std::back_inserter(pairs),
+                                                  CGAL::parameters::maximum_number(1));
+    if (pairs.empty()) return;
+    const auto source = [&](Mesh::Face_index f) { return surface.source_face[static_cast<size_t>(f)]; };
+    const auto [low, high] = std::minmax(source(pairs[0].first), source(pairs[0].second));
+    throw Error(PW_ERROR_SELF_INTERSECTION,
+                "The surface passes through or touches itself, for instance where faces " + std::to_string(low) +
+                    " and " + std::to_string(high) +
+                    " meet. Unite overlapping parts with a Boolean or remesh, and separate parts that touch.");
+}
+
+}  // namespace
+
+Frame Frame::around(std::span<const Point> points) {
+    Frame frame;
+    double longest = 0;
+    for (size_t k = 0; k < 3; ++k) {
+        const auto [low, high] = std::minmax_element(points.begin(), points.end(),
+                                                     [k](const Point& a, const Point& b) { return a[k] < b[k]; });
+        frame.origin[k] = (*low)[k];
+        longest = std::max(longest, (*high)[k] - (*low)[k]);
+    }
+    if (longest > 0) frame.scale = std::ldexp(1.0, std::ilogb(longest));
+    return frame;
+}
+
+Point Frame::to_working(const Point& p) const {
+    const Point d = p - origin;
+    return {d[0] / scale, d[1] / scale, d[2] / scale};
+}
+
+Point Frame::to_caller(const Point& p) const {
+    return {p[0] * scale + origin[0], p[1] * scale + origin[1], p[2] * scale + origin[2]};
+}
+
+Surface check_surface(const MeshView& mesh, Progress& progress) {
+    check_arrays(mesh);
+    progress.advance(0.1);
+    Surface surface = canonical(mesh);
+    progress.advance(0.3);
+    check_degenerate(surface);
+    check_manifold(surface);
+    progress.advance(0.5);
+    check_self_intersection(surface);
+    progress.advance(1);
+    return surface;
+}
+
+}  // namespace partwheel

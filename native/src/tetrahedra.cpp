@@ -1,0 +1,236 @@
+// The closed surface filled with tetrahedra by TetGen.
+#include "tetrahedra.h"
+
+#include "predicates.h"
+
+#include <tetgen.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <string>
+
+namespace partwheel {
+
+namespace {
+
+// The facet opposite each corner of a positively oriented tetrahedron, outward.
+constexpr std::array<std::array<size_t, 3>, 4> facet_corners = {{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+Triangle facet(const Tetrahedron& tet, size_t opposite) {
+    const auto& c = facet_corners[opposite];
+    Triangle t = {tet[c[0]], tet[c[1]], tet[c[2]]};
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    return t;
+}
+
+[[noreturn]] void throw_failure(int code) {
+    switch (code) {
+        case 1: throw Error(PW_ERROR_MEMORY, "There is not enough memory to fill this mesh. Decimate it first.");
+        case 3:
+        case 4:
+        case 5:
+            throw Error(PW_ERROR_TETRAHEDRA,
+                        "The mesh can't be filled: some faces are too close together to be told apart. Merge vertices "
+                        "by distance, or move the parts that almost touch further apart.");
+        default:
+            throw Error(PW_ERROR_TETRAHEDRA, "The mesh can't be filled (TetGen ended with code " +
+                                                 std::to_string(code) +
+                                                 "). Remesh or smooth it a little and try again.");
+    }
+}
+
+// TetGen keeps the surface (Y), is quiet (Q), writes no boundary faces (F: its own code for that is unsafe) and tells
+// neighbours (n).
+void run_tetgen(const Surface& surface, double quality, tetgenio& out) {
+    tetgenio in;
+    in.firstnumber = 0;
+    in.numberofpoints = static_cast<int>(surface.vertices.size());
+    in.pointlist = new REAL[3 * surface.vertices.size()];
+    for (size_t i = 0; i < surface.vertices.size(); ++i)
+        std::copy_n(surface.vertices[i].begin(), 3, in.pointlist + 3 * i);
+    in.numberoffacets = static_cast<int>(surface.triangles.size());
+    in.facetlist = new tetgenio::facet[surface.triangles.size()];
+    for (size_t i = 0; i < surface.triangles.size(); ++i) {
+        tetgenio::facet& f = in.facetlist[i];
+        tetgenio::init(&f);
+        f.numberofpolygons = 1;
+        f.polygonlist = new tetgenio::polygon[1];
+        tetgenio::polygon& p = f.polygonlist[0];
+        p.numberofvertices = 3;
+        p.vertexlist = new int[3];
+        std::copy_n(surface.triangles[i].begin(), 3, p.vertexlist);
+    }
+    char switches[64];
+    if (quality > 0)
+        std::snprintf(switches, sizeof switches, "pYQFnq%.17g/0", quality);
+    else
+        std::snprintf(switches, sizeof switches, "pYQFn");
+    try {
+        tetrahedralize(switches, &in, &out);
+    } catch (int code) {
+        throw_failure(code);
+    }
+    if (out.numberoftetrahedra <= 0 || !out.tetrahedronlist || !out.neighborlist) throw_failure(2);
+}
+
+// All of TetGen's tetrahedra, those of cavities included, positively oriented.
+TetMesh read(const Surface& surface, const tetgenio& out) {
+    TetMesh mesh;
+    const auto points = static_cast<size_t>(out.numberofpoints), tets = static_cast<size_t>(out.numberoftetrahedra);
+    for (size_t i = 0; i < points; ++i) {
+        const REAL* p = out.pointlist + 3 * i;
+        mesh.vertices.push_back({p[0], p[1], p[2]});
+    }
+    if (points < surface.vertices.size() ||
+        !std::equal(surface.vertices.begin(), surface.vertices.end(), mesh.vertices.begin()))
+        throw Error(PW_ERROR_TETRAHEDRA, "The mesher moved or merged vertices of the surface, for some are too close "
+                                         "together. Merge vertices by distance.");
+    for (size_t i = 0; i < tets; ++i) {
+        Tetrahedron t;
+        std::array<int32_t, 4> n;
+        std::copy_n(out.tetrahedronlist + i * static_cast<size_t>(out.numberofcorners), 4, t.begin());
+        std::copy_n(out.neighborlist + 4 * i, 4, n.begin());
+        const auto at = [&](size_t k) { return mesh.vertices[static_cast<size_t>(t[k])]; };
+        if (orientation(at(0), at(1), at(2), at(3)) < 0) {
+            std::swap(t[0], t[1]);
+            std::swap(n[0], n[1]);
+        }
+        mesh.tetrahedra.push_back(t);
+        mesh.neighbours.push_back(n);
+    }
+    return mesh;
+}
+
+// A facet of a tetrahedron that is a triangle of the surface.
+struct Wall {
+    int32_t triangle = -1;
+    bool behind = false;  // the tetrahedron is on the inner side
+};
+
+class Walls {
+public:
+    Walls(const Surface& surface, const TetMesh& mesh) : surface_(surface), mesh_(mesh) {}
+
+    Wall at(size_t tet, size_t opposite) const {
+        const Triangle f = facet(mesh_.tetrahedra[tet], opposite);
+        if (int32_t t = find(f); t >= 0) return {t, true};
+        if (int32_t t = find({f[0], f[2], f[1]}); t >= 0) return {t, false};
+        return {};
+    }
+
+private:
+    int32_t find(const Triangle& t) const {
+        const auto i = std::lower_bound(surface_.triangles.begin(), surface_.triangles.end(), t);
+        if (i == surface_.triangles.end() || *i != t) return -1;
+        return static_cast<int32_t>(i - surface_.triangles.begin());
+    }
+    const Surface& surface_;
+    const TetMesh& mesh_;
+};
+
+// The winding number of the surface about each tetrahedron: 0 outside, one more behind each triangle.
+std::vector<int32_t> winding_numbers(const TetMesh& mesh, const std::vector<std::array<Wall, 4>>& walls,
+                                     size_t& empty_regions) {
+    constexpr int32_t unknown = std::numeric_limits<int32_t>::min();
+    const auto step = [](const Wall& wall) { return wall.triangle < 0 ? 0 : wall.behind ? 1 : -1; };
+    std::vector<int32_t> winding(mesh.tetrahedra.size(), unknown);
+
+    // Regions are flooded one by one, so that those with winding number 0 can be counted.
+    std::vector<int32_t> next_regions, region;
+    for (size_t t = 0; t < walls.size(); ++t)
+        for (size_t k = 0; k < 4; ++k)
+            if (mesh.neighbours[t][k] < 0) {
+                if (walls[t][k].triangle < 0)
+                    throw Error(PW_ERROR_TETRAHEDRA, "The mesher lost a part of the surface. Remesh or smooth the "
+                                                     "mesh a little and try again.");
+                winding[t] = step(walls[t][k]);
+                next_regions.push_back(static_cast<int32_t>(t));
+            }
+    std::vector<bool> flooded(mesh.tetrahedra.size(), false);
+    empty_regions = 0;
+    for (size_t i = 0; i < next_regions.size(); ++i) {
+        const int32_t seed = next_regions[i];
+        if (flooded[static_cast<size_t>(seed)]) continue;
+        if (winding[static_cast<size_t>(seed)] == 0) ++empty_regions;
+        flooded[static_cast<size_t>(seed)] = true;
+        region.assign(1, seed);
+        while (!region.empty()) {
+            const auto t = static_cast<size_t>(region.back());
+            region.pop_back();
+            for (size_t k = 0; k < 4; ++k) {
+                const int32_t n = mesh.neighbours[t][k];
+                if (n < 0) continue;
+                const auto other = static_cast<size_t>(n);
+                const int32_t expected = winding[t] - step(walls[t][k]);
+                if (winding[other] == unknown)
+                    winding[other] = expected;
+                else if (winding[other] != expected)
+                    throw Error(PW_ERROR_TETRAHEDRA, "The mesher lost a part of the surface. Remesh or smooth the "
+                                                     "mesh a little and try again.");
+                if (flooded[other]) continue;
+                if (walls[t][k].triangle < 0) {
+                    flooded[other] = true;
+                    region.push_back(n);
+                } else {
+                    next_regions.push_back(n);
+                }
+            }
+        }
+    }
+    return winding;
+}
+
+// Takes away the tetrahedra outside the solid, and finds the one behind each triangle.
+void keep_solid(const Surface& surface, TetMesh& mesh) {
+    std::vector<std::array<Wall, 4>> walls(mesh.tetrahedra.size());
+    const Walls finder(surface, mesh);
+    for (size_t t = 0; t < walls.size(); ++t)
+        for (size_t k = 0; k < 4; ++k) walls[t][k] = finder.at(t, k);
+    const std::vector<int32_t> winding = winding_numbers(mesh, walls, mesh.cavities);
+
+    std::vector<int32_t> number(mesh.tetrahedra.size(), -1);
+    size_t kept = 0;
+    for (size_t t = 0; t < number.size(); ++t)
+        if (winding[t] != 0) number[t] = static_cast<int32_t>(kept++);
+    if (kept == 0) throw Error(PW_ERROR_NO_VOLUME, "The surface encloses no volume. Give it some thickness.");
+
+    mesh.tet_of_triangle.assign(surface.triangles.size(), -1);
+    for (size_t t = 0; t < number.size(); ++t) {
+        if (number[t] < 0) continue;
+        for (size_t k = 0; k < 4; ++k) {
+            const int32_t triangle = walls[t][k].triangle;
+            if (triangle < 0) continue;
+            int32_t& owner = mesh.tet_of_triangle[static_cast<size_t>(triangle)];
+            if (owner < 0 || walls[t][k].behind) owner = number[t];
+        }
+    }
+    if (std::find(mesh.tet_of_triangle.begin(), mesh.tet_of_triangle.end(), -1) != mesh.tet_of_triangle.end())
+        throw Error(PW_ERROR_TETRAHEDRA, "The mesher lost a part of the surface. Remesh or smooth the mesh a little "
+                                         "and try again.");
+    for (size_t t = 0; t < number.size(); ++t) {
+        if (number[t] < 0) continue;
+        const auto to = static_cast<size_t>(number[t]);
+        mesh.tetrahedra[to] = mesh.tetrahedra[t];
+        for (size_t k = 0; k < 4; ++k) {
+            const int32_t n = mesh.neighbours[t][k];
+            mesh.neighbours[to][k] = n < 0 ? -1 : number[static_cast<size_t>(n)];
+        }
+    }
+    mesh.tetrahedra.resize(kept);
+    mesh.neighbours.resize(kept);
+}
+
+}  // namespace
+
+TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress) {
+    tetgenio out;
+    run_tetgen(surface, quality, out);
+    progress.advance(0.9);
+    TetMesh mesh = read(surface, out);
+    keep_solid(surface, mesh);
+    progress.advance(1);
+    return mesh;
+}
+
+}  // namespace partwheel
