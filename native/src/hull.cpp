@@ -168,7 +168,7 @@ bool HullKernel::Impl::insert(int32_t vertex) {
 
     edges_.clear();
     const auto keep_edge = [&](int32_t from, int32_t to) {
-        const auto [low, high] = std::minmax(static_cast<uint32_t>(from), static_cast<uint32_t>(to));
+        const auto [low, high] = std::minmax({static_cast<uint32_t>(from), static_cast<uint32_t>(to)});
         edges_.push_back({uint64_t{low} << 32 | high, from, to});
     };
     size_t kept = 0;

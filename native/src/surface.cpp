@@ -138,7 +138,7 @@ void check_manifold(const Surface& surface) {
     for (size_t t = 0; t < count; ++t)
         for (size_t k = 0; k < 3; ++k) {
             const int32_t from = surface.triangles[t][k], to = surface.triangles[t][(k + 1) % 3];
-            const auto [low, high] = std::minmax(static_cast<uint32_t>(from), static_cast<uint32_t>(to));
+            const auto [low, high] = std::minmax({static_cast<uint32_t>(from), static_cast<uint32_t>(to)});
             edges.push_back({uint64_t{low} << 32 | high, static_cast<uint32_t>(3 * t + k), from < to});
         }
     std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
@@ -209,7 +209,7 @@ void check_self_intersection(const Surface& surface) {
                                                   CGAL::parameters::maximum_number(1));
     if (pairs.empty()) return;
     const auto source = [&](Mesh::Face_index f) { return surface.source_face[static_cast<size_t>(f)]; };
-    const auto [low, high] = std::minmax(source(pairs[0].first), source(pairs[0].second));
+    const auto [low, high] = std::minmax({source(pairs[0].first), source(pairs[0].second)});
     throw Error(PW_ERROR_SELF_INTERSECTION,
                 "The surface passes through or touches itself, for instance where faces " + std::to_string(low) +
                     " and " + std::to_string(high) +
