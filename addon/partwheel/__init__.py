@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Partwheel for Blender: select a meaningful part of a mesh with one click and a turn of the mouse wheel.
+
+Nothing of Blender is imported before register(), so that partwheel.core works in plain Python.
+"""
+
+# For Blender 3.4 to 4.1. Later ones read blender_manifest.toml; both say the same, and a test compares them.
+bl_info = {
+    "name": "Partwheel",
+    "author": "Partwheel contributors",
+    "version": (0, 1, 0),
+    "blender": (3, 4, 0),
+    "location": "3D View > Edit Mode > Select > Part by Wheel (Ctrl W)",
+    "description": "Select meaningful parts of a mesh with one click and the mouse wheel",
+    "category": "Mesh",
+}
+
+
+def register():
+    from . import operators, session, ui
+
+    session.register()
+    operators.register()
+    ui.register()
+
+
+def unregister():
+    from . import operators, session, ui
+
+    ui.unregister()
+    operators.unregister()
+    session.unregister()

@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The native library for Python: numpy arrays in, a Hierarchy out. Nothing here knows Blender."""
+
+from .hierarchy import Hierarchy, Summary
+from .library import LibraryError, PartwheelError, Stage, Status, version
+
+__all__ = ["Hierarchy", "LibraryError", "PartwheelError", "Stage", "Status", "Summary", "version"]

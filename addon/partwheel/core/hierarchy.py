@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hierarchy: a mesh's tree of nearly convex parts, built by the native library, as numpy arrays and questions."""
+
+import ctypes
+import operator
+import threading
+import weakref
+from ctypes import byref, c_double, c_int, c_size_t, c_void_p
+from typing import NamedTuple
+
+import numpy as np
+
+from .library import STAGE_COUNT, Arrays, BuildOptions, PartwheelError, Stage, Status, SummaryStruct, check, load
+
+POLL_SECONDS = 0.1
+
+
+class Summary(NamedTuple):
+    """What a build found. components: parts of the solid without a common facet. cavities: enclosed regions that are
+    not solid. added_vertices: points that the mesher added inside. volume, hull_volume: of the solid and of its convex
+    hull, in the unit of the coordinates cubed."""
+
+    components: int
+    cavities: int
+    added_vertices: int
+    volume: float
+    hull_volume: float
+
+
+class _Handle:
+    """A native object, freed with the last reference to this."""
+
+    def __init__(self, address, free):
+        self.address = address
+        # Not at exit: views may still be in use then, and the process gives the memory back anyway.
+        weakref.finalize(self, free, address).atexit = False
+
+
+class _Memory:
+    """Native memory for numpy's array interface: an array made of it is read-only and keeps the owner alive."""
+
+    def __init__(self, owner, address, shape, dtype):
+        self.owner = owner
+        self.__array_interface__ = {
+            "version": 3, "data": (address, True), "shape": shape, "typestr": np.dtype(dtype).str,
+        }
+
+
+def _view(owner, address, shape, dtype):
+    if 0 in shape:
+        empty = np.empty(shape, dtype)
+        empty.flags.writeable = False
+        return empty
+    return np.asarray(_Memory(owner, address, shape, dtype))
+
+
+def _coordinates(vertices):
+    vertices = np.ascontiguousarray(vertices, np.float64)
+    if vertices.ndim != 2 or vertices.shape[1] != 3:
+        raise ValueError(f"vertices must have the shape (V, 3), not {vertices.shape}.")
+    return vertices
+
+
+def _indices(values, name, shape):
+    values = np.asarray(values)
+    if values.size == 0:
+        values = values.astype(np.int32)
+    if values.dtype.kind not in "iu":
+        raise TypeError(f"{name} must be whole numbers, not {values.dtype}.")
+    if values.ndim != len(shape) or any(want is not None and want != have for want, have in zip(shape, values.shape)):
+        raise ValueError(f"{name} must have the shape ({', '.join('T' if n is None else str(n) for n in shape)}), "
+                         f"not {values.shape}.")
+    limits = np.iinfo(np.int32)
+    if values.size and (values.min() < limits.min or values.max() > limits.max):
+        raise PartwheelError(Status.INDEX, f"{name} has numbers of more than 32 bits: no mesh that large can be built.")
+    return np.ascontiguousarray(values, np.int32)
+
+
+class _Context:
+    """pw_context: progress, cancel and timing of one build."""
+
+    def __init__(self):
+        address = c_void_p()
+        check(load().pw_context_create(byref(address)))
+        self.handle = _Handle(address.value, load().pw_context_free)
+
+    def cancel(self):
+        check(load().pw_context_cancel(self.handle.address))
+
+    def progress(self):
+        """(fraction, stage name)"""
+        fraction, stage = c_double(), c_int()
+        check(load().pw_context_progress(self.handle.address, byref(fraction), byref(stage)))
+        return fraction.value, load().pw_stage_name(stage.value).decode()
+
+    def seconds(self):
+        """Stage name -> seconds of the last build."""
+        seconds = (c_double * STAGE_COUNT)()
+        check(load().pw_context_seconds(self.handle.address, seconds))
+        return {load().pw_stage_name(stage).decode(): seconds[stage] for stage in Stage}
+
+
+class _Build(threading.Thread):
+    """pw_build in a thread of its own: ctypes lets go of Python's lock, so the caller's thread stays free."""
+
+    def __init__(self, context, vertices, triangles, faces, face_count, quality):
+        super().__init__(name="partwheel-build", daemon=True)
+        self.context = context
+        self.arguments = vertices, triangles, faces, face_count, quality
+        self.address = c_void_p()
+        self.error = None
+
+    def run(self):
+        vertices, triangles, faces, face_count, quality = self.arguments
+        options = BuildOptions(ctypes.sizeof(BuildOptions), quality)
+        status = load().pw_build(
+            self.context.handle.address, vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles),
+            None if faces is None else faces.ctypes.data, face_count, byref(options), byref(self.address),
+        )
+        try:
+            check(status, self.context.seconds())
+        except PartwheelError as error:
+            self.error = error
+
+
+class Hierarchy:
+    """The finished hierarchy of one surface. It never changes; any number of threads may ask it questions.
+
+    Make one with Hierarchy.build() or Hierarchy.load(). Its arrays are read-only views of native memory, not copies;
+    each keeps that memory alive. F source faces, N nodes, T tetrahedra, V vertices:
+
+    order (F,)      source faces sorted by tetrahedron: node n holds order[first[n]:last[n]]
+    leaf (F,)       the leaf of each source face
+    parent (N,)     -1 at the root, which is the last node; leaf i is tetrahedron i
+    first, last (N,), tet_first, tet_last (N,)
+    cost_class (N,), cost (N,), height (N,)     Eq. 3 of the paper and the node's place in the dendrogram
+    volume (N,), area (N,)
+    vertices (V,3), source (V,)     source: the source vertex, -1 for added points
+    tetrahedra (T,4), merges (T-1,2)
+
+    summary: a Summary. seconds: stage name -> seconds of the build, empty after load().
+    """
+
+    def __init__(self, address, seconds=None):
+        self._handle = _Handle(address, load().pw_hierarchy_free)
+        self.seconds = seconds or {}
+        raw = Arrays()
+        check(load().pw_hierarchy_arrays(address, byref(raw)))
+        faces, nodes, tets, vertices = (int(getattr(raw, name)) for name in Arrays.COUNTS)
+        shapes = {
+            "order": (faces,), "leaf": (faces,), "vertices": (vertices, 3), "source": (vertices,),
+            "tetrahedra": (tets, 4), "merges": (tets - 1, 2),
+        }
+        dtypes = {"cost_class": np.uint8, **dict.fromkeys(("cost", "height", "volume", "area", "vertices"), np.float64)}
+        for name in Arrays.POINTERS:
+            setattr(self, name, _view(self._handle, getattr(raw, name), shapes.get(name, (nodes,)),
+                                      dtypes.get(name, np.int32)))
+        summary = SummaryStruct()
+        check(load().pw_hierarchy_summary(address, byref(summary)))
+        self.summary = Summary(*(getattr(summary, name) for name in Summary._fields))
+
+    @classmethod
+    def build(cls, vertices, triangles, faces=None, face_count=None, *, quality=0.0, progress=None):
+        """Builds the hierarchy of a closed surface.
+
+        vertices (V,3) coordinates; triangles (T,3) indices, counter-clockwise from outside; faces (T,) the source face
+        of each triangle (None: every triangle is one); face_count how many there are (None: the largest + 1).
+        quality: 0 adds no points inside; 1.1 or more (1.4 is usual) bounds the tetrahedra's circumradius to shortest
+        edge (the paper's Figure 9).
+        progress(fraction, stage): called in this thread about ten times a second while the build runs in another;
+        returning True cancels the build. If it raises, the build is stopped and the exception goes on.
+
+        Raises PartwheelError with what is wrong with the surface, or that the build was cancelled.
+        """
+        vertices = _coordinates(vertices)
+        triangles = _indices(triangles, "triangles", (None, 3))
+        if faces is not None:
+            faces = _indices(faces, "faces", (len(triangles),))
+        if face_count is None:
+            face_count = len(triangles) if faces is None else int(faces.max(initial=-1)) + 1
+        context = _Context()
+        build = _Build(context, vertices, triangles, faces, face_count, quality)
+
+        def report():
+            if progress is not None and progress(*context.progress()):
+                context.cancel()
+
+        report()
+        build.start()
+        try:
+            while build.is_alive():
+                build.join(POLL_SECONDS)
+                report()
+        finally:
+            # Also after an exception of progress() or Ctrl-C: the thread reads our arrays, so it must end first.
+            if build.is_alive():
+                context.cancel()
+                build.join()
+        if build.error:
+            raise build.error
+        return cls(build.address.value, context.seconds())
+
+    @classmethod
+    def load(cls, data):
+        """A hierarchy from the bytes that save() gave. Raises PartwheelError (DATA) for any others."""
+        data = np.frombuffer(data, np.uint8)
+        address = c_void_p()
+        # Never a null pointer: no bytes at all are damaged data too.
+        buffer = data if data.size else np.zeros(1, np.uint8)
+        check(load().pw_hierarchy_load(buffer.ctypes.data, data.size, byref(address)))
+        return cls(address.value)
+
+    def save(self):
+        """The hierarchy as bytes, the same on every machine."""
+        return self._ask(load().pw_hierarchy_save, np.uint8).tobytes()
+
+    def path(self, face):
+        """(n,) the nodes that hold a source face, from its leaf up to the root."""
+        return self._ask(load().pw_hierarchy_path, np.int32, _number(face))
+
+    def wheel(self, face):
+        """((n,) the stops of the wheel after a click on a source face, growing up to the root; the start's index)."""
+        start = c_size_t()
+        stops = self._ask(load().pw_hierarchy_wheel, np.int32, _number(face), after=[byref(start)])
+        return stops, start.value
+
+    def faces(self, node):
+        """(n,) a node's source faces: a view of order."""
+        address, count = c_void_p(), c_size_t()
+        check(load().pw_hierarchy_faces(self._handle.address, _number(node), byref(address), byref(count)))
+        return _view(self._handle, address.value, (count.value,), np.int32)
+
+    def cut_height(self, height):
+        """(parts + 1,) bounds of the cut at a height: part k holds tetrahedra[bounds[k]:bounds[k+1]]."""
+        return self._ask(load().pw_hierarchy_cut_height, np.int32, float(height))
+
+    def cut_parts(self, parts):
+        """(parts + 1,) bounds of the cut into this many parts that has the least total concavity."""
+        return self._ask(load().pw_hierarchy_cut_parts, np.int32, _number(parts))
+
+    def face_labels(self, bounds):
+        """(F,) the part of each source face in a cut."""
+        return (np.searchsorted(bounds, self.leaf, side="right") - 1).astype(np.int32)
+
+    def hull(self, node):
+        """A node's convex hull: (vertices (n,3), triangles (m,3)), closed, outward."""
+        node = _number(node)
+        if node >= len(self.parent):
+            raise PartwheelError(Status.ARGUMENT, f"There is no node {node}: the hierarchy has {len(self.parent)}.")
+        return self.hull_of_slice(self.tet_first[node], self.tet_last[node])
+
+    def hull_of_slice(self, tet_first, tet_last):
+        """The convex hull of tetrahedra[tet_first:tet_last], for a part of a cut: (vertices, triangles)."""
+        address = c_void_p()
+        check(load().pw_hierarchy_hull(self._handle.address, _number(tet_first), _number(tet_last), byref(address)))
+        mesh = _Handle(address.value, load().pw_mesh_free)
+        vertices, triangles, vertex_count, triangle_count = c_void_p(), c_void_p(), c_size_t(), c_size_t()
+        check(load().pw_mesh_arrays(mesh.address, byref(vertices), byref(vertex_count), byref(triangles),
+                                    byref(triangle_count)))
+        return (_view(mesh, vertices.value, (vertex_count.value, 3), np.float64),
+                _view(mesh, triangles.value, (triangle_count.value, 3), np.int32))
+
+    def _ask(self, function, dtype, *arguments, after=()):
+        """Calls a function that fills an array, first to learn the size, then to get it."""
+        count = c_size_t()
+        check(function(self._handle.address, *arguments, None, 0, byref(count), *after))
+        result = np.empty(count.value, dtype)
+        check(function(self._handle.address, *arguments, result.ctypes.data, result.size, byref(count), *after))
+        return result
+
+
+def _number(value):
+    """A face, node, tetrahedron or part number for C: ctypes would turn -1 into a huge number without a word."""
+    value = operator.index(value)
+    if value < 0:
+        raise PartwheelError(Status.ARGUMENT, f"{value} is not the number of anything: numbers start at 0.")
+    return value

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The operators: build, select by wheel."""
+
+import bpy
+
+from .build import MESH_OT_partwheel_build
+from .select import MESH_OT_partwheel_select
+
+CLASSES = (MESH_OT_partwheel_build, MESH_OT_partwheel_select)
+
+
+def register():
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

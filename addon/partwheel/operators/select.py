@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""mesh.partwheel_select: a click picks a face, the wheel grows and shrinks the part around it."""
+
+import traceback
+
+import bpy
+
+from .. import session, wheel
+from ..core import PartwheelError
+from ..picking import Picker, view_under
+from ..selection import Selection
+from .build import build_reporting
+
+UP = {"WHEELUPMOUSE", "PAGE_UP", "NUMPAD_PLUS"}
+DOWN = {"WHEELDOWNMOUSE", "PAGE_DOWN", "NUMPAD_MINUS"}
+CONFIRM = {"RET", "NUMPAD_ENTER"}
+CANCEL = {"RIGHTMOUSE", "ESC"}
+# Navigation, and events that must reach Blender itself.
+PASS = {
+    "MIDDLEMOUSE", "MOUSEPAN", "MOUSEZOOM", "MOUSEROTATE", "TRACKPADPAN", "TRACKPADZOOM", "NDOF_MOTION", "HOME",
+    "NUMPAD_0", "NUMPAD_1", "NUMPAD_2", "NUMPAD_3", "NUMPAD_4", "NUMPAD_5", "NUMPAD_6", "NUMPAD_7", "NUMPAD_8",
+    "NUMPAD_9", "NUMPAD_PERIOD", "TIMER", "TIMER_REPORT", "WINDOW_DEACTIVATE",
+}
+
+WAITING_KEYS = "Partwheel   LMB: Pick a Part   MMB: Navigate   Esc/RMB: Cancel"
+PICKED_KEYS = ("Partwheel   Wheel, Page Up/Down, Numpad +/-: Larger or Smaller Part   LMB, Enter: Confirm   "
+               "G: Confirm and Move Proportionally   Shift D: Confirm and Duplicate   MMB: Navigate   Esc/RMB: Cancel")
+
+
+class MESH_OT_partwheel_select(bpy.types.Operator):
+    """Pick a part of the mesh with a click, then make it larger or smaller with the mouse wheel"""
+
+    bl_idname = "mesh.partwheel_select"
+    bl_label = "Select Part by Wheel"
+    bl_options = {"REGISTER", "UNDO"}
+
+    face_index: bpy.props.IntProperty(name="Face", description="The face that was clicked", default=0, min=0)
+    level: bpy.props.IntProperty(
+        name="Level", description="Notches of the wheel from the part that the click alone takes: up is positive",
+        default=0,
+    )
+    extend: bpy.props.BoolProperty(
+        name="Extend", description="Add the part to what is selected, instead of replacing it",
+        default=False, options={"SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context):
+        return context.mode == "EDIT_MESH" and context.edit_object is not None
+
+    # ---- Without a window ------------------------------------------------------------------------------------------
+
+    def execute(self, context):
+        obj = context.edit_object
+        hierarchy = session.hierarchy(obj) or build_reporting(self, context)
+        if not hierarchy:
+            return {"CANCELLED"}
+        try:
+            picked = wheel.pick(hierarchy, self.face_index, self.level)
+        except PartwheelError as error:
+            self.report({"ERROR"}, f"Face {self.face_index} can't be picked: {error}")
+            return {"CANCELLED"}
+        Selection(obj).select(obj, hierarchy.faces(picked.node), picked.face, self.extend)
+        return {"FINISHED"}
+
+    # ---- With the mouse --------------------------------------------------------------------------------------------
+
+    def invoke(self, context, event):
+        if context.window is None or context.area is None or context.area.type != "VIEW_3D":
+            self.report({"ERROR"}, "Parts are picked in a 3D view: start this with the mouse over one.")
+            return {"CANCELLED"}
+        obj = context.edit_object
+        self.hierarchy = session.hierarchy(obj) or build_reporting(self, context)
+        if not self.hierarchy:
+            return {"CANCELLED"}
+        self.object_name = obj.name_full
+        self.selection = Selection(obj)
+        self.picker = Picker()
+        self.state = wheel.Waiting()
+        result = self._guarded(context, lambda: self._click(context, event, missed="Click a face of the mesh"))
+        if result == {"RUNNING_MODAL"}:
+            context.window_manager.modal_handler_add(self)
+        return result
+
+    def modal(self, context, event):
+        return self._guarded(context, lambda: self._handle(context, event))
+
+    def cancel(self, context):
+        """Blender itself ends the tool: the window closes or another file opens."""
+        self._end(context)
+
+    def _guarded(self, context, step):
+        """One step; whatever goes wrong in it, the selection is put back and the tool ends, with a report."""
+        try:
+            return step()
+        except Exception as error:  # any: a tool that dies in the middle leaves Blender with its keys and its selection
+            traceback.print_exc()
+            self.report({"ERROR"}, f"Partwheel stopped: {error}. The full report is in the system console.")
+            return self._cancelled(context)
+
+    def _handle(self, context, event):
+        if not self._still_there(context):
+            self.report({"WARNING"}, "Partwheel stopped: the mesh is no longer being edited as it was.")
+            self._end(context)
+            return {"CANCELLED"}
+        modified = event.ctrl or event.alt or event.oskey
+        if event.type in PASS or (modified and event.type in UP | DOWN | {"LEFTMOUSE"}):
+            return {"PASS_THROUGH"}
+        if event.value not in {"PRESS", "DOUBLE_CLICK"}:  # a second quick press comes as a double click only
+            return {"RUNNING_MODAL"}
+        if event.type in CANCEL:
+            return self._cancelled(context)
+        if isinstance(self.state, wheel.Waiting):
+            if event.type == "LEFTMOUSE":
+                return self._click(context, event, missed="There is no face there")
+            return {"RUNNING_MODAL"}
+        if event.type in UP | DOWN:
+            return self._show(context, self.state.turned(1 if event.type in UP else -1))
+        if event.type in CONFIRM or (event.type == "LEFTMOUSE" and view_under(context.window, event.mouse_x,
+                                                                              event.mouse_y)):
+            return self._confirmed(context)
+        if event.type == "G" and not event.shift:
+            return self._handed_on(context, bpy.ops.transform.translate, use_proportional_edit=True,
+                                   use_proportional_connected=True)
+        if event.type == "D" and event.shift:
+            return self._handed_on(context, bpy.ops.mesh.duplicate_move)
+        return {"RUNNING_MODAL"}
+
+    def _click(self, context, event, missed):
+        """Picks the face under the mouse, or says why there is none and waits on."""
+        view = view_under(context.window, event.mouse_x, event.mouse_y)
+        obj = context.edit_object
+        hit = other = None
+        if view:
+            _, region, region_view = view
+            point = event.mouse_x - region.x, event.mouse_y - region.y
+            hits = [(self.picker.face_under(each, region, region_view, point), each)
+                    for each in context.objects_in_mode_unique_data]
+            hits = [(found, each) for found, each in hits if found]
+            if hits:
+                hit, other = min(hits, key=lambda pair: pair[0][1])
+        if hit and other.data == obj.data:
+            return self._show(context, wheel.pick(self.hierarchy, hit[0]))
+        if hit:
+            missed = f"That is {other.name}; only the active object, {obj.name}, can be picked from"
+        self._tell(context, missed, WAITING_KEYS)
+        return {"RUNNING_MODAL"}
+
+    def _show(self, context, state):
+        """Goes to a state with a picked part and selects it."""
+        if state != self.state:
+            self.state = state
+            self.selection.select(context.edit_object, self.hierarchy.faces(state.node), state.face, self.extend)
+        self._tell(context, f"Part {state.index + 1} of {len(state.stops)}, "
+                            f"{len(self.hierarchy.faces(state.node))} faces", PICKED_KEYS)
+        return {"RUNNING_MODAL"}
+
+    def _confirmed(self, context):
+        # What the panel of the last operation, and Repeat Last, do again.
+        self.face_index, self.level = self.state.face, self.state.level
+        self._end(context)
+        return {"FINISHED"}
+
+    def _handed_on(self, context, tool, **options):
+        """Confirms and starts another tool at once. Blender's own undo step for a finished operator would come after
+        that tool has begun to change the mesh, so the step is made here, and the answer that makes none is given."""
+        self._end(context)
+        bpy.ops.ed.undo_push(message=self.bl_label)
+        tool("INVOKE_DEFAULT", **options)
+        return {"CANCELLED"}
+
+    def _cancelled(self, context):
+        try:
+            if self._still_there(context):
+                self.selection.restore(context.edit_object)
+        finally:
+            self._end(context)
+        return {"CANCELLED"}
+
+    def _still_there(self, context):
+        obj = context.edit_object
+        return obj is not None and obj.name_full == self.object_name and self.selection.fits(obj)
+
+    def _tell(self, context, header, keys):
+        context.workspace.status_text_set(keys)
+        if context.area:
+            context.area.header_text_set(f"Partwheel: {header}")
+
+    def _end(self, context):
+        if context.workspace:
+            context.workspace.status_text_set(None)
+        if context.area:
+            context.area.header_text_set(None)

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The selection of a mesh in Edit Mode: sets of faces are selected by differences; the selection before comes back."""
+
+import bmesh
+import numpy as np
+
+from . import mesh_arrays
+
+# Select mode -> what is selected in it: the mesh's elements and the loops' reference to them. The finest mode that is
+# on rules: Blender derives the coarser elements' selection from it.
+KINDS = ("VERT", "EDGE", "FACE")
+ELEMENTS = {"VERT": "vertices", "EDGE": "edges", "FACE": "polygons"}
+
+
+def _sequence(bm, kind):
+    sequence = {"VERT": bm.verts, "EDGE": bm.edges, "FACE": bm.faces}[kind]
+    sequence.ensure_lookup_table()
+    return sequence
+
+
+class Selection:
+    """The selection as it was when this was made, and the one this has made of it since.
+
+    Holds no reference to Blender's data, so undo or a mode change can't make it dangle; the object is handed to every
+    method. Masks are (n,) bool, one for each vertex, edge or face of the mesh.
+    """
+
+    def __init__(self, obj):
+        mesh = mesh_arrays.up_to_date(obj)
+        bm = bmesh.from_edit_mesh(mesh)
+        for kind in KINDS:
+            _sequence(bm, kind).index_update()
+        self.before = {kind: mesh_arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool) for kind in KINDS}
+        self.history = [(_kind_of(element), element.index) for element in bm.select_history]
+        self.active_face = bm.faces.active.index if bm.faces.active else None
+        self.visible = ~mesh_arrays.read(mesh.polygons, "hide", bool)
+        corners = mesh_arrays.read(mesh.polygons, "loop_total", np.int32)
+        self.loop_face = np.repeat(np.arange(len(mesh.polygons)), corners)
+        self.loop_element = {
+            "VERT": mesh_arrays.read(mesh.loops, "vertex_index", np.int32),
+            "EDGE": mesh_arrays.read(mesh.loops, "edge_index", np.int32),
+            "FACE": self.loop_face,
+        }
+        self.kind = next(kind for kind in KINDS if kind in bm.select_mode)
+        self.now = self.before[self.kind]
+
+    def fits(self, obj):
+        """Whether the object is still in Edit Mode with as many elements and the select mode of when this was made."""
+        if obj is None or obj.type != "MESH" or obj.mode != "EDIT":
+            return False
+        bm = bmesh.from_edit_mesh(obj.data)
+        counts = len(bm.verts), len(bm.edges), len(bm.faces)
+        return counts == tuple(len(self.before[kind]) for kind in KINDS) and self.kind in bm.select_mode
+
+    def select(self, obj, faces, active=None, extend=False):
+        """Selects these faces (an array of indices), hidden ones left out, and nothing else; with extend also what was
+        selected before. active: the index of the face to make the active one."""
+        chosen = np.zeros(len(self.visible), bool)
+        chosen[faces] = True
+        chosen &= self.visible
+        target = np.zeros_like(self.now)
+        target[self.loop_element[self.kind][chosen[self.loop_face]]] = True
+        if extend:
+            target |= self.before[self.kind]
+        bm = bmesh.from_edit_mesh(obj.data)
+        elements = _sequence(bm, self.kind)
+        for index in np.flatnonzero(self.now & ~target).tolist():
+            elements[index].select_set(False)
+        for index in np.flatnonzero(target & ~self.now).tolist():
+            elements[index].select_set(True)
+        self.now = target
+        bm.select_flush_mode()
+        if active is not None:
+            face = _sequence(bm, "FACE")[active]
+            bm.faces.active = face
+            bm.select_history.clear()
+            if self.kind == "FACE" and face.select:
+                bm.select_history.add(face)
+        _redraw(obj)
+
+    def restore(self, obj):
+        """Everything as it was: vertices, edges, faces, the active face and the history of picks."""
+        bm = bmesh.from_edit_mesh(obj.data)
+        mesh = mesh_arrays.up_to_date(obj)
+        for kind in KINDS:
+            elements = _sequence(bm, kind)
+            now = mesh_arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool)
+            for index in np.flatnonzero(now != self.before[kind]).tolist():
+                elements[index].select = bool(self.before[kind][index])
+        bm.select_flush_mode()  # also counts the selected elements anew
+        bm.select_history.clear()
+        for kind, index in self.history:
+            bm.select_history.add(_sequence(bm, kind)[index])
+        bm.faces.active = None if self.active_face is None else _sequence(bm, "FACE")[self.active_face]
+        self.now = self.before[self.kind]
+        _redraw(obj)
+
+
+def _kind_of(element):
+    return {bmesh.types.BMVert: "VERT", bmesh.types.BMEdge: "EDGE", bmesh.types.BMFace: "FACE"}[type(element)]
+
+
+def _redraw(obj):
+    bmesh.update_edit_mesh(obj.data, loop_triangles=False, destructive=False)

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The shortcut: Ctrl W (W for wheel) over a mesh in Edit Mode, which Blender 3.4 to 5.0 leave free there."""
+
+import bpy
+
+_items = []
+
+
+def register():
+    configuration = bpy.context.window_manager.keyconfigs.addon
+    if configuration is None:  # Blender without windows has none
+        return
+    keymap = configuration.keymaps.new(name="Mesh", space_type="EMPTY")
+    _items.append((keymap, keymap.keymap_items.new("mesh.partwheel_select", "W", "PRESS", ctrl=True)))
+
+
+def unregister():
+    for keymap, item in _items:
+        keymap.keymap_items.remove(item)
+    _items.clear()
