@@ -1,0 +1,61 @@
+"""Writes build/package/partwheel-VERSION-PLATFORM.zip from addon/partwheel: the same bytes for the same files.
+
+Called by scripts/package, which builds the library first.
+"""
+
+import ast
+import pathlib
+import platform
+import re
+import sys
+import zipfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+ADDON = ROOT / "addon" / "partwheel"
+LIBRARY = ADDON / "core" / "libpartwheel.so"
+MACHINES = {"x86_64": "x64", "aarch64": "arm64"}
+EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can hold
+
+
+def main():
+    version = agreed_version()
+    if not LIBRARY.exists():
+        sys.exit(f"{LIBRARY} is missing: run scripts/build.")
+    machine = MACHINES.get(platform.machine(), platform.machine())
+    target = ROOT / "build" / "package" / f"partwheel-{version}-linux-{machine}.zip"
+    target.parent.mkdir(parents=True, exist_ok=True)
+
+    # Both installers want all files in one folder: for a legacy add-on its name becomes the module's.
+    files = {f"partwheel/{path.relative_to(ADDON).as_posix()}": path for path in ADDON.rglob("*") if wanted(path)}
+    files["partwheel/LICENSE"] = ROOT / "LICENSE"
+    partial = target.with_suffix(".partial")
+    with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+        for name in sorted(files):
+            entry = zipfile.ZipInfo(name, EPOCH)
+            entry.external_attr = 0o100644 << 16
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(entry, files[name].read_bytes())
+    partial.replace(target)
+    print(target)
+
+
+def wanted(path):
+    hidden = any(part.startswith((".", "__pycache__")) for part in path.relative_to(ADDON).parts)
+    return path.is_file() and not hidden
+
+
+def agreed_version():
+    """The version, which the header, the manifest and bl_info must agree on."""
+    header = re.search(r'^#define PW_VERSION "([^"]+)"', (ROOT / "native/include/partwheel.h").read_text(), re.M)
+    manifest = re.search(r'^version = "([^"]+)"', (ADDON / "blender_manifest.toml").read_text(), re.M)
+    assignments = (node for node in ast.parse((ADDON / "__init__.py").read_text()).body if isinstance(node, ast.Assign))
+    bl_info = next(ast.literal_eval(node.value) for node in assignments if node.targets[0].id == "bl_info")
+    versions = {"partwheel.h": header[1], "blender_manifest.toml": manifest[1],
+                "bl_info": ".".join(map(str, bl_info["version"]))}
+    if len(set(versions.values())) > 1:
+        sys.exit(f"The versions differ: {versions}.")
+    return header[1]
+
+
+if __name__ == "__main__":
+    main()

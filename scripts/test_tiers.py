@@ -1,0 +1,237 @@
+"""The test tiers, one function each: sets up what it needs, runs it, returns what passed and failed.
+
+Called by scripts/test. Everything that runs writes to build/test/TIER*.log; the screen shows the end of what failed.
+"""
+
+import argparse
+import dataclasses
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+OUTPUT = ROOT / "build" / "test"
+VENV = ROOT / "build" / "venv"
+TIME_LIMIT = 1800  # seconds for any one command, so that nothing hangs for ever
+SHOWN = 60  # lines of a failed command's output
+
+
+class CouldNotRun(Exception):
+    """A tier, or a part of one, ended before it could say which tests passed. The message says why."""
+
+
+@dataclasses.dataclass
+class Result:
+    passed: int = 0
+    failed: int = 0
+    skipped: int = 0
+    failures: list = dataclasses.field(default_factory=list)
+
+    def __iadd__(self, other):
+        self.passed += other.passed
+        self.failed += other.failed
+        self.skipped += other.skipped
+        self.failures += other.failures
+        return self
+
+
+def native():
+    """GoogleTest through CTest, as shipped."""
+    build("native")
+    return ctest("native", "release")
+
+
+def sanitizers():
+    """The native tests and the core tests again, watched by AddressSanitizer and UndefinedBehaviorSanitizer."""
+    build("sanitizers", "asan")
+    result = ctest("sanitizers-native", "asan")
+    # Python isn't linked with the runtimes, so they are loaded before it; its own leaks are not looked at.
+    runtimes = " ".join(output_of("g++", f"-print-file-name={name}") for name in ("libasan.so", "libstdc++.so"))
+    result += pytest("sanitizers-core", LD_PRELOAD=runtimes, ASAN_OPTIONS="detect_leaks=0",
+                     UBSAN_OPTIONS="print_stacktrace=1", PARTWHEEL_TEST_LIGHT="1",
+                     PARTWHEEL_LIBRARY=str(ROOT / "build/asan/libpartwheel.so"))
+    return result
+
+
+def core():
+    """The Python core on the library as built, without Blender."""
+    build("core")
+    return pytest("core")
+
+
+def addon():
+    """The add-on as installed from the zip, without a window, in the distribution's Blender and in bpy from PyPI."""
+    package = make_package("addon")
+    setup("addon", "setup_blender", "setup_bpy")
+    versions = output_of("bash", "-c", ". scripts/setup.sh && echo $bpy_versions").split()
+    interpreters = {"blender": ["blender", "-b", "-noaudio", "--factory-startup", "--python-exit-code", "9", "--python",
+                                "tests/addon/run.py", "--"]}
+    for version in versions:
+        interpreters[f"bpy-{version}"] = [VENV / f"bpy-{version}/bin/python", "tests/addon/run.py", "--"]
+    result = Result()
+    for name, command in interpreters.items():
+        home = OUTPUT / "home" / name  # a new one, so that nothing installed before is there
+        shutil.rmtree(home, ignore_errors=True)
+        home.mkdir(parents=True)
+        clean = {"PATH": os.environ["PATH"], "HOME": str(home), "LANG": "C.UTF-8"}
+        result += own_runner(f"addon-{name}", [*command, package], clean)
+    return result
+
+
+def gui():
+    """Blender's own window under Xvfb, driven by mouse and key events."""
+    package = make_package("gui")
+    setup("gui", "setup_core", "setup_blender", "setup_display")
+    return own_runner("gui", [VENV / "core/bin/python", "tests/gui/run.py", package], dict(os.environ))
+
+
+TIERS = {function.__name__: function for function in (native, sanitizers, core, addon, gui)}
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="scripts/test", description="Runs the test tiers, or only those named.")
+    parser.add_argument("tier", nargs="*", help=" ".join(TIERS))
+    names = parser.parse_args().tier or list(TIERS)
+    for name in names:
+        if name not in TIERS:
+            parser.error(f"there is no tier {name}: {', '.join(TIERS)}")
+
+    OUTPUT.mkdir(parents=True, exist_ok=True)
+    total = Result()
+    lines = []
+    for name in names:
+        print(f"== {name}: {TIERS[name].__doc__}")
+        began = time.monotonic()
+        try:
+            result = TIERS[name]()
+        except CouldNotRun as reason:
+            result = Result(failed=1, failures=[f"{name} could not run: {reason}"])
+        for failure in result.failures:
+            print(f"   FAILED {failure}")
+        skipped = f", {result.skipped} skipped" if result.skipped else ""
+        lines.append(f"{name:<12}{result.passed} passed, {result.failed} failed{skipped}, "
+                     f"{time.monotonic() - began:.0f} s")
+        print(f"   {lines[-1]}")
+        total += result
+
+    print("== all tiers")
+    print("".join(f"   {line}\n" for line in lines), end="")
+    print(f"{total.passed} passed, {total.failed} failed")
+    return 1 if total.failed else 0
+
+
+# ---- Steps of the tiers
+
+
+def setup(log, *functions):
+    require(log, "bash", "-euc", f". scripts/setup.sh; {'; '.join(functions)}")
+
+
+def build(log, *preset):
+    require(log, "scripts/build", *preset)
+
+
+def make_package(log):
+    require(log, "scripts/package")
+    return pathlib.Path((OUTPUT / f"{log}.log").read_text().splitlines()[-1])
+
+
+def ctest(log, preset):
+    report = fresh(log, "xml")
+    code = run(log, ["ctest", "--preset", preset, "--parallel", str(os.cpu_count()), "--output-junit", report])
+    return read_junit(log, report, code)
+
+
+def pytest(log, **environment):
+    setup(log, "setup_core")
+    report = fresh(log, "xml")
+    command = [VENV / "core/bin/python", "-m", "pytest", "-rs", "-p", "no:cacheprovider", f"--junitxml={report}",
+               "tests/core"]
+    code = run(log, command, os.environ | environment)
+    return read_junit(log, report, code)
+
+
+def own_runner(log, command, environment):
+    """Runs tests/addon/run.py or tests/gui/run.py, which write {"passed": n, "failed": n, "failures": [...]}."""
+    report = fresh(log, "json")
+    code = run(log, [*command, report], environment)
+    if not report.exists():
+        raise CouldNotRun(f"{log} ended with code {code} and no result, see {log_of(log)}")
+    values = json.loads(report.read_text())
+    return checked(log, code, Result(values["passed"], values["failed"],
+                                     failures=[f"{log}: {failure}" for failure in values["failures"]]))
+
+
+# ---- Running and reading
+
+
+def read_junit(log, report, code):
+    if not report.exists():
+        raise CouldNotRun(f"{log} ended with code {code} and no result, see {log_of(log)}")
+    result = Result()
+    for case in xml.etree.ElementTree.parse(report).iter("testcase"):
+        if case.find("failure") is not None or case.find("error") is not None:
+            result.failed += 1
+            result.failures.append(f"{log}: {case.get('classname')} {case.get('name')}")
+        elif case.find("skipped") is not None:
+            result.skipped += 1
+        else:
+            result.passed += 1
+    return checked(log, code, result)
+
+
+def checked(log, code, result):
+    """A result that agrees with the exit code and holds any test at all."""
+    if not result.passed + result.failed:
+        raise CouldNotRun(f"{log} ran no test, see {log_of(log)}")
+    if code and not result.failed:
+        raise CouldNotRun(f"{log} ended with code {code}, though no test failed, see {log_of(log)}")
+    return result
+
+
+def fresh(log, kind):
+    path = OUTPUT / f"{log}.{kind}"
+    path.unlink(missing_ok=True)
+    return path
+
+
+def log_of(log):
+    return (OUTPUT / f"{log}.log").relative_to(ROOT)
+
+
+def require(log, *command):
+    code = run(log, command)
+    if code:
+        raise CouldNotRun(f"{' '.join(map(str, command))} ended with code {code}, see {log_of(log)}")
+
+
+def run(log, command, environment=None):
+    """Runs a command to its end or the time limit; returns its exit code."""
+    path = OUTPUT / f"{log}.log"
+    with path.open("w") as output:
+        process = subprocess.Popen(command, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL, stdout=output,
+                                   stderr=subprocess.STDOUT, start_new_session=True)
+        try:
+            code = process.wait(TIME_LIMIT)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            code = process.wait()
+            output.write(f"\nstopped after {TIME_LIMIT} s\n")
+    if code:
+        shown = path.read_text(errors="replace").splitlines()[-SHOWN:]
+        print("".join(f"   | {line}\n" for line in shown), end="")
+    return code
+
+
+def output_of(*command):
+    return subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout.strip()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
