@@ -1,0 +1,91 @@
+"""Mouse and keyboard: two drivers with the same methods. Coordinates are the window's: pixels, origin bottom left."""
+import subprocess
+
+
+class _Driver:
+    """What both drivers share. Buttons and keys have Blender's names of event types."""
+
+    def __init__(self):
+        self.x = self.y = 0
+
+    def click(self, button="LEFTMOUSE", **modifiers):
+        self.press(button, **modifiers)
+        self.release(button, **modifiers)
+
+    def drag(self, button, dx, dy, steps=8, **modifiers):
+        x, y = self.x, self.y
+        self.press(button, **modifiers)
+        for step in range(1, steps + 1):
+            self.move(x + dx * step // steps, y + dy * step // steps, **modifiers)
+        self.release(button, **modifiers)
+
+
+class Simulated(_Driver):
+    """Blender's own event_simulate (needs --enable-event-simulate, which makes Blender ignore real input)."""
+
+    def __init__(self, window):
+        super().__init__()
+        self._window = window
+
+    def _send(self, kind, value, **modifiers):
+        self._window.event_simulate(kind, value, x=self.x, y=self.y, **modifiers)
+
+    def move(self, x, y, **modifiers):
+        self.x, self.y = x, y
+        self._send("MOUSEMOVE", "NOTHING", **modifiers)
+
+    def press(self, button, **modifiers):
+        self._send(button, "PRESS", **modifiers)
+
+    def release(self, button, **modifiers):
+        self._send(button, "RELEASE", **modifiers)
+
+    def key(self, key, **modifiers):
+        self._send(key, "PRESS", **modifiers)
+        self._send(key, "RELEASE", **modifiers)
+
+    def wheel(self, notches):
+        """Turns the wheel: up if notches > 0, else down."""
+        for _ in range(abs(notches)):
+            self._send("WHEELUPMOUSE" if notches > 0 else "WHEELDOWNMOUSE", "PRESS")
+
+
+class Xdotool(_Driver):
+    """Real X events, made by the program xdotool. The wheel is X's buttons 4 and 5."""
+
+    BUTTONS = {"LEFTMOUSE": 1, "MIDDLEMOUSE": 2, "RIGHTMOUSE": 3}
+    KEYS = {"RET": "Return", "ESC": "Escape", "NUMPAD_ENTER": "KP_Enter", "PAGE_UP": "Prior", "PAGE_DOWN": "Next",
+            "UP_ARROW": "Up", "DOWN_ARROW": "Down"}
+
+    def __init__(self, window):
+        super().__init__()
+        self._height = window.height
+
+    def _run(self, *words):
+        subprocess.run(["xdotool", *map(str, words)], check=True)
+
+    def _held(self, modifiers, *words):
+        names = [name for name, held in modifiers.items() if held]
+        self._run(*[word for name in names for word in ("keydown", name)], *words,
+                  *[word for name in names for word in ("keyup", name)])
+
+    def move(self, x, y, **_):
+        self.x, self.y = x, y
+        self._run("mousemove", x, self._height - 1 - y)
+
+    def press(self, button, **modifiers):
+        self._run(*[word for name in modifiers if modifiers[name] for word in ("keydown", name)],
+                  "mousedown", self.BUTTONS[button])
+
+    def release(self, button, **modifiers):
+        self._run("mouseup", self.BUTTONS[button],
+                  *[word for name in modifiers if modifiers[name] for word in ("keyup", name)])
+
+    def key(self, key, **modifiers):
+        self._held(modifiers, "key", self.KEYS.get(key, key.lower()))
+
+    def wheel(self, notches):
+        self._run("click", "--repeat", abs(notches), "--delay", 5, 4 if notches > 0 else 5)
+
+
+DRIVERS = {"simulate": Simulated, "xdotool": Xdotool}

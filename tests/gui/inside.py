@@ -1,0 +1,14 @@
+"""Runs inside Blender, started by run.py: plays one scenario in Blender's window and writes what came of it.
+
+    blender --python inside.py -- SCENARIO DRIVER WORK_DIRECTORY PICTURE_PREFIX RESULT.json
+"""
+import importlib
+import pathlib
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from stage import Stage  # noqa: E402
+
+name, driver, *paths = sys.argv[sys.argv.index("--") + 1:]
+Stage(driver, *map(pathlib.Path, paths)).play(importlib.import_module(f"scenarios.{name}").play)

@@ -1,0 +1,169 @@
+"""The GUI tier, seen from outside Blender: installs the zip, runs each scenario in a Blender window, collects results.
+
+    build/venv/core/bin/python tests/gui/run.py ZIP RESULT.json [SCENARIO ...]
+
+Every file of scenarios/ is one scenario and runs in a Blender process and an X server (Xvfb, software GL) of its own,
+with the add-on installed from ZIP into a home directory made for the run. A scenario passes if Blender ends with exit
+code 0, the scenario reports no failure and at least one check, and the log holds no traceback. Screenshots and logs go
+to build/gui. RESULT.json: {"passed": n, "failed": n, "failures": [sentence, ...]}. Exit code: 0 if all passed.
+
+PARTWHEEL_BLENDER names another Blender than the one on the PATH.
+"""
+import argparse
+import contextlib
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import zipfile
+
+import numpy
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+OUTPUT = ROOT / "build" / "gui"
+MESHES = ROOT / "build" / "deps" / "meshes"
+MODELS = ("hand", "homer")
+TIME_LIMIT = 180  # seconds a scenario: ten times what one takes, for machines under load
+# Scenarios that run a second time with real input: X events made by xdotool instead of Blender's event_simulate.
+ALSO_WITH_XDOTOOL = ("blender_itself",)
+
+sys.path.insert(0, str(HERE))
+from model import read_off  # noqa: E402
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("zip", type=pathlib.Path, help="the add-on as made by scripts/package")
+    parser.add_argument("result", type=pathlib.Path, help="where to write the result (JSON)")
+    parser.add_argument("scenario", nargs="*", help="run only these (names of files in scenarios/)")
+    arguments = parser.parse_args()
+
+    known = sorted(path.stem for path in (HERE / "scenarios").glob("*.py"))
+    unknown = sorted({*arguments.scenario, *ALSO_WITH_XDOTOOL} - {*known})
+    if unknown:
+        parser.error(f"no such scenario: {', '.join(unknown)}")
+    names = arguments.scenario or known
+    runs = [(name, driver) for name in names for driver in ("simulate", "xdotool")
+            if driver == "simulate" or name in ALSO_WITH_XDOTOOL]
+
+    OUTPUT.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="partwheel-gui-") as work:
+        work = pathlib.Path(work)
+        environment = clean_environment(work)
+        prepare_models(arguments.zip, work)
+        install(arguments.zip, environment)
+        failures = []
+        for name, driver in runs:
+            began = time.monotonic()
+            failure, checks = run_scenario(name, driver, work, environment)
+            print(f"{name} ({driver}): {failure or f'ok, {checks} checks'}, {time.monotonic() - began:.1f} s", flush=True)
+            if failure:
+                failures.append(f"{name} ({driver}): {failure}")
+
+    result = {"passed": len(runs) - len(failures), "failed": len(failures), "failures": failures}
+    arguments.result.write_text(json.dumps(result, indent=1) + "\n")
+    print(f"GUI: {result['passed']} passed, {result['failed']} failed")
+    return 1 if failures else 0
+
+
+def clean_environment(work):
+    """Nothing of the caller's environment reaches Blender: another Python on the PATH would break it."""
+    for name in ("home", "tmp"):
+        (work / name).mkdir()
+    cache = OUTPUT / "shader-cache"
+    cache.mkdir(exist_ok=True)
+    return {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": str(work / "home"), "TMPDIR": str(work / "tmp"),
+            "LIBGL_ALWAYS_SOFTWARE": "1", "MESA_SHADER_CACHE_DIR": str(cache), "LANG": "C.UTF-8"}
+
+
+def blender():
+    return os.environ.get("PARTWHEEL_BLENDER") or shutil.which("blender", path="/usr/bin:/bin")
+
+
+def prepare_models(zip_path, work):
+    """Writes what every scenario compares with: the hierarchies, built outside Blender by the core that the zip holds.
+
+    MODEL.npz: order, first, last as in partwheel.h; the wheel stops of all faces one after the other in stops, those of
+    face f being stops[offset[f]:offset[f + 1]]; start (F,). Coordinates are rounded to what a Blender mesh can hold.
+    """
+    with zipfile.ZipFile(zip_path) as archive:
+        archive.extractall(work / "core")
+    sys.path.insert(0, str(work / "core"))
+    from partwheel.core import Hierarchy
+
+    for name in MODELS:
+        vertices, triangles = read_off(MESHES / f"{name}.off")
+        hierarchy = Hierarchy.build(vertices.astype(numpy.float32).astype(float), triangles)
+        wheels = [hierarchy.wheel(face) for face in range(len(triangles))]
+        numpy.savez(work / f"{name}.npz", vertices=vertices, triangles=triangles,
+                    order=hierarchy.order, first=hierarchy.first, last=hierarchy.last,
+                    stops=numpy.concatenate([stops for stops, _ in wheels]),
+                    offset=numpy.cumsum([0] + [len(stops) for stops, _ in wheels]),
+                    start=numpy.array([start for _, start in wheels]))
+
+
+def install(zip_path, environment):
+    log = OUTPUT / "install.log"
+    with log.open("w") as output:
+        code = subprocess.run([blender(), "-b", "-noaudio", "--python-exit-code", "9", "--python", HERE / "install.py",
+                               "--", zip_path.resolve()], env=environment, stdout=output, stderr=output,
+                              timeout=TIME_LIMIT).returncode
+    if code or "Traceback" in log.read_text():
+        sys.exit(f"The add-on could not be installed from {zip_path}: see {log}.")
+
+
+def run_scenario(name, driver, work, environment):
+    """Returns (sentence that says what failed or "", number of checks made)."""
+    title = name if driver == "simulate" else f"{name}-{driver}"
+    result_path, log_path = work / f"{title}.json", OUTPUT / f"{title}.log"
+    command = [blender(), "-noaudio", "--window-geometry", "0", "0", "1280", "800", "--python-exit-code", "9",
+               *(["--enable-event-simulate"] if driver == "simulate" else []),
+               "--python", HERE / "inside.py", "--", name, driver, work, OUTPUT / title, result_path]
+    with x_server(environment) as display, log_path.open("w") as log:
+        process = subprocess.Popen(command, env=environment | {"DISPLAY": display}, stdout=log, stderr=log,
+                                   stdin=subprocess.DEVNULL, cwd=work)
+        try:
+            code = process.wait(TIME_LIMIT)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+            return f"Blender was still running after {TIME_LIMIT} s, see {log_path}", 0
+    result = json.loads(result_path.read_text()) if result_path.exists() else None
+    if "Traceback" in log_path.read_text(errors="replace"):
+        return f"a traceback in {log_path}", 0
+    if result is None:
+        return f"Blender ended with code {code} and no result, see {log_path}", 0
+    if result["failure"]:
+        return result["failure"], 0
+    if code:
+        return f"Blender ended with code {code}, see {log_path}", 0
+    if not result["checks"]:
+        return "the scenario checked nothing", 0
+    return "", result["checks"]
+
+
+@contextlib.contextmanager
+def x_server(environment):
+    """An X server that picks a free display number itself; yields its name."""
+    reading, writing = os.pipe()
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", "1280x800x24", "-nolisten", "tcp"],
+                              env=environment, pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    os.close(writing)
+    try:
+        with os.fdopen(reading) as pipe:
+            number = pipe.readline().strip()
+        if not number:
+            raise SystemExit("Xvfb did not start.")
+        yield f":{number}"
+    finally:
+        server.terminate()
+        server.wait()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,28 @@
+"""The wheel stops at the smallest part and at the whole object; many notches at once all count; keys do as the wheel."""
+
+
+def play(stage):
+    yield from stage.open("hand")
+    x, y, face = stage.spot(0.5, 0.9)
+    stops, start = stage.wheels.stops(face)
+    last = len(stops) - 1
+    stage.mouse.move(x, y)
+    stage.shortcut("mesh.partwheel_select")
+    yield from stage.selected(stops[start], "after the start")
+    stage.mouse.wheel(last - start)
+    yield from stage.selected(stops[last], "after as many notches as lead to the top")
+    stage.check(stops[last] == frozenset(range(len(stage.wheels.triangles))), "the top is the whole object")
+    stage.mouse.wheel(2)
+    yield from stage.selected(stops[last], "after two notches beyond the top")
+    stage.mouse.wheel(-1)
+    yield from stage.selected(stops[last - 1], "one notch down from the top")
+    stage.mouse.wheel(-last - 3)
+    yield from stage.selected(stops[0], "after many notches down")
+    stage.mouse.wheel(1)
+    yield from stage.selected(stops[1], "one notch up from the bottom")
+    for key, stop in (("PAGE_UP", 2), ("NUMPAD_PLUS", 3), ("PAGE_DOWN", 2), ("NUMPAD_MINUS", 1)):
+        stage.mouse.key(key)
+        yield from stage.selected(stops[stop], f"after {key}")
+    stage.mouse.key("ESC")
+    yield from stage.ended()
+    yield from stage.selected(set(), "after Esc")

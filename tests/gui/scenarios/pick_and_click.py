@@ -1,0 +1,48 @@
+"""The main job: a part is picked at the mouse, grown and shrunk with the wheel, confirmed with a click, undone, redone."""
+from view import picture
+
+
+def play(stage):
+    yield from stage.open("homer")
+    _, _, foot = stage.spot(0.6, 0.05)
+    stage.select({foot})
+
+    x, y, face = stage.spot(0.04, 0.62)  # in Homer's right hand
+    stops, start = stage.wheels.stops(face)
+    stage.check(len(stops) > start + 3, "the wheel has three more stops")
+    view = stage.view_state()
+    stage.mouse.move(x, y)
+    stage.shortcut("mesh.partwheel_select")
+    yield from stage.selected(stops[start], "after the start")
+    yield from stage.screenshot("0-start")
+    for notch in (1, 2, 3):
+        stage.mouse.wheel(1)
+        yield from stage.selected(stops[start + notch], f"after notch {notch} up")
+    yield from stage.screenshot("1-three-up")
+    for notch in (1, 2):
+        stage.mouse.wheel(-1)
+        yield from stage.selected(stops[start + 3 - notch], f"after notch {notch} down")
+    part = stops[start + 1]
+    stage.check(stage.view_state() == view, "the wheel has not zoomed meanwhile")
+    path = yield from stage.screenshot("2-two-down")
+    check_picture(stage, picture(path), part)
+
+    stage.mouse.click()
+    yield from stage.ended()
+    yield from stage.selected(part, "after the click that confirms")
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.selected({foot}, "after one Ctrl Z")
+    stage.mouse.key("Z", ctrl=True, shift=True)
+    yield from stage.selected(part, "after one Shift Ctrl Z")
+
+
+def check_picture(stage, pixels, part):
+    """The selected faces that can be seen are drawn in the colour of a selection, the others are not."""
+    def redness(faces):
+        colors = [pixels[round(y), round(x)] for x, y, _ in stage.view.shown(faces)]
+        stage.check(len(colors) > 30, "enough faces can be seen")
+        return sum(color[0] - color[2] for color in colors) / len(colors)
+
+    rest = set(range(len(stage.wheels.triangles))) - part
+    stage.check(redness(part) > 0.15, "the part is shown as selected")
+    stage.check(abs(redness(rest)) < 0.05, "nothing else is shown as selected")

@@ -1,0 +1,38 @@
+"""Esc and right click restore the selection exactly as it was, in every select mode, and leave no undo step."""
+
+
+def play(stage):
+    yield from once(stage, "FACE", "ESC")
+    yield from once(stage, "FACE", "RIGHTMOUSE")
+    yield from once(stage, "VERT", "ESC")
+    yield from once(stage, "EDGE", "RIGHTMOUSE")
+
+
+def once(stage, mode, way):
+    kind = {"FACE": "faces", "EDGE": "edges", "VERT": "verts"}[mode]
+    yield from stage.open("hand", mode)
+    _, _, first = stage.spot(0.5, 0.9)
+    _, _, second = stage.spot(0.4, 0.1)
+    stage.select({3}, kind)
+    earlier = stage.whole_selection()
+    stage.select({first, second}, kind)
+    former = stage.whole_selection()
+    stage.check(former != earlier and former["active"] is not None, "there is a selection with an active element")
+
+    x, y, face = stage.spot(0.5, 0.9)
+    stops, start = stage.wheels.stops(face)
+    stage.mouse.move(x, y)
+    stage.shortcut("mesh.partwheel_select")
+    yield from stage.until("a part is selected", lambda: stage.selection() == stops[start])
+    stage.mouse.wheel(2)
+    yield from stage.until("a larger part is selected", lambda: stage.selection() == stops[start + 2])
+    if way == "ESC":
+        stage.mouse.key(way)
+    else:
+        stage.mouse.click(way)
+    yield from stage.until(f"{way} restores the selection ({mode})", lambda: stage.whole_selection() == former)
+    yield from stage.ended()
+    stage.check(stage.whole_selection() == former, f"the selection stays as it was after {way} ({mode})")
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.until(f"one Ctrl Z after {way} undoes what was before ({mode})",
+                           lambda: stage.whole_selection() == earlier)

@@ -1,0 +1,267 @@
+"""The stage that scenarios play on: opens models in Blender's window, sends events, waits, checks, takes pictures.
+
+A scenario is a generator, play(stage), advanced by a Blender timer. It yields (what, predicate) to let Blender run until
+predicate() holds, mostly through the generator methods below: `yield from stage.selected(faces, "after the click")`.
+"""
+import json
+import subprocess
+import time
+import traceback
+
+import bmesh
+import bpy
+import numpy
+from mathutils import Euler, Matrix, Quaternion, Vector
+
+from events import DRIVERS
+from model import Wheels
+from view import View
+
+WAIT = 30  # seconds until something that should happen counts as not happening
+TICK = 0.01
+FILL = 0.8  # share of the viewport's height or width that an opened model takes
+# How each model is looked at, in its own space: the rotation that the view has (w, x, y, z).
+VIEWS = {"hand": (0.7071, 0.7071, 0, 0), "homer": (1, 0, 0, 0)}
+
+
+class Failure(Exception):
+    """What the scenario expected and did not see."""
+
+
+class Stage:
+    def __init__(self, driver, work, pictures, result):
+        self._work, self._pictures, self._result = work, pictures, result
+        self._driver = driver
+        self.checks = 0
+        self._ticks = self._draws = 0
+        self.mouse = None
+
+    # ---- Running ------------------------------------------------------------------------------------------------
+
+    def play(self, scenario):
+        bpy.types.SpaceView3D.draw_handler_add(self._drawn, (), "WINDOW", "POST_PIXEL")
+        steps = self._all(scenario)
+        waiting = None  # (what, predicate, deadline)
+
+        def tick():
+            nonlocal waiting
+            self._ticks += 1
+            try:
+                if waiting:
+                    what, predicate, deadline = waiting
+                    if not predicate():
+                        if time.monotonic() > deadline:
+                            raise Failure(f"{_text(what)}: not seen within {WAIT} s")
+                        return TICK
+                what, predicate = next(steps)
+                waiting = what, predicate, time.monotonic() + WAIT
+                return TICK
+            except StopIteration:
+                self._end("")
+            except Failure as failure:
+                self._picture("failed")
+                self._end(str(failure))
+            except Exception as error:  # the timer's last chance to report: nothing is swallowed
+                traceback.print_exc()
+                self._end(f"{type(error).__name__}: {error}")
+            return None
+
+        bpy.app.timers.register(tick)
+
+    def _all(self, scenario):
+        yield "a first draw of the 3D viewport", lambda: self._draws > 0
+        self.mouse = DRIVERS[self._driver](self.window)
+        yield from scenario(self)
+
+    def _drawn(self):
+        self._draws += 1
+
+    def _end(self, failure):
+        self._result.write_text(json.dumps({"failure": failure, "checks": self.checks}))
+        with self.override():
+            bpy.ops.wm.quit_blender()
+
+    # ---- Blender's state, looked up afresh each time since undo replaces it ---------------------------------------
+
+    @property
+    def window(self):
+        return bpy.data.window_managers[0].windows[0]
+
+    @property
+    def area(self):
+        return next(area for area in self.window.screen.areas if area.type == "VIEW_3D")
+
+    @property
+    def view_3d(self):
+        return self.area.spaces.active.region_3d
+
+    @property
+    def object(self):
+        return self.window.view_layer.objects.active
+
+    @property
+    def view(self):
+        return View(self.area, self.object, self.wheels.vertices, self.wheels.triangles)
+
+    def override(self):
+        region = next(region for region in self.area.regions if region.type == "WINDOW")
+        return bpy.context.temp_override(window=self.window, area=self.area, region=region)
+
+    def selection(self, kind="faces"):
+        """Indices of the selected "faces", "edges" or "verts"."""
+        elements = getattr(bmesh.from_edit_mesh(self.object.data), kind)
+        return frozenset(element.index for element in elements if element.select)
+
+    def whole_selection(self):
+        """All that belongs to a selection, to be compared: its elements of every kind, their order, the active one."""
+        bm = bmesh.from_edit_mesh(self.object.data)
+        active = bm.select_history.active
+        return {**{kind: self.selection(kind) for kind in ("faces", "edges", "verts")},
+                "history": [(type(element).__name__, element.index) for element in bm.select_history],
+                "active": active and (type(active).__name__, active.index)}
+
+    def coordinates(self):
+        """(V,3) of the mesh as it is being edited."""
+        return numpy.array([vertex.co for vertex in bmesh.from_edit_mesh(self.object.data).verts])
+
+    def view_state(self):
+        """What navigation changes: (view matrix, distance) as plain numbers."""
+        return [tuple(row) for row in self.view_3d.view_matrix], self.view_3d.view_distance
+
+    # ---- Setting the scene ----------------------------------------------------------------------------------------
+
+    def open(self, name, select_mode="FACE", selected=()):
+        """Makes the model the only object, in Edit Mode, framed, its hierarchy built, with these faces selected."""
+        self.wheels = Wheels(self._work / f"{name}.npz")
+        for each in list(bpy.data.objects):
+            bpy.data.objects.remove(each)
+        mesh = bpy.data.meshes.new(name)
+        mesh.from_pydata(self.wheels.vertices, [], self.wheels.triangles.tolist())
+        mesh.update()
+        model = bpy.data.objects.new(name, mesh)
+        self.window.scene.collection.objects.link(model)
+        self.window.view_layer.objects.active = model
+        model.select_set(True)
+        # Turned, moved and scaled to about two units: picking has to get through the object's matrix.
+        low, high = self.wheels.vertices.min(axis=0), self.wheels.vertices.max(axis=0)
+        scale = 2 / (high - low).max()
+        model.matrix_world = (Matrix.Translation((0.3, -0.2, 0.5)) @ Euler((0.1, 0.2, 0.3)).to_matrix().to_4x4()
+                              @ Matrix.Scale(scale, 4) @ Matrix.Translation(-(low + high) / 2))
+        with self.override():
+            bpy.ops.object.mode_set(mode="EDIT")
+            self.window.scene.tool_settings.mesh_select_mode = [select_mode == m for m in ("VERT", "EDGE", "FACE")]
+            bpy.ops.mesh.partwheel_build()
+        self.view_3d.view_rotation = model.matrix_world.to_quaternion() @ Quaternion(VIEWS[name])
+        self.view_3d.view_perspective = "PERSP"
+        self.view_3d.view_location = model.matrix_world @ Vector((low + high) / 2)
+        self.view_3d.view_distance = 4
+        yield from self.drawn()
+        view = self.view
+        extent = numpy.ptp(view.centers(), axis=0) / [view.region.width, view.region.height]
+        self.view_3d.view_distance *= extent.max() / FILL
+        self.select(selected)
+        yield from self.drawn()
+
+    def shortcut(self, operator):
+        """Presses the key that the user's keymap has for an operator of Edit Mode."""
+        keymap = bpy.data.window_managers[0].keyconfigs.user.keymaps["Mesh"]
+        item = next((item for item in keymap.keymap_items if item.idname == operator and item.active), None)
+        self.check(item is not None, f"the Mesh keymap has a key for {operator}")
+        self.mouse.key(item.type, **{name: True for name in ("shift", "ctrl", "alt") if getattr(item, name)})
+
+    def select(self, indices, kind="faces"):
+        """Selects exactly these faces (edges, verts), the last one active, as an undo step of its own."""
+        with self.override():
+            bpy.ops.mesh.select_all(action="DESELECT")
+            bm = bmesh.from_edit_mesh(self.object.data)
+            elements = getattr(bm, kind)
+            elements.ensure_lookup_table()
+            for index in indices:
+                elements[index].select_set(True)
+                bm.select_history.add(elements[index])
+                if kind == "faces":
+                    bm.faces.active = elements[index]
+            bmesh.update_edit_mesh(self.object.data)
+            bpy.ops.ed.undo_push(message="Test selection")
+
+    def spot(self, x, y):
+        """(x, y, face) of the safest pixel near a place given as shares (0..1) of the model's extent on the screen."""
+        view = self.view
+        centers = view.centers()
+        low, high = centers.min(axis=0), centers.max(axis=0)
+        return view.spot(*(low + (high - low) * [x, y]))
+
+    def empty_spot(self):
+        """(x, y) of a pixel of the viewport that shows no face and no gizmo."""
+        region, view = self.view.region, self.view
+        x, y = region.x + region.width // 5, region.y + region.height // 6
+        self.check(view.face_around(x, y, 20) is None and view.face_at(x, y) is None, "the empty spot is empty")
+        return x, y
+
+    # ---- Waiting and checking -------------------------------------------------------------------------------------
+
+    def check(self, truth, what):
+        if not truth:
+            raise Failure(f"{_text(what)}: does not hold")
+        self.checks += 1
+
+    def until(self, what, predicate):
+        yield what, predicate
+        self.checks += 1
+
+    def settle(self):
+        """Waits until the events sent so far have been handled, for checks that something does not happen.
+
+        A simulated event is handled before the timer's next tick. For a real one ten ticks make that very likely; should
+        it come later still, such a check could pass wrongly, never fail wrongly.
+        """
+        target = self._ticks + (2 if self._driver == "simulate" else 10)
+        yield "events handled", lambda: self._ticks >= target
+
+    def drawn(self):
+        """Waits until the viewport has been drawn twice, the second time with all that is there now."""
+        for _ in range(2):
+            target = self._draws + 1
+            self.area.tag_redraw()
+            yield "the viewport is drawn", lambda: self._draws >= target
+
+    def selected(self, expected, when, kind="faces"):
+        """Waits until exactly these faces (edges, verts) are selected, then checks that they stay so."""
+        expected = frozenset(expected)
+
+        def difference():
+            now = self.selection(kind)
+            return (f"{when}, exactly {len(expected)} {kind} selected"
+                    f" (now {len(now)}: {len(now - expected)} too many, {len(expected - now)} missing)")
+
+        yield difference, lambda: self.selection(kind) == expected
+        yield from self.settle()
+        self.check(self.selection(kind) == expected, difference)
+
+    def ended(self):
+        """Checks that the operator has ended: the wheel zooms again and leaves the selection alone."""
+        selection, distance = self.selection(), self.view_3d.view_distance
+        yield from self.settle()
+        self.mouse.wheel(1)
+        yield from self.until("the wheel zooms again", lambda: self.view_3d.view_distance < distance)
+        self.mouse.wheel(-1)
+        yield from self.until("the wheel zooms back", lambda: abs(self.view_3d.view_distance - distance) < 1e-3)
+        self.check(self.selection() == selection, "the wheel has left the selection alone")
+
+    # ---- Pictures -------------------------------------------------------------------------------------------------
+
+    def screenshot(self, name):
+        """Saves the screen as build/gui/SCENARIO-NAME.png once all is drawn; returns its path."""
+        yield from self.drawn()
+        return self._picture(name)
+
+    def _picture(self, name):
+        path = self._pictures.with_name(f"{self._pictures.name}-{name}.png")
+        subprocess.run(["import", "-window", "root", str(path)], check=True)
+        return path
+
+
+def _text(what):
+    """A sentence, or a function that makes one when it is needed: of the state at that time."""
+    return what() if callable(what) else what
+

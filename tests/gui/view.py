@@ -1,0 +1,69 @@
+"""Where things are in the 3D viewport: from 3D to window pixels, and which face a pixel shows.
+
+Plain projection with numpy, on purpose nothing that an add-on would pick with: the tests compare with it.
+"""
+import bpy
+import numpy
+
+
+class View:
+    """A 3D viewport and a mesh object in it. Built anew after every change of the view: nothing is kept up to date."""
+
+    def __init__(self, area, object, vertices, triangles):
+        self.region = next(region for region in area.regions if region.type == "WINDOW")
+        matrix = area.spaces.active.region_3d.perspective_matrix @ object.matrix_world
+        points = numpy.c_[vertices, numpy.ones(len(vertices))] @ numpy.array(matrix).T
+        size = numpy.array([self.region.width, self.region.height])
+        self._pixels = (points[:, :2] / points[:, 3:] + 1) / 2 * size + [self.region.x, self.region.y]
+        self._depths = points[:, 2] / points[:, 3]
+        self._triangles = triangles
+
+    def centers(self):
+        """(T,2) window pixels of the triangles' centers."""
+        return self._pixels[self._triangles].mean(axis=1)
+
+    def face_at(self, x, y):
+        """The triangle that window position x, y shows: of those that lie under it, the nearest. None if none does."""
+        a, b, c = (self._pixels[self._triangles[:, k]] - [x, y] for k in range(3))
+        weights = numpy.c_[_cross(b, c), _cross(c, a), _cross(a, b)]
+        hits = numpy.flatnonzero((weights >= 0).all(axis=1) | (weights <= 0).all(axis=1))
+        hits = hits[weights[hits].sum(axis=1) != 0]
+        if not len(hits):
+            return None
+        shares = weights[hits] / weights[hits].sum(axis=1, keepdims=True)
+        return int(hits[(shares * self._depths[self._triangles[hits]]).sum(axis=1).argmin()])
+
+    def face_around(self, x, y, margin=1):
+        """face_at(x, y) if everything within margin pixels shows the same face, so that rounding can't matter."""
+        faces = {self.face_at(x + dx, y + dy) for dx in (-margin, 0, margin) for dy in (-margin, 0, margin)}
+        return faces.pop() if len(faces) == 1 else None
+
+    def spot(self, x, y):
+        """The pixel nearest to x, y with one face (and no other) around it: (x, y, face)."""
+        centers = self.centers()
+        for center in centers[((centers - [x, y]) ** 2).sum(axis=1).argsort()]:
+            px, py = (int(v) for v in center.round())
+            face = self.face_around(px, py)
+            if face is not None:
+                return px, py, face
+        raise AssertionError("No face of the model is large enough on the screen to be clicked safely.")
+
+    def shown(self, faces):
+        """Those of the faces that can be seen at their center: [(x, y, face), ...]."""
+        centers = self.centers()
+        return [(*centers[face], face) for face in faces if self.face_at(*centers[face]) == face]
+
+
+def _cross(a, b):
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+
+
+def picture(path):
+    """A picture file as (height, width, 4) values 0..1, origin bottom left as in the window."""
+    image = bpy.data.images.load(str(path))
+    try:
+        pixels = numpy.empty(len(image.pixels), numpy.float32)
+        image.pixels.foreach_get(pixels)
+        return pixels.reshape(image.size[1], image.size[0], 4)
+    finally:
+        bpy.data.images.remove(image)
