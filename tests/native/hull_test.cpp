@@ -1,0 +1,284 @@
+// HullKernel against CGAL's convex_hull_3: extreme points exactly, volumes to rounding, boundaries closed and convex.
+#include "hull.h"
+
+#include "predicates.h"
+#include "support/reference_hull.h"
+#include "support/sizes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <numeric>
+#include <random>
+#include <set>
+
+namespace partwheel::test {
+namespace {
+
+using Points = std::vector<Point>;
+
+std::vector<int32_t> numbers(size_t from, size_t to) {
+    std::vector<int32_t> n(to - from);
+    std::iota(n.begin(), n.end(), static_cast<int32_t>(from));
+    return n;
+}
+
+std::vector<int32_t> sorted(std::vector<int32_t> v) {
+    std::sort(v.begin(), v.end());
+    return v;
+}
+
+// What a volume may be off by: the points' spread cubed times a few roundings. Spread, not size: six_volumes() works on
+// differences.
+double rounding(const Points& points) {
+    Point low = points[0], high = points[0];
+    for (const Point& p : points)
+        for (size_t k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], p[k]);
+            high[k] = std::max(high[k], p[k]);
+        }
+    return 1e-13 * (high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]);
+}
+
+// Closed, a sphere by Euler's formula, outward, and no given point outside any facet, all by exact predicates.
+void expect_convex_boundary(const Hull& hull, const Points& points, const std::vector<int32_t>& members) {
+    std::set<std::pair<int32_t, int32_t>> edges;
+    std::set<int32_t> used;
+    const auto at = [&](int32_t v) -> const Point& { return points[static_cast<size_t>(v)]; };
+    for (const Triangle& f : hull.facets) {
+        for (size_t k = 0; k < 3; ++k) {
+            ASSERT_TRUE(edges.emplace(f[k], f[(k + 1) % 3]).second) << "an edge twice in the same direction";
+            used.insert(f[k]);
+        }
+        ASSERT_FALSE(collinear(at(f[0]), at(f[1]), at(f[2])));
+        for (const int32_t v : members) ASSERT_LE(orientation(at(f[0]), at(f[1]), at(f[2]), at(v)), 0);
+    }
+    for (const auto& [a, b] : edges) ASSERT_TRUE(edges.contains({b, a})) << "an open edge";
+    ASSERT_EQ(used.size() + hull.facets.size(), edges.size() / 2 + 2) << "not a sphere";
+    ASSERT_EQ(sorted(hull.vertices), std::vector<int32_t>(used.begin(), used.end()));
+}
+
+// Members are numbers of points.
+void expect_hull(const Hull& hull, const Points& points, const std::vector<int32_t>& members) {
+    Points chosen;
+    for (const int32_t v : members) chosen.push_back(points[static_cast<size_t>(v)]);
+    const ReferenceHull reference = reference_hull(chosen);
+    if (reference.flat) {
+        EXPECT_TRUE(hull.facets.empty());
+        EXPECT_EQ(hull.volume, 0);
+        std::set<int32_t> all(members.begin(), members.end());
+        EXPECT_EQ(sorted(hull.vertices), std::vector<int32_t>(all.begin(), all.end()));
+        return;
+    }
+    ASSERT_NO_FATAL_FAILURE(expect_convex_boundary(hull, points, members));
+    std::vector<Point> extreme, expected;
+    for (const int32_t v : hull.vertices) extreme.push_back(points[static_cast<size_t>(v)]);
+    for (const int32_t i : reference.extreme) expected.push_back(chosen[static_cast<size_t>(i)]);
+    std::sort(extreme.begin(), extreme.end());
+    std::sort(expected.begin(), expected.end());
+    ASSERT_EQ(extreme, expected);
+    const auto volume = static_cast<double>(reference.volume);
+    ASSERT_NEAR(hull.volume, volume, 1e-12 * volume + rounding(chosen));
+}
+
+// Splits the points in two, at random or one from the rest; builds both, unites them, and holds all against CGAL.
+void expect_all(const Points& points, size_t split) {
+    HullKernel kernel(points);
+    const auto left = numbers(0, split), right = numbers(split, points.size()), all = numbers(0, points.size());
+    const Hull a = kernel.build(left), b = kernel.build(right);
+    ASSERT_NO_FATAL_FAILURE(expect_hull(a, points, left)) << "left";
+    ASSERT_NO_FATAL_FAILURE(expect_hull(b, points, right)) << "right";
+    const double volume = kernel.united_volume(a, b);
+    const double turned_volume = kernel.united_volume(b, a);
+    const Hull united = kernel.unite(a, b), turned = kernel.unite(b, a);
+    ASSERT_NO_FATAL_FAILURE(expect_hull(united, points, all)) << "united";
+    ASSERT_NO_FATAL_FAILURE(expect_hull(turned, points, all)) << "united the other way round";
+    ASSERT_NEAR(volume, united.volume, 1e-12 * united.volume + rounding(points));
+    ASSERT_NEAR(turned_volume, united.volume, 1e-12 * united.volume + rounding(points));
+    const Hull direct = kernel.build(all);
+    ASSERT_NO_FATAL_FAILURE(expect_hull(direct, points, all)) << "built";
+    const auto [low, high] = kernel.bounds(direct);
+    for (size_t k = 0; k < 3; ++k) {
+        ASSERT_EQ(low[k], (*std::min_element(points.begin(), points.end(), [&](auto& p, auto& q) { return p[k] < q[k]; }))[k]);
+        ASSERT_EQ(high[k], (*std::max_element(points.begin(), points.end(), [&](auto& p, auto& q) { return p[k] < q[k]; }))[k]);
+    }
+}
+
+class HullTest : public testing::Test {
+protected:
+    double real(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+    int whole(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); }
+
+    // Many sets from one maker of points, of all sizes up to `most`; splits of all kinds, a single point often.
+    void expect_many(int rounds, int most, const std::function<Point()>& make) {
+        rounds = sized(rounds, std::max(rounds / 10, 20));
+        for (int i = 0; i < rounds; ++i) {
+            Points points(static_cast<size_t>(whole(2, i % 5 == 0 ? most : std::min(most, 12))));
+            for (Point& p : points) p = make();
+            const auto split = static_cast<size_t>(i % 3 == 0 ? 1 : whole(1, static_cast<int>(points.size()) - 1));
+            ASSERT_NO_FATAL_FAILURE(expect_all(points, split)) << "round " << i << ", " << points.size() << " points";
+        }
+    }
+
+    std::mt19937 random{3};
+};
+
+TEST_F(HullTest, RandomPoints) {
+    expect_many(600, 200, [&] { return Point{real(-1, 1), real(-1, 1), real(-1, 1)}; });
+}
+
+TEST_F(HullTest, GridPoints) {
+    for (const int size : {1, 2, 3, 5}) {
+        SCOPED_TRACE(size);
+        expect_many(500, 120, [&] {
+            return Point{double(whole(0, size)), double(whole(0, size)), double(whole(0, size))};
+        });
+    }
+}
+
+TEST_F(HullTest, GridPointsOfAnUnevenStep) {
+    // 0.1 times a whole number is rounded: nearly, but not always exactly, coplanar.
+    expect_many(600, 120, [&] { return Point{0.1 * whole(0, 4), 0.1 * whole(0, 4), 0.1 * whole(0, 4)}; });
+}
+
+TEST_F(HullTest, CosphericalPoints) {
+    expect_many(300, 150, [&] {
+        const double u = real(0, 2 * std::numbers::pi), z = real(-1, 1), r = std::sqrt(1 - z * z);
+        return Point{r * std::cos(u), r * std::sin(u), z};
+    });
+    // Exactly cospherical: the 24 turns and mirrors of (1, 2, 2) and (3, 0, 0).
+    expect_many(300, 60, [&] {
+        Point p = whole(0, 3) == 0 ? Point{3, 0, 0} : Point{1, 2, 2};
+        std::shuffle(p.begin(), p.end(), random);
+        for (double& x : p) x = whole(0, 1) == 0 ? x : -x;
+        return p;
+    });
+}
+
+TEST_F(HullTest, FlatSets) {
+    expect_many(200, 40, [&] { return Point{real(-1, 1), real(-1, 1), 0.25}; });
+    expect_many(200, 40, [&] {
+        const double x = whole(-8, 8), y = whole(-8, 8);
+        return Point{x, y, x + 2 * y};
+    });
+    expect_many(100, 40, [&] {
+        const double t = whole(-8, 8);
+        return Point{t, 2 * t, 3 - t};
+    });
+    expect_many(50, 10, [&] { return Point{1, 2, 3}; });
+}
+
+TEST_F(HullTest, NearlyFlatSets) {
+    expect_many(300, 60, [&] {
+        const double x = real(-1, 1), y = real(-1, 1);
+        double z = 0.3 * x - 0.7 * y;
+        if (whole(0, 2) == 0) z = std::nextafter(z, 2.0);
+        return Point{x, y, z};
+    });
+}
+
+TEST_F(HullTest, FarFromTheOrigin) {
+    expect_many(200, 60, [&] { return Point{1e6 + real(-1, 1), -3e6 + real(-1, 1), 1e6 + real(-1, 1)}; });
+    expect_many(200, 60, [&] { return Point{1e9 + whole(0, 3), 1e9 + whole(0, 3), -1e9 + whole(0, 3)}; });
+}
+
+TEST_F(HullTest, LongAndThin) {
+    expect_many(200, 60, [&] { return Point{1e5 * real(-1, 1), real(-1, 1), 1e-5 * real(-1, 1)}; });
+    expect_many(200, 60, [&] { return Point{1e-20 * real(-1, 1), 1e-20 * real(-1, 1), 1e-20 * real(-1, 1)}; });
+}
+
+TEST_F(HullTest, SinglePointsJoinOneByOne) {
+    for (int i = 0; i < sized(40, 8); ++i) {
+        Points points(30);
+        const bool grid = i % 2 == 0;
+        for (Point& p : points)
+            for (double& x : p) x = grid ? whole(0, 3) : real(0, 3);
+        HullKernel kernel(points);
+        Hull hull = kernel.build(numbers(0, 4));
+        for (size_t n = 4; n < points.size(); ++n) {
+            const Hull point = kernel.build(numbers(n, n + 1));
+            const double volume = kernel.united_volume(hull, point);
+            hull = kernel.unite(hull, point);
+            ASSERT_NO_FATAL_FAILURE(expect_hull(hull, points, numbers(0, n + 1)));
+            ASSERT_NEAR(volume, hull.volume, 1e-12 * hull.volume + rounding(points));
+        }
+    }
+}
+
+TEST_F(HullTest, OneInsideTheOther) {
+    for (int i = 0; i < sized(100, 20); ++i) {
+        Points points;
+        for (int k = 0; k < 8; ++k) points.push_back({k % 2 * 4.0, k / 2 % 2 * 4.0, k / 4 * 4.0});
+        for (int k = 0; k < 10; ++k)  // inside, or on the boundary
+            points.push_back(i % 2 == 0 ? Point{real(0, 4), real(0, 4), real(0, 4)}
+                                        : Point{double(whole(0, 4)), double(whole(0, 4)), double(whole(0, 4))});
+        HullKernel kernel(points);
+        const Hull outer = kernel.build(numbers(0, 8)), inner = kernel.build(numbers(8, 18));
+        EXPECT_NEAR(kernel.united_volume(outer, inner), 64, 1e-12);
+        EXPECT_NEAR(kernel.united_volume(inner, outer), 64, 1e-12);
+        ASSERT_NO_FATAL_FAILURE(expect_hull(kernel.unite(inner, outer), points, numbers(0, 18)));
+    }
+}
+
+TEST_F(HullTest, SharedVerticesAndRepetitions) {
+    for (int i = 0; i < sized(200, 40); ++i) {
+        Points points(20);
+        for (Point& p : points)
+            for (double& x : p) x = i % 2 == 0 ? whole(0, 2) : real(0, 2);
+        std::vector<int32_t> left, right;
+        for (int k = 0; k < 12; ++k) {
+            left.push_back(whole(0, 13));
+            right.push_back(whole(7, 19));
+        }
+        HullKernel kernel(points);
+        const Hull a = kernel.build(left), b = kernel.build(right);
+        std::vector<int32_t> both = left;
+        both.insert(both.end(), right.begin(), right.end());
+        ASSERT_NO_FATAL_FAILURE(expect_hull(a, points, left));
+        const Hull united = kernel.unite(a, b);
+        ASSERT_NO_FATAL_FAILURE(expect_hull(united, points, both));
+        ASSERT_NEAR(kernel.united_volume(a, b), united.volume, 1e-12 * united.volume + rounding(points));
+    }
+}
+
+TEST_F(HullTest, ManyTouchingTetrahedra) {
+    // As clusters grow: the hulls of a row of grid cells' tetrahedra, one after the other, in random order.
+    const TetMesh mesh = tets_of(block({0, 0, 0}, {3, 2, 2}));
+    for (int round = 0; round < sized(10, 2); ++round) {
+        HullKernel kernel(mesh.vertices);
+        auto order = numbers(0, mesh.tetrahedra.size());
+        std::shuffle(order.begin(), order.end(), random);
+        Hull hull = kernel.build(mesh.tetrahedra[static_cast<size_t>(order[0])]);
+        std::vector<int32_t> members(mesh.tetrahedra[static_cast<size_t>(order[0])].begin(),
+                                     mesh.tetrahedra[static_cast<size_t>(order[0])].end());
+        for (size_t i = 1; i < order.size(); ++i) {
+            const auto& tet = mesh.tetrahedra[static_cast<size_t>(order[i])];
+            const Hull next = kernel.build(tet);
+            const double volume = kernel.united_volume(hull, next);
+            hull = kernel.unite(hull, next);
+            members.insert(members.end(), tet.begin(), tet.end());
+            ASSERT_NEAR(volume, hull.volume, 1e-12);
+            ASSERT_NO_FATAL_FAILURE(expect_hull(hull, mesh.vertices, members));
+        }
+        EXPECT_EQ(hull.vertices.size(), 8);
+        EXPECT_NEAR(hull.volume, 12, 1e-12);
+    }
+}
+
+TEST_F(HullTest, SameEveryTime) {
+    Points points(100);
+    for (Point& p : points)
+        for (double& x : p) x = whole(0, 6);
+    HullKernel used(points), fresh(points);
+    for (size_t n = 4; n < 40; ++n) (void)used.build(numbers(0, n));
+    const Hull a = used.build(numbers(10, 100)), b = fresh.build(numbers(10, 100));
+    EXPECT_EQ(a.vertices, b.vertices);
+    EXPECT_EQ(a.facets, b.facets);
+    EXPECT_EQ(a.volume, b.volume);
+}
+
+}  // namespace
+}  // namespace partwheel::test
