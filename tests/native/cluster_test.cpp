@@ -1,0 +1,240 @@
+// The binary tree against a brute-force Listing 1, merge for merge.
+//
+// At each step the reference says which merge comes first, measured by hulls that CGAL builds from all vertices. If
+// the library's merge is another one, it must be a cheapest within the tolerance of reference_cluster.h: the
+// certificate. With every merge the reference's first choice, the trees are equal node for node.
+#include "cluster.h"
+
+#include "support/real_meshes.h"
+#include "support/reference_cluster.h"
+#include "support/sizes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace partwheel::test {
+namespace {
+
+struct Named {
+    std::string name;
+    TetMesh mesh;
+};
+
+TetMesh filled(const TriMesh& mesh, double quality = 0) {
+    Progress progress;
+    progress.begin();
+    return tetrahedralize(check_surface(mesh.view(), progress), quality, progress);
+}
+
+BinaryTree clustered(const TetMesh& mesh) {
+    Progress progress;
+    progress.begin();
+    return cluster(mesh, progress);
+}
+
+// Compares each and prints a line; all must pass, and of the trees at least this many be equal node for node.
+void expect_same_as_reference(const std::vector<Named>& meshes, size_t least_equal) {
+    size_t equal = 0, certified = 0;
+    for (const auto& [name, mesh] : meshes) {
+        SCOPED_TRACE(name);
+        const Comparison result = compare_with_reference(mesh, clustered(mesh));
+        EXPECT_EQ(result.failure, "");
+        EXPECT_EQ(result.merges, mesh.tetrahedra.size() - 1);
+        std::printf("%-40s %5zu tetrahedra: %s", name.c_str(), mesh.tetrahedra.size(),
+                    result.failure.empty() ? "" : "WRONG ");
+        if (result.parted == 0) {
+            std::printf("equal\n");
+            ++equal;
+        } else {
+            std::printf("certificate for %zu merges\n", result.parted);
+            ++certified;
+        }
+        std::fflush(stdout);
+    }
+    std::printf("%zu meshes: %zu equal node for node, %zu by certificate\n", meshes.size(), equal, certified);
+    EXPECT_GE(equal, least_equal);
+}
+
+Cells letter_l() { return block({0, 0, 0}, {4, 1, 1}) + block({0, 0, 0}, {1, 3, 1}); }
+Cells letter_t() { return block({0, 2, 0}, {5, 3, 1}) + block({2, 0, 0}, {3, 3, 1}); }
+Cells letter_u() { return block({0, 0, 0}, {5, 1, 2}) + block({0, 0, 0}, {1, 4, 2}) + block({4, 0, 0}, {5, 4, 2}); }
+Cells comb() {
+    Cells cells = block({0, 0, 0}, {9, 1, 1});
+    for (int x = 0; x < 9; x += 2) cells = cells + block({x, 0, 0}, {x + 1, 4, 1});
+    return cells;
+}
+Cells stairs(int steps) {
+    Cells cells;
+    for (int i = 0; i < steps; ++i) cells = cells + block({i, 0, 0}, {i + 1, 2, i + 1});
+    return cells;
+}
+Cells jack() {
+    return block({0, 2, 2}, {5, 3, 3}) + block({2, 0, 2}, {3, 5, 3}) + block({2, 2, 0}, {3, 3, 5});
+}
+Cells ring() { return block({0, 0, 0}, {4, 4, 1}) - block({1, 1, 0}, {3, 3, 1}); }
+Cells hollow() { return block({0, 0, 0}, {3, 3, 3}) - block({1, 1, 1}, {2, 2, 2}); }
+Cells apart(int count) {  // as many components, bars of three lengths in two rows
+    Cells cells;
+    for (int i = 0; i < count; ++i) {
+        const int x = 4 * (i / 2), y = 3 * (i % 2);
+        cells = cells + block({x, y, 0}, {x + 1 + i % 3, y + 1, 1});
+    }
+    return cells;
+}
+Cells box_in_box() {
+    return (block({0, 0, 0}, {5, 5, 5}) - block({1, 1, 1}, {4, 4, 4})) + block({2, 2, 2}, {3, 3, 3});
+}
+
+TEST(Cluster, GridsOfCubes) {
+    std::vector<Named> meshes{
+        {"one tetrahedron", tet_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}})},
+        {"Figure 4", figure_4()},
+        {"cube", tets_of(block({0, 0, 0}, {1, 1, 1}))},
+        {"block 3x3x3", tets_of(block({0, 0, 0}, {3, 3, 3}))},
+        {"block 5x4x2", tets_of(block({0, 0, 0}, {5, 4, 2}))},
+        {"bar 12x1x1", tets_of(block({0, 0, 0}, {12, 1, 1}))},
+        {"plate 6x6x1", tets_of(block({0, 0, 0}, {6, 6, 1}))},
+        {"L", tets_of(letter_l())},
+        {"T", tets_of(letter_t())},
+        {"U", tets_of(letter_u())},
+        {"comb", tets_of(comb())},
+        {"stairs", tets_of(stairs(5))},
+        {"jack", tets_of(jack())},
+        {"ring", tets_of(ring())},
+        {"box with a cavity", tets_of(hollow())},
+        {"box in a box", tets_of(box_in_box())},
+        {"2 components", tets_of(apart(2))},
+        {"9 components", tets_of(apart(9))},
+        {"64 components", tets_of(apart(64))},
+        {"L, uneven", tets_of(letter_l(), {0.1, 0.3, 0.7})},
+        {"comb, uneven", tets_of(comb(), {0.1, 0.2, 0.3})},
+        {"thin strip", tets_of(block({0, 0, 0}, {30, 2, 1}), {1, 0.1, 1e-3})},
+        {"U, perturbed", perturbed(tets_of(letter_u()), 0.05, 1)},
+        {"comb, perturbed", perturbed(tets_of(comb()), 0.05, 2)},
+        {"block 3x3x3, perturbed", perturbed(tets_of(block({0, 0, 0}, {3, 3, 3})), 0.1, 3)},
+        {"block 3x3x3, perturbed within the tolerance", perturbed(tets_of(block({0, 0, 0}, {3, 3, 3})), 1e-8, 4)},
+        {"L, perturbed about the tolerance", perturbed(tets_of(letter_l()), 1e-6, 5)},
+        {"9 components, perturbed", perturbed(tets_of(apart(9)), 0.05, 6)},
+    };
+    if (!light()) meshes.push_back({"block 8x6x6", tets_of(block({0, 0, 0}, {8, 6, 6}))});
+    expect_same_as_reference(meshes, meshes.size() * 3 / 4);
+}
+
+TEST(Cluster, SurfacesByFormula) {
+    std::vector<TriMesh> surfaces{
+        octahedron(),
+        surface_of("block 4x3x2", block({0, 0, 0}, {4, 3, 2})),
+        surface_of("U", letter_u()),
+        surface_of("comb", comb()),
+        surface_of("stairs", stairs(6)),
+        surface_of("jack", jack()),
+        surface_of("box with a cavity", hollow()),
+        surface_of("5 components", apart(5)),
+        rotated(surface_of("U, turned", letter_u()), 0.7, {1, 2, 3}),
+        sphere(8, 14),
+        stretched(named(sphere(8, 14), "ellipsoid"), {3, 1, 0.5}),
+        snowman(7, 14),
+        stacked_cylinders(12),
+        torus(20, 8, 2, 0.6),
+        star_prism(7, 0.4, 1.5, 0.5),
+        hedgehog(12),
+        perturbed(torus(20, 8, 2, 0.6), 0.02, 1),
+        perturbed(snowman(7, 14), 0.01, 2),
+        together("sphere beside a torus", sphere(5, 8), moved(torus(10, 6, 1, 0.3), {4, 0.5, 0})),
+    };
+    std::vector<Named> meshes;
+    for (const TriMesh& surface : surfaces) meshes.push_back({surface.name, filled(surface)});
+    meshes.push_back({"U, with points inside", filled(surface_of("U", letter_u()), 1.4)});
+    meshes.push_back({"torus, with points inside", filled(torus(14, 7, 2, 0.7), 1.4)});
+    expect_same_as_reference(meshes, meshes.size() * 3 / 4);
+}
+
+TEST(Cluster, RealModels) {
+    std::vector<std::string> files{
+        "cube.off",      "cross.off",     "star.off",        "u.off",      "joint.off",    "part.off",  "tripod.off",
+        "icosahedron.off", "ellipsoid.off", "blob-closed.off", "dragknob.off", "eight.off",
+    };
+    for (const char* file : {"helmet.off", "pinion_small.off", "anchor.off", "spool.off", "cactus.off", "rotor.off",
+                             "oblong.off", "pipe.off", "cube-meshed.off", "larger_sphere.off", "geosphere.off"})
+        if (!light()) files.push_back(file);
+    std::vector<Named> meshes;
+    for (const std::string& file : files) {
+        try {
+            Named next{file, filled(real_mesh(file))};
+            ASSERT_LE(next.mesh.tetrahedra.size(), 3000U) << file;
+            meshes.push_back(std::move(next));
+        } catch (const Error& error) {
+            ADD_FAILURE() << file << ": " << error.what();
+        }
+    }
+    expect_same_as_reference(meshes, meshes.size() * 3 / 4);
+}
+
+TEST(Cluster, RankedConcavity) {
+    EXPECT_EQ(ranked_concavity(1, 1), 0);
+    EXPECT_EQ(ranked_concavity(1, 1 - 0.99e-6), 0);
+    EXPECT_NEAR(ranked_concavity(1, 1 - 1.01e-6), 1.01e-6, 1e-14);
+    EXPECT_EQ(ranked_concavity(1, 2), 0);  // rounding can make a hull seem smaller than what it holds
+    EXPECT_EQ(ranked_concavity(3, 2.5), 0.5);
+    // Rounding by far less than a part in 2^28 makes no difference, a part in 2^20 does.
+    EXPECT_EQ(ranked_concavity(1 + 1e-13, 1 - 0.3), ranked_concavity(1, 1 - 0.3));
+    EXPECT_LT(ranked_concavity(1, 1 - 0.3), ranked_concavity(1 + 1e-6, 1 - 0.3));
+}
+
+TEST(Cluster, LeafNumbersSettleExactTies) {
+    // Two cubes apart: all is symmetric, so which merge comes first is up to the lowest tetrahedra alone.
+    const TetMesh mesh = tets_of(block({0, 0, 0}, {1, 1, 1}) + block({5, 0, 0}, {6, 1, 1}));
+    const BinaryTree tree = clustered(mesh);
+    EXPECT_EQ(tree.components, 2U);
+    ASSERT_EQ(tree.merges.size(), 11U);
+    EXPECT_EQ(tree.merges[0].left, 0);
+    for (const Merge& m : tree.merges) EXPECT_LT(m.left, static_cast<int32_t>(mesh.tetrahedra.size() * 2 - 1));
+    // The last one joins the cubes: the hull is the box from one end to the other.
+    EXPECT_NEAR(tree.merges.back().hull_volume, 6, 1e-12);
+    EXPECT_NEAR(tree.merges.back().concavity, 4, 1e-7);
+}
+
+TEST(Cluster, ComponentsJoinByConcavityNotDistance) {
+    // A small cube lies near a large one, another small one further along the large one's side but at such a place
+    // that it adds less empty space: two small cubes in line, and one beside a long bar.
+    const Cells bar = block({0, 0, 0}, {10, 1, 1}), near = block({4, 0, 2}, {5, 1, 3}), far = block({12, 0, 0}, {13, 1, 1});
+    const TetMesh mesh = tets_of(bar + near + far);
+    const BinaryTree tree = clustered(mesh);
+    ASSERT_EQ(tree.components, 3U);
+    const size_t last = tree.merges.size() - 1;
+    // Bar and far: the hull is 13 long, 2 of it empty. Bar and near: a wedge over the bar, more than 2 empty.
+    EXPECT_NEAR(tree.merges[last - 1].concavity, 2, 1e-6);
+    EXPECT_NEAR(tree.merges[last - 1].hull_volume, 13, 1e-12);
+}
+
+TEST(Cluster, ManyComponentsAreAllJoined) {
+    const TetMesh mesh = tets_of(apart(150));  // more than are paired each with each
+    const BinaryTree tree = clustered(mesh);
+    EXPECT_EQ(tree.components, 150U);
+    ASSERT_EQ(tree.merges.size(), mesh.tetrahedra.size() - 1);
+    std::vector<bool> used(2 * mesh.tetrahedra.size(), false);
+    for (size_t m = 0; m < tree.merges.size(); ++m)
+        for (const int32_t side : {tree.merges[m].left, tree.merges[m].right}) {
+            ASSERT_LT(static_cast<size_t>(side), mesh.tetrahedra.size() + m);
+            ASSERT_FALSE(used[static_cast<size_t>(side)]);
+            used[static_cast<size_t>(side)] = true;
+        }
+}
+
+TEST(Cluster, CancelIsHonoured) {
+    const TetMesh mesh = tets_of(block({0, 0, 0}, {6, 6, 6}));
+    Progress progress;
+    progress.begin();
+    progress.cancel();
+    try {
+        (void)cluster(mesh, progress);
+        FAIL() << "not cancelled";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.status(), PW_ERROR_CANCELLED);
+    }
+}
+
+}  // namespace
+}  // namespace partwheel::test

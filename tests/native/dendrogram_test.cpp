@@ -1,0 +1,264 @@
+// The dendrogram against direct transcriptions: Listing 2, cuts by enumeration, the rules of the wheel.
+#include "dendrogram.h"
+
+#include "support/shapes.h"
+#include "support/sizes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <list>
+#include <memory>
+#include <numeric>
+#include <random>
+#include <set>
+
+namespace partwheel::test {
+namespace {
+
+// ---- Listing 2, as the paper has it: nodes with lists of children, recursion from the root ----
+
+struct Node {
+    int32_t number = 0;
+    double cost = 0;
+    bool leaf = false;
+    std::list<Node*> children;
+};
+
+void to_dendrogram(Node* r) {
+    for (auto c = r->children.begin(); c != r->children.end();) {  // also over children inserted on the way
+        if (!(*c)->leaf && (*c)->cost >= r->cost) {
+            for (Node* cc : (*c)->children) r->children.push_back(cc);
+            (*c)->children.clear();
+            c = r->children.erase(c);
+        } else {
+            ++c;
+        }
+    }
+    for (Node* c : r->children) to_dendrogram(c);
+}
+
+struct Tree {
+    std::vector<std::unique_ptr<Node>> nodes;
+    Node* root() const { return nodes.back().get(); }
+};
+
+Tree tree_of(const std::vector<Merge>& merges) {
+    Tree tree;
+    for (size_t i = 0; i < 2 * merges.size() + 1; ++i) {
+        auto node = std::make_unique<Node>();
+        node->number = static_cast<int32_t>(i);
+        node->leaf = i <= merges.size();
+        if (!node->leaf) {
+            const Merge& m = merges[i - merges.size() - 1];
+            node->cost = m.concavity;
+            node->children = {tree.nodes[static_cast<size_t>(m.left)].get(), tree.nodes[static_cast<size_t>(m.right)].get()};
+        }
+        tree.nodes.push_back(std::move(node));
+    }
+    return tree;
+}
+
+void collect(const Node* node, std::set<int32_t>& inner) {
+    if (!node->leaf) inner.insert(node->number);
+    for (const Node* c : node->children) collect(c, inner);
+}
+
+std::vector<uint8_t> pruned_by_the_paper(const std::vector<Merge>& merges) {
+    const Tree tree = tree_of(merges);
+    to_dendrogram(tree.root());
+    std::set<int32_t> inner;
+    collect(tree.root(), inner);
+    std::vector<uint8_t> kept(merges.size(), 0);
+    for (const int32_t n : inner)
+        if (static_cast<size_t>(n) > merges.size()) kept[static_cast<size_t>(n) - merges.size() - 1] = 1;
+    return kept;
+}
+
+// ---- Random trees ----
+
+class DendrogramTest : public testing::Test {
+protected:
+    int whole(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); }
+
+    // Heights are small whole numbers, so that ties abound, or any numbers.
+    std::vector<Merge> random_tree(int leaves, bool ties) {
+        std::vector<int32_t> open(static_cast<size_t>(leaves));
+        std::iota(open.begin(), open.end(), 0);
+        std::vector<Merge> merges;
+        const bool chain = whole(0, 3) == 0;
+        while (open.size() > 1) {
+            std::array<int32_t, 2> side{};
+            for (int32_t& s : side) {
+                const auto last = static_cast<int>(open.size()) - 1;
+                const auto i = static_cast<size_t>(chain && &s == &side[0] ? last : whole(0, last));
+                s = open[i];
+                open.erase(open.begin() + static_cast<std::ptrdiff_t>(i));
+            }
+            Merge m;
+            m.left = side[0];
+            m.right = side[1];
+            m.concavity = ties ? whole(0, 3) : std::uniform_real_distribution<double>(0, 1)(random);
+            open.push_back(leaves + static_cast<int32_t>(merges.size()));
+            merges.push_back(m);
+        }
+        return merges;
+    }
+
+    std::mt19937 random{7};
+};
+
+TEST_F(DendrogramTest, PrunesAsListing2) {
+    for (int i = 0; i < sized(2000, 300); ++i) {
+        const auto merges = random_tree(whole(2, i % 10 == 0 ? 300 : 20), i % 2 == 0);
+        ASSERT_EQ(prune(merges), pruned_by_the_paper(merges)) << "round " << i;
+    }
+}
+
+TEST_F(DendrogramTest, PrunesRealTreesAsListing2) {
+    for (const TetMesh& mesh : {tets_of(block({0, 0, 0}, {4, 4, 1})), tets_of(block({0, 0, 0}, {6, 1, 1}) + block({0, 0, 0}, {1, 6, 1})),
+                                perturbed(tets_of(block({0, 0, 0}, {3, 3, 3})), 0.1, 1)}) {
+        Progress progress;
+        progress.begin();
+        const auto merges = cluster(mesh, progress).merges;
+        EXPECT_EQ(prune(merges), pruned_by_the_paper(merges));
+    }
+}
+
+TEST_F(DendrogramTest, PruningKeepsWhatGrows) {
+    const auto merge = [](int32_t left, int32_t right, double height) {
+        Merge m;
+        m.left = left;
+        m.right = right;
+        m.concavity = height;
+        return m;
+    };
+    // Heights 1, 2, 3 up a chain: all stay. 2, 2, 3: the lower of equals goes. 3, 1, 2: a child above its parent goes,
+    // but is held against the ancestor that it would hang from, not against the one that went.
+    EXPECT_EQ(prune(std::vector{merge(0, 1, 1), merge(4, 2, 2), merge(5, 3, 3)}), (std::vector<uint8_t>{1, 1, 1}));
+    EXPECT_EQ(prune(std::vector{merge(0, 1, 2), merge(4, 2, 2), merge(5, 3, 3)}), (std::vector<uint8_t>{0, 1, 1}));
+    EXPECT_EQ(prune(std::vector{merge(0, 1, 3), merge(4, 2, 1), merge(5, 3, 2)}), (std::vector<uint8_t>{0, 1, 1}));
+    EXPECT_EQ(prune(std::vector{merge(0, 1, 1), merge(4, 2, 5), merge(5, 3, 2)}), (std::vector<uint8_t>{1, 0, 1}));
+    EXPECT_EQ(prune(std::vector{merge(0, 1, 3), merge(4, 2, 5), merge(5, 3, 2)}), (std::vector<uint8_t>{0, 0, 1}));
+    EXPECT_TRUE(prune(std::vector<Merge>{}).empty());
+}
+
+TEST_F(DendrogramTest, Figure4) {
+    // Two of the four sub-tetrahedra are no convex shape, nor are three; all four are. So nothing but the root stays.
+    Progress progress;
+    progress.begin();
+    const auto merges = cluster(figure_4(), progress).merges;
+    ASSERT_EQ(merges.size(), 3U);
+    EXPECT_GT(merges[0].concavity, 0);
+    EXPECT_EQ(merges[2].concavity, 0);
+    EXPECT_NEAR(merges[2].hull_volume, 8.0 / 3, 1e-12);
+    EXPECT_EQ(prune(merges), (std::vector<uint8_t>{0, 0, 1}));
+}
+
+TEST_F(DendrogramTest, ConvexShapesLinkAllLeavesToTheRoot) {
+    for (const TetMesh& mesh : {tets_of(block({0, 0, 0}, {1, 1, 1})), tets_of(block({0, 0, 0}, {4, 3, 2})),
+                                tets_of(block({0, 0, 0}, {9, 1, 1}), {0.1, 0.3, 0.7})}) {
+        Progress progress;
+        progress.begin();
+        const auto merges = cluster(mesh, progress).merges;
+        const auto kept = prune(merges);
+        EXPECT_EQ(std::count(kept.begin(), kept.end(), 1), 1);
+        EXPECT_EQ(kept.back(), 1);
+    }
+}
+
+// ---- Cuts ----
+
+// Every cut of the subtree: sets of cluster numbers, depth first.
+std::vector<std::vector<int32_t>> all_cuts(const Node* node) {
+    std::vector<std::vector<int32_t>> cuts{{node->number}};
+    if (node->leaf) return cuts;
+    for (const auto& left : all_cuts(node->children.front()))
+        for (const auto& right : all_cuts(node->children.back())) {
+            cuts.push_back(left);
+            cuts.back().insert(cuts.back().end(), right.begin(), right.end());
+        }
+    return cuts;
+}
+
+TEST_F(DendrogramTest, CutIntoPartsIsTheBest) {
+    for (int i = 0; i < sized(400, 60); ++i) {
+        const auto leaves = static_cast<size_t>(whole(1, 12));
+        const auto merges = random_tree(static_cast<int>(leaves), i % 2 == 0);
+        const Tree tree = tree_of(merges);
+        const auto total = [&](const std::vector<int32_t>& cut) {
+            double sum = 0;
+            for (const int32_t n : cut) sum += tree.nodes[static_cast<size_t>(n)]->cost;
+            return sum;
+        };
+        const auto cuts = all_cuts(tree.root());
+        const std::set<std::vector<int32_t>> known(cuts.begin(), cuts.end());
+        for (size_t parts = 1; parts <= leaves; ++parts) {
+            double best = std::numeric_limits<double>::infinity();
+            for (const auto& cut : cuts)
+                if (cut.size() == parts) best = std::min(best, total(cut));
+            const auto cut = cut_into_parts(merges, parts);
+            ASSERT_EQ(cut.size(), parts);
+            ASSERT_TRUE(known.contains(cut)) << "no cut of the tree in depth-first order";
+            ASSERT_NEAR(total(cut), best, 1e-12);
+        }
+    }
+}
+
+TEST_F(DendrogramTest, CutIntoPartsBeatsUndoingMerges) {
+    // The last merge is cheap and the one before dear: two parts are the sides of the last, but three are best made
+    // by opening the dear one.
+    std::vector<Merge> merges(3);
+    merges[0] = {0, 1, 1, 0};
+    merges[1] = {2, 3, 9, 0};
+    merges[2] = {4, 5, 2, 0};
+    EXPECT_EQ(cut_into_parts(merges, 1), (std::vector<int32_t>{6}));
+    EXPECT_EQ(cut_into_parts(merges, 2), (std::vector<int32_t>{4, 5}));
+    EXPECT_EQ(cut_into_parts(merges, 3), (std::vector<int32_t>{4, 2, 3}));
+    EXPECT_EQ(cut_into_parts(merges, 4), (std::vector<int32_t>{0, 1, 2, 3}));
+}
+
+// ---- The wheel ----
+
+TEST_F(DendrogramTest, WheelStopsGrowAndEndAtTheRoot) {
+    for (int i = 0; i < sized(5000, 500); ++i) {
+        const auto length = static_cast<size_t>(whole(1, 40));
+        std::vector<double> areas(length), heights(length);
+        areas[0] = std::uniform_real_distribution<double>(0.01, 1)(random);
+        for (size_t k = 1; k < length; ++k) {
+            areas[k] = areas[k - 1] * (whole(0, 2) == 0 ? 1 : std::uniform_real_distribution<double>(1, 1.3)(random));
+            heights[k] = heights[k - 1] + (whole(0, 2) == 0 && k > 1 ? 1e-9 : whole(1, 5));
+        }
+        if (length == 2 && whole(0, 1) == 0) heights[1] = 0;  // a convex shape
+        const WheelStops wheel = wheel_stops(areas, heights);
+        ASSERT_FALSE(wheel.stops.empty());
+        ASSERT_LT(wheel.start, wheel.stops.size());
+        ASSERT_EQ(static_cast<size_t>(wheel.stops.back()), length - 1);
+        ASSERT_GE(wheel.stops.front(), 0);
+        const auto area_of = [&](size_t s) { return areas[static_cast<size_t>(wheel.stops[s])]; };
+        for (size_t s = 1; s < wheel.stops.size(); ++s) {
+            ASSERT_GT(wheel.stops[s], wheel.stops[s - 1]);
+            ASSERT_GT(area_of(s), area_of(s - 1)) << "a notch that nothing can be seen of";
+            const bool last = s + 1 == wheel.stops.size();
+            ASSERT_GE(area_of(s), (last ? 1 : 1.1) * area_of(s - 1));
+        }
+        // No visible step is left out: between two stops nothing is 10 % larger than the first.
+        for (size_t s = 0; s + 1 < wheel.stops.size(); ++s)
+            for (int32_t k = wheel.stops[s]; k < wheel.stops[s + 1]; ++k)
+                ASSERT_LT(areas[static_cast<size_t>(k)], 1.1 * area_of(s));
+    }
+}
+
+TEST_F(DendrogramTest, WheelStartsWhereAPartIsClearest) {
+    // A leaf, a finger that stays nearly convex until it is joined to the hand, and the whole.
+    const std::vector<double> areas{0.5, 5, 20, 60, 100}, heights{0, 1e-4, 2e-4, 0.5, 1};
+    const WheelStops wheel = wheel_stops(areas, heights);
+    EXPECT_EQ(wheel.stops, (std::vector<int32_t>{0, 1, 2, 3, 4}));
+    EXPECT_EQ(wheel.stops[wheel.start], 2);
+    const WheelStops only = wheel_stops(std::vector<double>{2}, std::vector<double>{0});
+    EXPECT_EQ(only.stops, (std::vector<int32_t>{0}));
+    EXPECT_EQ(only.start, 0U);
+}
+
+}  // namespace
+}  // namespace partwheel::test
