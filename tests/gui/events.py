@@ -44,10 +44,10 @@ class Simulated(_Driver):
         self._send(key, "PRESS", **modifiers)
         self._send(key, "RELEASE", **modifiers)
 
-    def wheel(self, notches):
+    def wheel(self, notches, **modifiers):
         """Turns the wheel: up if notches > 0, else down."""
         for _ in range(abs(notches)):
-            self._send("WHEELUPMOUSE" if notches > 0 else "WHEELDOWNMOUSE", "PRESS")
+            self._send("WHEELUPMOUSE" if notches > 0 else "WHEELDOWNMOUSE", "PRESS", **modifiers)
 
 
 class Xdotool(_Driver):
@@ -64,28 +64,28 @@ class Xdotool(_Driver):
     def _run(self, *words):
         subprocess.run(["xdotool", *map(str, words)], check=True)
 
-    def _held(self, modifiers, *words):
-        names = [name for name, held in modifiers.items() if held]
-        self._run(*[word for name in names for word in ("keydown", name)], *words,
-                  *[word for name in names for word in ("keyup", name)])
+    def _run_held(self, modifiers, *words):
+        self._run(*self._each("keydown", modifiers), *words, *self._each("keyup", modifiers))
+
+    @staticmethod
+    def _each(command, modifiers):
+        return [word for name, held in modifiers.items() if held for word in (command, name)]
 
     def move(self, x, y, **_):
         self.x, self.y = x, y
         self._run("mousemove", x, self._height - 1 - y)
 
     def press(self, button, **modifiers):
-        self._run(*[word for name in modifiers if modifiers[name] for word in ("keydown", name)],
-                  "mousedown", self.BUTTONS[button])
+        self._run(*self._each("keydown", modifiers), "mousedown", self.BUTTONS[button])
 
     def release(self, button, **modifiers):
-        self._run("mouseup", self.BUTTONS[button],
-                  *[word for name in modifiers if modifiers[name] for word in ("keyup", name)])
+        self._run("mouseup", self.BUTTONS[button], *self._each("keyup", modifiers))
 
     def key(self, key, **modifiers):
-        self._held(modifiers, "key", self.KEYS.get(key, key.lower()))
+        self._run_held(modifiers, "key", self.KEYS.get(key, key.lower()))
 
-    def wheel(self, notches):
-        self._run("click", "--repeat", abs(notches), "--delay", 5, 4 if notches > 0 else 5)
+    def wheel(self, notches, **modifiers):
+        self._run_held(modifiers, "click", "--repeat", abs(notches), "--delay", 5, 4 if notches > 0 else 5)
 
 
 DRIVERS = {"simulate": Simulated, "xdotool": Xdotool}

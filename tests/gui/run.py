@@ -30,7 +30,7 @@ MESHES = ROOT / "build" / "deps" / "meshes"
 MODELS = ("hand", "homer")
 TIME_LIMIT = 180  # seconds a scenario: ten times what one takes, for machines under load
 # Scenarios that run a second time with real input: X events made by xdotool instead of Blender's event_simulate.
-ALSO_WITH_XDOTOOL = ("blender_itself",)
+ALSO_WITH_XDOTOOL = ("pick_and_click", "empty_space", "navigate")
 
 sys.path.insert(0, str(HERE))
 from model import read_off  # noqa: E402

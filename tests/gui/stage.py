@@ -17,7 +17,7 @@ from events import DRIVERS
 from model import Wheels
 from view import View
 
-WAIT = 30  # seconds until something that should happen counts as not happening
+WAIT = 60  # seconds until something that should happen counts as not happening
 TICK = 0.01
 FILL = 0.8  # share of the viewport's height or width that an opened model takes
 # How each model is looked at, in its own space: the rotation that the view has (w, x, y, z).
@@ -112,6 +112,21 @@ class Stage:
         elements = getattr(bmesh.from_edit_mesh(self.object.data), kind)
         return frozenset(element.index for element in elements if element.select)
 
+    def kind(self):
+        """What the select mode selects."""
+        mode = self.window.scene.tool_settings.mesh_select_mode
+        return next(kind for kind, on in zip(("verts", "edges", "faces"), mode) if on)
+
+    def elements(self, faces, kind):
+        """The faces themselves, or their vertices or edges."""
+        if kind == "faces":
+            return frozenset(faces)
+        polygons = [self.object.data.polygons[face] for face in faces]
+        if kind == "verts":
+            return frozenset(vertex for polygon in polygons for vertex in polygon.vertices)
+        sides = {side for polygon in polygons for side in polygon.edge_keys}
+        return frozenset(edge.index for edge in self.object.data.edges if edge.key in sides)
+
     def whole_selection(self):
         """All that belongs to a selection, to be compared: its elements of every kind, their order, the active one."""
         bm = bmesh.from_edit_mesh(self.object.data)
@@ -119,6 +134,16 @@ class Stage:
         return {**{kind: self.selection(kind) for kind in ("faces", "edges", "verts")},
                 "history": [(type(element).__name__, element.index) for element in bm.select_history],
                 "active": active and (type(active).__name__, active.index)}
+
+    def reports(self):
+        """All that Blender has reported so far, as the Info editor shows it."""
+        area = next(area for area in self.window.screen.areas if area.type == "DOPESHEET_EDITOR")
+        area.ui_type = "INFO"
+        with bpy.context.temp_override(window=self.window, area=area):
+            bpy.ops.info.select_all(action="SELECT")
+            bpy.ops.info.report_copy()
+        area.ui_type = "TIMELINE"
+        return bpy.data.window_managers[0].clipboard
 
     def coordinates(self):
         """(V,3) of the mesh as it is being edited."""
@@ -130,8 +155,8 @@ class Stage:
 
     # ---- Setting the scene ----------------------------------------------------------------------------------------
 
-    def open(self, name, select_mode="FACE", selected=()):
-        """Makes the model the only object, in Edit Mode, framed, its hierarchy built, with these faces selected."""
+    def open(self, name, mode="FACE", build=True):
+        """Makes the model the only object: in Edit Mode, in this select mode, framed, with its hierarchy built."""
         self.wheels = Wheels(self._work / f"{name}.npz")
         for each in list(bpy.data.objects):
             bpy.data.objects.remove(each)
@@ -149,8 +174,9 @@ class Stage:
                               @ Matrix.Scale(scale, 4) @ Matrix.Translation(-(low + high) / 2))
         with self.override():
             bpy.ops.object.mode_set(mode="EDIT")
-            self.window.scene.tool_settings.mesh_select_mode = [select_mode == m for m in ("VERT", "EDGE", "FACE")]
-            bpy.ops.mesh.partwheel_build()
+            self.window.scene.tool_settings.mesh_select_mode = [mode == each for each in ("VERT", "EDGE", "FACE")]
+            if build:
+                bpy.ops.mesh.partwheel_build()
         self.view_3d.view_rotation = model.matrix_world.to_quaternion() @ Quaternion(VIEWS[name])
         self.view_3d.view_perspective = "PERSP"
         self.view_3d.view_location = model.matrix_world @ Vector((low + high) / 2)
@@ -159,7 +185,7 @@ class Stage:
         view = self.view
         extent = numpy.ptp(view.centers(), axis=0) / [view.region.width, view.region.height]
         self.view_3d.view_distance *= extent.max() / FILL
-        self.select(selected)
+        self.select(())
         yield from self.drawn()
 
     def shortcut(self, operator):
@@ -184,12 +210,17 @@ class Stage:
             bmesh.update_edit_mesh(self.object.data)
             bpy.ops.ed.undo_push(message="Test selection")
 
-    def spot(self, x, y):
-        """(x, y, face) of the safest pixel near a place given as shares (0..1) of the model's extent on the screen."""
+    def spot(self, x, y, above=0):
+        """(x, y, face) of the safest pixel near a place given as shares (0..1) of the model's extent on the screen, of
+        a face whose wheel has at least so many stops above the start."""
+        def wanted(face):
+            stops, start = self.wheels.stops(face)
+            return len(stops) > start + above
+
         view = self.view
         centers = view.centers()
         low, high = centers.min(axis=0), centers.max(axis=0)
-        return view.spot(*(low + (high - low) * [x, y]))
+        return view.spot(*(low + (high - low) * [x, y]), wanted)
 
     def empty_spot(self):
         """(x, y) of a pixel of the viewport that shows no face and no gizmo."""
@@ -225,9 +256,11 @@ class Stage:
             self.area.tag_redraw()
             yield "the viewport is drawn", lambda: self._draws >= target
 
-    def selected(self, expected, when, kind="faces"):
-        """Waits until exactly these faces (edges, verts) are selected, then checks that they stay so."""
-        expected = frozenset(expected)
+    def selected(self, faces, when):
+        """Waits until exactly these faces are selected, then checks that they stay so. In the vertex and edge select
+        modes: until exactly their vertices, or edges, are."""
+        kind = self.kind()
+        expected = self.elements(faces, kind)
 
         def difference():
             now = self.selection(kind)
@@ -240,8 +273,8 @@ class Stage:
 
     def ended(self):
         """Checks that the operator has ended: the wheel zooms again and leaves the selection alone."""
-        selection, distance = self.selection(), self.view_3d.view_distance
         yield from self.settle()
+        selection, distance = self.selection(), self.view_3d.view_distance
         self.mouse.wheel(1)
         yield from self.until("the wheel zooms again", lambda: self.view_3d.view_distance < distance)
         self.mouse.wheel(-1)

@@ -38,15 +38,15 @@ class View:
         faces = {self.face_at(x + dx, y + dy) for dx in (-margin, 0, margin) for dy in (-margin, 0, margin)}
         return faces.pop() if len(faces) == 1 else None
 
-    def spot(self, x, y):
-        """The pixel nearest to x, y with one face (and no other) around it: (x, y, face)."""
+    def spot(self, x, y, wanted=lambda face: True):
+        """The pixel nearest to x, y with one face, which must be wanted, and no other around it: (x, y, face)."""
         centers = self.centers()
         for center in centers[((centers - [x, y]) ** 2).sum(axis=1).argsort()]:
             px, py = (int(v) for v in center.round())
             face = self.face_around(px, py)
-            if face is not None:
+            if face is not None and wanted(face):
                 return px, py, face
-        raise AssertionError("No face of the model is large enough on the screen to be clicked safely.")
+        raise AssertionError("No such face of the model is large enough on the screen to be clicked safely.")
 
     def shown(self, faces):
         """Those of the faces that can be seen at their center: [(x, y, face), ...]."""

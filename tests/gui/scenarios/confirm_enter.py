@@ -1,11 +1,11 @@
-"""Enter and the numpad's Enter confirm, each as one undo step."""
+"""Enter and the numpad's Enter confirm, each as one undo step. The first use builds the hierarchy."""
 
 
 def play(stage):
-    yield from stage.open("hand")
+    yield from stage.open("hand", build=False)
     parts = [frozenset()]
     for key, place in (("RET", (0.5, 0.9)), ("NUMPAD_ENTER", (0.9, 0.6))):
-        x, y, face = stage.spot(*place)
+        x, y, face = stage.spot(*place, above=1)
         stops, start = stage.wheels.stops(face)
         stage.mouse.move(x, y)
         stage.shortcut("mesh.partwheel_select")

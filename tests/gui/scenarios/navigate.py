@@ -3,7 +3,7 @@
 
 def play(stage):
     yield from stage.open("hand")
-    x, y, face = stage.spot(0.5, 0.9)
+    x, y, face = stage.spot(0.5, 0.9, above=1)
     stops, start = stage.wheels.stops(face)
     stage.mouse.move(x, y)
     stage.shortcut("mesh.partwheel_select")

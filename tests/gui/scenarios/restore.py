@@ -9,23 +9,21 @@ def play(stage):
 
 
 def once(stage, mode, way):
-    kind = {"FACE": "faces", "EDGE": "edges", "VERT": "verts"}[mode]
     yield from stage.open("hand", mode)
-    _, _, first = stage.spot(0.5, 0.9)
-    _, _, second = stage.spot(0.4, 0.1)
-    stage.select({3}, kind)
+    kind = stage.kind()
+    stage.select([3], kind)
     earlier = stage.whole_selection()
-    stage.select({first, second}, kind)
+    stage.select([700, 5], kind)
     former = stage.whole_selection()
     stage.check(former != earlier and former["active"] is not None, "there is a selection with an active element")
 
-    x, y, face = stage.spot(0.5, 0.9)
+    x, y, face = stage.spot(0.5, 0.9, above=2)
     stops, start = stage.wheels.stops(face)
     stage.mouse.move(x, y)
     stage.shortcut("mesh.partwheel_select")
-    yield from stage.until("a part is selected", lambda: stage.selection() == stops[start])
+    yield from stage.selected(stops[start], "after the start")
     stage.mouse.wheel(2)
-    yield from stage.until("a larger part is selected", lambda: stage.selection() == stops[start + 2])
+    yield from stage.selected(stops[start + 2], "after two notches up")
     if way == "ESC":
         stage.mouse.key(way)
     else:

@@ -1,0 +1,55 @@
+"""G hands the part on to Blender's move with proportional editing; Esc there leaves the mesh as it was."""
+import numpy
+
+
+def play(stage):
+    yield from stage.open("hand")
+    stage.select([3])
+    proportional = stage.window.scene.tool_settings.use_proportional_edit
+    x, y, face = stage.spot(0.05, 0.55)
+    stops, start = stage.wheels.stops(face)
+    part = stops[start]
+    before = stage.coordinates()
+
+    for way in ("ESC", "LEFTMOUSE"):
+        stage.mouse.move(x, y)
+        stage.shortcut("mesh.partwheel_select")
+        yield from stage.selected(part, "after the start")
+        stage.mouse.key("G")
+        yield from stage.settle()
+        stage.mouse.move(x - 20, y + 10)
+        stage.mouse.move(x - 80, y + 30)
+        yield from stage.until("the part moves with the mouse", lambda: (stage.coordinates() != before).any())
+        if way == "ESC":
+            yield from stage.screenshot("moving")
+            stage.mouse.key("ESC")
+            yield from stage.until("Esc puts the mesh back", lambda: (stage.coordinates() == before).all())
+            yield from stage.ended()
+            yield from stage.selected(part, "after Esc of the move")
+            stage.check((stage.coordinates() == before).all(), "the mesh stays as it was")
+            stage.mouse.key("Z", ctrl=True)
+            yield from stage.selected({3}, "after one Ctrl Z")
+        else:
+            stage.mouse.click()
+            yield from stage.ended()
+
+    shift = stage.coordinates() - before
+    moved = numpy.linalg.norm(shift, axis=1) / numpy.linalg.norm(shift, axis=1).max()
+    inside = numpy.array(sorted(stage.elements(part, "verts")))
+    outside = numpy.setdiff1d(numpy.arange(len(before)), inside)
+    stage.check(numpy.ptp(shift[inside], axis=0).max() < 1e-5, "all of the part has moved alike")
+    stage.check((moved[inside] > 0.999).all(), "and most of all")
+    stage.check(((moved[outside] > 0.05) & (moved[outside] < 0.95)).sum() > 20, "its surroundings have followed")
+    stage.check(stage.window.scene.tool_settings.use_proportional_edit == proportional,
+                "the user's own setting of proportional editing is as it was")
+
+    after = stage.coordinates()
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.until("Ctrl Z takes the move back", lambda: (stage.coordinates() == before).all())
+    yield from stage.selected(part, "after that Ctrl Z")
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.selected({3}, "after a second Ctrl Z")
+    stage.mouse.key("Z", ctrl=True, shift=True)
+    yield from stage.selected(part, "after Shift Ctrl Z")
+    stage.mouse.key("Z", ctrl=True, shift=True)
+    yield from stage.until("Shift Ctrl Z moves again", lambda: (stage.coordinates() == after).all())
