@@ -8,7 +8,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <limits>
+#include <numeric>
+#include <random>
 #include <string>
+#include <utility>
 
 namespace partwheel {
 
@@ -40,18 +43,36 @@ Triangle facet(const Tetrahedron& tet, size_t opposite) {
     }
 }
 
-// TetGen keeps the surface (Y), is quiet (Q), writes no boundary faces (F: its own code for that is unsafe) and tells
-// neighbours (n).
-void run_tetgen(const Surface& surface, double quality, tetgenio& out) {
+// The order in which TetGen is told vertices and triangles: as they come, or shuffled, the same way on every machine.
+struct InputOrder {
+    std::vector<int32_t> vertices, triangles;
+
+    InputOrder(const Surface& surface, uint64_t shuffle)
+        : vertices(surface.vertices.size()), triangles(surface.triangles.size()) {
+        std::mt19937_64 random(shuffle);
+        for (auto* order : {&vertices, &triangles}) {
+            std::iota(order->begin(), order->end(), 0);
+            for (size_t i = order->size(); shuffle != 0 && i > 1; --i) std::swap((*order)[i - 1], (*order)[random() % i]);
+        }
+    }
+};
+
+// TetGen keeps the surface (Y), trusts our test for intersections rather than its own angle tolerance (p///180), is
+// quiet (Q), writes no boundary faces (F: its own code for that is unsafe) and tells neighbours (n).
+void run_tetgen(const Surface& surface, const InputOrder& order, double quality, tetgenio& out) {
     tetgenio in;
     in.firstnumber = 0;
     in.numberofpoints = static_cast<int>(surface.vertices.size());
     in.pointlist = new REAL[3 * surface.vertices.size()];
-    for (size_t i = 0; i < surface.vertices.size(); ++i)
-        std::copy_n(surface.vertices[i].begin(), 3, in.pointlist + 3 * i);
+    std::vector<int32_t> place(surface.vertices.size());
+    for (size_t i = 0; i < order.vertices.size(); ++i) {
+        const auto v = static_cast<size_t>(order.vertices[i]);
+        place[v] = static_cast<int32_t>(i);
+        std::copy_n(surface.vertices[v].begin(), 3, in.pointlist + 3 * i);
+    }
     in.numberoffacets = static_cast<int>(surface.triangles.size());
     in.facetlist = new tetgenio::facet[surface.triangles.size()];
-    for (size_t i = 0; i < surface.triangles.size(); ++i) {
+    for (size_t i = 0; i < order.triangles.size(); ++i) {
         tetgenio::facet& f = in.facetlist[i];
         tetgenio::init(&f);
         f.numberofpolygons = 1;
@@ -59,13 +80,14 @@ void run_tetgen(const Surface& surface, double quality, tetgenio& out) {
         tetgenio::polygon& p = f.polygonlist[0];
         p.numberofvertices = 3;
         p.vertexlist = new int[3];
-        std::copy_n(surface.triangles[i].begin(), 3, p.vertexlist);
+        const Triangle& t = surface.triangles[static_cast<size_t>(order.triangles[i])];
+        for (size_t k = 0; k < 3; ++k) p.vertexlist[k] = place[static_cast<size_t>(t[k])];
     }
     char switches[64];
     if (quality > 0)
-        std::snprintf(switches, sizeof switches, "pYQFnq%.17g/0", quality);
+        std::snprintf(switches, sizeof switches, "p///180YQFnq%.17g/0", quality);
     else
-        std::snprintf(switches, sizeof switches, "pYQFn");
+        std::snprintf(switches, sizeof switches, "p///180YQFn");
     try {
         tetrahedralize(switches, &in, &out);
     } catch (int code) {
@@ -75,15 +97,21 @@ void run_tetgen(const Surface& surface, double quality, tetgenio& out) {
 }
 
 // All of TetGen's tetrahedra, those of cavities included, positively oriented.
-TetMesh read(const Surface& surface, const tetgenio& out) {
+TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& out) {
     TetMesh mesh;
     const auto points = static_cast<size_t>(out.numberofpoints), tets = static_cast<size_t>(out.numberoftetrahedra);
-    for (size_t i = 0; i < points; ++i) {
+    const size_t given = surface.vertices.size();
+    mesh.vertices = surface.vertices;
+    bool kept = points >= given;
+    for (size_t i = 0; i < points && kept; ++i) {
         const REAL* p = out.pointlist + 3 * i;
-        mesh.vertices.push_back({p[0], p[1], p[2]});
+        const Point point = {p[0], p[1], p[2]};
+        if (i < given)
+            kept = point == surface.vertices[static_cast<size_t>(order.vertices[i])];
+        else
+            mesh.vertices.push_back(point);
     }
-    if (points < surface.vertices.size() ||
-        !std::equal(surface.vertices.begin(), surface.vertices.end(), mesh.vertices.begin()))
+    if (!kept)
         throw Error(PW_ERROR_TETRAHEDRA, "The mesher moved or merged vertices of the surface, for some are too close "
                                          "together. Merge vertices by distance.");
     for (size_t i = 0; i < tets; ++i) {
@@ -91,6 +119,8 @@ TetMesh read(const Surface& surface, const tetgenio& out) {
         std::array<int32_t, 4> n;
         std::copy_n(out.tetrahedronlist + i * static_cast<size_t>(out.numberofcorners), 4, t.begin());
         std::copy_n(out.neighborlist + 4 * i, 4, n.begin());
+        for (int32_t& v : t)
+            if (static_cast<size_t>(v) < given) v = order.vertices[static_cast<size_t>(v)];
         const auto at = [&](size_t k) { return mesh.vertices[static_cast<size_t>(t[k])]; };
         if (orientation(at(0), at(1), at(2), at(3)) < 0) {
             std::swap(t[0], t[1]);
@@ -100,6 +130,11 @@ TetMesh read(const Surface& surface, const tetgenio& out) {
         mesh.neighbours.push_back(n);
     }
     return mesh;
+}
+
+[[noreturn]] void throw_lost() {
+    throw Error(PW_ERROR_TETRAHEDRA,
+                "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.");
 }
 
 // A facet of a tetrahedron that is a triangle of the surface.
@@ -142,8 +177,7 @@ std::vector<int32_t> winding_numbers(const TetMesh& mesh, const std::vector<std:
         for (size_t k = 0; k < 4; ++k)
             if (mesh.neighbours[t][k] < 0) {
                 if (walls[t][k].triangle < 0)
-                    throw Error(PW_ERROR_TETRAHEDRA, "The mesher lost a part of the surface. Remesh or smooth the "
-                                                     "mesh a little and try again.");
+                    throw_lost();
                 winding[t] = step(walls[t][k]);
                 next_regions.push_back(static_cast<int32_t>(t));
             }
@@ -166,8 +200,7 @@ std::vector<int32_t> winding_numbers(const TetMesh& mesh, const std::vector<std:
                 if (winding[other] == unknown)
                     winding[other] = expected;
                 else if (winding[other] != expected)
-                    throw Error(PW_ERROR_TETRAHEDRA, "The mesher lost a part of the surface. Remesh or smooth the "
-                                                     "mesh a little and try again.");
+                    throw_lost();
                 if (flooded[other]) continue;
                 if (walls[t][k].triangle < 0) {
                     flooded[other] = true;
@@ -206,8 +239,7 @@ void keep_solid(const Surface& surface, TetMesh& mesh) {
         }
     }
     if (std::find(mesh.tet_of_triangle.begin(), mesh.tet_of_triangle.end(), -1) != mesh.tet_of_triangle.end())
-        throw Error(PW_ERROR_TETRAHEDRA, "The mesher lost a part of the surface. Remesh or smooth the mesh a little "
-                                         "and try again.");
+        throw_lost();
     for (size_t t = 0; t < number.size(); ++t) {
         if (number[t] < 0) continue;
         const auto to = static_cast<size_t>(number[t]);
@@ -224,13 +256,24 @@ void keep_solid(const Surface& surface, TetMesh& mesh) {
 }  // namespace
 
 TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress) {
-    tetgenio out;
-    run_tetgen(surface, quality, out);
-    progress.advance(0.9);
-    TetMesh mesh = read(surface, out);
-    keep_solid(surface, mesh);
-    progress.advance(1);
-    return mesh;
+    // Now and then TetGen fails, or leaves a point that it had to add on the surface. That depends on the order of its
+    // input: another order mostly helps.
+    constexpr uint64_t attempts = 16;
+    for (uint64_t attempt = 0;; ++attempt) {
+        try {
+            const InputOrder order(surface, attempt);
+            tetgenio out;
+            run_tetgen(surface, order, quality, out);
+            progress.advance(0.9);
+            TetMesh mesh = read(surface, order, out);
+            keep_solid(surface, mesh);
+            progress.advance(1);
+            return mesh;
+        } catch (const Error& e) {
+            if (e.status() != PW_ERROR_TETRAHEDRA || attempt + 1 == attempts) throw;
+            progress.advance(0);
+        }
+    }
 }
 
 }  // namespace partwheel
