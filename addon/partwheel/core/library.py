@@ -148,6 +148,6 @@ def version():
 
 
 def check(status, seconds=None):
-    """Raises PartwheelError for any status but OK. Call it in the thread of the failed call: messages are per thread."""
+    """Raises PartwheelError for any status but OK. Call it in the failed call's thread: each has its own message."""
     if status != Status.OK:
         raise PartwheelError(status, load().pw_error_message().decode(), seconds)

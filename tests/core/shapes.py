@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Closed surfaces for tests: vertices (V,3), triangles (T,3), faces (T,) the polygon of each triangle, face_count."""
+
+import itertools
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+MESHES = Path(__file__).resolve().parents[2] / "build" / "deps" / "meshes"
+
+
+class Shape(NamedTuple):
+    vertices: np.ndarray
+    triangles: np.ndarray
+    faces: np.ndarray
+    face_count: int
+
+
+def polygons(vertices, polygon_list):
+    """A shape of convex polygons, each cut into a fan."""
+    triangles, faces = [], []
+    for face, polygon in enumerate(polygon_list):
+        for second, third in zip(polygon[1:], polygon[2:]):
+            triangles.append((polygon[0], second, third))
+            faces.append(face)
+    return Shape(np.array(vertices, float), np.array(triangles, np.int32), np.array(faces, np.int32),
+                 len(polygon_list))
+
+
+def polycube(cells):
+    """The surface of unit cells given by their lowest corners, in quads: many coplanar faces and equal costs."""
+    cells = set(cells)
+    corners, quads = {}, []
+    for cell in sorted(cells):
+        for axis, side in itertools.product(range(3), (0, 1)):
+            neighbour = list(cell)
+            neighbour[axis] += 2 * side - 1
+            if tuple(neighbour) in cells:
+                continue
+            quad = []
+            for u, v in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                corner = list(cell)
+                corner[axis] += side
+                corner[(axis + 1) % 3] += u
+                corner[(axis + 2) % 3] += v
+                quad.append(corners.setdefault(tuple(corner), len(corners)))
+            quads.append(quad if side else quad[::-1])
+    return polygons(list(corners), quads)
+
+
+def merged(*parts):
+    """Several shapes as one, without joining anything."""
+    vertex_offsets = np.cumsum([0] + [len(part.vertices) for part in parts])
+    face_offsets = np.cumsum([0] + [part.face_count for part in parts])
+    return Shape(
+        np.vstack([part.vertices for part in parts]),
+        np.vstack([part.triangles + offset for part, offset in zip(parts, vertex_offsets)]).astype(np.int32),
+        np.concatenate([part.faces + offset for part, offset in zip(parts, face_offsets)]).astype(np.int32),
+        int(face_offsets[-1]),
+    )
+
+
+def moved(shape, offset=(0, 0, 0), scale=1.0):
+    return shape._replace(vertices=shape.vertices * scale + np.array(offset, float))
+
+
+def turned_inside_out(shape):
+    return shape._replace(triangles=np.ascontiguousarray(shape.triangles[:, ::-1]))
+
+
+def cube():
+    return polycube([(0, 0, 0)])
+
+
+def box_with_cavity():
+    return merged(moved(cube(), scale=3.0), turned_inside_out(moved(cube(), offset=(1, 1, 1))))
+
+
+def torus(around=24, across=10, radius=3.0, tube=1.0):
+    """Quads, which are not flat: each is two triangles of one face."""
+    u, v = np.meshgrid(np.arange(around) * 2 * np.pi / around, np.arange(across) * 2 * np.pi / across, indexing="ij")
+    ring = radius + tube * np.cos(v)
+    vertices = np.stack([ring * np.cos(u), ring * np.sin(u), tube * np.sin(v)], -1).reshape(-1, 3)
+    quads = [
+        (i * across + j, (i + 1) % around * across + j, (i + 1) % around * across + (j + 1) % across,
+         i * across + (j + 1) % across)
+        for i in range(around) for j in range(across)
+    ]
+    return polygons(vertices, quads)
+
+
+def star(points=5, inner=0.45, depth=0.4):
+    """A prism over a star: its arms are the parts. Its two lids are n-gons, cut into arms and a middle."""
+    angles = np.arange(2 * points) * np.pi / points
+    radii = np.where(np.arange(2 * points) % 2, inner, 1.0)
+    rim = np.stack([radii * np.cos(angles), radii * np.sin(angles)], -1)
+    vertices = np.vstack([np.column_stack([rim, np.full(len(rim), z)]) for z in (0.0, depth)])
+    n = 2 * points
+    inner_ring = list(range(1, n, 2))
+    lid = [(tip - 1 if tip else n - 1, tip, tip + 1) for tip in range(0, n, 2)]
+    lid += [(inner_ring[0], second, third) for second, third in zip(inner_ring[1:], inner_ring[2:])]
+    triangles = [(c, b, a) for a, b, c in lid] + [(a + n, b + n, c + n) for a, b, c in lid]
+    faces = [0] * len(lid) + [1] * len(lid)
+    for i in range(n):
+        j = (i + 1) % n
+        triangles += [(i, j, j + n), (i, j + n, i + n)]
+        faces += [2 + i] * 2
+    return Shape(vertices, np.array(triangles, np.int32), np.array(faces, np.int32), n + 2)
+
+
+def off(name):
+    """A real mesh with its polygons."""
+    from partwheel.core import meshes
+
+    mesh = meshes.read(MESHES / f"{name}.off")
+    return Shape(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count)
+
+
+SHAPES = {
+    "tetrahedron": lambda: polygons([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)],
+                                    [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]),
+    "cube": cube,
+    "bar": lambda: polycube([(x, 0, 0) for x in range(4)]),
+    "L": lambda: polycube([(0, 0, 0), (1, 0, 0), (2, 0, 0), (0, 1, 0), (0, 2, 0)]),
+    "jack": lambda: polycube([(0, 0, 0)] + [tuple(s * (i == a) for i in range(3)) for a in range(3) for s in (-1, 1)]),
+    "frame": lambda: polycube([(x, y, 0) for x in range(3) for y in range(3) if (x, y) != (1, 1)]),
+    "box with a cavity": box_with_cavity,
+    "three cubes apart": lambda: merged(cube(), moved(cube(), (3, 0, 0)), moved(cube(), (0.25, 0.5, 7), 0.5)),
+    "star": star,
+    "torus": torus,
+    "3torus.off": lambda: off("3torus"),
+    "P.off": lambda: off("P"),
+    "dragknob.off": lambda: off("dragknob"),
+    "hand.off": lambda: off("hand"),
+}

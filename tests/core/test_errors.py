@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every error a build can be made to give, each by an input that deserves it and no other."""
+
+import os
+import subprocess
+import sys
+import textwrap
+
+import numpy as np
+import pytest
+import shapes
+from conftest import ROOT
+from partwheel.core import Hierarchy, PartwheelError, Status
+
+CUBE = shapes.cube()
+
+
+def with_vertex(shape, vertex, value):
+    vertices = shape.vertices.copy()
+    vertices[vertex] = value
+    return shape._replace(vertices=vertices)
+
+
+def with_triangle(shape, triangle, value):
+    triangles = shape.triangles.copy()
+    triangles[triangle] = value
+    return shape._replace(triangles=triangles)
+
+
+def without_triangle(shape):
+    return shapes.Shape(shape.vertices, shape.triangles[1:], None, None)
+
+
+def collinear():
+    """A cube with a vertex put on the middle of an edge, and a triangle along that edge."""
+    cube = shapes.polygons(CUBE.vertices, [[a, b, c] for a, b, c in CUBE.triangles.tolist()])
+    a, b, c = cube.triangles[0].tolist()
+    vertices = np.vstack([cube.vertices, (cube.vertices[a] + cube.vertices[b]) / 2])
+    middle = len(cube.vertices)
+    return shapes.polygons(vertices, [[middle, b, c], [a, middle, c], [a, b, middle],
+                                      *cube.triangles[1:].tolist()])
+
+
+def sharing_a_vertex():
+    return shapes.polycube([(0, 0, 0), (1, 1, 1)])
+
+
+def sharing_an_edge():
+    return shapes.polycube([(0, 0, 0), (1, 1, 0)])
+
+
+def pillow():
+    """One triangle seen from both sides: closed, and nothing in it."""
+    return shapes.polygons([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2), (2, 1, 0)])
+
+
+CASES = {
+    "no vertices": (Status.EMPTY, lambda: (np.zeros((0, 3)), np.zeros((0, 3), int))),
+    "no triangles": (Status.EMPTY, lambda: (CUBE.vertices, np.zeros((0, 3), int))),
+    "nan": (Status.NOT_FINITE, lambda: with_vertex(CUBE, 3, (0, np.nan, 0))),
+    "infinity": (Status.NOT_FINITE, lambda: with_vertex(CUBE, 3, (0, -np.inf, 0))),
+    "too far": (Status.NOT_FINITE, lambda: with_vertex(CUBE, 3, (1e101, 0, 0))),
+    "no such vertex": (Status.INDEX, lambda: with_triangle(CUBE, 4, (0, 1, 8))),
+    "negative vertex": (Status.INDEX, lambda: with_triangle(CUBE, 4, (0, 1, -1))),
+    "vertex beyond 32 bits": (Status.INDEX, lambda: (CUBE.vertices, CUBE.triangles.astype(np.int64) + 2**32)),
+    "no such face": (Status.INDEX, lambda: CUBE._replace(faces=CUBE.faces + 1)),
+    "negative face": (Status.INDEX, lambda: CUBE._replace(faces=CUBE.faces - 1)),
+    "repeated corner": (Status.DEGENERATE, lambda: with_triangle(CUBE, 4, (0, 1, 1))),
+    "corners on a line": (Status.DEGENERATE, collinear),
+    "hole": (Status.OPEN, lambda: without_triangle(CUBE)),
+    "edge of four faces": (Status.NON_MANIFOLD, sharing_an_edge),
+    "sheets touching at a vertex": (Status.NON_MANIFOLD, sharing_a_vertex),
+    "one triangle turned": (Status.ORIENTATION, lambda: with_triangle(CUBE, 4, CUBE.triangles[4][::-1])),
+    "two cubes in one place": (Status.SELF_INTERSECTION,
+                               lambda: shapes.merged(CUBE, shapes.moved(CUBE, (0.5, 0.5, 0.5)))),
+    "two cubes with a common wall": (Status.SELF_INTERSECTION, lambda: shapes.merged(CUBE, shapes.moved(CUBE, (1, 0, 0)))),
+    "the same cube twice": (Status.SELF_INTERSECTION, lambda: shapes.merged(CUBE, CUBE)),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_broken_surfaces_are_named(name):
+    status, make = CASES[name]
+    with pytest.raises(PartwheelError) as refused:
+        Hierarchy.build(*make())
+    assert refused.value.status == status, str(refused.value)
+    assert refused.value.name and str(refused.value).endswith(".")
+
+
+def test_a_pillow_holds_no_volume():
+    with pytest.raises(PartwheelError) as refused:
+        Hierarchy.build(*pillow())
+    assert refused.value.status in {Status.NO_VOLUME, Status.SELF_INTERSECTION, Status.NON_MANIFOLD}
+
+
+@pytest.mark.parametrize("quality", [0.5, 1.0, -1.0, np.nan, np.inf])
+def test_quality_out_of_range(quality):
+    with pytest.raises(PartwheelError) as refused:
+        Hierarchy.build(*CUBE, quality=quality)
+    assert refused.value.status == Status.ARGUMENT
+
+
+def test_every_face_needs_a_triangle():
+    with pytest.raises(PartwheelError):
+        Hierarchy.build(*CUBE._replace(face_count=7))
+    with pytest.raises(PartwheelError) as refused:
+        Hierarchy.build(CUBE.vertices, CUBE.triangles, None, 6)
+    assert refused.value.status == Status.ARGUMENT
+
+
+def test_arrays_of_the_wrong_kind_never_reach_the_library():
+    with pytest.raises(ValueError, match="vertices"):
+        Hierarchy.build(CUBE.vertices[:, :2], CUBE.triangles)
+    with pytest.raises(ValueError, match="triangles"):
+        Hierarchy.build(CUBE.vertices, CUBE.triangles.reshape(-1, 2))
+    with pytest.raises(ValueError, match="faces"):
+        Hierarchy.build(CUBE.vertices, CUBE.triangles, CUBE.faces[:-1])
+    with pytest.raises(TypeError, match="triangles"):
+        Hierarchy.build(CUBE.vertices, CUBE.triangles * 1.0)
+
+
+def test_seconds_of_a_failed_build():
+    with pytest.raises(PartwheelError) as refused:
+        Hierarchy.build(*CASES["two cubes in one place"][1]())
+    seconds = refused.value.seconds
+    assert list(seconds) == ["surface", "tetrahedra", "cluster", "dendrogram", "hierarchy"]
+    assert seconds["surface"] > 0 and seconds["cluster"] == 0
+
+
+def test_running_out_of_memory_is_an_error_not_a_crash():
+    """Wherever in a build the memory ends."""
+    script = textwrap.dedent("""
+        import resource, shapes
+        from partwheel.core import Hierarchy, PartwheelError
+        shape = shapes.off("bear")
+        Hierarchy.build(*shapes.cube())
+        for megabytes in (12, 14, 17, 20, 24, 29, 35, 1000):  # a thread's stack alone takes 8
+            pages = int(open("/proc/self/statm").read().split()[0])
+            resource.setrlimit(resource.RLIMIT_AS, (pages * resource.getpagesize() + megabytes * 2**20, -1))
+            try:
+                Hierarchy.build(*shape)
+                print("built")
+            except PartwheelError as error:
+                print(error.name)
+    """)
+    path = os.pathsep.join([str(ROOT / "addon"), str(ROOT / "tests" / "core")])
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=300,
+                         env={**os.environ, "PYTHONPATH": path})
+    assert run.returncode == 0, run.stderr
+    results = run.stdout.split("\n")[:-1]
+    assert len(results) == 8 and set(results) == {"memory", "built"}, results
+    assert results[0] == "memory" and results[-1] == "built"

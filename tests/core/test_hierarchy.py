@@ -1,0 +1,348 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The hierarchy's arrays and answers against what numpy and scipy compute from the input alone."""
+
+import math
+
+import numpy as np
+import pytest
+import shapes
+from partwheel.core import Hierarchy, PartwheelError, Status
+from scipy.spatial import ConvexHull
+
+EXACT = 1e-9  # relative tolerance of sums of volumes
+
+
+def tet_volumes(vertices, tetrahedra):
+    a, b, c, d = (vertices[tetrahedra[:, i]] for i in range(4))
+    return np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
+
+
+def enclosed_volume(shape):
+    centre = shape.vertices.mean(0)
+    a, b, c = (shape.vertices[shape.triangles[:, i]] - centre for i in range(3))
+    return np.einsum("ij,ij->i", np.cross(a, b), c).sum() / 6
+
+
+def triangle_areas(shape):
+    a, b, c = (shape.vertices[shape.triangles[:, i]] for i in range(3))
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+
+
+def slice_sums(values, first, last):
+    total = np.concatenate([[0], np.cumsum(values)])
+    return total[last] - total[first]
+
+
+def hull_volume(h, first, last):
+    return ConvexHull(h.vertices[np.unique(h.tetrahedra[first:last])]).volume
+
+
+def ancestors(h, node):
+    found = []
+    while node != -1:
+        found.append(node)
+        node = h.parent[node]
+    return found
+
+
+def merge_slices(h):
+    """The slice of tetrahedra of each cluster of the unpruned tree: (2T - 1, 2). Fails if one is not contiguous."""
+    count = len(h.tetrahedra)
+    slices = [(i, i + 1) for i in range(count)]
+    for a, b in h.merges:
+        (low, middle), (other, high) = sorted((slices[a], slices[b]))
+        assert middle == other
+        slices.append((low, high))
+    return np.array(slices)
+
+
+def test_arrays_are_views_that_outlive_the_hierarchy(case):
+    shape, _ = case
+    h = Hierarchy.build(*shape)
+    order, expected = h.order, h.order.copy()
+    assert not order.flags.owndata and not order.flags.writeable
+    with pytest.raises(ValueError):
+        order[0] = 0
+    with pytest.raises(ValueError):
+        order.flags.writeable = True
+    faces = h.faces(len(h.parent) - 1)
+    del h
+    assert np.array_equal(order, expected) and np.array_equal(faces, expected)
+
+
+def test_tetrahedra_fill_the_surface(case):
+    shape, h = case
+    volumes = tet_volumes(h.vertices, h.tetrahedra)
+    assert volumes.min() > 0
+    solid = enclosed_volume(shape)
+    assert math.isclose(volumes.sum(), solid, rel_tol=EXACT)
+    assert math.isclose(h.summary.volume, solid, rel_tol=EXACT)
+    assert math.isclose(h.volume[-1], solid, rel_tol=EXACT)
+    assert math.isclose(h.summary.hull_volume, ConvexHull(shape.vertices).volume, rel_tol=EXACT)
+    assert h.summary.added_vertices == (h.source == -1).sum()
+
+
+def test_surface_is_kept_exactly(case):
+    shape, h = case
+    kept = h.source >= 0
+    assert np.array_equal(h.vertices[kept], shape.vertices[h.source[kept]])
+    assert set(h.source[kept]) == set(shape.triangles.ravel())
+    facets = np.sort(h.source[h.tetrahedra][:, [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]].reshape(-1, 3))
+    unique, counts = np.unique(facets, axis=0, return_counts=True)
+    owners = dict(zip(map(tuple, unique), counts))
+    assert all(owners[tuple(triangle)] == 1 for triangle in np.sort(shape.triangles))
+
+
+def test_a_face_belongs_to_the_tetrahedron_behind_most_of_it(case):
+    shape, h = case
+    behind = {}
+    for tet, corners in enumerate(h.source[h.tetrahedra]):
+        for i in range(4):
+            behind.setdefault(tuple(sorted(np.delete(corners, i))), []).append(tet)
+    area = np.zeros((shape.face_count, len(h.tetrahedra)))
+    for triangle, face, size in zip(shape.triangles, shape.faces, triangle_areas(shape)):
+        (tet,) = behind[tuple(sorted(triangle))]
+        area[face, tet] += size
+    best = area.max(1)
+    assert np.allclose(area[np.arange(shape.face_count), h.leaf], best, rtol=EXACT, atol=0)
+
+
+def test_tree_is_nested_slices(case):
+    shape, h = case
+    nodes, tets = len(h.parent), len(h.tetrahedra)
+    assert np.array_equal(np.sort(h.order), np.arange(shape.face_count))
+    assert h.parent[-1] == -1 and (h.parent[:-1] > np.arange(nodes - 1)).all()
+    assert (h.tet_first[-1], h.tet_last[-1], h.first[-1], h.last[-1]) == (0, tets, 0, shape.face_count)
+    assert np.array_equal(h.tet_first[:tets], np.arange(tets)) and (h.tet_last[:tets] == np.arange(tets) + 1).all()
+    for first, last in ((h.tet_first, h.tet_last), (h.first, h.last)):
+        parent = h.parent[:-1]
+        assert (first[:-1] >= first[parent]).all() and (last[:-1] <= last[parent]).all()
+        inside = np.zeros(nodes, int)
+        np.add.at(inside, parent, (last - first)[:-1])
+        assert np.array_equal(inside[tets:], (last - first)[tets:])  # children fill their parent
+    leaf_of_order = h.leaf[h.order]
+    assert (np.diff(leaf_of_order) >= 0).all()
+    assert np.array_equal(h.first, np.searchsorted(leaf_of_order, h.tet_first))
+    assert np.array_equal(h.last, np.searchsorted(leaf_of_order, h.tet_last))
+
+
+def test_volumes_and_areas_of_nodes(case):
+    shape, h = case
+    volumes = slice_sums(tet_volumes(h.vertices, h.tetrahedra), h.tet_first, h.tet_last)
+    assert np.allclose(h.volume, volumes, rtol=1e-7, atol=EXACT * volumes[-1])
+    face_area = np.bincount(shape.faces, triangle_areas(shape), shape.face_count)
+    areas = slice_sums(face_area[h.order], h.first, h.last)
+    assert np.allclose(h.area, areas, rtol=1e-7, atol=EXACT * areas[-1])
+
+
+def test_costs_are_equation_3(case):
+    _, h = case
+    tets = len(h.tetrahedra)
+    assert not h.cost_class[:tets].any() and not h.cost[:tets].any() and not h.height[:tets].any()
+    slices = merge_slices(h)
+    merge_of = {tuple(bounds): merge for merge, bounds in enumerate(slices[tets:])}
+    scale = h.summary.hull_volume
+    for node in range(tets, len(h.parent)):
+        bounds = h.tet_first[node], h.tet_last[node]
+        concavity = hull_volume(h, *bounds) - h.volume[node]
+        assert concavity >= -EXACT * scale
+        assert abs(h.height[node] - concavity) <= 1e-7 * scale
+        if h.cost_class[node]:
+            assert h.cost[node] == h.height[node] > 0
+        else:
+            a, b = slices[h.merges[merge_of[bounds]]]
+            assert h.height[node] == 0
+            assert math.isclose(h.cost[node], (np.diff(a) ** 2 + np.diff(b) ** 2).item() / tets**2, rel_tol=1e-12)
+
+
+def test_merges_are_one_binary_tree_and_the_dendrogram_prunes_it(case):
+    _, h = case
+    tets = len(h.tetrahedra)
+    assert len(h.merges) == tets - 1
+    assert np.array_equal(np.sort(h.merges.ravel()), np.arange(2 * tets - 2))
+    assert (h.merges.max(1, initial=-1) < np.arange(tets - 1) + tets).all()
+    clusters = set(map(tuple, merge_slices(h)))
+    assert clusters >= set(zip(h.tet_first, h.tet_last))
+
+
+def test_path_and_faces_of_nodes(case):
+    shape, h = case
+    holders = {}
+    for face in range(shape.face_count):
+        path = h.path(face)
+        assert path.tolist() == ancestors(h, h.leaf[face])
+        for node in path:
+            holders.setdefault(node, set()).add(face)
+    for node in range(len(h.parent)):
+        assert set(h.faces(node)) == holders.get(node, set())
+        assert np.array_equal(h.faces(node), h.order[h.first[node]:h.last[node]])
+
+
+def test_wheel_stops_grow_visibly_along_the_path(case):
+    shape, h = case
+    for face in range(shape.face_count):
+        stops, start = h.wheel(face)
+        path = h.path(face).tolist()
+        places = [path.index(stop) for stop in stops]
+        assert places == sorted(set(places)) and stops[-1] == len(h.parent) - 1
+        assert 0 <= start < len(stops)
+        areas = h.area[stops]
+        assert (areas[1:-1] >= 1.1 * areas[:-2] * (1 - EXACT)).all()
+        assert all(face in h.faces(stop) for stop in stops)
+
+
+def test_hulls_are_convex_closed_and_as_large_as_scipys(case):
+    _, h = case
+    nodes = np.unique(np.concatenate([np.linspace(0, len(h.parent) - 1, 40).astype(int), [len(h.parent) - 1]]))
+    for node in nodes:
+        points, triangles = h.hull(node)
+        own = h.vertices[np.unique(h.tetrahedra[h.tet_first[node]:h.tet_last[node]])]
+        assert {tuple(point) for point in points} <= {tuple(point) for point in own}
+        edges = [(a, b) for t in triangles.tolist() for a, b in zip(t, t[1:] + t[:1])]
+        assert len(set(edges)) == len(edges) and {(b, a) for a, b in edges} == set(edges)
+        assert np.array_equal(np.unique(triangles), np.arange(len(points)))
+        a, b, c = (points[triangles[:, i]] for i in range(3))
+        normals = np.cross(b - a, c - a)
+        size = np.ptp(own, axis=0).max()
+        outside = np.einsum("tj,ntj->nt", normals, own[:, None] - a) / (np.linalg.norm(normals, axis=1) * size)
+        assert outside.max() < 1e-9
+        volume = np.einsum("ij,ij->i", normals, a - own.mean(0)).sum() / 6
+        assert math.isclose(volume, ConvexHull(own).volume, rel_tol=1e-7)
+
+
+def test_cut_at_a_height_takes_the_largest_nodes_below(case):
+    shape, h = case
+    top = h.height.max()
+    for height in [0.0, *np.unique(h.height)[:: max(1, len(np.unique(h.height)) // 8)], top / 3, top, math.inf]:
+        bounds = h.cut_height(height)
+        below = h.height <= height
+        reach = {}  # first tetrahedron -> end of the largest low enough node that starts there
+        for node in np.flatnonzero(below):
+            reach[h.tet_first[node]] = max(reach.get(h.tet_first[node], 0), h.tet_last[node])
+        expected = [0]
+        while expected[-1] < len(h.tetrahedra):
+            expected.append(reach[expected[-1]])
+        assert bounds.tolist() == expected
+        labels = h.face_labels(bounds)
+        assert labels.shape == (shape.face_count,)
+        assert (bounds[labels] <= h.leaf).all() and (h.leaf < bounds[labels + 1]).all()
+    assert h.cut_height(math.inf).tolist() == [0, len(h.tetrahedra)]
+
+
+def least_concavity(h):
+    """best[k - 1]: the least total concavity of the unpruned tree cut into k parts, by dynamic programming."""
+    tets = len(h.tetrahedra)
+    volumes = tet_volumes(h.vertices, h.tetrahedra)
+    slices = merge_slices(h)
+    best = [np.zeros(1)] * tets
+    for (a, b), (first, last) in zip(h.merges, slices[tets:]):
+        concavity = hull_volume(h, first, last) - volumes[first:last].sum()
+        table = np.full(len(best[a]) + len(best[b]), np.inf)
+        table[0] = concavity
+        for i, cost in enumerate(best[a]):
+            table[i + 1:i + 1 + len(best[b])] = np.minimum(table[i + 1:i + 1 + len(best[b])], cost + best[b])
+        best.append(table)
+    return best[-1]
+
+
+@pytest.mark.parametrize("name", ["cube", "L", "jack", "frame", "box with a cavity", "star", "3torus.off", "P.off"])
+def test_cut_into_parts_is_the_best(name, build_shape):
+    _, h = build_shape(name)
+    tets = len(h.tetrahedra)
+    volumes, clusters = tet_volumes(h.vertices, h.tetrahedra), set(map(tuple, merge_slices(h)))
+    best = least_concavity(h)
+    for parts in range(1, tets + 1):
+        bounds = h.cut_parts(parts)
+        assert len(bounds) == parts + 1 and bounds[0] == 0 and bounds[-1] == tets
+        pieces = list(zip(bounds[:-1].tolist(), bounds[1:].tolist()))
+        assert set(pieces) <= clusters
+        total = sum(hull_volume(h, *piece) - volumes[slice(*piece)].sum() for piece in pieces)
+        assert abs(total - best[parts - 1]) <= 1e-7 * h.summary.hull_volume
+
+
+@pytest.mark.parametrize("name", ["cube", "tetrahedron", "bar"])
+def test_a_convex_shape_links_all_leaves_to_the_root(name, build_shape):
+    _, h = build_shape(name)
+    tets = len(h.tetrahedra)
+    assert len(h.parent) == (tets + 1 if tets > 1 else 1)
+    assert (h.parent[:-1] == tets).all()
+
+
+def test_components_and_cavities(build_shape):
+    assert build_shape("three cubes apart")[1].summary[:2] == (3, 0)
+    assert build_shape("box with a cavity")[1].summary[:2] == (1, 1)
+    assert build_shape("frame")[1].summary[:2] == (1, 0)
+    _, h = build_shape("three cubes apart")
+    cubes = {frozenset(range(i, i + 6)) for i in (0, 6, 12)}
+    assert cubes <= {frozenset(h.faces(node).tolist()) for node in range(len(h.parent))}
+
+
+def test_the_arms_of_a_star_are_parts(build_shape):
+    shape, h = build_shape("star")
+    sides = [{2 + (tip - 1) % 10, 2 + tip} for tip in range(0, 10, 2)]
+    nodes = [set(h.faces(node).tolist()) - {0, 1} for node in range(len(h.parent))]
+    assert all(arm in nodes for arm in sides)
+
+
+@pytest.mark.parametrize("name", ["L", "torus", "box with a cavity", "three cubes apart", "hand.off"])
+def test_order_of_the_input_changes_nothing(name, build_shape):
+    shape, h = build_shape(name)
+    random = np.random.default_rng(1)
+    vertex_order, triangle_order = random.permutation(len(shape.vertices)), random.permutation(len(shape.triangles))
+    new_place = np.argsort(vertex_order)
+    triangles = new_place[shape.triangles[triangle_order]]
+    turns = random.integers(0, 3, len(triangles))[:, None]
+    triangles = np.take_along_axis(triangles, (np.arange(3) + turns) % 3, 1)
+    other = Hierarchy.build(shape.vertices[vertex_order], triangles, shape.faces[triangle_order], shape.face_count)
+    for array in ("parent", "first", "last", "tet_first", "tet_last", "cost_class", "cost", "height", "volume", "area",
+                  "vertices", "tetrahedra", "merges", "leaf"):
+        assert np.array_equal(getattr(h, array), getattr(other, array)), array
+    assert np.array_equal(np.where(other.source < 0, -1, vertex_order[other.source]), h.source)
+
+
+def test_a_surface_wound_the_other_way_is_taken_as_meant(build_shape):
+    shape, h = build_shape("torus")
+    other = Hierarchy.build(*shapes.turned_inside_out(shape))
+    assert np.array_equal(h.parent, other.parent) and np.array_equal(h.leaf, other.leaf)
+
+
+@pytest.mark.parametrize("scale", [2.0**-30, 2.0**40])
+def test_units_do_not_matter(scale, build_shape):
+    shape, h = build_shape("star")
+    other = Hierarchy.build(*shapes.moved(shape, scale=scale))
+    assert np.array_equal(h.parent, other.parent) and np.array_equal(h.merges, other.merges)
+    assert np.allclose(other.height, h.height * scale**3, rtol=1e-12)
+
+
+def test_quality_adds_points_inside_only(build_shape):
+    shape, h = build_shape("torus")
+    finer = Hierarchy.build(*shape, quality=1.2)
+    assert finer.summary.added_vertices > 0 and len(finer.tetrahedra) > len(h.tetrahedra)
+    test_tetrahedra_fill_the_surface((shape, finer))
+    test_surface_is_kept_exactly((shape, finer))
+
+
+def test_faces_may_be_left_out():
+    shape = shapes.cube()
+    h = Hierarchy.build(shape.vertices, shape.triangles)
+    assert len(h.order) == 12
+    assert len(Hierarchy.build(shape.vertices, shape.triangles, shape.faces).order) == 6
+    assert Hierarchy.build(shape.vertices.tolist(), shape.triangles.tolist()).merges.tolist() == h.merges.tolist()
+
+
+def test_vertices_without_triangles_are_allowed():
+    shape = shapes.cube()
+    h = Hierarchy.build(np.vstack([[9, 9, 9], shape.vertices]), shape.triangles + 1, shape.faces, 6)
+    assert 0 not in h.source and len(h.vertices) == 8
+
+
+def test_numbers_of_nothing_are_refused(build_shape):
+    _, h = build_shape("L")
+    nodes, tets, faces = len(h.parent), len(h.tetrahedra), len(h.order)
+    for call in (lambda: h.path(faces), lambda: h.path(-1), lambda: h.wheel(faces), lambda: h.faces(nodes),
+                 lambda: h.faces(-1), lambda: h.hull(nodes), lambda: h.hull_of_slice(2, 2),
+                 lambda: h.hull_of_slice(0, tets + 1), lambda: h.cut_parts(0), lambda: h.cut_parts(tets + 1),
+                 lambda: h.cut_height(-1.0), lambda: h.cut_height(math.nan)):
+        with pytest.raises(PartwheelError) as refused:
+            call()
+        assert refused.value.status == Status.ARGUMENT and str(refused.value)

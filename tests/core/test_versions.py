@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is written in several places says the same in all: header, binding, library, bl_info, manifest."""
+
+import re
+import sys
+import tomllib
+
+import partwheel
+from conftest import ROOT
+from partwheel import core
+from partwheel.core import library
+
+HEADER = (ROOT / "native" / "include" / "partwheel.h").read_text()
+BARE = re.sub(r"/\*.*?\*/", "", HEADER, flags=re.S)
+
+
+def test_versions_agree():
+    (version,) = re.findall(r'#define PW_VERSION "(.*)"', HEADER)
+    manifest = tomllib.loads((ROOT / "addon" / "partwheel" / "blender_manifest.toml").read_text())
+    assert core.version() == version == manifest["version"]
+    assert ".".join(map(str, partwheel.bl_info["version"])) == version
+
+
+def test_manifest_is_complete():
+    manifest = tomllib.loads((ROOT / "addon" / "partwheel" / "blender_manifest.toml").read_text())
+    assert manifest["schema_version"] == "1.0.0" and manifest["type"] == "add-on"
+    assert manifest["id"] == "partwheel" and manifest["name"] == partwheel.bl_info["name"]
+    assert len(manifest["tagline"]) <= 64 and manifest["tagline"][-1].isalnum()
+    assert manifest["platforms"] == ["linux-x64"] and "SPDX:GPL-3.0-or-later" in manifest["license"]
+    assert manifest["blender_version_min"] == "4.2.0" and partwheel.bl_info["blender"] == (3, 4, 0)
+
+
+def test_every_function_is_bound_with_as_many_arguments():
+    declared = {name: 0 if arguments.strip() == "void" else arguments.count(",") + 1
+                for name, arguments in re.findall(r"PW_API [\w\s*]*?(pw_\w+)\(([^)]*)\)", BARE)}
+    assert declared == {name: len(arguments) for name, (_, arguments) in library.FUNCTIONS.items()}
+
+
+def test_statuses_and_stages_are_the_headers():
+    statuses = dict(re.findall(r"PW_(?:ERROR_)?(\w+) = (\d+)", re.search(r"enum pw_status {(.*?)}", BARE, re.S)[1]))
+    assert {status.name: str(status.value) for status in library.Status} == statuses
+    stages = dict(re.findall(r"PW_STAGE_(\w+) = (\d+)", BARE))
+    assert stages.pop("COUNT") == str(library.STAGE_COUNT)
+    assert {stage.name: str(stage.value) for stage in library.Stage} == stages
+    for stage in library.Stage:
+        assert library.load().pw_stage_name(stage).decode() == stage.name.lower()
+    names = [library.load().pw_status_name(status).decode() for status in library.Status]
+    assert len(set(names)) == len(names) and all(name == name.lower() and name for name in names)
+
+
+def test_struct_fields_are_the_headers():
+    for struct, name in ((library.Arrays, "pw_arrays"), (library.SummaryStruct, "pw_summary"),
+                         (library.BuildOptions, "pw_build_options")):
+        body = re.search(rf"struct {name} {{(.*?)}}", BARE, re.S)[1]
+        assert [field for field, *_ in struct._fields_] == re.findall(r"(\w+);", body), name
+
+
+def test_nothing_of_blender_is_imported():
+    assert "bpy" not in sys.modules
