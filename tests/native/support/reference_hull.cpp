@@ -123,6 +123,10 @@ int reference_orientation(const Point& a, const Point& b, const Point& c, const 
     return CGAL::orientation(exact(a), exact(b), exact(c), exact(d));
 }
 
+bool reference_collinear(const Point& a, const Point& b, const Point& c) {
+    return CGAL::collinear(to_cgal(a), to_cgal(b), to_cgal(c));
+}
+
 bool reference_self_intersects(const TriMesh& mesh) {
     std::vector<KernelPoint> points;
     for (const Point& p : mesh.vertices) points.push_back(to_cgal(p));

@@ -25,6 +25,9 @@ long double reference_hull_volume(std::span<const Point> points);
 // The sign of six_volumes in exact rational arithmetic.
 int reference_orientation(const Point& a, const Point& b, const Point& c, const Point& d);
 
+// Whether three points are on one line, by exact arithmetic.
+bool reference_collinear(const Point& a, const Point& b, const Point& c);
+
 // True if triangles meet elsewhere than at the vertices and edges they share by index.
 bool reference_self_intersects(const TriMesh& mesh);
 

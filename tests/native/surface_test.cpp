@@ -1,0 +1,391 @@
+// The checks of the input: every named error by a small example and by damage to real models; the canonical order.
+#include "surface.h"
+
+#include "support/real_meshes.h"
+#include "support/reference_surface.h"
+#include "support/sizes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <random>
+
+namespace partwheel::test {
+namespace {
+
+struct Outcome {
+    pw_status status = PW_OK;
+    std::string message;
+    Surface surface;
+};
+
+Outcome checked(const MeshView& view) {
+    Progress progress;
+    progress.begin();
+    Outcome outcome;
+    try {
+        outcome.surface = check_surface(view, progress);
+    } catch (const Error& error) {
+        outcome.status = error.status();
+        outcome.message = error.what();
+    }
+    return outcome;
+}
+Outcome checked(const TriMesh& mesh) { return checked(mesh.view()); }
+
+// The message has this number as a word of its own.
+bool names(const std::string& message, int64_t number) {
+    const std::string digits = std::to_string(number);
+    for (size_t at = message.find(digits); at != std::string::npos; at = message.find(digits, at + 1)) {
+        const bool starts = at == 0 || std::isdigit(static_cast<unsigned char>(message[at - 1])) == 0;
+        const size_t end = at + digits.size();
+        const bool ends = end == message.size() || std::isdigit(static_cast<unsigned char>(message[end])) == 0;
+        if (starts && ends) return true;
+    }
+    return false;
+}
+
+void expect_error(const TriMesh& mesh, pw_status status, int64_t offender) {
+    const Outcome outcome = checked(mesh);
+    EXPECT_EQ(pw_status_name(outcome.status), std::string(pw_status_name(status))) << outcome.message;
+    EXPECT_TRUE(names(outcome.message, offender)) << offender << " isn't named in: " << outcome.message;
+}
+
+TriMesh block_surface() { return without_faces(surface_of("block", block({0, 0, 0}, {3, 2, 2}))); }
+
+// ---- Each error, by a small example ----
+
+TEST(Surface, SoundShapesPass) {
+    for (const TriMesh& mesh : {tetrahedron(), cube(), octahedron(), block_surface(), sphere(5, 8), torus(8, 5, 2, 0.5),
+                                stacked_cylinders(8), star_prism(5, 0.4, 1, 1), snowman(5, 8), hedgehog(5),
+                                together("two", cube(), moved(cube(), {2, 0, 0})),
+                                together("nested", stretched(cube(), {9, 9, 9}), moved(cube(), {3, 3, 3})),
+                                inside_out(cube())}) {
+        SCOPED_TRACE(mesh.name);
+        ASSERT_EQ(expected_status(mesh), PW_OK);
+        const Outcome outcome = checked(mesh);
+        EXPECT_EQ(outcome.status, PW_OK) << outcome.message;
+        EXPECT_EQ(outcome.surface.triangles.size(), mesh.triangles.size());
+    }
+}
+
+TEST(Surface, Empty) {
+    const TriMesh mesh = cube();
+    MeshView view = mesh.view();
+    view.vertex_count = 0;
+    EXPECT_EQ(checked(view).status, PW_ERROR_EMPTY);
+    view = mesh.view();
+    view.triangle_count = 0;
+    EXPECT_EQ(checked(view).status, PW_ERROR_EMPTY);
+    EXPECT_EQ(checked(MeshView{}).status, PW_ERROR_EMPTY);
+}
+
+TEST(Surface, FaceCountWithoutFaces) {
+    TriMesh mesh = without_faces(cube());
+    mesh.face_count = 11;
+    EXPECT_EQ(checked(mesh).status, PW_ERROR_ARGUMENT);
+}
+
+TEST(Surface, NotFinite) {
+    for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e101, -1e300, std::numeric_limits<double>::max()})
+        for (size_t k = 0; k < 3; ++k) {
+            TriMesh mesh = cube();
+            mesh.vertices[5][k] = bad;
+            expect_error(mesh, PW_ERROR_NOT_FINITE, 5);
+        }
+    EXPECT_EQ(checked(stretched(cube(), {1e100, 1e100, 1e100})).status, PW_OK);
+}
+
+TEST(Surface, Index) {
+    for (const int32_t bad : {-1, 8, std::numeric_limits<int32_t>::max(), std::numeric_limits<int32_t>::min()}) {
+        TriMesh mesh = cube();
+        mesh.triangles[7][2] = bad;
+        expect_error(mesh, PW_ERROR_INDEX, 7);
+    }
+    for (const int32_t bad : {-1, 6, std::numeric_limits<int32_t>::max()}) {
+        TriMesh mesh = cube();
+        mesh.faces[3] = bad;
+        expect_error(mesh, PW_ERROR_INDEX, 3);
+    }
+    TriMesh mesh = cube();  // a face of no triangle
+    mesh.faces[4] = mesh.faces[5] = mesh.faces[0];
+    expect_error(mesh, PW_ERROR_INDEX, 2);
+}
+
+TEST(Surface, Degenerate) {
+    TriMesh mesh = block_surface();
+    mesh.triangles[9][1] = mesh.triangles[9][0];
+    expect_error(mesh, PW_ERROR_DEGENERATE, 9);
+    // A cube with a vertex put in the middle of an edge, so that one triangle's corners are on a line.
+    mesh = without_faces(cube());
+    const auto middle = static_cast<int32_t>(mesh.vertices.size());
+    const auto [a, b, c] = mesh.triangles[0];
+    Point p;
+    for (size_t k = 0; k < 3; ++k)
+        p[k] = (mesh.vertices[static_cast<size_t>(a)][k] + mesh.vertices[static_cast<size_t>(b)][k]) / 2;
+    mesh.vertices.push_back(p);
+    mesh.triangles[0] = {a, middle, c};
+    mesh.triangles.push_back({middle, b, c});
+    mesh.triangles.push_back({a, b, middle});
+    mesh.face_count = mesh.triangles.size();
+    expect_error(mesh, PW_ERROR_DEGENERATE, 13);
+}
+
+TEST(Surface, Open) {
+    TriMesh mesh = without_faces(cube());
+    mesh.triangles.pop_back();
+    mesh.face_count = mesh.triangles.size();
+    EXPECT_EQ(checked(mesh).status, PW_ERROR_OPEN);
+    TriMesh one{"one triangle", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}, 1};
+    expect_error(one, PW_ERROR_OPEN, 0);
+    // Doubled vertices along a seam: closed to the eye only.
+    mesh = block_surface();
+    mesh.vertices.push_back(mesh.vertices[0]);
+    for (int32_t& v : mesh.triangles[0])
+        if (v == 0) v = static_cast<int32_t>(mesh.vertices.size()) - 1;
+    expect_error(mesh, PW_ERROR_OPEN, 0);
+}
+
+TEST(Surface, NonManifoldEdge) {
+    // Two cubes that share an edge: four faces there.
+    const TriMesh edge = surface_of("edge", Cells{{0, 0, 0}, {1, 1, 0}});
+    EXPECT_EQ(checked(edge).status, PW_ERROR_NON_MANIFOLD);
+    // Two triangles twice.
+    TriMesh doubled = tetrahedron();
+    for (size_t t = 0; t < 4; ++t) doubled.triangles.push_back(doubled.triangles[t]);
+    doubled.face_count = 8;
+    EXPECT_EQ(checked(doubled).status, PW_ERROR_NON_MANIFOLD);
+}
+
+TEST(Surface, NonManifoldVertex) {
+    const TriMesh corner = surface_of("corner", Cells{{0, 0, 0}, {1, 1, 1}});
+    const Outcome outcome = checked(corner);
+    EXPECT_EQ(outcome.status, PW_ERROR_NON_MANIFOLD) << outcome.message;
+    EXPECT_NE(outcome.message.find("vert"), std::string::npos) << outcome.message;
+}
+
+TEST(Surface, Orientation) {
+    TriMesh mesh = block_surface();
+    std::swap(mesh.triangles[17][0], mesh.triangles[17][1]);
+    const Outcome outcome = checked(mesh);
+    EXPECT_EQ(outcome.status, PW_ERROR_ORIENTATION) << outcome.message;
+    EXPECT_TRUE(names(outcome.message, 3)) << outcome.message;  // its three edges
+}
+
+TEST(Surface, SelfIntersection) {
+    const TriMesh a = without_faces(cube());
+    const auto faces = [](int32_t first, int32_t last, const std::string& message) {
+        for (int32_t f = first; f < last; ++f)
+            if (names(message, f)) return true;
+        return false;
+    };
+    for (const auto& [what, other] : std::map<std::string, TriMesh>{
+             {"overlapping", moved(a, {0.5, 0.25, 0.125})},
+             {"face on face", moved(a, {1, 0.25, 0.25})},
+             {"edge on edge", moved(a, {1, 1, 0})},
+             {"corner on corner", moved(a, {1, 1, 1})},
+             {"turned about a corner", rotated(a, 0.7, {1, 2, 3})},
+             {"the same again", a}}) {
+        SCOPED_TRACE(what);
+        const TriMesh both = together(what, a, other);
+        ASSERT_EQ(expected_status(both), PW_ERROR_SELF_INTERSECTION);
+        const Outcome outcome = checked(both);
+        EXPECT_EQ(outcome.status, PW_ERROR_SELF_INTERSECTION) << outcome.message;
+        EXPECT_TRUE(faces(0, 12, outcome.message) && faces(12, 24, outcome.message)) << outcome.message;
+    }
+    // A spike pushed through the other side.
+    TriMesh pierced = without_faces(sphere(7, 10));
+    for (double& x : pierced.vertices[20]) x *= -3;
+    EXPECT_EQ(checked(pierced).status, PW_ERROR_SELF_INTERSECTION);
+}
+
+TEST(Surface, FlatSheetsAreNamed) {
+    const TriMesh sheet{"double triangle", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}, {}, 2};
+    const Outcome outcome = checked(sheet);
+    EXPECT_TRUE(outcome.status == PW_ERROR_SELF_INTERSECTION || outcome.status == PW_ERROR_NO_VOLUME);
+}
+
+TEST(Surface, MessagesAreSentences) {
+    TriMesh mesh = cube();
+    mesh.triangles.pop_back();
+    mesh.faces.pop_back();
+    for (const Outcome& outcome : {checked(mesh), checked(MeshView{}), checked(surface_of("e", Cells{{0, 0, 0}, {1, 1, 0}})),
+                                   checked(together("same", cube(), cube()))}) {
+        ASSERT_NE(outcome.status, PW_OK);
+        EXPECT_GT(outcome.message.size(), 20U);
+        EXPECT_TRUE(std::isupper(static_cast<unsigned char>(outcome.message.front())) != 0 ||
+                    std::isdigit(static_cast<unsigned char>(outcome.message.front())) != 0);
+        EXPECT_EQ(outcome.message.back(), '.');
+    }
+}
+
+// ---- Damage to real models ----
+
+class DamagedModels : public testing::TestWithParam<const char*> {
+protected:
+    TriMesh mesh = without_faces(real_mesh(GetParam()));
+    std::mt19937 random{5};
+    size_t any_triangle() { return random() % mesh.triangles.size(); }
+};
+
+TEST_P(DamagedModels, TheWholeOnePasses) { EXPECT_EQ(checked(mesh).status, PW_OK); }
+
+TEST_P(DamagedModels, ATriangleIsMissing) {
+    const size_t t = any_triangle();
+    mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(t));
+    mesh.face_count = mesh.triangles.size();
+    const Outcome outcome = checked(mesh);
+    EXPECT_EQ(outcome.status, PW_ERROR_OPEN) << outcome.message;
+    EXPECT_TRUE(names(outcome.message, 3)) << outcome.message;
+}
+
+TEST_P(DamagedModels, ATriangleIsTurned) {
+    const size_t t = any_triangle();
+    std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
+    EXPECT_EQ(checked(mesh).status, PW_ERROR_ORIENTATION);
+}
+
+TEST_P(DamagedModels, ATriangleIsThereTwice) {
+    mesh.triangles.push_back(mesh.triangles[any_triangle()]);
+    mesh.face_count = mesh.triangles.size();
+    EXPECT_EQ(checked(mesh).status, PW_ERROR_NON_MANIFOLD);
+}
+
+TEST_P(DamagedModels, ATriangleIsFlat) {
+    const size_t t = any_triangle();
+    mesh.triangles[t][2] = mesh.triangles[t][1];
+    expect_error(mesh, PW_ERROR_DEGENERATE, static_cast<int64_t>(t));
+}
+
+TEST_P(DamagedModels, AVertexIsPulledAway) {
+    // Wherever a vertex goes, the answer is the reference's, asked in working coordinates: moving the model to the
+    // origin rounds, which can end a contact that was exact.
+    for (int round = 0; round < sized(20, 4); ++round) {
+        TriMesh pulled = mesh;
+        const auto v = static_cast<size_t>(mesh.triangles[any_triangle()][0]);
+        pulled.vertices[v] = mesh.vertices[static_cast<size_t>(mesh.triangles[any_triangle()][1])];
+        for (double& x : pulled.vertices[v]) x += round % 2 == 0 ? 0 : 1e-3;
+        const Outcome outcome = checked(pulled);
+        const Frame frame = Frame::around(pulled.vertices);
+        for (Point& p : pulled.vertices) p = frame.to_working(p);
+        EXPECT_EQ(outcome.status, expected_status(pulled)) << outcome.message;
+    }
+}
+
+TEST_P(DamagedModels, NumbersAreBroken) {
+    TriMesh broken = mesh;
+    const size_t v = random() % mesh.vertices.size();
+    broken.vertices[v][1] = std::nan("");
+    expect_error(broken, PW_ERROR_NOT_FINITE, static_cast<int64_t>(v));
+    broken = mesh;
+    const size_t t = any_triangle();
+    broken.triangles[t][1] = static_cast<int32_t>(mesh.vertices.size());
+    expect_error(broken, PW_ERROR_INDEX, static_cast<int64_t>(t));
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, DamagedModels,
+                         testing::Values("cross.off", "joint.off", "eight.off", "rotor.off", "helmet.off"),
+                         [](const auto& model) {
+                             std::string name = model.param;
+                             return name.substr(0, name.find('.'));
+                         });
+
+// ---- Order, frame, faces ----
+
+TEST(Surface, CanonicalOrder) {
+    for (const TriMesh& mesh : {cube(), block_surface(), torus(9, 6, 2, 0.5), real_mesh("joint.off"), real_mesh("cross_quad.off")}) {
+        SCOPED_TRACE(mesh.name);
+        const Surface first = checked(mesh).surface;
+        ASSERT_FALSE(first.triangles.empty());
+        std::vector<Point> callers;
+        for (const int32_t v : first.source_vertex) callers.push_back(mesh.vertices[static_cast<size_t>(v)]);
+        EXPECT_TRUE(std::is_sorted(callers.begin(), callers.end()));
+        EXPECT_TRUE(std::is_sorted(first.triangles.begin(), first.triangles.end()));
+        for (const Triangle& t : first.triangles) EXPECT_EQ(t[0], *std::min_element(t.begin(), t.end()));
+        for (unsigned seed = 0; seed < 5; ++seed) {
+            const Shuffled other = shuffled(mesh, seed);
+            const Outcome outcome = checked(other.mesh);
+            ASSERT_EQ(outcome.status, PW_OK) << outcome.message;
+            const Surface& s = outcome.surface;
+            EXPECT_EQ(s.vertices, first.vertices);
+            EXPECT_EQ(s.triangles, first.triangles);
+            EXPECT_EQ(s.face_count, first.face_count);
+            EXPECT_EQ(s.frame.origin, first.frame.origin);
+            EXPECT_EQ(s.frame.scale, first.frame.scale);
+            std::vector<int32_t> vertex, face;
+            for (const int32_t v : s.source_vertex) vertex.push_back(other.vertex[static_cast<size_t>(v)]);
+            for (const int32_t f : s.source_face) face.push_back(other.face[static_cast<size_t>(f)]);
+            EXPECT_EQ(vertex, first.source_vertex);
+            EXPECT_EQ(face, first.source_face);
+        }
+    }
+}
+
+TEST(Surface, KeepsTheCallersGeometry) {
+    for (const TriMesh& mesh : {perturbed(torus(9, 6, 2, 0.5), 0.05, 1), moved(cube(), {-7, 1e3, 0.125}), real_mesh("helmet.off")}) {
+        const Surface s = checked(mesh).surface;
+        ASSERT_EQ(s.vertices.size(), s.source_vertex.size());
+        Point high{};
+        for (size_t i = 0; i < s.vertices.size(); ++i) {
+            const Point& original = mesh.vertices[static_cast<size_t>(s.source_vertex[i])];
+            const Point back = s.frame.to_caller(s.vertices[i]);
+            EXPECT_EQ(s.frame.to_working(original), s.vertices[i]);
+            for (size_t k = 0; k < 3; ++k) {
+                EXPECT_NEAR(back[k], original[k], 1e-15 * (std::fabs(original[k]) + std::fabs(s.frame.origin[k]) + s.frame.scale));
+                EXPECT_GE(s.vertices[i][k], 0);
+                high[k] = std::max(high[k], s.vertices[i][k]);
+            }
+        }
+        const double longest = *std::max_element(high.begin(), high.end());
+        EXPECT_GE(longest, 1);
+        EXPECT_LT(longest, 2);
+        EXPECT_EQ(std::exp2(std::round(std::log2(s.frame.scale))), s.frame.scale);
+        // Each triangle is one of the caller's, with its face.
+        std::map<Triangle, int32_t> face_of;
+        for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+            Triangle tri = mesh.triangles[t];
+            std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
+            face_of[tri] = mesh.face_of(t);
+        }
+        for (size_t t = 0; t < s.triangles.size(); ++t) {
+            Triangle tri;
+            for (size_t k = 0; k < 3; ++k) tri[k] = s.source_vertex[static_cast<size_t>(s.triangles[t][k])];
+            std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
+            ASSERT_TRUE(face_of.contains(tri));
+            EXPECT_EQ(face_of[tri], s.source_face[t]);
+        }
+    }
+}
+
+TEST(Surface, SameNumbersWhereverAndHoweverLarge) {
+    const TriMesh mesh = snapped(perturbed(torus(9, 6, 2, 0.5), 0.05, 1), 0x1p-16);  // so that moves are exact
+    const Surface first = checked(mesh).surface;
+    EXPECT_EQ(checked(moved(mesh, {1e6, -1e6, 123456})).surface.vertices, first.vertices);
+    for (const double scale : {0.25, 2.0, 0x1p100, 0x1p-100}) {
+        const Surface scaled = checked(stretched(mesh, {scale, scale, scale})).surface;
+        EXPECT_EQ(scaled.vertices, first.vertices);
+        EXPECT_EQ(scaled.frame.scale, first.frame.scale * scale);
+        EXPECT_EQ(scaled.frame.volume_to_caller(1), first.frame.volume_to_caller(1) * scale * scale * scale);
+        EXPECT_EQ(scaled.frame.area_to_caller(1), first.frame.area_to_caller(1) * scale * scale);
+    }
+}
+
+TEST(Surface, AllModelsGetTheReferencesAnswer) {
+    std::map<std::string, int> count;
+    for (const TriMesh& mesh : real_meshes(sized<size_t>(8000, 700))) {
+        SCOPED_TRACE(mesh.name);
+        const Outcome outcome = checked(mesh);
+        EXPECT_EQ(pw_status_name(outcome.status), std::string(pw_status_name(expected_status(mesh)))) << outcome.message;
+        ++count[pw_status_name(outcome.status)];
+    }
+    for (const auto& [status, n] : count) std::printf("%d models: %s\n", n, status.c_str());
+    EXPECT_GT(count["ok"], sized(40, 25));
+    EXPECT_GT(count["open"], 5);
+}
+
+}  // namespace
+}  // namespace partwheel::test
