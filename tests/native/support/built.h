@@ -1,0 +1,50 @@
+// Hierarchies built through the C API, and what must hold of every one of them.
+#pragma once
+
+#include "support/shapes.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace partwheel::test {
+
+struct FreeHierarchy {
+    void operator()(pw_hierarchy* hierarchy) const { pw_hierarchy_free(hierarchy); }
+};
+using Handle = std::unique_ptr<pw_hierarchy, FreeHierarchy>;
+
+struct Built {
+    pw_status status = PW_OK;
+    std::string message;  // of the failure
+    Handle handle;        // null on failure
+};
+
+Built try_build(const TriMesh& mesh, double quality = 0, pw_context* context = nullptr);
+
+// Throws with the library's message if it can't be built.
+Handle build(const TriMesh& mesh, double quality = 0);
+
+pw_arrays arrays(const Handle& handle);
+pw_summary summary(const Handle& handle);
+std::vector<uint8_t> save(const Handle& handle);
+Built try_load(const std::vector<uint8_t>& bytes);
+std::vector<int32_t> path(const Handle& handle, size_t face);
+
+struct Wheel {
+    std::vector<int32_t> stops;
+    size_t start = 0;
+};
+Wheel wheel(const Handle& handle, size_t face);
+
+struct HullMesh {
+    std::vector<Point> vertices;
+    std::vector<Triangle> triangles;
+};
+HullMesh hull(const Handle& handle, size_t tet_first, size_t tet_last);
+
+// All invariants that partwheel.h documents, as GoogleTest expectations. `volume` is that of the solid; `convex` says
+// whether the shape is.
+void expect_invariants(const Handle& handle, const TriMesh& mesh, double volume, bool convex = false);
+
+}  // namespace partwheel::test
