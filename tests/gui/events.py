@@ -12,13 +12,6 @@ class _Driver:
         self.press(button, **modifiers)
         self.release(button, **modifiers)
 
-    def drag(self, button, dx, dy, steps=8, **modifiers):
-        x, y = self.x, self.y
-        self.press(button, **modifiers)
-        for step in range(1, steps + 1):
-            self.move(x + dx * step // steps, y + dy * step // steps, **modifiers)
-        self.release(button, **modifiers)
-
 
 class Simulated(_Driver):
     """Blender's own event_simulate (needs --enable-event-simulate, which makes Blender ignore real input)."""

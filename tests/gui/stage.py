@@ -17,7 +17,7 @@ from events import DRIVERS
 from model import Wheels
 from view import View
 
-WAIT = 60  # seconds until something that should happen counts as not happening
+WAIT = 40  # seconds until something that should happen counts as not happening
 TICK = 0.01
 FILL = 0.8  # share of the viewport's height or width that an opened model takes
 # How each model is looked at, in its own space: the rotation that the view has (w, x, y, z).
@@ -248,6 +248,18 @@ class Stage:
         """
         target = self._ticks + (2 if self._driver == "simulate" else 10)
         yield "events handled", lambda: self._ticks >= target
+
+    def drag(self, button, dx, dy, **modifiers):
+        """Drags the mouse from where it is. Waits in between: Blender gives all events that it finds at once the same
+        position, the last."""
+        x, y = self.mouse.x, self.mouse.y
+        self.mouse.press(button, **modifiers)
+        yield from self.settle()
+        for step in range(1, 5):
+            self.mouse.move(x + dx * step // 4, y + dy * step // 4, **modifiers)
+        yield from self.settle()
+        self.mouse.release(button, **modifiers)
+        yield from self.settle()
 
     def drawn(self):
         """Waits until the viewport has been drawn twice, the second time with all that is there now."""

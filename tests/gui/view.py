@@ -49,9 +49,9 @@ class View:
         raise AssertionError("No such face of the model is large enough on the screen to be clicked safely.")
 
     def shown(self, faces):
-        """Those of the faces that can be seen at their center: [(x, y, face), ...]."""
+        """(n,2) window pixels of the centers of those of the faces that can be seen there."""
         centers = self.centers()
-        return [(*centers[face], face) for face in faces if self.face_at(*centers[face]) == face]
+        return numpy.array([centers[face] for face in faces if self.face_at(*centers[face]) == face]).reshape(-1, 2)
 
 
 def _cross(a, b):

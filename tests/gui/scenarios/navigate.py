@@ -14,9 +14,9 @@ def play(stage):
                                   ("zooms", (0, 50), {"ctrl": True})):
         before = stage.view_state()
         stage.mouse.move(x, y)
-        stage.mouse.drag("MIDDLEMOUSE", *drag, **modifiers)
-        yield from stage.until(f"middle mouse {what}", lambda: stage.view_state() != before)
         yield from stage.settle()
+        yield from stage.drag("MIDDLEMOUSE", *drag, **modifiers)
+        yield from stage.until(f"middle mouse {what}", lambda: stage.view_state() != before)
         if what == "zooms":
             stage.check(stage.view_state()[1] != before[1], "the distance has changed")
         stage.check(stage.selection() == stops[at], f"the selection is as it was while middle mouse {what}")

@@ -1,5 +1,7 @@
-"""The panel in the sidebar is drawn in Edit Mode and in Object Mode."""
+"""The panel in the sidebar is drawn in Edit Mode and in Object Mode; its button starts the operator, a click picks."""
 import bpy
+
+BUTTON = 123  # pixels from the sidebar's top to the middle of the button "Select Part by Wheel"
 
 
 def play(stage):
@@ -16,12 +18,27 @@ def play(stage):
     stage.area.spaces.active.show_region_ui = True
     yield from stage.drawn()
     sidebar = next(region for region in stage.area.regions if region.type == "UI")
-    stage.mouse.move(sidebar.x + sidebar.width // 2, sidebar.y + sidebar.height // 2)
-    for _ in range(6):  # Ctrl and the wheel go from tab to tab, ours is the last
+    stage.mouse.move(sidebar.x + sidebar.width - 8, sidebar.y + sidebar.height - 40)
+    for _ in range(6):  # over the tabs, Ctrl and the wheel go from one to the next; ours is the last
         stage.mouse.wheel(-1, ctrl=True)
     yield from stage.until("the panel is drawn in Edit Mode", lambda: "EDIT_MESH" in drawn)
     yield from stage.screenshot("edit")
-    stage.mouse.move(*stage.empty_spot())
+    button = sidebar.x + sidebar.width // 2, sidebar.y + sidebar.height - BUTTON
+    x, y, face = stage.spot(0.5, 0.9, above=1)
+    stops, start = stage.wheels.stops(face)
+    stage.mouse.move(*button)
+    yield from stage.settle()
+    stage.mouse.click()
+    yield from stage.settle()
+    stage.mouse.move(x, y)
+    stage.mouse.click()
+    yield from stage.selected(stops[start], "after the panel's button and a click")
+    stage.mouse.wheel(1)
+    yield from stage.selected(stops[start + 1], "after a notch up")
+    stage.mouse.key("RET")
+    yield from stage.ended()
+    yield from stage.selected(stops[start + 1], "after Enter")
+
     stage.mouse.key("TAB")
     yield from stage.until("the panel is drawn in Object Mode", lambda: "OBJECT" in drawn)
     yield from stage.screenshot("object")

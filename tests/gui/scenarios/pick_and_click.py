@@ -37,10 +37,14 @@ def play(stage):
 
 def check_picture(stage, pixels, part):
     """The selected faces that can be seen are drawn in the colour of a selection, the others are not."""
+    view = stage.view
+
     def redness(faces):
-        colors = [pixels[round(y), round(x)] for x, y, _ in stage.view.shown(faces)]
-        stage.check(len(colors) > 30, "enough faces can be seen")
-        return sum(color[0] - color[2] for color in colors) / len(colors)
+        faces = sorted(faces)
+        centers = view.shown(faces[::len(faces) // 200 + 1]).round().astype(int)
+        stage.check(len(centers) > 30, "enough faces can be seen")
+        colors = pixels[centers[:, 1], centers[:, 0]]
+        return (colors[:, 0] - colors[:, 2]).mean()
 
     rest = set(range(len(stage.wheels.triangles))) - part
     stage.check(redness(part) > 0.15, "the part is shown as selected")

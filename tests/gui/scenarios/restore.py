@@ -28,7 +28,8 @@ def once(stage, mode, way):
         stage.mouse.key(way)
     else:
         stage.mouse.click(way)
-    yield from stage.until(f"{way} restores the selection ({mode})", lambda: stage.whole_selection() == former)
+    yield from stage.until(lambda: f"{way} restores {former} ({mode}, now {stage.whole_selection()})",
+                           lambda: stage.whole_selection() == former)
     yield from stage.ended()
     stage.check(stage.whole_selection() == former, f"the selection stays as it was after {way} ({mode})")
     stage.mouse.key("Z", ctrl=True)
