@@ -41,7 +41,7 @@ typedef enum pw_status {
     PW_OK = 0,
     PW_ERROR_ARGUMENT = 1,          /* a null pointer, a size or an option outside what the function documents */
     PW_ERROR_EMPTY = 2,             /* no vertices or no triangles */
-    PW_ERROR_NOT_FINITE = 3,        /* a coordinate is NaN or infinite, or too large to be measured */
+    PW_ERROR_NOT_FINITE = 3,        /* a coordinate is NaN or infinite, or the model too large or small to be measured */
     PW_ERROR_INDEX = 4,             /* a triangle names a vertex or a face that does not exist */
     PW_ERROR_DEGENERATE = 5,        /* a triangle without area: repeated corners, or corners on one line */
     PW_ERROR_OPEN = 6,              /* an edge with a triangle on one side only: the surface encloses nothing */
@@ -116,7 +116,8 @@ typedef struct pw_hierarchy pw_hierarchy;
 /* Builds the hierarchy of a closed surface.
  *
  * context         may be null.
- * vertices        vertex_count x 3 coordinates, at most 1e100 in size. Vertices that no triangle uses are allowed.
+ * vertices        vertex_count x 3 coordinates, at most 1e100 in size; the longest side of the bounding box must be at
+ *                 least 1e-80. Vertices that no triangle uses are allowed.
  * triangles       triangle_count x 3 indices into vertices, counter-clockwise seen from outside. A surface whose
  *                 triangles all wind the other way is accepted and taken as it was meant.
  * faces           triangle_count source faces: triangles of one polygon carry its index, 0 <= index < face_count.

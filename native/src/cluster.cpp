@@ -9,8 +9,8 @@
 #include <boost/geometry/index/rtree.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <queue>
 #include <utility>
 
 namespace partwheel {
@@ -47,20 +47,90 @@ struct Cluster {
 };
 
 struct Edge {
-    int32_t a, b;             // clusters
-    double hull_volume = 0;   // of their union, or a lower bound of it
-    uint32_t version = 0;     // queue entries of other versions are void
+    int32_t a = 0, b = 0;    // clusters
+    double hull_volume = 0;  // of their union, or a lower bound of it
     bool exact = false;
+    Cost cost{};  // as it stands in the queue: of the exact hull volume or of the bound
 };
 
-struct Entry {
-    Cost cost;
-    int32_t edge;
-    uint32_t version;
-};
+// The edges, cheapest first: a heap with four children a node that knows where each edge is, so that costs change in
+// place. Most comparisons are settled by one number: concavity, or C2 among convex unions; the rest by the whole cost.
+class EdgeQueue {
+public:
+    explicit EdgeQueue(const std::vector<Edge>& edges) : edges_(edges) {}
 
-struct CheapestFirst {
-    bool operator()(const Entry& x, const Entry& y) const { return x.cost > y.cost; }
+    bool empty() const { return heap_.empty(); }
+    int32_t top() const { return heap_[0].edge; }
+
+    // The edge is new, or its cost has changed.
+    void update(int32_t edge) {
+        if (place_.size() < edges_.size()) place_.resize(edges_.size(), absent);
+        size_t i = place_[static_cast<size_t>(edge)];
+        if (i == absent) {
+            i = heap_.size();
+            heap_.emplace_back();
+        }
+        settle(i, {rank(cost(edge)), edge});
+    }
+
+    void remove(int32_t edge) {
+        const size_t i = place_[static_cast<size_t>(edge)];
+        if (i == absent) return;
+        place_[static_cast<size_t>(edge)] = absent;
+        const Item last = heap_.back();
+        heap_.pop_back();
+        if (i < heap_.size()) settle(i, last);
+    }
+
+private:
+    static constexpr uint32_t absent = 0xffffffff;
+    static constexpr size_t children = 4;
+
+    struct Item {
+        uint64_t rank;
+        int32_t edge;
+    };
+
+    const Cost& cost(int32_t edge) const { return edges_[static_cast<size_t>(edge)].cost; }
+
+    // Doubles that are not negative are ordered as their bits; the free sign bit tells the class.
+    static uint64_t rank(const Cost& cost) {
+        constexpr uint64_t not_convex = uint64_t{1} << 63;
+        return cost.concavity > 0 ? not_convex | std::bit_cast<uint64_t>(cost.concavity)
+                                  : std::bit_cast<uint64_t>(cost.balance);
+    }
+
+    bool before(const Item& x, const Item& y) const {
+        return x.rank != y.rank ? x.rank < y.rank : cost(x.edge) < cost(y.edge);
+    }
+
+    void put(size_t i, const Item& item) {
+        heap_[i] = item;
+        place_[static_cast<size_t>(item.edge)] = static_cast<uint32_t>(i);
+    }
+
+    // Puts the item where it belongs, above or below the gap at i.
+    void settle(size_t i, const Item& item) {
+        while (i > 0 && before(item, heap_[(i - 1) / children])) {
+            put(i, heap_[(i - 1) / children]);
+            i = (i - 1) / children;
+        }
+        for (;;) {
+            const size_t first = children * i + 1, end = std::min(first + children, heap_.size());
+            if (first >= end) break;
+            size_t least = first;
+            for (size_t c = first + 1; c < end; ++c)
+                if (before(heap_[c], heap_[least])) least = c;
+            if (!before(heap_[least], item)) break;
+            put(i, heap_[least]);
+            i = least;
+        }
+        put(i, item);
+    }
+
+    const std::vector<Edge>& edges_;
+    std::vector<Item> heap_;
+    std::vector<uint32_t> place_;  // of each edge in heap_
 };
 
 class Clustering {
@@ -73,18 +143,18 @@ private:
     const Cluster& at(int32_t c) const { return clusters_[static_cast<size_t>(c)]; }
 
     void add_edge(int32_t a, int32_t b);
-    void push(int32_t edge);
-    Cost cost(const Edge& edge) const;
-    void evaluate(Edge& edge);
+    Edge& edge_at(int32_t e) { return edges_[static_cast<size_t>(e)]; }
+    void reprice(int32_t edge);
+    void evaluate(int32_t edge);
     void contract_all();
-    void contract(const Edge& edge);
+    void contract(int32_t edge);
     void join_components();
 
     Progress& progress_;
     HullKernel kernel_;
     std::vector<Cluster> clusters_;
     std::vector<Edge> edges_;
-    std::priority_queue<Entry, std::vector<Entry>, CheapestFirst> queue_;
+    EdgeQueue queue_{edges_};
     std::vector<int32_t> link_of_;  // scratch of contract(): cluster -> position in the merged links, or -1
     BinaryTree tree_;
 };
@@ -111,54 +181,49 @@ Clustering::Clustering(const TetMesh& mesh, Progress& progress)
 
 void Clustering::add_edge(int32_t a, int32_t b) {
     const auto edge = static_cast<int32_t>(edges_.size());
-    edges_.push_back({a, b});
+    edges_.push_back({.a = a, .b = b});
     at(a).links.push_back({b, edge});
     at(b).links.push_back({a, edge});
-    evaluate(edges_.back());
-    push(edge);
+    evaluate(edge);
 }
 
-void Clustering::push(int32_t edge) {
-    const Edge& e = edges_[static_cast<size_t>(edge)];
-    queue_.push({cost(e), edge, e.version});
-}
-
-Cost Clustering::cost(const Edge& edge) const {
-    const Cluster &a = at(edge.a), &b = at(edge.b);
-    const double hull_volume = edge.exact ? edge.hull_volume : edge.hull_volume * (1 - bound_slack);
+// Sets the edge's cost from what is known of its hull volume.
+void Clustering::reprice(int32_t edge) {
+    Edge& e = edge_at(edge);
+    const Cluster &a = at(e.a), &b = at(e.b);
+    const double hull_volume = e.exact ? e.hull_volume : e.hull_volume * (1 - bound_slack);
     const auto square = [](int32_t n) { return static_cast<double>(n) * static_cast<double>(n); };
-    const auto [low, high] = std::minmax(a.low, b.low);
-    return {ranked_concavity(hull_volume, a.volume + b.volume), square(a.size) + square(b.size), low, high};
+    e.cost = {ranked_concavity(hull_volume, a.volume + b.volume), square(a.size) + square(b.size),
+              std::min(a.low, b.low), std::max(a.low, b.low)};
+    queue_.update(edge);
 }
 
-void Clustering::evaluate(Edge& edge) {
-    const bool ordered = at(edge.a).low < at(edge.b).low;
-    const Cluster &first = at(ordered ? edge.a : edge.b), &second = at(ordered ? edge.b : edge.a);
-    edge.hull_volume = kernel_.united_volume(first.hull, second.hull);
-    edge.exact = true;
+void Clustering::evaluate(int32_t edge) {
+    Edge& e = edge_at(edge);
+    const bool ordered = at(e.a).low < at(e.b).low;
+    const Cluster &first = at(ordered ? e.a : e.b), &second = at(ordered ? e.b : e.a);
+    e.hull_volume = kernel_.united_volume(first.hull, second.hull);
+    e.exact = true;
+    reprice(edge);
 }
 
 void Clustering::contract_all() {
     while (!queue_.empty()) {
-        const Entry top = queue_.top();
-        queue_.pop();
-        Edge& edge = edges_[static_cast<size_t>(top.edge)];
-        if (edge.version != top.version) continue;
-        if (!edge.exact) {
-            evaluate(edge);
-            if (!queue_.empty() && cost(edge) > queue_.top().cost) {
-                push(top.edge);
-                continue;
-            }
+        const int32_t top = queue_.top();
+        if (!edge_at(top).exact) {
+            evaluate(top);
+            if (queue_.top() != top) continue;
         }
-        contract(edge);
+        contract(top);
         if (tree_.merges.size() % 256 == 0)
             progress_.advance(0.2 + 0.8 * static_cast<double>(tree_.merges.size()) /
                                         static_cast<double>(clusters_.size()));
     }
 }
 
-void Clustering::contract(const Edge& edge) {
+void Clustering::contract(int32_t contracted) {
+    queue_.remove(contracted);
+    const Edge& edge = edge_at(contracted);
     // The cluster with more links stays and takes in the other.
     const bool stay_a = at(edge.a).links.size() >= at(edge.b).links.size();
     const int32_t stay = stay_a ? edge.a : edge.b, go = stay_a ? edge.b : edge.a;
@@ -183,7 +248,7 @@ void Clustering::contract(const Edge& edge) {
     for (const Link& link : g.links) {
         if (link.cluster == stay) continue;
         Cluster& other = at(link.cluster);
-        Edge& moved = edges_[static_cast<size_t>(link.edge)];
+        Edge& moved = edge_at(link.edge);
         const auto back = std::find_if(other.links.begin(), other.links.end(),
                                        [&](const Link& l) { return l.cluster == go; });
         const int32_t twin = link_of_[static_cast<size_t>(link.cluster)];
@@ -192,9 +257,9 @@ void Clustering::contract(const Edge& edge) {
             (moved.a == go ? moved.a : moved.b) = stay;
             m.links.push_back(link);
         } else {
-            Edge& kept = edges_[static_cast<size_t>(m.links[static_cast<size_t>(twin)].edge)];
+            Edge& kept = edge_at(m.links[static_cast<size_t>(twin)].edge);
             kept.hull_volume = std::max(kept.hull_volume, moved.hull_volume);
-            ++moved.version;
+            queue_.remove(link.edge);
             other.links.erase(back);
         }
     }
@@ -203,11 +268,10 @@ void Clustering::contract(const Edge& edge) {
     g.alive = false;
 
     for (const Link& link : m.links) {
-        Edge& e = edges_[static_cast<size_t>(link.edge)];
+        Edge& e = edge_at(link.edge);
         e.hull_volume = std::max({e.hull_volume, m.hull.volume, at(link.cluster).hull.volume});
         e.exact = false;
-        ++e.version;
-        push(link.edge);
+        reprice(link.edge);
     }
 }
 

@@ -89,7 +89,9 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const BinaryTr
         const Tetrahedron& t = mesh.tetrahedra[static_cast<size_t>(order[i])];
         const auto at = [&](size_t k) { return mesh.vertices[static_cast<size_t>(t[k])]; };
         tetrahedra_.push_back(t);
-        tet_volume_.push_back(frame.volume_to_caller(six_volumes(at(0), at(1), at(2), at(3)) / 6));
+        // A sliver's volume may be rounded to less than nothing.
+        const double volume = std::max(0.0, six_volumes(at(0), at(1), at(2), at(3)) / 6);
+        tet_volume_.push_back(frame.volume_to_caller(volume));
     }
     merges_ = tree.merges;
     const auto renumber = [&](int32_t c) {

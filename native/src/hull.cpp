@@ -66,15 +66,13 @@ public:
     std::pair<Point, Point> bounds(const Hull& hull) const;
 
 private:
-    enum class Side { inside, outside };
-
     const Point& at(int32_t v) const { return points_[static_cast<size_t>(v)]; }
     double six_volumes_of(const Triangle& f, const Point& p) const {
         return six_volumes(at(f[0]), at(f[1]), at(f[2]), p);
     }
 
-    Side classify(const PlanesView& planes, const Triangle* facets, const Point& p);
-    double volume_seen(const PlanesView& planes, const Triangle* facets, const Point& p) const;
+    bool classify(const PlanesView& planes, const Triangle* facets, const Point& p);
+    double six_volumes_seen(const Triangle* facets, const Point& p) const;
 
     void load(const Hull& hull);
     void add_facet(const Triangle& f);
@@ -87,7 +85,8 @@ private:
     std::span<const Point> points_;
     double error_factor_ = 0;
 
-    // The hull at work.
+    // The hull at work. If united_ is set, it is the union of these two.
+    std::pair<const Hull*, const Hull*> united_{};
     std::vector<Triangle> facets_;
     Planes planes_;
     double volume6_ = 0;
@@ -97,45 +96,52 @@ private:
         uint64_t key;  // of the undirected edge
         int32_t from, to;
     };
-    std::vector<double> side_;  // of the last point classified, for each facet
+    std::vector<uint32_t> seen_;  // facets that the last point classified sees
     std::vector<RimEdge> edges_;
     std::vector<uint32_t> mark_;  // mark_[v] == stamp_: v is a vertex of the hull in question
     uint32_t stamp_ = 0;
 };
 
-// Fills side_ and says whether any facet sees p from strictly outside.
-HullKernel::Impl::Side HullKernel::Impl::classify(const PlanesView& planes, const Triangle* facets, const Point& p) {
-    const size_t n = planes.size;
-    if (side_.size() < n) side_.resize(2 * n);
-    double* side = side_.data();
-    bool seen = false, unsure = false;
-    for (size_t f = 0; f < n; ++f) {
-        const double s = planes.x[f] * p[0] + planes.y[f] * p[1] + planes.z[f] * p[2] - planes.offset[f];
-        side[f] = s;
-        seen |= s > planes.error[f];
-        unsure |= std::fabs(s) <= planes.error[f];
-    }
-    // From here on the sign of side[f] is exact, and 0 means coplanar.
-    if (unsure) {
-        for (size_t f = 0; f < n; ++f) {
-            if (std::fabs(side[f]) > planes.error[f]) continue;
-            const int sign = orientation(at(facets[f][0]), at(facets[f][1]), at(facets[f][2]), p);
-            side[f] = sign;
-            seen |= sign > 0;
+// Whether p is strictly outside. If so, seen_ holds the facets that see it, strictly or in whose plane it lies.
+bool HullKernel::Impl::classify(const PlanesView& planes, const Triangle* facets, const Point& p) {
+    // Whole blocks of facets that surely don't see p are passed over: the loop inside has no branch.
+    constexpr size_t block = 8;
+    double side[block];
+    seen_.clear();
+    bool outside = false;
+    for (size_t begin = 0; begin < planes.size; begin += block) {
+        const size_t n = std::min(block, planes.size - begin);
+        double highest = -1;
+        for (size_t i = 0; i < n; ++i) {
+            const size_t f = begin + i;
+            side[i] = planes.x[f] * p[0] + planes.y[f] * p[1] + planes.z[f] * p[2] - planes.offset[f];
+            highest = std::max(highest, side[i] + planes.error[f]);
+        }
+        if (highest < 0) continue;
+        for (size_t i = 0; i < n; ++i) {
+            const size_t f = begin + i;
+            if (side[i] < -planes.error[f]) continue;
+            int sign = 1;
+            if (side[i] <= planes.error[f]) {
+                sign = orientation(at(facets[f][0]), at(facets[f][1]), at(facets[f][2]), p);
+                if (sign < 0) continue;
+            }
+            outside |= sign > 0;
+            seen_.push_back(static_cast<uint32_t>(f));
         }
     }
-    return seen ? Side::outside : Side::inside;
+    return outside;
 }
 
 // Six times the volume between p and the facets it sees; after classify().
-double HullKernel::Impl::volume_seen(const PlanesView& planes, const Triangle* facets, const Point& p) const {
+double HullKernel::Impl::six_volumes_seen(const Triangle* facets, const Point& p) const {
     double sum = 0;
-    for (size_t f = 0; f < planes.size; ++f)
-        if (side_[f] > 0) sum += six_volumes_of(facets[f], p);
+    for (uint32_t f : seen_) sum += six_volumes_of(facets[f], p);
     return sum;
 }
 
 void HullKernel::Impl::load(const Hull& hull) {
+    united_ = {};
     facets_ = hull.facets;
     const PlanesView from = view(hull);
     planes_.x.assign(from.x, from.x + from.size);
@@ -163,32 +169,27 @@ void HullKernel::Impl::add_facet(const Triangle& f) {
 // Returns false if the vertex is in the hull already.
 bool HullKernel::Impl::insert(int32_t vertex) {
     const Point& p = at(vertex);
-    if (classify(view(planes_), facets_.data(), p) == Side::inside) return false;
-    volume6_ += volume_seen(view(planes_), facets_.data(), p);
+    if (!classify(view(planes_), facets_.data(), p)) return false;
+    volume6_ += six_volumes_seen(facets_.data(), p);
 
     edges_.clear();
-    const auto keep_edge = [&](int32_t from, int32_t to) {
+    const auto add_edge = [&](int32_t from, int32_t to) {
         const auto [low, high] = std::minmax({static_cast<uint32_t>(from), static_cast<uint32_t>(to)});
         edges_.push_back({uint64_t{low} << 32 | high, from, to});
     };
-    size_t kept = 0;
-    const size_t n = facets_.size();
-    for (size_t f = 0; f < n; ++f) {
-        if (side_[f] >= 0) {
-            const Triangle& t = facets_[f];
-            keep_edge(t[0], t[1]);
-            keep_edge(t[1], t[2]);
-            keep_edge(t[2], t[0]);
-        } else {
-            if (kept != f) {
-                facets_[kept] = facets_[f];
-                planes_.move(f, kept);
-            }
-            ++kept;
-        }
+    // The last facets move into the gaps.
+    size_t count = facets_.size();
+    for (size_t i = seen_.size(); i-- > 0;) {
+        const Triangle t = facets_[seen_[i]];
+        add_edge(t[0], t[1]);
+        add_edge(t[1], t[2]);
+        add_edge(t[2], t[0]);
+        --count;
+        facets_[seen_[i]] = facets_[count];
+        planes_.move(count, seen_[i]);
     }
-    facets_.resize(kept);
-    planes_.resize(kept);
+    facets_.resize(count);
+    planes_.resize(count);
 
     // Edges inside the hole come twice, those of its rim once.
     std::sort(edges_.begin(), edges_.end(), [](const RimEdge& a, const RimEdge& b) { return a.key < b.key; });
@@ -221,6 +222,7 @@ Hull HullKernel::Impl::unload() {
 
 // Starts with four of these points that span a tetrahedron; false if all lie in one plane.
 bool HullKernel::Impl::load_simplex(std::span<const int32_t> vertices) {
+    united_ = {};
     facets_.clear();
     planes_.clear();
     const auto first = vertices.begin(), end = vertices.end();
@@ -266,7 +268,11 @@ Hull HullKernel::Impl::build(std::span<const int32_t> vertices) {
             if (std::exchange(mark_[static_cast<size_t>(v)], stamp_) != stamp_) flat.vertices.push_back(v);
         return flat;
     }
-    for (int32_t v : order) insert(v);
+    ++stamp_;
+    for (const Triangle& f : facets_)
+        for (int32_t v : f) mark_[static_cast<size_t>(v)] = stamp_;
+    for (int32_t v : order)
+        if (std::exchange(mark_[static_cast<size_t>(v)], stamp_) != stamp_) insert(v);
     return unload();
 }
 
@@ -281,6 +287,8 @@ Hull HullKernel::Impl::unite(const Hull& a, const Hull& b) {
         all.insert(all.end(), b.vertices.begin(), b.vertices.end());
         return build(all);
     }
+    // Often its volume has just been asked for.
+    if (std::exchange(united_, {}) == std::pair(&a, &b)) return unload();
     const Hull& large = a.facets.size() >= b.facets.size() ? a : b;
     const Hull& small = &large == &a ? b : a;
     mark_vertices(large);
@@ -307,10 +315,10 @@ double HullKernel::Impl::united_volume(const Hull& a, const Hull& b) {
         if (mark_[static_cast<size_t>(v)] == stamp_) continue;
         if (loaded) {
             insert(v);
-        } else if (classify(planes, facets, at(v)) == Side::outside) {
+        } else if (classify(planes, facets, at(v))) {
             if (outside < 0) {
                 outside = v;
-                seen = volume_seen(planes, facets, at(v));
+                seen = six_volumes_seen(facets, at(v));
             } else {
                 load(large);
                 insert(outside);
@@ -319,7 +327,9 @@ double HullKernel::Impl::united_volume(const Hull& a, const Hull& b) {
             }
         }
     }
-    return loaded ? volume6_ / 6 : large.volume + seen / 6;
+    if (!loaded) return large.volume + seen / 6;
+    united_ = {&a, &b};
+    return volume6_ / 6;
 }
 
 std::pair<Point, Point> HullKernel::Impl::bounds(const Hull& hull) const {

@@ -36,7 +36,8 @@ public:
     // conv(a u b). The hulls' vertices suffice: conv(A u B) = conv(conv(A) u conv(B)).
     Hull unite(const Hull& a, const Hull& b);
 
-    // The volume of conv(a u b), without building it where it can be had for less.
+    // The volume of conv(a u b), without building it where it can be had for less. What had to be built is kept for a
+    // unite() of the same two objects that follows: they must not change in between.
     double united_volume(const Hull& a, const Hull& b);
 
     // The lower and upper corner of the hull's bounding box.

@@ -18,7 +18,9 @@ namespace partwheel {
 
 namespace {
 
+// So that volumes neither overflow nor vanish.
 constexpr double largest_coordinate = 1e100;
+constexpr double smallest_extent = 1e-80;
 
 std::string counted(size_t n, const char* one, const char* many) {
     return std::to_string(n) + " " + (n == 1 ? one : many);
@@ -79,6 +81,10 @@ Surface canonical(const MeshView& mesh) {
     });
     for (int32_t v : source) surface.vertices.push_back(caller_point(v));
     surface.frame = Frame::around(surface.vertices);
+    if (surface.frame.scale == 0)
+        throw Error(PW_ERROR_DEGENERATE, "All vertices are at the same place. Choose a mesh that has an extent.");
+    if (surface.frame.scale < smallest_extent)
+        throw Error(PW_ERROR_NOT_FINITE, "The model is too small to be measured. Scale it up.");
     for (Point& p : surface.vertices) p = surface.frame.to_working(p);
 
     std::vector<int32_t> number(mesh.vertex_count, -1);
@@ -210,10 +216,12 @@ void check_self_intersection(const Surface& surface) {
     if (pairs.empty()) return;
     const auto source = [&](Mesh::Face_index f) { return surface.source_face[static_cast<size_t>(f)]; };
     const auto [low, high] = std::minmax({source(pairs[0].first), source(pairs[0].second)});
+    const std::string where = low == high ? "within face " + std::to_string(low)
+                                          : "where faces " + std::to_string(low) + " and " + std::to_string(high) +
+                                                " meet";
     throw Error(PW_ERROR_SELF_INTERSECTION,
-                "The surface passes through or touches itself, for instance where faces " + std::to_string(low) +
-                    " and " + std::to_string(high) +
-                    " meet. Unite overlapping parts with a Boolean or remesh, and separate parts that touch.");
+                "The surface passes through or touches itself, for instance " + where +
+                    ". Unite overlapping parts with a Boolean or remesh, and separate parts that touch.");
 }
 
 }  // namespace
@@ -227,7 +235,7 @@ Frame Frame::around(std::span<const Point> points) {
         frame.origin[k] = (*low)[k];
         longest = std::max(longest, (*high)[k] - (*low)[k]);
     }
-    if (longest > 0) frame.scale = std::ldexp(1.0, std::ilogb(longest));
+    frame.scale = longest > 0 ? std::ldexp(1.0, std::ilogb(longest)) : 0;
     return frame;
 }
 

@@ -27,6 +27,7 @@ struct Frame {
     Point origin{};
     double scale = 1;
 
+    // scale is 0 if all points are the same.
     static Frame around(std::span<const Point> points);
 
     Point to_working(const Point& p) const;

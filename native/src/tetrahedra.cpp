@@ -251,6 +251,21 @@ void keep_solid(const Surface& surface, TetMesh& mesh) {
     }
     mesh.tetrahedra.resize(kept);
     mesh.neighbours.resize(kept);
+
+    // Points that were added in a cavity are of no use.
+    const auto given = static_cast<int32_t>(surface.vertices.size());
+    std::vector<int32_t> place(mesh.vertices.size(), -1);
+    for (const Tetrahedron& t : mesh.tetrahedra)
+        for (int32_t v : t) place[static_cast<size_t>(v)] = v;
+    int32_t next = given;
+    for (size_t v = surface.vertices.size(); v < place.size(); ++v) {
+        if (place[v] < 0) continue;
+        mesh.vertices[static_cast<size_t>(next)] = mesh.vertices[v];
+        place[v] = next++;
+    }
+    mesh.vertices.resize(static_cast<size_t>(next));
+    for (Tetrahedron& t : mesh.tetrahedra)
+        for (int32_t& v : t) v = place[static_cast<size_t>(v)];
 }
 
 }  // namespace
