@@ -23,7 +23,7 @@ SHOWN = 60  # lines of a failed command's output
 
 
 class CouldNotRun(Exception):
-    """A tier, or a part of one, ended before it could say which tests passed. The message says why."""
+    """What a tier needs could not be set up or built. The message says why."""
 
 
 @dataclasses.dataclass
@@ -111,7 +111,7 @@ def main():
         try:
             result = TIERS[name]()
         except CouldNotRun as reason:
-            result = Result(failed=1, failures=[f"{name} could not run: {reason}"])
+            result = broken(f"{name} could not run: {reason}")
         for failure in result.failures:
             print(f"   FAILED {failure}")
         skipped = f", {result.skipped} skipped" if result.skipped else ""
@@ -162,7 +162,7 @@ def own_runner(log, command, environment):
     report = fresh(log, "json")
     code = run(log, [*command, report], environment)
     if not report.exists():
-        raise CouldNotRun(f"{log} ended with code {code} and no result, see {log_of(log)}")
+        return broken(f"{log} ended with code {code} and no result, see {log_of(log)}")
     values = json.loads(report.read_text())
     return checked(log, code, Result(values["passed"], values["failed"],
                                      failures=[f"{log}: {failure}" for failure in values["failures"]]))
@@ -173,7 +173,7 @@ def own_runner(log, command, environment):
 
 def read_junit(log, report, code):
     if not report.exists():
-        raise CouldNotRun(f"{log} ended with code {code} and no result, see {log_of(log)}")
+        return broken(f"{log} ended with code {code} and no result, see {log_of(log)}")
     result = Result()
     for case in xml.etree.ElementTree.parse(report).iter("testcase"):
         if case.find("failure") is not None or case.find("error") is not None:
@@ -187,12 +187,17 @@ def read_junit(log, report, code):
 
 
 def checked(log, code, result):
-    """A result that agrees with the exit code and holds any test at all."""
+    """The result, if it agrees with the exit code and holds any test at all."""
     if not result.passed + result.failed:
-        raise CouldNotRun(f"{log} ran no test, see {log_of(log)}")
+        return broken(f"{log} ran no test, see {log_of(log)}")
     if code and not result.failed:
-        raise CouldNotRun(f"{log} ended with code {code}, though no test failed, see {log_of(log)}")
+        return broken(f"{log} ended with code {code}, though no test failed, see {log_of(log)}")
     return result
+
+
+def broken(sentence):
+    """The result of a run that could not say which tests passed."""
+    return Result(failed=1, failures=[sentence])
 
 
 def fresh(log, kind):
