@@ -1,0 +1,47 @@
+"""Takes the grain out of a picture of light: the edge-avoiding à-trous wavelet filter of Dammertz et al. 2010.
+
+Debian's Blender comes without a denoiser; with this a dozen light paths a pixel look like hundreds.
+"""
+
+import numpy
+
+KERNEL = numpy.array([1.0, 2.0, 1.0], numpy.float32) / 4.0
+
+
+def denoise(light, normal, depth, strength=1.2, passes=5):
+    """Returns light (h, w, channels), smoothed where the surface is and where its first three channels are alike.
+
+    normal: (h, w, 3) of the surface seen, not noisy.  depth: (h, w) its distance from the camera.  strength: how
+    large a difference of light, relative to the light there, may be grain.
+    """
+    light = light.astype(numpy.float32)
+    depth = numpy.minimum(depth, depth.min() * 100.0)
+    slope = numpy.maximum(*(abs(part) for part in numpy.gradient(depth))) + 2e-3 * depth
+    for step in range(passes):
+        light = _smooth(light, normal, depth, slope, strength * 0.5 ** step, 2 ** step)
+    return light
+
+
+def _smooth(light, normal, depth, slope, strength, reach):
+    brightness = light[..., :3].sum(2)
+    pad = ((reach, reach), (reach, reach))
+    wide_light = numpy.pad(light, (*pad, (0, 0)), "edge")
+    wide_normal = numpy.pad(normal, (*pad, (0, 0)), "edge")
+    wide_depth = numpy.pad(depth, pad, "edge")
+    wide_brightness = numpy.pad(brightness, pad, "edge")
+    total = numpy.zeros_like(light)
+    weights = numpy.zeros_like(brightness)
+    height, width = brightness.shape
+    for i in range(3):
+        for j in range(3):
+            window = (slice(i * reach, i * reach + height), slice(j * reach, j * reach + width))
+            alike = numpy.einsum("hwc,hwc->hw", normal, wide_normal[window]).clip(0.0, 1.0)
+            alike = alike ** 32
+            apart = abs(depth - wide_depth[window]) / (slope * (2 * reach))
+            differs = (brightness - wide_brightness[window]) / (strength * numpy.sqrt(brightness + 0.05))
+            weight = KERNEL[i] * KERNEL[j] * alike * numpy.exp(-apart - differs * differs)
+            if i == 1 and j == 1:
+                weight = numpy.full_like(brightness, KERNEL[1] * KERNEL[1])
+            total += weight[..., None] * wide_light[window]
+            weights += weight
+    return total / weights[..., None]

@@ -1,0 +1,49 @@
+"""The demo's models: where they come from, how they stand before the camera, and where the mouse clicks."""
+
+from typing import NamedTuple
+
+MONKEY = "Blender's monkey"
+
+
+class Click(NamedTuple):
+    """A click with the mouse. at: where in the picture of the whole model, x from the left and y from the top, 0..1."""
+
+    name: str
+    at: tuple
+
+
+class Model(NamedTuple):
+    """source: MONKEY or a file in build/deps/meshes.  voxel: the size for Blender's voxel remesh, which makes a closed
+    surface of any, in the file's unit; 0 leaves the surface as it is.  up: the axis that points up in the file.
+    azimuth, elevation: where the camera stands, degrees; 0, 0 is Blender's front view.  parts: the numbers of convex
+    parts to cut the dendrogram into, growing.  A model without clicks is there to be refused."""
+
+    name: str
+    source: str
+    voxel: float
+    up: str
+    azimuth: float
+    elevation: float
+    clicks: tuple
+    parts: tuple = (8, 24, 96)
+
+
+MODELS = (
+    Model("man", "man.off", 0, "Z", 20, 6, ()),
+    Model("man-remeshed", "man.off", 0.004, "Z", 20, 6,
+          (Click("finger tip", (0.28, 0.545)), Click("toe", (0.71, 0.905)))),
+    Model("armadillo", "armadillo.off", 0, "Y", 165, 6,
+          (Click("finger tip", (0.185, 0.14)), Click("claw", (0.68, 0.86)))),
+    Model("hand", "hand.off", 0, "Z", -20, 8,
+          (Click("thumb", (0.75, 0.35)), Click("finger", (0.4, 0.2)))),
+    Model("dino", "dino.off", 0, "Z", 55, 6,
+          (Click("nose", (0.1, 0.14)), Click("toe", (0.39, 0.845)))),
+    Model("elephant", "elephant.off", 0, "Y", 18, 6,
+          (Click("trunk", (0.65, 0.125)), Click("foot", (0.87, 0.74)))),
+    Model("suzanne", MONKEY, 0, "Z", 25, 6, ()),
+    Model("suzanne-remeshed", MONKEY, 0.035, "Z", 25, 6,
+          (Click("ear", (0.88, 0.35)),)),
+)
+
+if __name__ == "__main__":
+    print(*(model.name for model in MODELS))

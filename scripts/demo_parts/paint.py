@@ -1,0 +1,190 @@
+"""Makes the demo's pictures of the layers that perform.py left: paints them, puts them in a row, labels them.
+
+Run as: python paint.py FOLDER MODEL...   For each model that was built it writes FOLDER/MODEL.png, a row for each click
+with every wheel stop, and FOLDER/MODEL-parts.png, the dendrogram cut into convex polyhedra.
+"""
+
+import json
+import sys
+from pathlib import Path
+
+import numpy
+from PIL import Image, ImageDraw, ImageFont
+
+import layers
+from layers import OVERSAMPLING
+
+BACKDROP, BODY, PART, ADDED, EDGE = "#eceff3", "#c3c8cf", "#e4602a", "#f59a55", "#6b2408"
+PALETTE = ("#ef7f5f", "#63b3e4", "#f3bd4f", "#74c794", "#b795dd", "#f29bb8", "#56bcb6", "#cfca62", "#8fa3f2", "#dd9a5c",
+           "#86c5d8", "#a9da7f", "#d987c4")
+INK, QUIET = "#23282f", "#7b838d"
+EXPOSURE = 1.2
+GAP, LABEL, HEAD = 6, 50, 52  # pixels between pictures, below them, above the row
+
+
+def linear(color):
+    """(3,) linear light of an sRGB colour, "#rrggbb"."""
+    value = numpy.array([int(color[i:i + 2], 16) for i in (1, 3, 5)]) / 255.0
+    return numpy.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4).astype(numpy.float32)
+
+
+def develop(light):
+    """Linear light -> 8 bit sRGB; what is brighter than paper fades into white instead of being cut off."""
+    knee = 0.75
+    light = numpy.where(light < knee, light, 1.0 - (1.0 - knee) * numpy.exp((knee - light) / (1.0 - knee)))
+    value = numpy.where(light <= 0.0031308, 12.92 * light, 1.055 * numpy.maximum(light, 0.0031308) ** (1 / 2.4) - 0.055)
+    return (value * 255.0 + 0.5).astype(numpy.uint8)
+
+
+def paint(picture, colors):
+    """An Image of the layers. colors: (h, w, 3) linear, what the backdrop's pixels are is of no matter."""
+    colors = numpy.where(picture.shown[..., None] < 0, linear(BACKDROP), colors)
+    light = picture.light * colors * EXPOSURE + picture.gloss
+    height, width = (side // OVERSAMPLING for side in picture.shown.shape)
+    return Image.fromarray(develop(light.reshape(height, OVERSAMPLING, width, OVERSAMPLING, 3).mean((1, 3))))
+
+
+def edges(names, drawn):
+    """(h, w) bool: where drawn neighbours have different names."""
+    found = numpy.zeros(names.shape, bool)
+    for axis in (0, 1):
+        there = [slice(None), slice(None)]
+        here = [slice(None), slice(None)]
+        there[axis], here[axis] = slice(1, None), slice(None, -1)
+        there, here = tuple(there), tuple(here)
+        differ = (names[there] != names[here]) & drawn[there] & drawn[here]
+        found[there] |= differ
+        found[here] |= differ
+    return found
+
+
+def paint_stop(picture, entered, stop):
+    """entered: (faces,) the first stop that holds each face. What the last notch added is a little lighter."""
+    when = entered[picture.shown]
+    colors = numpy.where((when <= stop)[..., None], linear(PART), linear(BODY))
+    if stop:
+        colors = numpy.where((when == stop)[..., None], linear(ADDED), colors)
+    colors = numpy.where(edges(when <= stop, picture.shown >= 0)[..., None], linear(EDGE), colors)
+    return paint(picture, colors)
+
+
+def paint_parts(picture, palette):
+    colors = palette[picture.shown]
+    return paint(picture, numpy.where(edges(picture.shown, picture.shown >= 0)[..., None], colors * 0.45, colors))
+
+
+def palettes(cuts):
+    """For each cut (coarse to fine) the linear colours of its parts: a part has the colour of the coarser part that it
+    is the largest piece of, so that the eye can follow it; the other pieces have new colours."""
+    colors, count = [], 0
+    for number, cut in enumerate(cuts):
+        bounds = numpy.array(cut["bounds"])
+        sizes = numpy.diff(bounds)
+        chosen = [None] * len(sizes)
+        if number:
+            coarse = numpy.array(cuts[number - 1]["bounds"])
+            home = numpy.searchsorted(coarse, bounds[:-1], side="right") - 1
+            for owner in range(len(coarse) - 1):
+                inside = numpy.flatnonzero(home == owner)
+                if len(inside):
+                    chosen[inside[numpy.argmax(sizes[inside])]] = colors[-1][owner]
+        for part in range(len(sizes)):
+            if chosen[part] is None:
+                chosen[part] = linear(PALETTE[count % len(PALETTE)])
+                count += 1
+        colors.append(chosen)
+    return [numpy.array(chosen, numpy.float32) for chosen in colors]
+
+
+def font(size):
+    return ImageFont.load_default(size)
+
+
+def ring(image, at):
+    """Marks the point that was clicked."""
+    scale = 4
+    x, y = at[0] * image.width, at[1] * image.height
+    size = 24
+    left, top = round(x) - size // 2, round(y) - size // 2
+    mark = Image.new("L", (size * scale, size * scale), 0)
+    middle = size * scale / 2
+    draw = ImageDraw.Draw(mark)
+
+    def circle(radius, fill):
+        radius *= scale
+        draw.ellipse((middle - radius, middle - radius, middle + radius, middle + radius), fill=fill)
+
+    for radius, color, hole in ((8.0, INK, 4.4), (7.2, "#ffffff", 5.2)):
+        draw.rectangle((0, 0, *mark.size), fill=0)
+        circle(radius, 255)
+        circle(hole, 0)
+        image.paste(color, (left, top), mark.resize((size, size), Image.LANCZOS))
+
+
+def sheet(title, rows):
+    """A title, and rows of pictures side by side. rows: [(heading, [(Image, label, remark)])]."""
+    width = max(sum(image.width + GAP for image, _, _ in cells) for _, cells in rows) + GAP
+    height = sum(HEAD + cells[0][0].height + LABEL for _, cells in rows)
+    page = Image.new("RGB", (width, height), "#ffffff")
+    draw = ImageDraw.Draw(page)
+    top = 0
+    for heading, cells in rows:
+        left = GAP + 6
+        draw.text((left, top + 13), title, INK, font(24))
+        draw.text((left + draw.textlength(title, font(24)) + 16, top + 19), heading, QUIET, font(17))
+        top, left = top + HEAD, GAP
+        for image, label, remark in cells:
+            page.paste(image, (left, top))
+            middle = left + image.width / 2
+            draw.text((middle, top + image.height + 15), label, INK, font(16), anchor="mm")
+            draw.text((middle, top + image.height + 35), remark, QUIET, font(13), anchor="mm")
+            left += image.width + GAP
+        top += cells[0][0].height + LABEL
+    return page
+
+
+def percent(share):
+    return f"{100 * share:.0f} %" if share >= 0.095 else f"{100 * share:.1f} %" if share >= 0.00095 else "< 0.1 %"
+
+
+def wheel_row(click, folder):
+    """Every wheel stop of a click."""
+    views = [layers.load(folder / "whole.npz")]
+    views += [layers.load(folder / f"{click['name']}-{number}.npz") for number in range(1, len(click["views"]))]
+    entered = numpy.load(folder / f"{click['name']}.npy")
+    cells = []
+    for number, stop in enumerate(click["stops"]):
+        view = click["views"][stop["view"]]
+        image = paint_stop(views[stop["view"]], entered, number)
+        ring(image, view["clicked"])
+        if stop["view"]:
+            ImageDraw.Draw(image).text((image.width - 10, 10), f"{view['closer']:.1f} x", INK, font(13), "ra")
+        label = f"{number + 1} / {len(click['stops'])}" + ("  the click" if number == click["start"] else "")
+        cells.append((image, label, f"{stop['faces']:,} faces, {percent(stop['area'])}"))
+    return f"one click on the {click['name']}, then the wheel", cells
+
+
+def parts_row(report, folder):
+    """The model, and its cuts from fine to coarse."""
+    cells = []
+    for cut, palette in zip(report["cuts"], palettes(report["cuts"])):
+        image = paint_parts(layers.load(folder / f"hulls-{cut['parts']}.npz"), palette)
+        cells.append((image, f"{cut['parts']} convex parts", f"{cut['polygons']:,} faces"))
+    body = layers.load(folder / "whole.npz")
+    cells.append((paint(body, linear(BODY)), "the model", f"{report['faces']:,} faces"))
+    return "the dendrogram, cut into convex polyhedra", cells[::-1]
+
+
+def main():
+    folder = Path(sys.argv[1])
+    for name in sys.argv[2:]:
+        own = folder / "layers" / name
+        report = json.loads((own / "report.json").read_text("utf-8"))
+        if "refused" not in report:
+            wheel = sheet(name, [wheel_row(click, own) for click in report["clicks"]])
+            wheel.save(folder / f"{name}.png", optimize=True)
+            sheet(name, [parts_row(report, own)]).save(folder / f"{name}-parts.png", optimize=True)
+
+
+if __name__ == "__main__":
+    main()

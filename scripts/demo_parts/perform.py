@@ -1,0 +1,253 @@
+"""The demo inside Blender: one model is opened, built, clicked and turned through the wheel; leaves layers and a .blend.
+
+Run as: blender -b --python perform.py -- MODEL MESHES FOLDER
+with the add-on installed and enabled. In FOLDER it leaves MODEL.blend and, in layers/MODEL/, report.json (what
+happened, numbers and times) and a .npz of layers for each picture; paint.py makes the pictures of those.
+A surface that the library refuses is a result too: then report.json holds the error and there are no layers.
+"""
+
+import json
+import math
+import os
+import re
+import sys
+import time
+
+import bmesh
+import bpy
+import numpy
+from mathutils import Matrix
+from partwheel import session
+from partwheel.core import meshes as mesh_files
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+from models import MODELS, MONKEY  # noqa: E402
+from studio import Studio  # noqa: E402
+
+HEIGHT = 330  # of a picture, in pixels
+CLOSER = 0.25  # a part that is smaller than this in the picture, as a fraction of its size, gets a closer look
+
+
+def open_model(model, meshes):
+    """The model as the only object of the scene, Z up, active."""
+    for thing in list(bpy.data.objects):
+        bpy.data.objects.remove(thing)
+    if model.source == MONKEY:
+        bpy.ops.mesh.primitive_monkey_add()
+        thing = bpy.context.object
+    else:
+        source = mesh_files.read(os.path.join(meshes, model.source))
+        mesh = bpy.data.meshes.new(model.name)
+        mesh.from_pydata(source.vertices.tolist(), [], source.triangles.tolist())
+        if model.up == "Y":
+            mesh.transform(Matrix.Rotation(math.pi / 2, 4, "X"))
+        mesh.update()
+        thing = bpy.data.objects.new(model.name, mesh)
+        bpy.context.collection.objects.link(thing)
+    thing.name = thing.data.name = model.name
+    bpy.context.view_layer.objects.active = thing
+    thing.select_set(True)
+    if model.voxel:
+        remesh = thing.modifiers.new("Remesh", "REMESH")
+        remesh.mode, remesh.voxel_size = "VOXEL", model.voxel
+        bpy.ops.object.modifier_apply(modifier=remesh.name)
+    bpy.context.tool_settings.mesh_select_mode = (False, False, True)
+    mesh = thing.data
+    mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
+    mesh.use_auto_smooth, mesh.auto_smooth_angle = True, math.radians(45)
+    return thing
+
+
+def corners(mesh):
+    """(V, 3) coordinates."""
+    points = numpy.empty(len(mesh.vertices) * 3)
+    mesh.vertices.foreach_get("co", points)
+    return points.reshape(-1, 3)
+
+
+def selected_faces():
+    """The numbers of the selected faces of the mesh in Edit Mode, in order."""
+    faces = bmesh.from_edit_mesh(bpy.context.object.data).faces
+    return numpy.array([face.index for face in faces if face.select], numpy.int64)
+
+
+def click(thing, studio, view, at):
+    """The face and the point that a click in a picture hits."""
+    origin, direction = studio.ray(view, at)
+    hit, point, _, face = thing.ray_cast(origin, direction)
+    if not hit:
+        raise RuntimeError(f"the click at {at} misses the model")
+    return face, point
+
+
+def turn_wheel(hierarchy, face):
+    """Selects every wheel stop of a face by the operator, and returns them: [faces of the stop], start.
+
+    Raises RuntimeError where the operator's selection is not the hierarchy's part."""
+    nodes, start = hierarchy.wheel(face)
+    stops = []
+    for number, node in enumerate(nodes):
+        bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", face_index=face, level=number - start)
+        stops.append(selected_faces())
+        if not numpy.array_equal(stops[-1], numpy.sort(hierarchy.faces(node))):
+            raise RuntimeError(f"stop {number + 1} of face {face} selected {len(stops[-1])} faces, "
+                               f"the hierarchy's node {node} has {len(hierarchy.faces(node))}")
+    return stops, start
+
+
+def closer_views(studio, whole, points, polygons, stops):
+    """The views to see every stop well, widest first, and the number of the one for each stop."""
+    views, chosen = [whole], [0] * len(stops)
+    for number in reversed(range(len(stops))):
+        part = points[numpy.unique(numpy.concatenate([polygons[face] for face in stops[number]]))]
+        tight = studio.view(part, whole.width, whole.height)
+        if tight.span < CLOSER * views[-1].span:
+            views.append(tight._replace(span=tight.span * 2.2))
+        chosen[number] = len(views) - 1
+    return views, chosen
+
+
+def hull_object(hierarchy, bounds):
+    """An object of the convex hulls of a cut's parts, and the part of each of its polygons."""
+    vertices, triangles, parts, count = [], [], [], 0
+    for part in range(len(bounds) - 1):
+        hull_vertices, hull_triangles = hierarchy.hull_of_slice(bounds[part], bounds[part + 1])
+        vertices.append(hull_vertices)
+        triangles.append(hull_triangles + count)
+        parts.append(numpy.full(len(hull_triangles), part))
+        count += len(hull_vertices)
+    mesh = bpy.data.meshes.new("Hulls")
+    mesh.from_pydata(numpy.vstack(vertices).tolist(), [], numpy.vstack(triangles).tolist())
+    mesh.update()
+    return bpy.data.objects.new("Hulls", mesh), numpy.concatenate(parts)
+
+
+def show_ready(thing, studio, stop):
+    """Leaves Edit Mode on, faces to select, a part selected and the view on the model, for whoever opens the file."""
+    mesh = thing.data
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for elements in (mesh.vertices, mesh.edges, mesh.polygons):
+        elements.foreach_set("select", [False] * len(elements))
+    chosen = numpy.zeros(len(mesh.polygons), bool)
+    chosen[stop] = True
+    mesh.polygons.foreach_set("select", chosen)
+    bpy.ops.object.mode_set(mode="EDIT")
+    for screen in bpy.data.screens:
+        for area in screen.areas:
+            if area.type == "VIEW_3D":
+                space = area.spaces.active
+                space.shading.show_cavity = True
+                space.overlay.show_extra_edge_length = False
+                space.clip_start, space.clip_end = studio.radius * 0.005, studio.radius * 100.0
+                view = space.region_3d
+                view.view_perspective = "PERSP"
+                view.view_location = studio.center
+                view.view_rotation = studio.axes.to_quaternion()
+                view.view_distance = studio.radius * 2.6
+
+
+def build(thing, report):
+    """The hierarchy that the add-on's operator builds, or None if it refused the mesh; fills in the report."""
+    began = time.perf_counter()
+    try:
+        bpy.ops.mesh.partwheel_build()
+    except RuntimeError as error:  # what Blender makes of an operator's error report
+        refused = re.search(r"\((?P<name>[^)]+)\): (?P<sentence>.+)", str(error), re.DOTALL)
+        if not refused:
+            raise
+        report["refused"] = {key: text.strip() for key, text in refused.groupdict().items()}
+        return None
+    hierarchy = session.hierarchy(thing)
+    report["seconds"] = {**hierarchy.seconds, "whole": time.perf_counter() - began}
+    report["tetrahedra"] = len(hierarchy.tetrahedra)
+    report["nodes"] = len(hierarchy.parent)
+    report["components"] = hierarchy.summary.components
+    report["saved_bytes"] = len(hierarchy.save())
+    return hierarchy
+
+
+def play_click(spot, thing, studio, whole, hierarchy, folder, report):
+    """A click and every wheel stop after it. Returns the faces of the stop that the click alone takes."""
+    mesh = thing.data
+    face, point = click(thing, studio, whole, spot.at)
+    bpy.ops.object.mode_set(mode="EDIT")
+    began = time.perf_counter()
+    stops, start = turn_wheel(hierarchy, face)
+    seconds = (time.perf_counter() - began) / len(stops)
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+    polygons = [polygon.vertices for polygon in mesh.polygons]
+    views, chosen = closer_views(studio, whole, corners(mesh), polygons, stops)
+    for number, view in enumerate(views[1:], 1):
+        picture = studio.photograph(thing, range(len(polygons)), view)
+        picture.save(os.path.join(folder, f"{spot.name}-{number}.npz"))
+    entered = numpy.full(len(polygons), len(stops))  # the first stop that holds a face: the stops only grow
+    for number in reversed(range(len(stops))):
+        entered[stops[number]] = number
+    numpy.save(os.path.join(folder, f"{spot.name}.npy"), entered)
+
+    nodes, _ = hierarchy.wheel(face)
+    report["clicks"].append({
+        "name": spot.name, "face": face, "start": start, "seconds_per_stop": seconds,
+        "views": [{"closer": whole.span / view.span, "clicked": view.pixel(studio.project([point])[0])}
+                  for view in views],
+        "stops": [{"faces": len(stop), "area": hierarchy.area[node] / hierarchy.area[-1], "view": number}
+                  for stop, node, number in zip(stops, nodes, chosen)]})
+    return stops[start]
+
+
+def play_cut(count, studio, whole, hierarchy, folder, report):
+    """The dendrogram cut into so many parts, as their convex hulls."""
+    count = min(count, len(hierarchy.tetrahedra))
+    bounds = hierarchy.cut_parts(count)
+    hulls, parts = hull_object(hierarchy, bounds)
+    studio.photograph(hulls, parts, whole).save(os.path.join(folder, f"hulls-{count}.npz"))
+    bpy.data.batch_remove([hulls, hulls.data])
+    report["cuts"].append({"parts": count, "bounds": bounds.tolist(), "polygons": len(parts)})
+
+
+def perform(model, meshes, folder):
+    """Plays the whole job with one model and returns the report."""
+    layers = os.path.join(folder, "layers", model.name)
+    os.makedirs(layers, exist_ok=True)
+    thing = open_model(model, meshes)
+    report = {"model": model.name, "source": model.source, "faces": len(thing.data.polygons)}
+    print(f"demo: {model.name}: {report['faces']} faces from {model.source}", flush=True)
+    hierarchy = build(thing, report)
+    if (hierarchy is None) == bool(model.clicks):
+        raise RuntimeError(f"{model.name} should " + ("have been built" if model.clicks else "not have been built")
+                           + f": {report.get('refused')}")
+    if hierarchy is None:
+        print(f"demo: {model.name}: refused ({report['refused']['name']}): {report['refused']['sentence']}", flush=True)
+        return report
+
+    print(f"demo: {model.name}: built; clicking, turning the wheel, taking pictures", flush=True)
+    began = time.perf_counter()
+    points = corners(thing.data)
+    studio = Studio(points, model.azimuth, model.elevation)
+    width, height = numpy.ptp(studio.project(points), axis=0)
+    whole = studio.view(points, round(HEIGHT * min(max(width / height, 0.6), 1.5)), HEIGHT)
+    studio.photograph(thing, range(report["faces"]), whole).save(os.path.join(layers, "whole.npz"))
+    report["clicks"], report["cuts"] = [], []
+    for spot in model.clicks:
+        part = play_click(spot, thing, studio, whole, hierarchy, layers, report)
+    for count in model.parts:
+        play_cut(count, studio, whole, hierarchy, layers, report)
+    show_ready(thing, studio, part)
+    studio.close()
+    bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, f"{model.name}.blend"), compress=True)
+    report["pictures_seconds"] = time.perf_counter() - began
+    return report
+
+
+def main():
+    name, meshes, folder = sys.argv[sys.argv.index("--") + 1:]
+    model = next(model for model in MODELS if model.name == name)
+    report = perform(model, meshes, folder)
+    with open(os.path.join(folder, "layers", name, "report.json"), "w", encoding="utf-8") as file:
+        json.dump(report, file, indent=1, default=lambda number: number.item())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,277 @@
+"""The demo's photo studio: a backdrop, lights and a camera about one model, and pictures taken as layers.
+
+Runs inside Blender. A picture is three arrays that paint.py puts together: the light that reaches each pixel, the
+gloss, and the number of the face that each pixel shows. So a model is lit once for each view and then painted anew
+for each wheel stop, which is many times faster than a render a stop.
+"""
+
+import math
+import os
+import tempfile
+from typing import NamedTuple
+
+import bpy
+import numpy
+from mathutils import Matrix, Vector
+
+from denoise import denoise
+from layers import OVERSAMPLING, Layers
+
+FIELD_OF_VIEW = math.radians(16.0)
+SAMPLES = 4  # light paths for each pixel of a layer; denoise() does the rest
+
+
+class View(NamedTuple):
+    """What a picture shows: a rectangle about (x, y) on the plane at distance 1 before the camera, and its size in
+    pixels when finished."""
+
+    x: float
+    y: float
+    span: float  # of the width
+    width: int
+    height: int
+
+    def pixel(self, point):
+        """Where the picture shows a point of that plane: x from the left, y from the top, both 0..1."""
+        rise = self.span * self.height / self.width
+        return (point[0] - self.x) / self.span + 0.5, 0.5 - (point[1] - self.y) / rise
+
+    def point(self, pixel):
+        """The other way round."""
+        rise = self.span * self.height / self.width
+        return self.x + (pixel[0] - 0.5) * self.span, self.y + (0.5 - pixel[1]) * rise
+
+
+class Studio:
+    """A scene of its own for what stands about the given points, (n, 3) in world space.
+
+    azimuth, elevation: where the camera stands, degrees; 0, 0 looks along +Y, as Blender's front view does.
+    """
+
+    def __init__(self, points, azimuth, elevation):
+        low, high = points.min(0), points.max(0)
+        self.center = Vector((low + high) / 2)
+        self.radius = float(numpy.linalg.norm(points - self.center, axis=1).max())
+        self.azimuth = math.radians(azimuth)
+        self.elevation = math.radians(elevation)
+        self.scene = bpy.data.scenes.new("Studio")
+        self._stand_camera()
+        self._set_render()
+        self._add_backdrop(float(low[2]))
+        self._add_lights()
+
+    def close(self):
+        """Takes the studio away, and all it brought."""
+        things = list(self.scene.collection.objects)
+        bpy.data.batch_remove([self.scene, self.scene.world, *things, *(thing.data for thing in things)])
+        bpy.data.batch_remove([material for material in bpy.data.materials if not material.users])
+
+    def _link(self, name, data):
+        thing = bpy.data.objects.new(name, data)
+        self.scene.collection.objects.link(thing)
+        return thing
+
+    def _stand_camera(self):
+        out = Vector((math.sin(self.azimuth) * math.cos(self.elevation),
+                      -math.cos(self.azimuth) * math.cos(self.elevation), math.sin(self.elevation)))
+        right = Vector((math.cos(self.azimuth), math.sin(self.azimuth), 0.0))
+        self.axes = Matrix((right, out.cross(right), out)).transposed()  # columns: right, up, towards the camera
+        self.place = self.center + out * self.radius / math.sin(FIELD_OF_VIEW / 2)
+        self.camera = self._link("Camera", bpy.data.cameras.new("Camera"))
+        self.camera.matrix_world = Matrix.Translation(self.place) @ self.axes.to_4x4()
+        self.camera.data.sensor_fit = "HORIZONTAL"
+        self.camera.data.clip_start = self.radius * 0.01
+        self.camera.data.clip_end = self.radius * 100.0
+        self.scene.camera = self.camera
+
+    def _set_render(self):
+        scene = self.scene
+        scene.use_nodes = True
+        scene.render.engine = "CYCLES"
+        scene.render.resolution_percentage = 100
+        scene.render.use_persistent_data = True
+        scene.cycles.device = "CPU"
+        scene.cycles.use_denoising = False
+        scene.cycles.use_adaptive_sampling = False
+        scene.cycles.max_bounces = 1
+        scene.cycles.diffuse_bounces = 1
+        scene.cycles.sample_clamp_indirect = 4.0
+        scene.cycles.pixel_filter_type = "BOX"
+        threads = int(os.environ.get("PARTWHEEL_DEMO_THREADS", 0))
+        if threads:
+            scene.render.threads_mode = "FIXED"
+            scene.render.threads = threads
+
+    def _add_backdrop(self, floor):
+        """A floor that rises into a wall behind the model, without an edge to see."""
+        radius = self.radius
+        start, bend = 1.6 * radius, 2.0 * radius
+        profile = [(-30.0 * radius, 0.0)]
+        profile += [(start + bend * math.sin(turn), bend - bend * math.cos(turn))
+                    for turn in numpy.linspace(0.0, math.pi / 2, 24)]
+        profile.append((start + bend, 40.0 * radius))
+        corners = [(side * 60.0 * radius, y, z) for y, z in profile for side in (-1.0, 1.0)]
+        polygons = [(2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2) for i in range(len(profile) - 1)]
+        mesh = bpy.data.meshes.new("Backdrop")
+        mesh.from_pydata(corners, [], polygons)
+        mesh.polygons.foreach_set("use_smooth", [True] * len(polygons))
+        mesh.materials.append(paper("Backdrop", 0.8))
+        self.backdrop = self._link("Backdrop", mesh)
+        self.backdrop.matrix_world = (Matrix.Translation((self.center.x, self.center.y, floor))
+                                      @ Matrix.Rotation(self.azimuth, 4, "Z"))
+
+    def _add_lights(self):
+        world = self.scene.world = bpy.data.worlds.new("Studio")
+        world.use_nodes = True
+        sky = world.node_tree.nodes["Background"].inputs
+        sky["Color"].default_value = (0.86, 0.93, 1.0, 1.0)
+        self.sky = sky["Strength"]
+        self.lamps = []
+        # name, direction (right, up, towards the camera), size, strength, colour
+        for name, direction, size, strength, color in (
+                ("Key", (-1.1, 1.6, 1.3), 1.6, 55.0, (1.0, 0.96, 0.9)),
+                ("Rim", (1.8, 1.2, -1.2), 1.2, 34.0, (0.9, 0.95, 1.0))):
+            lamp = bpy.data.lights.new(name, "AREA")
+            lamp.size = size * self.radius
+            lamp.energy = strength * self.radius ** 2
+            lamp.color = color
+            aim = (self.axes @ Vector(direction)).normalized()
+            thing = self._link(name, lamp)
+            thing.matrix_world = (Matrix.Translation(self.center + aim * 3.2 * self.radius)
+                                  @ aim.to_track_quat("Z", "Y").to_matrix().to_4x4())
+            self.lamps.append(thing)
+
+    def project(self, points):
+        """(n, 3) points in world space -> (n, 2) on the plane at distance 1 before the camera."""
+        local = (numpy.asarray(points) - numpy.array(self.place)) @ numpy.array(self.axes)
+        return local[:, :2] / -local[:, 2:]
+
+    def view(self, points, width, height, margin=0.08):
+        """The View of this size that shows all the points, with a margin on every side, 0..0.5 of the size."""
+        flat = self.project(points)
+        low, high = flat.min(0), flat.max(0)
+        span = max(high[0] - low[0], (high[1] - low[1]) * width / height) / (1.0 - 2.0 * margin)
+        return View(*((low + high) / 2), span, width, height)
+
+    def ray(self, view, pixel):
+        """The ray through a pixel (0..1 from the left, the top): (origin, direction) in world space."""
+        x, y = view.point(pixel)
+        return self.place, (self.axes @ Vector((x, y, -1.0))).normalized()
+
+    def photograph(self, thing, numbers, view):
+        """The Layers of a picture of a mesh object. numbers: (polygons,) what each polygon is known by, 0 or more."""
+        data = self.camera.data
+        data.angle = 2.0 * math.atan(view.span / 2.0)
+        data.shift_x, data.shift_y = view.x / view.span, view.y / view.span
+        self.scene.render.resolution_x = view.width * OVERSAMPLING
+        self.scene.render.resolution_y = view.height * OVERSAMPLING
+        mesh = thing.data.copy()
+        model = self._link("Model", mesh)
+        model.matrix_world = thing.matrix_world
+        try:
+            mesh.materials.clear()
+            mesh.materials.append(clay("Clay", 0.6))
+            light, gloss = self._light()
+            mesh.attributes.new("shown", "FLOAT", "FACE").data.foreach_set(
+                "value", numpy.asarray(numbers, numpy.float32) + 1.0)
+            mesh.materials[0] = glow("Number", "shown")
+            return Layers(light, gloss, self._numbers())
+        finally:
+            bpy.data.objects.remove(model)
+            bpy.data.meshes.remove(mesh)
+
+    def _light(self):
+        self.scene.cycles.samples = SAMPLES
+        self.sky.default_value = 0.8
+        seen = self._render({
+            "direct": ("use_pass_diffuse_direct", "DiffDir"), "indirect": ("use_pass_diffuse_indirect", "DiffInd"),
+            "shine": ("use_pass_glossy_direct", "GlossDir"), "mirror": ("use_pass_glossy_indirect", "GlossInd"),
+            "tint": ("use_pass_glossy_color", "GlossCol"),
+            "normal": ("use_pass_normal", "Normal"), "depth": ("use_pass_z", "Depth")})
+        light = seen["direct"] + seen["indirect"]
+        gloss = (seen["shine"] + seen["mirror"]) * seen["tint"]
+        smooth = denoise(numpy.dstack((light, gloss)), seen["normal"], seen["depth"][..., 0])
+        return smooth[..., :3], smooth[..., 3:]
+
+    def _numbers(self):
+        """One ray a pixel at a material that glows with the face's number + 1; all else is black."""
+        self.scene.cycles.samples = 1
+        self.sky.default_value = 0.0
+        for other in (self.backdrop, *self.lamps):
+            other.hide_render = True
+        try:
+            seen = self._render({"number": ("use_pass_combined", "Image")})
+        finally:
+            for other in (self.backdrop, *self.lamps):
+                other.hide_render = False
+        return numpy.rint(seen["number"][..., 0]).astype(numpy.int32) - 1
+
+    def _render(self, passes):
+        """passes: name -> (switch of the view layer, socket of the compositor). Returns name -> (h, w, 3) float32."""
+        layer, tree = self.scene.view_layers[0], self.scene.node_tree
+        tree.nodes.clear()
+        source = tree.nodes.new("CompositorNodeRLayers")
+        source.scene = self.scene
+        target = tree.nodes.new("CompositorNodeOutputFile")
+        target.format.file_format, target.format.color_depth = "OPEN_EXR", "32"
+        target.file_slots.clear()
+        for name, (switch, socket) in passes.items():
+            setattr(layer, switch, True)
+            target.file_slots.new(name)
+            tree.links.new(source.outputs[socket], target.inputs[name])
+        with tempfile.TemporaryDirectory() as folder:
+            target.base_path = folder
+            bpy.ops.render.render(scene=self.scene.name)
+            return {name: _pixels(os.path.join(folder, f"{name}{self.scene.frame_current:04d}.exr"))
+                    for name in passes}
+
+
+def _pixels(path):
+    image = bpy.data.images.load(path)
+    try:
+        width, height = image.size
+        pixels = numpy.empty(width * height * 4, numpy.float32)
+        image.pixels.foreach_get(pixels)
+        return pixels.reshape(height, width, 4)[::-1, :, :3]
+    finally:
+        bpy.data.images.remove(image)
+
+
+def clay(name, albedo):
+    """A matt material with a little sheen. The albedo matters only for the light that bounces off."""
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    shader = material.node_tree.nodes["Principled BSDF"].inputs
+    shader["Base Color"].default_value = (albedo, albedo, albedo, 1.0)
+    shader["Roughness"].default_value = 0.5
+    shader["Specular"].default_value = 0.35
+    return material
+
+
+def paper(name, albedo):
+    """A matt material without any sheen."""
+    material, nodes, output = _bare(name)
+    shader = nodes.new("ShaderNodeBsdfDiffuse")
+    shader.inputs["Color"].default_value = (albedo, albedo, albedo, 1.0)
+    material.node_tree.links.new(shader.outputs["BSDF"], output)
+    return material
+
+
+def glow(name, attribute):
+    """A material that shines with the value of a face attribute."""
+    material, nodes, output = _bare(name)
+    value = nodes.new("ShaderNodeAttribute")
+    value.attribute_name = attribute
+    shader = nodes.new("ShaderNodeEmission")
+    material.node_tree.links.new(value.outputs["Fac"], shader.inputs["Strength"])
+    material.node_tree.links.new(shader.outputs["Emission"], output)
+    return material
+
+
+def _bare(name):
+    """(material, its nodes, the socket of its surface), nothing connected."""
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    nodes = material.node_tree.nodes
+    nodes.clear()
+    return material, nodes, nodes.new("ShaderNodeOutputMaterial").inputs["Surface"]

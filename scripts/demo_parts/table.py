@@ -1,0 +1,55 @@
+"""The demo's table of sizes and times, from the reports that perform.py left.
+
+Run as: python table.py FOLDER MODEL...   Writes FOLDER/table.md and FOLDER/table.csv and prints the first; the last
+line of what it prints counts what happened.
+"""
+
+import csv
+import json
+import sys
+from pathlib import Path
+
+STAGES = ("surface", "tetrahedra", "cluster", "dendrogram", "hierarchy")
+COLUMNS = ("model", "from", "faces", "tets", "nodes", "saved kB", *(f"{stage} s" for stage in STAGES), "build s",
+           "stops", "notch ms", "result")
+
+
+def row(report):
+    """The cells of one model, in the order of COLUMNS."""
+    if "refused" in report:
+        refused = report["refused"]
+        blank = [""] * (len(COLUMNS) - 4)
+        return [report["model"], report["source"], report["faces"], *blank, f"refused: {refused['name']}"]
+    seconds, clicks = report["seconds"], report["clicks"]
+    return [report["model"], report["source"], report["faces"], report["tetrahedra"], report["nodes"],
+            round(report["saved_bytes"] / 1000), *(f"{seconds[stage]:.3f}" for stage in STAGES),
+            f"{seconds['whole']:.2f}", ", ".join(str(len(click["stops"])) for click in clicks),
+            ", ".join(f"{1000 * click['seconds_per_stop']:.0f}" for click in clicks), "built"]
+
+
+def markdown(rows):
+    cells = [[str(cell) for cell in line] for line in rows]
+    widths = [max(len(line[column]) for line in cells) for column in range(len(COLUMNS))]
+    lines = ["| " + " | ".join(cell.ljust(width) for cell, width in zip(line, widths)) + " |" for line in cells]
+    lines.insert(1, "|" + "|".join("-" * (width + 2) for width in widths) + "|")
+    return "\n".join(lines)
+
+
+def main():
+    folder = Path(sys.argv[1])
+    reports = [json.loads((folder / "layers" / name / "report.json").read_text("utf-8")) for name in sys.argv[2:]]
+    rows = [COLUMNS, *map(row, reports)]
+    refusals = [f"{report['model']}: {report['refused']['sentence']}" for report in reports if "refused" in report]
+    text = "\n".join([markdown(rows), "", *refusals])
+    (folder / "table.md").write_text(text + "\n", "utf-8")
+    with open(folder / "table.csv", "w", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows(rows)
+    print(text)
+    built = len(reports) - len(refusals)
+    stops = sum(len(click["stops"]) for report in reports for click in report.get("clicks", ()))
+    print(f"{built} models built, {len(refusals)} broken ones refused by name, {stops} wheel stops selected and checked, "
+          f"{2 * built} pictures")
+
+
+if __name__ == "__main__":
+    main()
