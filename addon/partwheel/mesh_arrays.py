@@ -6,6 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .core.polygons import triangulate
+
+# A triangle's doubled area by the square of its longest side; below this it is taken for one without area.
+THIN = 1e-9
+
 
 class Surface(NamedTuple):
     """What Hierarchy.build() takes: vertices (V,3), triangles (T,3), faces (T,) the polygon of each triangle."""
@@ -31,14 +36,27 @@ def read(collection, attribute, dtype, width=1):
 
 
 def surface(mesh):
-    """The mesh's surface as Blender itself triangulates it."""
+    """The mesh's surface as Blender triangulates it, save for polygons of which it makes triangles without area (three
+    corners on a line do that). With shape keys it is the basis, whichever key is shown."""
     mesh.calc_loop_triangles()
-    return Surface(
-        read(mesh.vertices, "co", np.float32, 3).astype(np.float64),
-        read(mesh.loop_triangles, "vertices", np.int32, 3),
-        read(mesh.loop_triangles, "polygon_index", np.int32),
-        len(mesh.polygons),
-    )
+    vertices = read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
+    triangles = read(mesh.loop_triangles, "vertices", np.int32, 3)
+    faces = read(mesh.loop_triangles, "polygon_index", np.int32)
+    corners = vertices[triangles]
+    sides = np.roll(corners, -1, axis=1) - corners
+    doubled_area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    thin = np.unique(faces[doubled_area <= THIN * (sides * sides).sum(axis=2).max(axis=1)])
+    again = [(face, triangle) for face in thin.tolist() for triangle in _triangulated(mesh.polygons[face], vertices)]
+    if again:
+        kept = ~np.isin(faces, thin)
+        triangles = np.vstack([triangles[kept], np.array([triangle for _, triangle in again], np.int32)])
+        faces = np.concatenate([faces[kept], np.array([face for face, _ in again], np.int32)])
+    return Surface(vertices, triangles, faces, len(mesh.polygons))
+
+
+def _triangulated(polygon, vertices):
+    corners = list(polygon.vertices)
+    return triangulate(vertices[corners], corners)
 
 
 def topology(mesh):

@@ -56,9 +56,11 @@ def view_under(window, x, y):
         if area.type != "VIEW_3D" or not _holds(area, x, y):
             continue
         regions = [region for region in area.regions if region.width > 1 and region.height > 1 and _holds(region, x, y)]
-        if any(region.type != "WINDOW" for region in regions):
+        if len(regions) != 1 or regions[0].type != "WINDOW":
             return None
-        return next(((area, region, region.data) for region in regions), None)
+        space, windows = area.spaces.active, [region for region in area.regions if region.type == "WINDOW"]
+        views = list(space.region_quadviews) or [space.region_3d]  # four in quad view, in the order of the regions
+        return area, regions[0], views[windows.index(regions[0])]
     return None
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import shapes
 import trimesh
-from partwheel.core import Hierarchy, meshes
+from partwheel.core import Hierarchy, meshes, polygons
 
 
 def test_off_keeps_polygons_and_vertices(tmp_path):
@@ -53,7 +53,7 @@ def test_every_concave_polygon_is_cut_without_overlap():
         if np.diff(angles, append=angles[0] + 2 * np.pi).max() > 3:
             continue  # its centre would be outside
         flat = random.uniform(0.2, 1, count)[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
-        triangles = np.array(meshes.triangulate(np.column_stack([flat, np.zeros(count)]) @ turn, range(count)))
+        triangles = np.array(polygons.triangulate(np.column_stack([flat, np.zeros(count)]) @ turn, range(count)))
         a, b, c = (flat[triangles[:, i]] for i in range(3))
         areas = np.cross(np.pad(b - a, ((0, 0), (0, 1))), np.pad(c - a, ((0, 0), (0, 1))))[:, 2] / 2
         whole = (flat[:, 0] * np.roll(flat[:, 1], -1) - flat[:, 1] * np.roll(flat[:, 0], -1)).sum() / 2
@@ -62,7 +62,7 @@ def test_every_concave_polygon_is_cut_without_overlap():
 
 def test_points_on_a_polygons_sides_give_no_triangle_without_area():
     points = [(0, 0), (1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (1, 1), (0, 1)]
-    triangles = np.array(meshes.triangulate(np.array([(x, y, 0.0) for x, y in points]), range(8)))
+    triangles = np.array(polygons.triangulate(np.array([(x, y, 0.0) for x, y in points]), range(8)))
     p = np.array(points, float)[triangles]
     doubled = (p[:, 1, 0] - p[:, 0, 0]) * (p[:, 2, 1] - p[:, 0, 1]) - (p[:, 1, 1] - p[:, 0, 1]) * (p[:, 2, 0] - p[:, 0, 0])
     assert doubled.min() > 0 and doubled.sum() == 6

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the add-on's tests share: the installed package, meshes, and what is selected."""
+
+import importlib
+import unittest
+from pathlib import Path
+
+import bmesh
+import bpy
+import numpy
+
+MODULE = None  # the installed add-on's module name, set by run.py
+MESHES = Path(__file__).resolve().parents[2] / "build" / "deps" / "meshes"
+
+
+def part(name):
+    """A module of the installed add-on: part("core.hierarchy")."""
+    return importlib.import_module(f"{MODULE}.{name}")
+
+
+def read_off(name):
+    """(vertices, polygons) of a plain OFF file."""
+    lines = [line.split() for line in (MESHES / f"{name}.off").read_text().splitlines()
+             if line.strip() and not line.startswith("#")]
+    vertex_count, face_count = map(int, lines[1][:2])
+    vertices = [tuple(map(float, line[:3])) for line in lines[2:2 + vertex_count]]
+    return vertices, [tuple(map(int, line[1:1 + int(line[0])]))
+                      for line in lines[2 + vertex_count:2 + vertex_count + face_count]]
+
+
+BOX = ([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)],
+       [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
+
+
+class MeshTest(unittest.TestCase):
+    """Each test starts in an empty scene, in Object Mode, with nothing built."""
+
+    def setUp(self):
+        if bpy.context.mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+        for data in (bpy.data.objects, bpy.data.meshes, bpy.data.libraries):
+            for item in list(data):
+                data.remove(item)
+        part("session")._entries.clear()
+        bpy.context.tool_settings.mesh_select_mode = (False, False, True)
+
+    def add(self, vertices, polygons, name="model"):
+        """A new active object with this mesh."""
+        mesh = bpy.data.meshes.new(name)
+        mesh.from_pydata(vertices, [], polygons)
+        return self.link(bpy.data.objects.new(name, mesh))
+
+    def link(self, obj):
+        bpy.context.collection.objects.link(obj)
+        for other in bpy.context.view_layer.objects:
+            other.select_set(other == obj)
+        bpy.context.view_layer.objects.active = obj
+        return obj
+
+    def edit(self, obj, kinds=("FACE",)):
+        """Enters Edit Mode with nothing selected."""
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.context.tool_settings.mesh_select_mode = tuple(kind in kinds for kind in ("VERT", "EDGE", "FACE"))
+        bpy.ops.mesh.select_all(action="DESELECT")
+        return bmesh.from_edit_mesh(obj.data)
+
+    def hierarchy(self, obj):
+        """Built by the core alone from the mesh as Python sees it: Blender's triangles of each polygon, or the
+        core's where one of Blender's has no area."""
+        mesh = obj.data
+        mesh.calc_loop_triangles()
+        triangles = [(tuple(triangle.vertices), triangle.polygon_index) for triangle in mesh.loop_triangles]
+        bad = {triangle.polygon_index for triangle in mesh.loop_triangles if triangle.area < 1e-9}
+        triangles = [pair for pair in triangles if pair[1] not in bad]
+        for face in bad:
+            corners = list(mesh.polygons[face].vertices)
+            pieces = part("core.polygons").triangulate(numpy.array([mesh.vertices[i].co[:] for i in corners]), corners)
+            triangles += [(piece, face) for piece in pieces]
+        return part("core").Hierarchy.build([tuple(vertex.co) for vertex in mesh.vertices],
+                                            [triangle for triangle, _ in triangles],
+                                            [face for _, face in triangles], len(mesh.polygons))
+
+
+def selected(obj):
+    """Indices of the selected faces of the mesh in Edit Mode."""
+    return {face.index for face in _faces(obj) if face.select}
+
+
+def flags(obj):
+    """Everything about the selection: of vertices, edges, faces, the history, the active face."""
+    bm = bmesh.from_edit_mesh(obj.data)
+    for sequence in (bm.verts, bm.edges, bm.faces):
+        sequence.index_update()
+    return (*([element.select for element in sequence] for sequence in (bm.verts, bm.edges, bm.faces)),
+            [(type(element).__name__, element.index) for element in bm.select_history],
+            bm.faces.active and bm.faces.active.index)
+
+
+def _faces(obj):
+    bm = bmesh.from_edit_mesh(obj.data)
+    bm.faces.index_update()
+    return bm.faces

@@ -1,0 +1,344 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Picking by a ray, and the modal tool fed with events by hand: its answers, the selection, what it leaves behind.
+
+Blender without windows has a 3D view with sizes and matrices, but runs no modal operator; so the operator's own methods
+are called. The GUI tier does the same with real events.
+"""
+
+import contextlib
+import io
+import types
+
+import bmesh
+import bpy
+from bpy_extras.view3d_utils import location_3d_to_region_2d
+from common import BOX, MeshTest, flags, part, read_off, selected
+from mathutils import Euler, Matrix, Vector
+
+
+def view():
+    """(window, area, region, RegionView3D) of the 3D view."""
+    window = bpy.context.window_manager.windows[0]
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    return window, area, region, area.spaces.active.region_3d
+
+
+def show(obj):
+    """Puts the object where the view looks, so that it fills a good part of it. (A view can't be turned here: without
+    windows Blender crashes when it is updated.)"""
+    _, _, _, region_view = view()
+    corners = [Vector(corner) for corner in obj.bound_box]
+    size = max((a - b).length for a in corners for b in corners)
+    obj.matrix_world = (Matrix.Translation(region_view.view_location) @ Euler((0.4, 0.2, 0.5)).to_matrix().to_4x4()
+                        @ Matrix.Scale(region_view.view_distance / 4 / size, 4)
+                        @ Matrix.Translation(-sum(corners, Vector()) / 8))
+    bpy.context.view_layer.update()
+
+
+def camera(obj, perspective):
+    """(region, view) of 800 x 600 pixels that look at the object, as far as picking needs them."""
+    corners = [obj.matrix_world @ Vector(corner) for corner in obj.bound_box]
+    size = max((a - b).length for a in corners for b in corners)
+    pose = (Matrix.Translation(sum(corners, Vector()) / 8) @ Euler((1.1, 0, 0.5)).to_matrix().to_4x4()
+            @ Matrix.Translation((0, 0, 1.5 * size)))
+    near, far, across = 0.01 * size, 10 * size, 0.75
+    if perspective:
+        projection = Matrix(((2 / across, 0, 0, 0), (0, 8 / 3 / across, 0, 0),
+                             (0, 0, (near + far) / (near - far), 2 * near * far / (near - far)), (0, 0, -1, 0)))
+    else:
+        projection = Matrix(((2 / size, 0, 0, 0), (0, 8 / 3 / size, 0, 0), (0, 0, -1 / far, 0), (0, 0, 0, 1)))
+    return types.SimpleNamespace(width=800, height=600), types.SimpleNamespace(
+        view_matrix=pose.inverted(), window_matrix=projection, perspective_matrix=projection @ pose.inverted(),
+        is_perspective=perspective, view_perspective="PERSP" if perspective else "ORTHO")
+
+
+class FakeContext:
+    """bpy.context for a 3D view, but what the tool says to the user is kept, and no handler is added."""
+
+    def __init__(self):
+        self.window, self.area, self.region, _ = view()
+        self.handlers, self.status, self.header = [], [], []
+        self.window_manager = types.SimpleNamespace(modal_handler_add=self.handlers.append)
+        self.workspace = types.SimpleNamespace(status_text_set=self.status.append)
+        real = self.area
+        self.area = types.SimpleNamespace(type="VIEW_3D", header_text_set=self.header.append, regions=real.regions)
+
+    def __getattr__(self, name):
+        return getattr(bpy.context, name)
+
+
+def event(kind, point=(0, 0), value="PRESS", **modifiers):
+    _, _, region, _ = view()
+    held = {name: modifiers.get(name, False) for name in ("ctrl", "alt", "shift", "oskey")}
+    return types.SimpleNamespace(type=kind, value=value, mouse_x=int(point[0] + region.x),
+                                 mouse_y=int(point[1] + region.y), **held)
+
+
+class Tool:
+    """An instance of the operator's methods without an operator."""
+
+    def __init__(self, **properties):
+        self.reports = []
+        self.face_index, self.level, self.extend = 0, 0, False
+        vars(self).update(properties)
+
+    def __getattr__(self, name):
+        value = vars(part("operators.select").MESH_OT_partwheel_select).get(name)
+        if value is None:
+            raise AttributeError(name)
+        return value.__get__(self) if isinstance(value, types.FunctionType) else value
+
+    def report(self, kind, message):
+        self.reports.append((kind, message))
+
+
+class Modal(MeshTest):
+    def start(self, name="hand", point=None, **properties):
+        self.obj = self.add(*(read_off(name) if isinstance(name, str) else name))
+        self.h = self.hierarchy(self.obj)
+        show(self.obj)
+        self.edit(self.obj)
+        self.context, self.tool = FakeContext(), Tool(**properties)
+        return self.tool.invoke(self.context, event("W", point or (1, 1), ctrl=True))
+
+    def send(self, *arguments, **modifiers):
+        return self.tool.modal(self.context, event(*arguments, **modifiers))
+
+    def centre(self, obj=None, offset=0):
+        """A pixel with a face of the object under it: (point, face index)."""
+        obj = obj or self.obj
+        _, _, region, region_view = view()
+        picker = part("picking").Picker()
+        bm = bmesh.from_edit_mesh(obj.data)
+        for face in list(bm.faces)[offset:]:
+            if face.hide:
+                continue
+            point = location_3d_to_region_2d(region, region_view, obj.matrix_world @ face.calc_center_median())
+            found = picker.face_under(obj, region, region_view, [int(value) for value in point])
+            if found and found[0] == face.index:
+                return [int(value) for value in point], face.index
+        self.fail("no face of the object is in view")
+
+    def expect(self, face, level):
+        stops, start = self.h.wheel(face)
+        self.assertEqual(selected(self.obj), set(self.h.faces(stops[start + level]).tolist()))
+
+    def is_over(self):
+        self.assertEqual((self.context.status[-1], self.context.header[-1]), (None, None))
+
+    def test_pick_then_wheel_then_confirm(self):
+        self.assertEqual(self.start(), {"RUNNING_MODAL"})
+        self.assertEqual((len(self.context.handlers), selected(self.obj)), (1, set()))
+        point, face = self.centre()
+        self.assertEqual(self.send("LEFTMOUSE", point), {"RUNNING_MODAL"})
+        self.expect(face, 0)
+        for up, down in (("WHEELUPMOUSE", "WHEELDOWNMOUSE"), ("PAGE_UP", "PAGE_DOWN"),
+                         ("NUMPAD_PLUS", "NUMPAD_MINUS")):
+            for level in (1, 2, 3):
+                self.assertEqual(self.send(up, point), {"RUNNING_MODAL"})
+                self.expect(face, level)
+            for level in (2, 1, 0):
+                self.assertEqual(self.send(down, point), {"RUNNING_MODAL"})
+                self.expect(face, level)
+        self.send("WHEELUPMOUSE", point)
+        self.send("WHEELUPMOUSE", point)
+        self.assertIn("Part ", self.context.header[-1])
+        self.assertEqual(self.send("LEFTMOUSE", point), {"FINISHED"})
+        self.expect(face, 2)
+        self.assertEqual((self.tool.face_index, self.tool.level), (face, 2))
+        self.is_over()
+        found = selected(self.obj)
+        bpy.ops.mesh.select_all(action="DESELECT")
+        bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", face_index=self.tool.face_index, level=self.tool.level)
+        self.assertEqual(selected(self.obj), found)
+
+    def test_started_over_the_mesh_picks_at_once(self):
+        self.start()
+        point, face = self.centre()
+        self.send("ESC")
+        self.tool, self.context = Tool(), FakeContext()
+        self.assertEqual(self.tool.invoke(self.context, event("W", point, ctrl=True)), {"RUNNING_MODAL"})
+        self.expect(face, 0)
+        self.assertEqual(self.send("RET"), {"FINISHED"})
+        self.expect(face, 0)
+
+    def test_cancel_restores(self):
+        for kind in ("ESC", "RIGHTMOUSE"):
+            self.start()
+            bm = bmesh.from_edit_mesh(self.obj.data)
+            bm.faces.ensure_lookup_table()
+            self.send("ESC")
+            for index in (5, 7, 9):
+                bm.faces[index].select_set(True)
+                bm.select_history.add(bm.faces[index])
+            bm.faces.active = bm.faces[9]
+            before = flags(self.obj)
+            self.tool, self.context = Tool(), FakeContext()
+            point, _ = self.centre()
+            self.tool.invoke(self.context, event("W", point, ctrl=True))
+            self.send("WHEELUPMOUSE", point)
+            self.assertNotEqual(flags(self.obj), before)
+            self.assertEqual(self.send(kind), {"CANCELLED"})
+            self.assertEqual(flags(self.obj), before)
+            self.is_over()
+            bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_what_passes_and_what_does_not(self):
+        self.start()
+        point, face = self.centre()
+        for _ in range(2):
+            for kind, more in (("MIDDLEMOUSE", {}), ("MIDDLEMOUSE", {"shift": True}), ("NUMPAD_1", {}),
+                               ("WHEELUPMOUSE", {"ctrl": True}), ("LEFTMOUSE", {"alt": True}), ("TIMER", {}),
+                               ("NDOF_MOTION", {}), ("TRACKPADZOOM", {})):
+                self.assertEqual(self.send(kind, point, **more), {"PASS_THROUGH"}, kind)
+            for kind in ("A", "TAB", "X", "MOUSEMOVE", "Z", "ONE"):
+                self.assertEqual(self.send(kind, point), {"RUNNING_MODAL"}, kind)
+            self.send("LEFTMOUSE", point)
+        self.tool, self.context = Tool(), FakeContext()
+        self.tool.invoke(self.context, event("W", point, ctrl=True))
+        self.assertEqual(self.send("LEFTMOUSE", point, "RELEASE"), {"RUNNING_MODAL"})
+        self.assertEqual(self.send("LEFTMOUSE", (-10, -10)), {"RUNNING_MODAL"})  # outside of every 3D view
+        self.expect(face, 0)
+        self.assertEqual(self.send("LEFTMOUSE", point, "DOUBLE_CLICK"), {"FINISHED"})
+
+    def test_a_click_beside_the_mesh_waits_on(self):
+        self.start()
+        self.assertEqual(self.send("LEFTMOUSE", (2, 2)), {"RUNNING_MODAL"})
+        self.assertIn("no face", self.context.header[-1])
+        self.assertEqual(selected(self.obj), set())
+        self.assertEqual(self.send("RET"), {"RUNNING_MODAL"})
+
+    def test_another_object_is_named(self):
+        other = self.add(*BOX, "other")
+        self.start()
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.obj.matrix_world = Matrix.Translation((0, 0, -1000))
+        other.select_set(True)
+        show(other)
+        bpy.ops.object.mode_set(mode="EDIT")
+        self.assertEqual(bpy.context.edit_object, self.obj)
+        point, _ = self.centre(other)
+        self.tool, self.context = Tool(), FakeContext()
+        self.assertEqual(self.tool.invoke(self.context, event("W", point, ctrl=True)), {"RUNNING_MODAL"})
+        self.assertIn("other", self.context.header[-1])
+        self.assertEqual(selected(self.obj), set())
+
+    def test_an_error_inside_restores_reports_and_ends(self):
+        self.start()
+        point, _ = self.centre()
+        before = flags(self.obj)
+        self.send("LEFTMOUSE", point)
+        self.tool.hierarchy = None  # whatever may go wrong
+        with contextlib.redirect_stderr(io.StringIO()) as log:
+            self.assertEqual(self.send("WHEELUPMOUSE", point), {"CANCELLED"})
+        self.assertIn("Traceback", log.getvalue())
+        self.assertEqual(self.tool.reports[-1][0], {"ERROR"})
+        self.assertEqual(flags(self.obj), before)
+        self.is_over()
+
+    def test_leaving_edit_mode_or_changing_the_mesh_ends_it(self):
+        for change in (lambda: bpy.ops.object.mode_set(mode="OBJECT"), lambda: bpy.ops.mesh.delete(type="FACE"),
+                       lambda: bpy.ops.mesh.select_mode(type="VERT")):
+            self.start()
+            point, _ = self.centre()
+            self.send("LEFTMOUSE", point)
+            change()
+            self.assertEqual(self.send("WHEELUPMOUSE", point), {"CANCELLED"})
+            self.assertEqual(self.tool.reports[-1][0], {"WARNING"})
+            self.is_over()
+            self.setUp()
+
+    def test_a_mesh_that_can_not_be_built_is_reported(self):
+        vertices, polygons = BOX
+        with self.assertRaises(part("core").PartwheelError):
+            self.start((vertices, polygons[1:]))
+        self.edit(self.obj)
+        self.tool, self.context = Tool(), FakeContext()
+        self.assertEqual(self.tool.invoke(self.context, event("W", (1, 1))), {"CANCELLED"})
+        self.assertIn("open", self.tool.reports[-1][1])
+        self.assertEqual(self.context.handlers, [])
+
+    def test_not_over_a_3d_view(self):
+        self.start(BOX)
+        self.send("ESC")
+        self.tool, self.context = Tool(), FakeContext()
+        self.context.area = None
+        self.assertEqual(self.tool.invoke(self.context, event("W")), {"CANCELLED"})
+        self.assertEqual(self.tool.reports[-1][0], {"ERROR"})
+
+    def test_extend_adds(self):
+        self.start()
+        point, face = self.centre()
+        self.send("ESC")
+        bm = bmesh.from_edit_mesh(self.obj.data)
+        bm.faces.ensure_lookup_table()
+        stops, start = self.h.wheel(face)
+        outside = next(index for index in range(2390) if index not in self.h.faces(stops[start + 1]))
+        bm.faces[outside].select_set(True)
+        self.tool, self.context = Tool(extend=True), FakeContext()
+        self.tool.invoke(self.context, event("W", point, ctrl=True))
+        self.send("WHEELUPMOUSE", point)
+        self.assertEqual(selected(self.obj), {outside, *self.h.faces(stops[start + 1]).tolist()})
+        self.send("WHEELDOWNMOUSE", point)
+        self.assertEqual(selected(self.obj), {outside, *self.h.faces(stops[start]).tolist()})
+
+
+class Pick(MeshTest):
+    def nearest(self, obj, origin, direction, skip=()):
+        """By brute force: the face whose triangle the ray meets first."""
+        from mathutils.geometry import intersect_ray_tri
+
+        bm = bmesh.from_edit_mesh(obj.data)
+        best = None
+        for corners in bm.calc_loop_triangles():
+            if corners[0].face.index in skip:
+                continue
+            points = [obj.matrix_world @ corner.vert.co for corner in corners]
+            hit = intersect_ray_tri(*points, direction, origin, True)
+            if hit and (best is None or (hit - origin).length < best[0]):
+                best = (hit - origin).length, corners[0].face.index
+        return best
+
+    def test_the_nearest_visible_face_under_the_mouse(self):
+        from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
+
+        for perspective in (True, False):
+            for scale in ((1, 1, 1), (-1, 1, 1), (2, -0.5, 3), (-1, -1, -1), (100, 100, 100)):
+                self.setUp()
+                obj = self.add(*read_off("hand"))
+                obj.matrix_world = Matrix.Translation((3, -2, 1)) @ Euler((0.3, 0.4, 0.5)).to_matrix().to_4x4() @ \
+                    Matrix.Diagonal((*scale, 1))
+                bpy.context.view_layer.update()
+                region, region_view = camera(obj, perspective)
+                bm = self.edit(obj)
+                bm.faces.ensure_lookup_table()
+                hidden = set()
+                for _ in range(2):
+                    picker, hits = part("picking").Picker(), 0
+                    for x in range(1, 8):
+                        for y in range(1, 8):
+                            point = region.width * x // 8, region.height * y // 8
+                            found = picker.face_under(obj, region, region_view, point)
+                            expected = self.nearest(obj, region_2d_to_origin_3d(region, region_view, point),
+                                                    region_2d_to_vector_3d(region, region_view, point), hidden)
+                            if expected is None:
+                                self.assertIsNone(found)
+                                continue
+                            hits += 1
+                            self.assertEqual(found[0], expected[1])
+                            self.assertAlmostEqual(found[1] / expected[0], 1, 3)
+                    self.assertGreater(hits, 2)
+                    hidden = set(range(0, 2390, 3))
+                    for index in hidden:
+                        bm.faces[index].hide_set(True)
+                bpy.ops.mesh.reveal(select=False)
+
+    def test_what_lies_over_the_view_is_not_the_view(self):
+        window, area, region, _ = view()
+        find = part("picking").view_under
+        inside = region.x + region.width // 2, region.y + region.height // 2
+        self.assertEqual(find(window, *inside)[1].type, "WINDOW")
+        header = next(region for region in area.regions if region.type == "HEADER")
+        self.assertIsNone(find(window, header.x + 5, header.y + header.height // 2))
+        self.assertIsNone(find(window, -5, -5))

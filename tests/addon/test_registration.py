@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Enabling and disabling the add-on leaves nothing behind, as often as one likes."""
+
+import importlib.util
+import inspect
+import os
+import sys
+import unittest
+
+import bpy
+import common
+
+
+def keymap_items():
+    configurations = bpy.context.window_manager.keyconfigs
+    return sorted((configuration.name, keymap.name, item.idname, item.type, item.ctrl, item.shift, item.alt)
+                  for configuration in (configurations.addon, configurations.user) if configuration
+                  for keymap in configuration.keymaps for item in keymap.keymap_items)
+
+
+def handlers():
+    return {name: list(functions) for name, functions in inspect.getmembers(bpy.app.handlers)
+            if isinstance(functions, list)}
+
+
+def menu_entries():
+    found = {}
+    for name in dir(bpy.types):
+        draw = getattr(getattr(bpy.types, name, None), "draw", None)
+        functions = getattr(draw, "_draw_funcs", None)
+        if functions:
+            found[name] = [function for function in functions if function.__module__.startswith(common.MODULE)]
+    return {name: functions for name, functions in found.items() if functions}
+
+
+def timers():
+    return [function for name, module in list(sys.modules.items()) if name.startswith(common.MODULE)
+            for function in vars(module).values() if inspect.isfunction(function)
+            and bpy.app.timers.is_registered(function)]
+
+
+def properties():
+    return {owner: sorted(getattr(bpy.types, owner).bl_rna.properties.keys())
+            for owner in ("Scene", "Object", "Mesh", "WindowManager", "Screen")}
+
+
+def everything():
+    operators = [name for name in dir(bpy.ops.mesh) if name.startswith("partwheel")]
+    return dir(bpy.types), operators, keymap_items(), handlers(), menu_entries(), timers(), properties()
+
+
+class Registration(unittest.TestCase):
+    def tearDown(self):
+        bpy.ops.preferences.addon_enable(module=common.MODULE)
+
+    def test_three_times_by_blender(self):
+        bpy.ops.preferences.addon_disable(module=common.MODULE)
+        off = everything()
+        self.assertEqual((off[1], off[4], off[5]), ([], {}, []))
+        for _ in range(3):
+            bpy.ops.preferences.addon_enable(module=common.MODULE)
+            on = everything()
+            self.assertEqual(on[1], ["partwheel_build", "partwheel_select"])
+            self.assertEqual(list(on[4]), ["VIEW3D_MT_select_edit_mesh"])
+            self.assertEqual(len(on[3]["load_post"]), len(off[3]["load_post"]) + 1)
+            bpy.ops.preferences.addon_disable(module=common.MODULE)
+            self.assertEqual(everything(), off)
+
+    def test_three_times_by_hand(self):
+        package = sys.modules[common.MODULE]
+        package.unregister()
+        off = everything()
+        for _ in range(3):
+            package.register()
+            self.assertNotEqual(everything(), off)
+            package.unregister()
+            self.assertEqual(everything(), off)
+        package.register()
+
+    def test_the_shortcut_is_there_and_was_free(self):
+        ours = [item for item in keymap_items() if item[2] == "mesh.partwheel_select"]
+        self.assertIn(("Blender addon", "Mesh", "mesh.partwheel_select", "W", 1, 0, 0),
+                      [tuple(value if isinstance(value, str) else int(value) for value in item) for item in ours])
+        path = next(path for path in (os.path.join(root, "presets", "keyconfig", "keymap_data", "blender_default.py")
+                                      for root in bpy.utils.script_paths()) if os.path.exists(path))
+        spec = importlib.util.spec_from_file_location("blender_default_keys", path)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        keymaps = [keymap for mouse in ("LEFT", "RIGHT") for keymap in module.generate_keymaps(
+            module.Params(select_mouse=mouse))]
+        names = {"Mesh", "3D View", "3D View Generic", "Window", "Screen", "Screen Editing", "Object Non-modal",
+                 "User Interface", "Frames"}
+        self.assertTrue(names <= {name for name, _, _ in keymaps})
+        taken = [name for name, _, content in keymaps if name in names or name.startswith("3D View Tool")
+                 for item in content["items"]
+                 if item[1]["type"] == "W" and item[1].get("ctrl") and not item[1].get("shift") and not
+                 item[1].get("alt")]
+        self.assertEqual(taken, [])
+
+    def test_operators_undo_and_panel(self):
+        self.assertEqual(bpy.types.MESH_OT_partwheel_select.bl_options, {"REGISTER", "UNDO"})
+        self.assertEqual(bpy.types.VIEW3D_PT_partwheel.bl_category, "Partwheel")

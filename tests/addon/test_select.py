@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""mesh.partwheel_select without a window: which faces are selected after each level, and the hand-off."""
+
+import random
+
+import bmesh
+import bpy
+from common import BOX, MeshTest, flags, part, read_off, selected
+from mathutils import Vector
+
+
+class Select(MeshTest):
+    def pick(self, face, level=0, **more):
+        self.assertEqual(bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", face_index=face, level=level, **more),
+                         {"FINISHED"})
+
+    def test_every_level_of_real_meshes(self):
+        for name in ("hand", "homer", "cross_quad", "P", "corner_poly"):
+            with self.subTest(name):
+                obj = self.add(*read_off(name))
+                h = self.hierarchy(obj)
+                self.edit(obj)
+                for face in random.Random(name).sample(range(len(h.order)), 5):
+                    stops, start = h.wheel(face)
+                    for index, stop in enumerate(stops):
+                        self.pick(face, index - start)
+                        self.assertEqual(selected(obj), set(h.faces(stop).tolist()))
+                        self.assertEqual(bmesh.from_edit_mesh(obj.data).faces.active.index, face)
+                    self.pick(face, 10**6)
+                    self.assertEqual(len(selected(obj)), len(h.order))
+                    self.pick(face, -(10**6))
+                    self.assertEqual(selected(obj), set(h.faces(stops[0]).tolist()))
+                bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_up_and_down_again(self):
+        obj = self.add(*read_off("hand"))
+        self.edit(obj)
+        found = []
+        for level in (0, 1, 2, 3, 2, 1):
+            self.pick(700, level)
+            found.append(selected(obj))
+        self.assertEqual(found[4:], [found[2], found[1]])
+        self.assertTrue(found[0] < found[1] < found[2] < found[3])
+
+    def test_vertex_and_edge_modes_look_as_blender_selects(self):
+        obj = self.add(*read_off("hand"))
+        h = self.hierarchy(obj)
+        stops, start = h.wheel(700)
+        for kinds in (("VERT",), ("EDGE",), ("FACE",), ("VERT", "FACE"), ("EDGE", "FACE")):
+            Selection = part("selection").Selection
+            bm = self.edit(obj, kinds)
+            expected = []
+            for stop in stops:
+                bpy.ops.mesh.select_all(action="DESELECT")
+                bm.faces.ensure_lookup_table()
+                for face in h.faces(stop):
+                    bm.faces[face].select_set(True)
+                bm.select_flush_mode()
+                expected.append(flags(obj)[:3])
+            bpy.ops.mesh.select_all(action="DESELECT")
+            selection = Selection(obj)
+            order = [*range(len(stops)), *reversed(range(len(stops))), len(stops) - 1, 0]
+            for index in order:
+                selection.select(obj, h.faces(stops[index]))
+                with self.subTest(f"{kinds} stop {index}"):
+                    self.assertEqual(flags(obj)[:3], expected[index])
+            totals = obj.data.total_vert_sel, obj.data.total_edge_sel, obj.data.total_face_sel
+            self.assertEqual(totals, tuple(map(sum, expected[0])))
+            bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_restoring_is_exact(self):
+        obj = self.add(*read_off("hand"))
+        h = self.hierarchy(obj)
+        stops, _ = h.wheel(700)
+        draw = random.Random(6)
+        for kind in ("VERT", "EDGE", "FACE"):
+            bm = self.edit(obj, (kind,))
+            elements = {"VERT": bm.verts, "EDGE": bm.edges, "FACE": bm.faces}[kind]
+            elements.ensure_lookup_table()
+            for index in draw.sample(range(len(elements)), 60):
+                elements[index].select_set(True)
+                bm.select_history.add(elements[index])
+            bm.faces.ensure_lookup_table()
+            bm.faces.active = bm.faces[11]
+            bm.select_flush_mode()
+            before = flags(obj)
+            selection = part("selection").Selection(obj)
+            for stop in (*stops, *reversed(stops)):
+                selection.select(obj, h.faces(stop), 700)
+            self.assertNotEqual(flags(obj), before)
+            selection.restore(obj)
+            self.assertEqual(flags(obj), before)
+            self.assertEqual((obj.data.total_vert_sel, obj.data.total_edge_sel, obj.data.total_face_sel),
+                             tuple(map(sum, before[:3])))
+            bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_restoring_no_active_face(self):
+        obj = self.add(*BOX)
+        bm = self.edit(obj)
+        bm.faces.active = None
+        before = flags(obj)
+        selection = part("selection").Selection(obj)
+        selection.select(obj, [0, 1], 0)
+        selection.restore(obj)
+        self.assertEqual(flags(obj), before)
+
+    def test_hidden_faces_are_never_selected(self):
+        obj = self.add(*read_off("hand"))
+        for kinds in (("FACE",), ("VERT",), ("EDGE",)):
+            bm = self.edit(obj, kinds)
+            bm.faces.ensure_lookup_table()
+            hidden = set(range(0, 2390, 5))
+            for index in hidden:
+                bm.faces[index].hide_set(True)
+            self.pick(701, 10**6)
+            self.assertFalse(selected(obj) & hidden)
+            self.assertFalse(any(element.select and element.hide for sequence in (bm.verts, bm.edges, bm.faces)
+                                 for element in sequence))
+            if kinds == ("FACE",):
+                self.assertEqual(selected(obj), set(range(2390)) - hidden)
+            bpy.ops.mesh.reveal(select=False)
+            bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_extend(self):
+        obj = self.add(*read_off("hand"))
+        h = self.hierarchy(obj)
+        self.edit(obj)
+        self.pick(700)
+        first = selected(obj)
+        self.pick(100, extend=True)
+        stops, start = h.wheel(100)
+        self.assertEqual(selected(obj), first | set(h.faces(stops[start]).tolist()))
+        self.pick(100)
+        self.assertEqual(selected(obj), set(h.faces(stops[start]).tolist()))
+
+    def refusal(self, **arguments):
+        with self.assertRaises(RuntimeError) as refused:
+            bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", **arguments)
+        return str(refused.exception)
+
+    def test_errors_leave_the_selection(self):
+        obj = self.add(*BOX)
+        bm = self.edit(obj)
+        bm.faces.ensure_lookup_table()
+        bm.faces[2].select_set(True)
+        self.assertIn("Face 6", self.refusal(face_index=6))
+        self.assertEqual(selected(obj), {2})
+        bpy.ops.object.mode_set(mode="OBJECT")
+        bpy.ops.mesh.primitive_monkey_add()
+        bpy.ops.object.mode_set(mode="EDIT")
+        before = flags(bpy.context.object)
+        self.assertIn("open", self.refusal(face_index=0))
+        self.assertEqual(flags(bpy.context.object), before)
+
+    def test_only_in_edit_mode(self):
+        self.add(*BOX)
+        self.assertFalse(bpy.ops.mesh.partwheel_select.poll())
+
+    def test_two_users_of_a_mesh_in_edit_mode(self):
+        obj = self.add(*BOX)
+        other = bpy.data.objects.new("other", obj.data)
+        self.link(other)
+        self.edit(other)
+        self.pick(0, 10**6)
+        self.assertEqual(selected(other), set(range(6)))
+
+    def test_proportional_editing_takes_the_part_over(self):
+        obj = self.add(*read_off("hand"))
+        bm = self.edit(obj)
+        self.pick(700)
+        chosen = {vertex.index for vertex in bm.verts if vertex.select}
+        before = [vertex.co.copy() for vertex in bm.verts]
+        size = max((a - b).length for a in before[::50] for b in before[::50])
+        step = Vector((0, 0, size))
+        bpy.ops.transform.translate(value=step, use_proportional_edit=True, use_proportional_connected=True,
+                                    proportional_edit_falloff="SMOOTH", proportional_size=size / 4)
+        bm = bmesh.from_edit_mesh(obj.data)
+        moved = [(vertex.co - old).length / size for vertex, old in zip(bm.verts, before)]
+        self.assertTrue(all(abs(moved[index] - 1) < 1e-4 for index in chosen))
+        partly = [distance for index, distance in enumerate(moved) if index not in chosen and 0.01 < distance < 0.99]
+        self.assertGreater(len(partly), 10)
+        self.assertTrue(any(distance < 1e-6 for distance in moved))
+        self.assertIsNotNone(part("session").hierarchy(obj))  # only positions changed
+
+    def test_duplicate_takes_the_part_over(self):
+        obj = self.add(*read_off("hand"))
+        bm = self.edit(obj)
+        self.pick(700)
+        count = len(selected(obj))
+        bpy.ops.mesh.duplicate_move(TRANSFORM_OT_translate={"value": (0, 0, 1)})
+        bm = bmesh.from_edit_mesh(obj.data)
+        self.assertEqual((len(bm.faces), len(selected(obj))), (2390 + count, count))
+        self.assertIsNone(part("session").hierarchy(obj))
