@@ -98,6 +98,8 @@ TEST(Surface, NotFinite) {
             expect_error(mesh, PW_ERROR_NOT_FINITE, 5);
         }
     EXPECT_EQ(checked(stretched(cube(), {1e100, 1e100, 1e100})).status, PW_OK);
+    EXPECT_EQ(checked(stretched(cube(), {1e-80, 1e-80, 1e-80})).status, PW_OK);
+    EXPECT_EQ(checked(stretched(cube(), {9e-81, 9e-81, 9e-81})).status, PW_ERROR_NOT_FINITE);
 }
 
 TEST(Surface, Index) {

@@ -1,0 +1,551 @@
+// The C functions: arguments, capacities, messages, contexts, threads, and input nobody would think of.
+#include "support/built.h"
+#include "support/real_meshes.h"
+#include "support/sizes.h"
+
+#include <gtest/gtest.h>
+#include <pthread.h>
+
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <functional>
+#include <limits>
+#include <random>
+#include <set>
+#include <thread>
+
+namespace partwheel::test {
+namespace {
+
+constexpr size_t huge = std::numeric_limits<size_t>::max();
+
+struct FreeContext {
+    void operator()(pw_context* context) const { pw_context_free(context); }
+};
+using Context = std::unique_ptr<pw_context, FreeContext>;
+
+Context new_context() {
+    pw_context* context = nullptr;
+    EXPECT_EQ(pw_context_create(&context), PW_OK);
+    return Context(context);
+}
+
+TriMesh some_shape() { return surface_of("U", block({0, 0, 0}, {5, 1, 2}) + block({0, 0, 0}, {1, 4, 2}) + block({4, 0, 0}, {5, 4, 2})); }
+
+void expect_argument_error(pw_status status) {
+    EXPECT_EQ(status, PW_ERROR_ARGUMENT);
+    EXPECT_STRNE(pw_error_message(), "");
+}
+
+// ---- Names ----
+
+TEST(Api, Names) {
+    EXPECT_STREQ(pw_version(), PW_VERSION);
+    std::set<std::string> names;
+    for (int s = PW_OK; s <= PW_ERROR_INTERNAL; ++s) names.insert(pw_status_name(static_cast<pw_status>(s)));
+    EXPECT_EQ(names.size(), static_cast<size_t>(PW_ERROR_INTERNAL) + 1);
+    for (const std::string& name : names)
+        for (const char c : name) EXPECT_TRUE(c == ' ' || c == '-' || (c >= 'a' && c <= 'z')) << name;
+    EXPECT_STREQ(pw_status_name(PW_ERROR_SELF_INTERSECTION), "self-intersection");
+    const std::vector<std::string> stages{"surface", "tetrahedra", "cluster", "dendrogram", "hierarchy"};
+    for (int s = 0; s < PW_STAGE_COUNT; ++s) EXPECT_EQ(pw_stage_name(static_cast<pw_stage>(s)), stages[static_cast<size_t>(s)]);
+    for (const int s : {-1, PW_ERROR_INTERNAL + 1, 1000}) {
+        EXPECT_NE(pw_status_name(static_cast<pw_status>(s)), nullptr);
+        EXPECT_NE(pw_stage_name(static_cast<pw_stage>(s)), nullptr);
+    }
+}
+
+// ---- Arguments ----
+
+TEST(Api, NullsAreErrors) {
+    const TriMesh mesh = cube();
+    const Handle handle = build(mesh);
+    const pw_hierarchy* h = handle.get();
+    const Context context = new_context();
+    double seconds[PW_STAGE_COUNT];
+    size_t count = 0, start = 0;
+    int32_t room[64];
+    const int32_t* faces = nullptr;
+    pw_arrays a;
+    pw_summary s;
+    pw_mesh* made = nullptr;
+    pw_hierarchy* loaded = nullptr;
+
+    expect_argument_error(pw_context_create(nullptr));
+    expect_argument_error(pw_context_cancel(nullptr));
+    expect_argument_error(pw_context_progress(nullptr, seconds, nullptr));
+    expect_argument_error(pw_context_seconds(nullptr, seconds));
+    expect_argument_error(pw_context_seconds(context.get(), nullptr));
+    expect_argument_error(pw_build(nullptr, mesh.vertex_data(), 8, mesh.triangle_data(), 12, nullptr, 12, nullptr, nullptr));
+    expect_argument_error(pw_build(nullptr, nullptr, 8, mesh.triangle_data(), 12, nullptr, 12, nullptr, &loaded));
+    expect_argument_error(pw_build(nullptr, mesh.vertex_data(), 8, nullptr, 12, nullptr, 12, nullptr, &loaded));
+    expect_argument_error(pw_hierarchy_arrays(nullptr, &a));
+    expect_argument_error(pw_hierarchy_arrays(h, nullptr));
+    expect_argument_error(pw_hierarchy_summary(nullptr, &s));
+    expect_argument_error(pw_hierarchy_summary(h, nullptr));
+    expect_argument_error(pw_hierarchy_path(nullptr, 0, room, 64, &count));
+    expect_argument_error(pw_hierarchy_path(h, 0, nullptr, 64, &count));
+    expect_argument_error(pw_hierarchy_path(h, 0, room, 64, nullptr));
+    expect_argument_error(pw_hierarchy_wheel(nullptr, 0, room, 64, &count, &start));
+    expect_argument_error(pw_hierarchy_wheel(h, 0, nullptr, 64, &count, &start));
+    expect_argument_error(pw_hierarchy_wheel(h, 0, room, 64, nullptr, &start));
+    expect_argument_error(pw_hierarchy_wheel(h, 0, room, 64, &count, nullptr));
+    expect_argument_error(pw_hierarchy_faces(nullptr, 0, &faces, &count));
+    expect_argument_error(pw_hierarchy_faces(h, 0, nullptr, &count));
+    expect_argument_error(pw_hierarchy_faces(h, 0, &faces, nullptr));
+    expect_argument_error(pw_hierarchy_cut_height(nullptr, 0, room, 64, &count));
+    expect_argument_error(pw_hierarchy_cut_height(h, 0, nullptr, 64, &count));
+    expect_argument_error(pw_hierarchy_cut_height(h, 0, room, 64, nullptr));
+    expect_argument_error(pw_hierarchy_cut_parts(nullptr, 1, room, 64, &count));
+    expect_argument_error(pw_hierarchy_cut_parts(h, 1, nullptr, 64, &count));
+    expect_argument_error(pw_hierarchy_cut_parts(h, 1, room, 64, nullptr));
+    expect_argument_error(pw_hierarchy_hull(nullptr, 0, 1, &made));
+    expect_argument_error(pw_hierarchy_hull(h, 0, 1, nullptr));
+    expect_argument_error(pw_hierarchy_save(nullptr, nullptr, 0, &count));
+    expect_argument_error(pw_hierarchy_save(h, nullptr, 64, &count));
+    expect_argument_error(pw_hierarchy_save(h, nullptr, 0, nullptr));
+    expect_argument_error(pw_hierarchy_load(nullptr, 64, &loaded));
+    expect_argument_error(pw_hierarchy_load(reinterpret_cast<const uint8_t*>(room), 64, nullptr));
+    EXPECT_EQ(pw_hierarchy_load(nullptr, 0, &loaded), PW_ERROR_DATA);
+    EXPECT_EQ(loaded, nullptr);
+
+    ASSERT_EQ(pw_hierarchy_hull(h, 0, 1, &made), PW_OK);
+    const double* vertices = nullptr;
+    const int32_t* triangles = nullptr;
+    size_t n = 0, m = 0;
+    expect_argument_error(pw_mesh_arrays(nullptr, &vertices, &n, &triangles, &m));
+    expect_argument_error(pw_mesh_arrays(made, nullptr, &n, &triangles, &m));
+    expect_argument_error(pw_mesh_arrays(made, &vertices, nullptr, &triangles, &m));
+    expect_argument_error(pw_mesh_arrays(made, &vertices, &n, nullptr, &m));
+    expect_argument_error(pw_mesh_arrays(made, &vertices, &n, &triangles, nullptr));
+    pw_mesh_free(made);
+
+    pw_context_free(nullptr);
+    pw_hierarchy_free(nullptr);
+    pw_mesh_free(nullptr);
+    EXPECT_EQ(pw_context_progress(context.get(), nullptr, nullptr), PW_OK);
+}
+
+TEST(Api, OutOfRangeIsAnError) {
+    const Handle handle = build(some_shape());
+    const pw_arrays a = arrays(handle);
+    const pw_hierarchy* h = handle.get();
+    size_t count = 77, start = 77;
+    int32_t room[8];
+    const int32_t* faces = nullptr;
+    pw_mesh* made = nullptr;
+    for (const size_t face : {a.face_count, a.face_count + 1, size_t{1} << 40, huge}) {
+        expect_argument_error(pw_hierarchy_path(h, face, room, 8, &count));
+        expect_argument_error(pw_hierarchy_wheel(h, face, room, 8, &count, &start));
+    }
+    for (const size_t node : {a.node_count, huge}) expect_argument_error(pw_hierarchy_faces(h, node, &faces, &count));
+    for (const double height : {-1.0, -1e-300, std::nan(""), -HUGE_VAL})
+        expect_argument_error(pw_hierarchy_cut_height(h, height, room, 8, &count));
+    for (const size_t parts : {size_t{0}, a.tetrahedron_count + 1, size_t{4097}, huge})
+        expect_argument_error(pw_hierarchy_cut_parts(h, parts, room, 8, &count));
+    for (const auto& [first, last] : std::vector<std::pair<size_t, size_t>>{
+             {0, 0}, {1, 0}, {5, 5}, {0, a.tetrahedron_count + 1}, {a.tetrahedron_count, a.tetrahedron_count}, {0, huge}, {huge, huge}})
+        expect_argument_error(pw_hierarchy_hull(h, first, last, &made));
+    // Nothing was written.
+    EXPECT_EQ(count, 77U);
+    EXPECT_EQ(start, 77U);
+    EXPECT_EQ(faces, nullptr);
+    EXPECT_EQ(made, nullptr);
+    EXPECT_EQ(pw_hierarchy_cut_height(h, -0.0, nullptr, 0, &count), PW_OK);
+    EXPECT_EQ(pw_hierarchy_cut_height(h, HUGE_VAL, nullptr, 0, &count), PW_OK);
+    EXPECT_EQ(count, 2U);
+}
+
+TEST(Api, BuildChecksItsOptionsAndSizes) {
+    const TriMesh mesh = cube();
+    pw_hierarchy* made = nullptr;
+    const auto status = [&](const pw_build_options& options) {
+        return pw_build(nullptr, mesh.vertex_data(), mesh.vertices.size(), mesh.triangle_data(), mesh.triangles.size(),
+                        mesh.face_data(), mesh.face_count, &options, &made);
+    };
+    for (const double quality : {-1.0, 0.5, 1.0, 1.0999, std::nan(""), HUGE_VAL, -HUGE_VAL, 5e-324})
+        expect_argument_error(status({sizeof(pw_build_options), quality}));
+    for (const size_t size : {size_t{0}, sizeof(pw_build_options) - 1, sizeof(pw_build_options) + 1, huge})
+        expect_argument_error(status({size, 0}));
+    const auto sized_build = [&](size_t vertices, size_t triangles, const int32_t* faces, size_t face_count) {
+        return pw_build(nullptr, mesh.vertex_data(), vertices, mesh.triangle_data(), triangles, faces, face_count, nullptr, &made);
+    };
+    EXPECT_EQ(sized_build(0, 12, nullptr, 12), PW_ERROR_EMPTY);
+    EXPECT_EQ(sized_build(8, 0, nullptr, 0), PW_ERROR_EMPTY);
+    EXPECT_EQ(sized_build(7, 12, nullptr, 12), PW_ERROR_INDEX);
+    expect_argument_error(sized_build(8, 12, nullptr, 11));
+    expect_argument_error(sized_build(8, 12, nullptr, 13));
+    for (const size_t large : {size_t{PW_MAX_COUNT} + 1, huge}) {  // found out before anything is read
+        expect_argument_error(sized_build(large, 12, nullptr, 12));
+        expect_argument_error(sized_build(8, large, nullptr, large));
+        expect_argument_error(sized_build(8, 12, mesh.face_data(), large));
+    }
+    EXPECT_EQ(made, nullptr);
+    ASSERT_EQ(status({sizeof(pw_build_options), 1.1}), PW_OK);
+    pw_hierarchy_free(made);
+}
+
+TEST(Api, CapacityRules) {
+    const Handle handle = build(some_shape());
+    const pw_hierarchy* h = handle.get();
+    size_t start = 0;
+    const std::vector<std::function<pw_status(int32_t*, size_t, size_t*)>> questions{
+        [&](int32_t* out, size_t capacity, size_t* count) { return pw_hierarchy_path(h, 3, out, capacity, count); },
+        [&](int32_t* out, size_t capacity, size_t* count) { return pw_hierarchy_wheel(h, 3, out, capacity, count, &start); },
+        [&](int32_t* out, size_t capacity, size_t* count) { return pw_hierarchy_cut_height(h, 0, out, capacity, count); },
+        [&](int32_t* out, size_t capacity, size_t* count) { return pw_hierarchy_cut_parts(h, 7, out, capacity, count); },
+    };
+    for (const auto& ask : questions) {
+        size_t needed = 0, count = 0;
+        ASSERT_EQ(ask(nullptr, 0, &needed), PW_OK);
+        ASSERT_GT(needed, 1U);
+        std::vector<int32_t> room(needed + 3, -99);
+        ASSERT_EQ(ask(room.data(), needed - 1, &count), PW_OK);
+        EXPECT_EQ(count, needed);
+        EXPECT_EQ(room, std::vector<int32_t>(needed + 3, -99)) << "written although it doesn't fit";
+        ASSERT_EQ(ask(room.data(), needed, &count), PW_OK);
+        for (size_t i = 0; i < needed; ++i) EXPECT_NE(room[i], -99);
+        EXPECT_EQ(room[needed], -99) << "written past the end";
+        ASSERT_EQ(ask(room.data(), needed + 3, &count), PW_OK);
+        EXPECT_EQ(count, needed);
+        EXPECT_EQ(room[needed], -99);
+    }
+    size_t needed = 0, count = 0;
+    ASSERT_EQ(pw_hierarchy_save(h, nullptr, 0, &needed), PW_OK);
+    std::vector<uint8_t> bytes(needed, 0xab);
+    ASSERT_EQ(pw_hierarchy_save(h, bytes.data(), needed - 1, &count), PW_OK);
+    EXPECT_EQ(count, needed);
+    EXPECT_EQ(bytes, std::vector<uint8_t>(needed, 0xab));
+}
+
+TEST(Api, NothingIsWrittenOnFailure) {
+    TriMesh mesh = cube();
+    mesh.triangles.pop_back();
+    mesh.faces.pop_back();
+    auto* const mark = reinterpret_cast<pw_hierarchy*>(&mesh);
+    pw_hierarchy* made = mark;
+    EXPECT_EQ(pw_build(nullptr, mesh.vertex_data(), 8, mesh.triangle_data(), 11, mesh.face_data(), 6, nullptr, &made), PW_ERROR_OPEN);
+    EXPECT_EQ(made, mark);
+    const uint8_t bytes[3] = {1, 2, 3};
+    EXPECT_EQ(pw_hierarchy_load(bytes, 3, &made), PW_ERROR_DATA);
+    EXPECT_EQ(made, mark);
+}
+
+TEST(Api, MessagesBelongToTheirThread) {
+    expect_argument_error(pw_context_create(nullptr));
+    const std::string mine = pw_error_message();
+    std::string before, after;
+    std::thread([&] {
+        before = pw_error_message();
+        pw_hierarchy* made = nullptr;
+        (void)pw_hierarchy_load(nullptr, 0, &made);
+        after = pw_error_message();
+    }).join();
+    EXPECT_EQ(before, "");
+    EXPECT_NE(after, "");
+    EXPECT_NE(after, mine);
+    EXPECT_EQ(pw_error_message(), mine);
+    (void)build(cube());  // a success leaves the message
+    EXPECT_EQ(pw_error_message(), mine);
+}
+
+TEST(Api, PrintsNothing) {
+    const TriMesh flat = stretched(cube(), {1, 1, 1e-100});
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    (void)try_build(some_shape());
+    (void)try_build(flat);
+    std::fflush(stdout);
+    EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(Api, CallersBuffersAreOnlyReadDuringTheCall) {
+    TriMesh mesh = some_shape();
+    const TriMesh copy = mesh;
+    const Handle handle = build(mesh);
+    EXPECT_EQ(mesh.vertices, copy.vertices);
+    EXPECT_EQ(mesh.triangles, copy.triangles);
+    EXPECT_EQ(mesh.faces, copy.faces);
+    const auto bytes = save(handle);
+    std::fill(mesh.vertices.begin(), mesh.vertices.end(), Point{});
+    std::fill(mesh.triangles.begin(), mesh.triangles.end(), Triangle{});
+    EXPECT_EQ(save(handle), bytes);
+}
+
+// ---- Contexts ----
+
+TEST(Api, ProgressNeverFallsAndStagesFollowEachOther) {
+    const TriMesh mesh = real_mesh(light() ? "joint.off" : "hand.off");
+    const Context context = new_context();
+    for (int round = 0; round < 2; ++round) {
+        std::atomic<bool> done{false};
+        std::thread watcher;
+        std::vector<std::pair<double, pw_stage>> seen;
+        std::atomic<bool> watching{false};
+        watcher = std::thread([&] {
+            double fraction = 0;
+            pw_stage stage = PW_STAGE_SURFACE;
+            double last = -1;
+            // A context used before still tells of the last build until the next begins: wait for the fall to 0.
+            while (!done) {
+                EXPECT_EQ(pw_context_progress(context.get(), &fraction, &stage), PW_OK);
+                watching = true;
+                if (fraction != last) seen.emplace_back(fraction, stage);
+                last = fraction;
+                std::this_thread::yield();
+            }
+        });
+        while (!watching) std::this_thread::yield();
+        const auto begin = std::chrono::steady_clock::now();
+        const Built built = try_build(mesh, 0, context.get());
+        const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        done = true;
+        watcher.join();
+        ASSERT_EQ(built.status, PW_OK) << built.message;
+
+        if (round > 0 && !seen.empty() && seen.front().first == 1) seen.erase(seen.begin());
+        ASSERT_GT(seen.size(), 3U);
+        for (size_t i = 1; i < seen.size(); ++i) {
+            EXPECT_GT(seen[i].first, seen[i - 1].first);
+            EXPECT_GE(seen[i].second, seen[i - 1].second);
+        }
+        double fraction = 0;
+        pw_stage stage = PW_STAGE_SURFACE;
+        ASSERT_EQ(pw_context_progress(context.get(), &fraction, &stage), PW_OK);
+        EXPECT_EQ(fraction, 1);
+        EXPECT_EQ(stage, PW_STAGE_HIERARCHY);
+        double seconds[PW_STAGE_COUNT], sum = 0;
+        ASSERT_EQ(pw_context_seconds(context.get(), seconds), PW_OK);
+        for (const double s : seconds) {
+            EXPECT_GT(s, 0);
+            sum += s;
+        }
+        EXPECT_LE(sum, wall);
+        EXPECT_GE(sum, 0.5 * wall);
+    }
+}
+
+TEST(Api, SecondsOfAFailedBuild) {
+    const Context context = new_context();
+    TriMesh mesh = real_mesh("joint.off");
+    ASSERT_EQ(try_build(mesh, 0, context.get()).status, PW_OK);
+    std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
+    ASSERT_EQ(try_build(mesh, 0, context.get()).status, PW_ERROR_ORIENTATION);
+    double seconds[PW_STAGE_COUNT];
+    ASSERT_EQ(pw_context_seconds(context.get(), seconds), PW_OK);
+    EXPECT_GT(seconds[PW_STAGE_SURFACE], 0);
+    for (int s = PW_STAGE_TETRAHEDRA; s < PW_STAGE_COUNT; ++s) EXPECT_EQ(seconds[s], 0);
+}
+
+TEST(Api, CancelBeforeABuildStopsTheNextOneOnly) {
+    const Context context = new_context();
+    ASSERT_EQ(pw_context_cancel(context.get()), PW_OK);
+    const Built cancelled = try_build(cube(), 0, context.get());
+    EXPECT_EQ(cancelled.status, PW_ERROR_CANCELLED);
+    EXPECT_NE(cancelled.message, "");
+    EXPECT_EQ(try_build(cube(), 0, context.get()).status, PW_OK);
+}
+
+double cpu_seconds(clockid_t clock) {
+    timespec t{};
+    clock_gettime(clock, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+TEST(Api, CancelFromAnotherThreadWhileClustering) {
+    // Of the second model the clusters are wide open: each step takes long.
+    const TriMesh bear = real_mesh(light() ? "hand.off" : "bear_bis.off"), cheese = real_mesh("cheese.off");
+    const Context context = new_context();
+    for (const auto& [mesh, at] : {std::pair(&bear, 0.5), {&bear, 0.8}, {&bear, 0.95}, {&cheese, 0.5}}) {
+        SCOPED_TRACE(mesh->name);
+        std::atomic<bool> done{false};
+        pw_status status = PW_OK;
+        clockid_t clock{};
+        std::atomic<bool> running{false};
+        double ended = 0;
+        std::thread builder([&] {
+            pthread_getcpuclockid(pthread_self(), &clock);
+            running = true;
+            status = try_build(*mesh, 0, context.get()).status;
+            ended = cpu_seconds(clock);
+            done = true;
+        });
+        while (!running) std::this_thread::yield();
+        double fraction = 0;
+        pw_stage stage = PW_STAGE_SURFACE;
+        bool began = false;  // the last build's progress stands until this one begins
+        while (!done) {
+            EXPECT_EQ(pw_context_progress(context.get(), &fraction, &stage), PW_OK);
+            began = began || fraction < at;
+            if (began && stage == PW_STAGE_CLUSTER && fraction >= at) break;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        const bool too_late = done;
+        const double asked = cpu_seconds(clock);
+        EXPECT_EQ(pw_context_cancel(context.get()), PW_OK);
+        builder.join();
+        ASSERT_FALSE(too_late) << "the build was over before it could be cancelled";
+        EXPECT_EQ(status, PW_ERROR_CANCELLED) << "at " << at;
+        // In the builder's own time, as other programs may keep it from running. Freeing its memory counts too.
+        EXPECT_LT(ended - asked, sized(0.1, 2.0)) << "at " << at;
+    }
+    // The context is as good as new.
+    EXPECT_EQ(try_build(cube(), 0, context.get()).status, PW_OK);
+}
+
+// ---- Threads ----
+
+TEST(Api, BuildsInThreadsGiveTheSameBytes) {
+    const std::vector<TriMesh> meshes{real_mesh("joint.off"), perturbed(torus(16, 8, 2, 0.6), 0.03, 1), some_shape(),
+                                      surface_of("hollow", block({0, 0, 0}, {3, 3, 3}) - Cells{{1, 1, 1}})};
+    std::vector<std::vector<uint8_t>> alone;
+    for (const TriMesh& mesh : meshes) alone.push_back(save(build(mesh)));
+    for (int round = 0; round < sized(5, 2); ++round) {
+        std::vector<std::vector<uint8_t>> together(meshes.size());
+        std::vector<std::thread> threads;
+        for (size_t i = 0; i < meshes.size(); ++i)
+            threads.emplace_back([&, i] {
+                const Context context = new_context();
+                const Built built = try_build(meshes[i], 0, context.get());
+                if (built.status == PW_OK) together[i] = save(built.handle);
+            });
+        for (std::thread& t : threads) t.join();
+        EXPECT_EQ(together, alone);
+    }
+}
+
+TEST(Api, ManyThreadsAskOneHierarchy) {
+    const Handle handle = build(real_mesh("joint.off"));
+    const pw_arrays a = arrays(handle);
+    const auto ask = [&] {
+        std::vector<int32_t> answers;
+        for (size_t f = 0; f < a.face_count; f += 7) {
+            const auto p = path(handle, f);
+            const Wheel w = wheel(handle, f);
+            answers.insert(answers.end(), p.begin(), p.end());
+            answers.insert(answers.end(), w.stops.begin(), w.stops.end());
+            answers.push_back(static_cast<int32_t>(w.start));
+        }
+        for (size_t n = a.tetrahedron_count; n < a.node_count; n += 29)
+            answers.push_back(static_cast<int32_t>(hull(handle, static_cast<size_t>(a.tet_first[n]), static_cast<size_t>(a.tet_last[n])).vertices.size()));
+        for (const uint8_t byte : save(handle)) answers.push_back(byte);
+        return answers;
+    };
+    const std::vector<int32_t> expected = ask();
+    std::vector<std::vector<int32_t>> answers(4);
+    std::vector<std::thread> threads;
+    for (auto& answer : answers) threads.emplace_back([&] { answer = ask(); });
+    for (std::thread& t : threads) t.join();
+    for (const auto& answer : answers) EXPECT_EQ(answer, expected);
+}
+
+// ---- Input nobody would think of ----
+
+// Asks everything of a hierarchy, whatever it is.
+void ask_everything(const Handle& handle) {
+    const pw_arrays a = arrays(handle);
+    for (size_t f = 0; f < a.face_count; f += 1 + a.face_count / 10) {
+        (void)path(handle, f);
+        (void)wheel(handle, f);
+    }
+    std::vector<int32_t> room(a.tetrahedron_count + 1);
+    size_t count = 0;
+    for (const double height : {0.0, 1.0, HUGE_VAL})
+        EXPECT_EQ(pw_hierarchy_cut_height(handle.get(), height, room.data(), room.size(), &count), PW_OK);
+    for (const size_t parts : {size_t{1}, (a.tetrahedron_count + 1) / 2})
+        EXPECT_EQ(pw_hierarchy_cut_parts(handle.get(), std::min<size_t>(parts, 4096), room.data(), room.size(), &count), PW_OK);
+    for (size_t n = 0; n < a.node_count; n += 1 + a.node_count / 10) {
+        pw_mesh* made = nullptr;
+        const pw_status status = pw_hierarchy_hull(handle.get(), static_cast<size_t>(a.tet_first[n]), static_cast<size_t>(a.tet_last[n]), &made);
+        EXPECT_TRUE(status == PW_OK || status == PW_ERROR_DATA) << pw_error_message();
+        pw_mesh_free(made);
+    }
+    (void)save(handle);
+}
+
+TEST(Api, RandomSoupsGetANamedError) {
+    std::mt19937 random(9);
+    const auto whole = [&](int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); };
+    int built = 0;
+    for (int i = 0; i < sized(3000, 300); ++i) {
+        TriMesh mesh = i % 2 == 0 ? cube() : octahedron();
+        if (i % 3 == 0) mesh = tetrahedron();
+        for (int k = whole(0, 3); k > 0; --k) {  // so many things go wrong
+            auto& triangle = mesh.triangles[static_cast<size_t>(whole(0, static_cast<int>(mesh.triangles.size()) - 1))];
+            auto& vertex = mesh.vertices[static_cast<size_t>(whole(0, static_cast<int>(mesh.vertices.size()) - 1))];
+            switch (whole(0, 6)) {
+                case 0: triangle[static_cast<size_t>(whole(0, 2))] = whole(-1, 9); break;
+                case 1: vertex[static_cast<size_t>(whole(0, 2))] = std::ldexp(whole(-5, 5), whole(-1074, 330)); break;
+                case 2: vertex = mesh.vertices[0]; break;
+                case 3: vertex[0] = std::nan(""); break;
+                case 4: std::swap(triangle[0], triangle[1]); break;
+                case 5: vertex[static_cast<size_t>(whole(0, 2))] += whole(-3, 3); break;
+                default: vertex[static_cast<size_t>(whole(0, 2))] += std::ldexp(whole(-3, 3), whole(-60, -1)); break;
+            }
+        }
+        const Built result = try_build(mesh, i % 7 == 0 ? 1.4 : 0);
+        ASSERT_NE(result.status, PW_ERROR_INTERNAL) << result.message;
+        ASSERT_TRUE(result.status == PW_OK || !result.message.empty());
+        if (result.status != PW_OK) continue;
+        ++built;
+        ask_everything(result.handle);
+        const Built loaded = try_load(save(result.handle));
+        ASSERT_EQ(loaded.status, PW_OK) << loaded.message;
+    }
+    EXPECT_GT(built, sized(300, 30));
+}
+
+// The hash at the end of the saved form, so that damage gets past it.
+uint64_t hash_of(const uint8_t* bytes, size_t size) {
+    uint64_t h = 0xcbf29ce484222325;
+    size_t i = 0;
+    for (; i + 8 <= size; i += 8) {
+        uint64_t word = 0;
+        std::memcpy(&word, bytes + i, 8);
+        h = std::rotl((h ^ word) * 0x100000001b3, 29);
+    }
+    for (; i < size; ++i) h = (h ^ bytes[i]) * 0x100000001b3;
+    return h;
+}
+
+TEST(Api, ForgedBytesAreRefusedOrHarmless) {
+    const std::vector<uint8_t> bytes = save(build(some_shape()));
+    const size_t body = bytes.size() - 8;
+    uint64_t stored = 0;
+    std::memcpy(&stored, bytes.data() + body, 8);
+    ASSERT_EQ(hash_of(bytes.data(), body), stored) << "the saved form's hash has changed: bring hash_of() up to date";
+    std::mt19937 random(4);
+    int taken = 0, refused = 0;
+    for (int i = 0; i < sized(4000, 500); ++i) {
+        std::vector<uint8_t> forged = bytes;
+        for (size_t k = 1 + random() % 3; k > 0; --k) {
+            const size_t at = random() % (i % 2 == 0 ? body : std::min<size_t>(body, 64));
+            switch (random() % 3) {
+                case 0: forged[at] = static_cast<uint8_t>(random()); break;
+                case 1: forged[at] = 0xff; break;
+                default:
+                    for (size_t b = at; b < std::min(at + 8, body); ++b) forged[b] = static_cast<uint8_t>(random());
+            }
+        }
+        const uint64_t h = hash_of(forged.data(), body);
+        std::memcpy(forged.data() + body, &h, 8);
+        const Built loaded = try_load(forged);
+        if (loaded.status == PW_OK) {
+            ++taken;
+            ask_everything(loaded.handle);
+        } else {
+            ++refused;
+            ASSERT_TRUE(loaded.status == PW_ERROR_DATA || loaded.status == PW_ERROR_MEMORY) << loaded.message;
+        }
+    }
+    EXPECT_GT(taken, 0);
+    EXPECT_GT(refused, 0);
+}
+
+}  // namespace
+}  // namespace partwheel::test
