@@ -43,7 +43,7 @@ class Result:
 
 def native():
     """GoogleTest through CTest, as shipped."""
-    build("native")
+    build("native", "release")
     return ctest("native", "release")
 
 
@@ -61,7 +61,7 @@ def sanitizers():
 
 def core():
     """The Python core on the library as built, without Blender."""
-    build("core")
+    build("core", "release", "partwheel")
     return pytest("core")
 
 
@@ -133,8 +133,8 @@ def setup(log, *functions):
     require(log, "bash", "-euc", f". scripts/setup.sh; {'; '.join(functions)}")
 
 
-def build(log, *preset):
-    require(log, "scripts/build", *preset)
+def build(log, preset, *targets):
+    require(log, "scripts/build", preset, *targets)
 
 
 def make_package(log):
