@@ -82,11 +82,16 @@ class Selection:
         """Everything as it was: vertices, edges, faces, the active face and the history of picks."""
         bm = bmesh.from_edit_mesh(obj.data)
         mesh = mesh_arrays.up_to_date(obj)
-        for kind in KINDS:
+        # Blender hands a change of a face or an edge on to its vertices: so first all off, then on from fine to coarse.
+        for kind in reversed(KINDS):
             elements = _sequence(bm, kind)
             now = mesh_arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool)
-            for index in np.flatnonzero(now != self.before[kind]).tolist():
-                elements[index].select = bool(self.before[kind][index])
+            for index in np.flatnonzero(now & ~self.before[kind]).tolist():
+                elements[index].select = False
+        for kind in KINDS:
+            elements = _sequence(bm, kind)
+            for index in np.flatnonzero(self.before[kind]).tolist():
+                elements[index].select = True
         bm.select_flush_mode()  # also counts the selected elements anew
         bm.select_history.clear()
         for kind, index in self.history:
