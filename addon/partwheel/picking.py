@@ -19,10 +19,8 @@ class Picker:
         tree, indices = self._tree(obj)
         to_local = obj.matrix_world.inverted_safe()
         origin = region_2d_to_origin_3d(region, view, point)
-        target = origin + region_2d_to_vector_3d(region, view, point)
-        local_origin = to_local @ origin
-        # Both ends are transformed, not the direction: right for every scale, negative ones included.
-        hit, _, index, _ = tree.ray_cast(local_origin, to_local @ target - local_origin)
+        direction = region_2d_to_vector_3d(region, view, point)
+        hit, _, index, _ = tree.ray_cast(to_local @ origin, to_local.to_3x3() @ direction)
         if index is None:
             return None
         return indices[index] if indices else index, (obj.matrix_world @ hit - origin).length

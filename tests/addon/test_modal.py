@@ -11,6 +11,7 @@ import types
 
 import bmesh
 import bpy
+import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from common import BOX, MeshTest, flags, part, read_off, selected
 from mathutils import Euler, Matrix, Vector
@@ -285,20 +286,26 @@ class Modal(MeshTest):
 
 
 class Pick(MeshTest):
-    def nearest(self, obj, origin, direction, skip=()):
-        """By brute force: the face whose triangle the ray meets first."""
-        from mathutils.geometry import intersect_ray_tri
-
+    def nearest(self, obj, origin, direction, skip, margin):
+        """By brute force: (distance, face) of the triangle that the ray meets first. margin: how far, in barycentric
+        coordinates, from its sides; negative takes in what lies just beside it."""
         bm = bmesh.from_edit_mesh(obj.data)
-        best = None
-        for corners in bm.calc_loop_triangles():
-            if corners[0].face.index in skip:
-                continue
-            points = [obj.matrix_world @ corner.vert.co for corner in corners]
-            hit = intersect_ray_tri(*points, direction, origin, True)
-            if hit and (best is None or (hit - origin).length < best[0]):
-                best = (hit - origin).length, corners[0].face.index
-        return best
+        loops = [corners for corners in bm.calc_loop_triangles() if corners[0].face.index not in skip]
+        to_world = np.array(obj.matrix_world)
+        points = np.array([[corner.vert.co for corner in corners] for corners in loops]) @ to_world[:3, :3].T
+        points += to_world[:3, 3]
+        a, ab, ac = points[:, 0], points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
+        normal, to_origin = np.cross(ab, ac), np.array(origin) - a
+        with np.errstate(divide="ignore", invalid="ignore"):
+            slope = -(normal @ np.array(direction))
+            distance = (to_origin * normal).sum(1) / slope
+            turned = np.cross(np.array(direction), to_origin)
+            v, w = -(ac * turned).sum(1) / slope, (ab * turned).sum(1) / slope
+            hit = (distance > 0) & (v >= margin) & (w >= margin) & (v + w <= 1 - margin)
+        if not hit.any():
+            return None
+        index = np.flatnonzero(hit)[distance[hit].argmin()]
+        return distance[index], loops[index][0].face.index
 
     def test_the_nearest_visible_face_under_the_mouse(self):
         from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
@@ -320,8 +327,11 @@ class Pick(MeshTest):
                         for y in range(1, 8):
                             point = region.width * x // 8, region.height * y // 8
                             found = picker.face_under(obj, region, region_view, point)
-                            expected = self.nearest(obj, region_2d_to_origin_3d(region, region_view, point),
-                                                    region_2d_to_vector_3d(region, region_view, point), hidden)
+                            ray = (region_2d_to_origin_3d(region, region_view, point),
+                                   region_2d_to_vector_3d(region, region_view, point))
+                            expected, close = (self.nearest(obj, *ray, hidden, margin) for margin in (1e-4, -1e-4))
+                            if expected != close:
+                                continue  # on a side of a triangle, to the rounding of single precision
                             if expected is None:
                                 self.assertIsNone(found)
                                 continue

@@ -73,7 +73,8 @@ CASES = {
     "one triangle turned": (Status.ORIENTATION, lambda: with_triangle(CUBE, 4, CUBE.triangles[4][::-1])),
     "two cubes in one place": (Status.SELF_INTERSECTION,
                                lambda: shapes.merged(CUBE, shapes.moved(CUBE, (0.5, 0.5, 0.5)))),
-    "two cubes with a common wall": (Status.SELF_INTERSECTION, lambda: shapes.merged(CUBE, shapes.moved(CUBE, (1, 0, 0)))),
+    "two cubes with a common wall": (Status.SELF_INTERSECTION,
+                                     lambda: shapes.merged(CUBE, shapes.moved(CUBE, (1, 0, 0)))),
     "the same cube twice": (Status.SELF_INTERSECTION, lambda: shapes.merged(CUBE, CUBE)),
 }
 

@@ -63,9 +63,9 @@ def test_every_concave_polygon_is_cut_without_overlap():
 def test_points_on_a_polygons_sides_give_no_triangle_without_area():
     points = [(0, 0), (1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (1, 1), (0, 1)]
     triangles = np.array(polygons.triangulate(np.array([(x, y, 0.0) for x, y in points]), range(8)))
-    p = np.array(points, float)[triangles]
-    doubled = (p[:, 1, 0] - p[:, 0, 0]) * (p[:, 2, 1] - p[:, 0, 1]) - (p[:, 1, 1] - p[:, 0, 1]) * (p[:, 2, 0] - p[:, 0, 0])
-    assert doubled.min() > 0 and doubled.sum() == 6
+    corners = np.array(points, float)[triangles]
+    doubled = np.linalg.det(np.dstack([corners, np.ones(corners.shape[:2])]))
+    assert doubled.min() > 0.5 and doubled.sum() == pytest.approx(6)
 
 
 def test_quads_of_a_real_mesh_are_single_faces(meshes_directory):
