@@ -8,7 +8,7 @@ import numpy
 KERNEL = numpy.array([1.0, 2.0, 1.0], numpy.float32) / 4.0
 
 
-def denoise(light, normal, depth, strength=1.2, passes=5):
+def denoise(light, normal, depth, strength=1.0, passes=5):
     """Returns light (h, w, channels), smoothed where the surface is and where its first three channels are alike.
 
     normal: (h, w, 3) of the surface seen, not noisy.  depth: (h, w) its distance from the camera.  strength: how
@@ -18,7 +18,7 @@ def denoise(light, normal, depth, strength=1.2, passes=5):
     depth = numpy.minimum(depth, depth.min() * 100.0)
     slope = numpy.maximum(*(abs(part) for part in numpy.gradient(depth))) + 2e-3 * depth
     for step in range(passes):
-        light = _smooth(light, normal, depth, slope, strength * 0.5 ** step, 2 ** step)
+        light = _smooth(light, normal, depth, slope, strength * 0.7 ** step, 2 ** step)
     return light
 
 
@@ -38,7 +38,7 @@ def _smooth(light, normal, depth, slope, strength, reach):
             alike = numpy.einsum("hwc,hwc->hw", normal, wide_normal[window]).clip(0.0, 1.0)
             alike = alike ** 32
             apart = abs(depth - wide_depth[window]) / (slope * (2 * reach))
-            differs = (brightness - wide_brightness[window]) / (strength * numpy.sqrt(brightness + 0.05))
+            differs = (brightness - wide_brightness[window]) / (strength * numpy.sqrt(brightness + 0.15))
             weight = KERNEL[i] * KERNEL[j] * alike * numpy.exp(-apart - differs * differs)
             if i == 1 and j == 1:
                 weight = numpy.full_like(brightness, KERNEL[1] * KERNEL[1])

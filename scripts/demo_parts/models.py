@@ -6,7 +6,7 @@ MONKEY = "Blender's monkey"
 
 
 class Click(NamedTuple):
-    """A click with the mouse. at: where in the picture of the whole model, x from the left and y from the top, 0..1."""
+    """A click with the mouse. at: where in the rectangle that the camera sees the model in, from its left and top, 0..1."""
 
     name: str
     at: tuple
@@ -31,18 +31,18 @@ class Model(NamedTuple):
 MODELS = (
     Model("man", "man.off", 0, "Z", 20, 6, ()),
     Model("man-remeshed", "man.off", 0.004, "Z", 20, 6,
-          (Click("finger tip", (0.28, 0.545)), Click("toe", (0.71, 0.905)))),
+          (Click("finger tip", (0.05, 0.554)), Click("toe", (0.929, 0.982)))),
     Model("armadillo", "armadillo.off", 0, "Y", 165, 6,
-          (Click("finger tip", (0.185, 0.14)), Click("claw", (0.68, 0.86)))),
+          (Click("finger tip", (0.125, 0.071)), Click("claw", (0.715, 0.929)))),
     Model("hand", "hand.off", 0, "Z", -20, 8,
-          (Click("thumb", (0.75, 0.35)), Click("finger", (0.4, 0.2)))),
+          (Click("thumb", (0.798, 0.321)), Click("finger", (0.381, 0.143)))),
     Model("dino", "dino.off", 0, "Z", 55, 6,
-          (Click("nose", (0.1, 0.14)), Click("toe", (0.39, 0.845)))),
+          (Click("nose", (0.024, 0.071)), Click("toe", (0.369, 0.911)))),
     Model("elephant", "elephant.off", 0, "Y", 18, 6,
-          (Click("trunk", (0.65, 0.125)), Click("foot", (0.87, 0.74)))),
+          (Click("trunk", (0.679, 0.053)), Click("foot", (0.94, 0.786)))),
     Model("suzanne", MONKEY, 0, "Z", 25, 6, ()),
     Model("suzanne-remeshed", MONKEY, 0.035, "Z", 25, 6,
-          (Click("ear", (0.88, 0.35)),)),
+          (Click("ear", (0.952, 0.321)),)),
 )
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ BACKDROP, BODY, PART, ADDED, EDGE = "#eceff3", "#c3c8cf", "#e4602a", "#f59a55", 
 PALETTE = ("#ef7f5f", "#63b3e4", "#f3bd4f", "#74c794", "#b795dd", "#f29bb8", "#56bcb6", "#cfca62", "#8fa3f2", "#dd9a5c",
            "#86c5d8", "#a9da7f", "#d987c4")
 INK, QUIET = "#23282f", "#7b838d"
-EXPOSURE = 1.2
+EXPOSURE = 1.15
 GAP, LABEL, HEAD = 6, 50, 52  # pixels between pictures, below them, above the row
 
 
@@ -102,37 +102,29 @@ def font(size):
 
 def ring(image, at):
     """Marks the point that was clicked."""
-    scale = 4
-    x, y = at[0] * image.width, at[1] * image.height
-    size = 24
-    left, top = round(x) - size // 2, round(y) - size // 2
-    mark = Image.new("L", (size * scale, size * scale), 0)
-    middle = size * scale / 2
-    draw = ImageDraw.Draw(mark)
-
-    def circle(radius, fill):
-        radius *= scale
-        draw.ellipse((middle - radius, middle - radius, middle + radius, middle + radius), fill=fill)
-
-    for radius, color, hole in ((8.0, INK, 4.4), (7.2, "#ffffff", 5.2)):
-        draw.rectangle((0, 0, *mark.size), fill=0)
-        circle(radius, 255)
-        circle(hole, 0)
+    size, scale = 16, 4
+    left, top = round(at[0] * image.width - size / 2), round(at[1] * image.height - size / 2)
+    for color, margin, line in ((INK, 1.0, 4.0), ("#ffffff", 2.0, 2.0)):
+        mark = Image.new("L", (size * scale, size * scale))
+        box = margin * scale, margin * scale, (size - margin) * scale, (size - margin) * scale
+        ImageDraw.Draw(mark).ellipse(box, outline=255, width=round(line * scale))
         image.paste(color, (left, top), mark.resize((size, size), Image.LANCZOS))
 
 
-def sheet(title, rows):
-    """A title, and rows of pictures side by side. rows: [(heading, [(Image, label, remark)])]."""
-    width = max(sum(image.width + GAP for image, _, _ in cells) for _, cells in rows) + GAP
-    height = sum(HEAD + cells[0][0].height + LABEL for _, cells in rows)
+def sheet(rows):
+    """Rows of pictures side by side. rows: [(title, heading, [(Image, label, remark)])], the title maybe empty."""
+    width = max(sum(image.width + GAP for image, _, _ in cells) for _, _, cells in rows) + GAP
+    height = GAP + sum((HEAD if title else 0) + cells[0][0].height + LABEL for title, _, cells in rows)
     page = Image.new("RGB", (width, height), "#ffffff")
     draw = ImageDraw.Draw(page)
-    top = 0
-    for heading, cells in rows:
+    top = GAP
+    for title, heading, cells in rows:
         left = GAP + 6
-        draw.text((left, top + 13), title, INK, font(24))
-        draw.text((left + draw.textlength(title, font(24)) + 16, top + 19), heading, QUIET, font(17))
-        top, left = top + HEAD, GAP
+        if title:
+            draw.text((left, top + 7), title, INK, font(24))
+            draw.text((left + draw.textlength(title, font(24)) + 16, top + 13), heading, QUIET, font(17))
+            top += HEAD
+        left = GAP
         for image, label, remark in cells:
             page.paste(image, (left, top))
             middle = left + image.width / 2
@@ -147,8 +139,8 @@ def percent(share):
     return f"{100 * share:.0f} %" if share >= 0.095 else f"{100 * share:.1f} %" if share >= 0.00095 else "< 0.1 %"
 
 
-def wheel_row(click, folder):
-    """Every wheel stop of a click."""
+def wheel_cells(click, folder):
+    """The cells of every wheel stop of a click."""
     views = [layers.load(folder / "whole.npz")]
     views += [layers.load(folder / f"{click['name']}-{number}.npz") for number in range(1, len(click["views"]))]
     entered = numpy.load(folder / f"{click['name']}.npy")
@@ -161,18 +153,18 @@ def wheel_row(click, folder):
             ImageDraw.Draw(image).text((image.width - 10, 10), f"{view['closer']:.1f} x", INK, font(13), "ra")
         label = f"{number + 1} / {len(click['stops'])}" + ("  the click" if number == click["start"] else "")
         cells.append((image, label, f"{stop['faces']:,} faces, {percent(stop['area'])}"))
-    return f"one click on the {click['name']}, then the wheel", cells
+    return cells
 
 
-def parts_row(report, folder):
-    """The model, and its cuts from fine to coarse."""
+def parts_cells(report, folder):
+    """The cells of the model and its cuts, from fine to coarse."""
     cells = []
     for cut, palette in zip(report["cuts"], palettes(report["cuts"])):
         image = paint_parts(layers.load(folder / f"hulls-{cut['parts']}.npz"), palette)
         cells.append((image, f"{cut['parts']} convex parts", f"{cut['polygons']:,} faces"))
     body = layers.load(folder / "whole.npz")
     cells.append((paint(body, linear(BODY)), "the model", f"{report['faces']:,} faces"))
-    return "the dendrogram, cut into convex polyhedra", cells[::-1]
+    return cells[::-1]
 
 
 def main():
@@ -181,9 +173,11 @@ def main():
         own = folder / "layers" / name
         report = json.loads((own / "report.json").read_text("utf-8"))
         if "refused" not in report:
-            wheel = sheet(name, [wheel_row(click, own) for click in report["clicks"]])
-            wheel.save(folder / f"{name}.png", optimize=True)
-            sheet(name, [parts_row(report, own)]).save(folder / f"{name}-parts.png", optimize=True)
+            wheel = [(name, f"one click on the {click['name']}, then the wheel", wheel_cells(click, own))
+                     for click in report["clicks"]]
+            parts = [(name, "the dendrogram, cut into convex polyhedra", parts_cells(report, own))]
+            sheet(wheel).save(folder / f"{name}.png", optimize=True)
+            sheet(parts).save(folder / f"{name}-parts.png", optimize=True)
 
 
 if __name__ == "__main__":

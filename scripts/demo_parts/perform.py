@@ -72,9 +72,9 @@ def selected_faces():
     return numpy.array([face.index for face in faces if face.select], numpy.int64)
 
 
-def click(thing, studio, view, at):
-    """The face and the point that a click in a picture hits."""
-    origin, direction = studio.ray(view, at)
+def click(thing, studio, at):
+    """The face and the point that a Click at that place hits."""
+    origin, direction = studio.ray(studio.box(corners(thing.data)), at)
     hit, point, _, face = thing.ray_cast(origin, direction)
     if not hit:
         raise RuntimeError(f"the click at {at} misses the model")
@@ -123,6 +123,15 @@ def hull_object(hierarchy, bounds):
     return bpy.data.objects.new("Hulls", mesh), numpy.concatenate(parts)
 
 
+NOTE = """Partwheel's demo left this model in Edit Mode, faces to select, with a part selected.
+
+1. The add-on must be installed and enabled: scripts/demo --open MODEL has it in place; elsewhere install the zip of
+   build/package by Edit > Preferences > Add-ons > Install.
+2. Put the mouse over the model and press Ctrl W. The first time this builds the hierarchy, which takes a few seconds.
+3. Turn the wheel: up for a larger part, down for a smaller one. Click to confirm, Esc to go back.
+"""
+
+
 def show_ready(thing, studio, stop):
     """Leaves Edit Mode on, faces to select, a part selected and the view on the model, for whoever opens the file."""
     mesh = thing.data
@@ -133,6 +142,7 @@ def show_ready(thing, studio, stop):
     chosen[stop] = True
     mesh.polygons.foreach_set("select", chosen)
     bpy.ops.object.mode_set(mode="EDIT")
+    bpy.data.texts.new("Partwheel").write(NOTE)
     for screen in bpy.data.screens:
         for area in screen.areas:
             if area.type == "VIEW_3D":
@@ -170,7 +180,7 @@ def build(thing, report):
 def play_click(spot, thing, studio, whole, hierarchy, folder, report):
     """A click and every wheel stop after it. Returns the faces of the stop that the click alone takes."""
     mesh = thing.data
-    face, point = click(thing, studio, whole, spot.at)
+    face, point = click(thing, studio, spot.at)
     bpy.ops.object.mode_set(mode="EDIT")
     began = time.perf_counter()
     stops, start = turn_wheel(hierarchy, face)
@@ -226,8 +236,8 @@ def perform(model, meshes, folder):
     began = time.perf_counter()
     points = corners(thing.data)
     studio = Studio(points, model.azimuth, model.elevation)
-    width, height = numpy.ptp(studio.project(points), axis=0)
-    whole = studio.view(points, round(HEIGHT * min(max(width / height, 0.6), 1.5)), HEIGHT)
+    box = studio.box(points)
+    whole = studio.view(points, round(HEIGHT * min(max(box.width / box.height, 0.55), 1.5)), HEIGHT)
     studio.photograph(thing, range(report["faces"]), whole).save(os.path.join(layers, "whole.npz"))
     report["clicks"], report["cuts"] = [], []
     for spot in model.clicks:

@@ -146,12 +146,17 @@ class Studio:
         local = (numpy.asarray(points) - numpy.array(self.place)) @ numpy.array(self.axes)
         return local[:, :2] / -local[:, 2:]
 
-    def view(self, points, width, height, margin=0.08):
+    def view(self, points, width, height, margin=0.06):
         """The View of this size that shows all the points, with a margin on every side, 0..0.5 of the size."""
         flat = self.project(points)
         low, high = flat.min(0), flat.max(0)
         span = max(high[0] - low[0], (high[1] - low[1]) * width / height) / (1.0 - 2.0 * margin)
         return View(*((low + high) / 2), span, width, height)
+
+    def box(self, points):
+        """The View that the points just fill, of no certain size in pixels."""
+        width, height = numpy.ptp(self.project(points), axis=0)
+        return self.view(points, width, height, margin=0.0)
 
     def ray(self, view, pixel):
         """The ray through a pixel (0..1 from the left, the top): (origin, direction) in world space."""

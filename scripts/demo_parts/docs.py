@@ -1,0 +1,54 @@
+"""Makes the README's pictures, docs/images, of what the demo left: a few wheel stops by name, and a few cuts.
+
+Run as: python docs.py FOLDER IMAGES
+"""
+
+import json
+import math
+import sys
+from pathlib import Path
+
+from paint import parts_cells, percent, sheet, wheel_cells
+
+# Picture -> model, click, and what to call the wheel stop of about this share of the model's area.
+STORIES = {
+    "man": ("man-remeshed", "finger tip", (
+        ("finger tip", 0.001), ("hand", 0.02), ("arm", 0.08), ("upper body", 0.47), ("body", 1.0))),
+    "armadillo": ("armadillo", "finger tip", (
+        ("finger tip", 0.0003), ("finger", 0.004), ("hand", 0.03), ("forearm", 0.08), ("arm", 0.155), ("body", 1.0))),
+}
+CUTS = {"parts": ("armadillo", "dino")}
+SLACK = 1.5  # a stop whose area is this many times another than the named one is not the part that is named
+
+
+def load(folder, model):
+    own = folder / "layers" / model
+    return json.loads((own / "report.json").read_text("utf-8")), own
+
+
+def story(folder, model, click, names):
+    report, own = load(folder, model)
+    click = next(each for each in report["clicks"] if each["name"] == click)
+    cells = wheel_cells(click, own)
+    chosen = []
+    for name, share in names:
+        off = [abs(math.log(stop["area"] / share)) for stop in click["stops"]]
+        best = off.index(min(off))
+        if off[best] > math.log(SLACK):
+            sys.exit(f"{model}: no wheel stop has about {percent(share)} of the area, so none is the {name}")
+        chosen.append((cells[best][0], name, percent(click["stops"][best]["area"])))
+    return sheet([("", "", chosen)])
+
+
+def main():
+    folder, images = map(Path, sys.argv[1:])
+    images.mkdir(parents=True, exist_ok=True)
+    pictures = {name: story(folder, *what) for name, what in STORIES.items()}
+    for name, models in CUTS.items():
+        pictures[name] = sheet([("", "", parts_cells(*load(folder, model))) for model in models])
+    for name, picture in pictures.items():
+        picture.save(images / f"{name}.jpg", quality=88, optimize=True)
+
+
+if __name__ == "__main__":
+    main()
