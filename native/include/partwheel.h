@@ -130,7 +130,8 @@ typedef struct pw_hierarchy pw_hierarchy;
  * what is wrong and the message where. Any number of components and cavities is fine; a region is solid where the
  * winding number of the surface about it is not 0. No vertex of the surface is moved and none is added to it.
  *
- * The result does not depend on the order of the vertices or triangles, nor on the corner a triangle starts with. */
+ * The result does not depend on the order of the vertices or triangles, nor on the corner a triangle starts with. Any
+ * thread may build; several at once take turns in TetGen, which keeps global state. */
 PW_API pw_status pw_build(pw_context *context, const double *vertices, size_t vertex_count, const int32_t *triangles,
                           size_t triangle_count, const int32_t *faces, size_t face_count,
                           const pw_build_options *options, pw_hierarchy **hierarchy);

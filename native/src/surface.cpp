@@ -20,7 +20,7 @@ namespace {
 
 // So that volumes neither overflow nor vanish.
 constexpr double largest_coordinate = 1e100;
-constexpr double smallest_extent = 1e-80;
+constexpr double smallest_model = 1e-80;
 
 std::string counted(size_t n, const char* one, const char* many) {
     return std::to_string(n) + " " + (n == 1 ? one : many);
@@ -81,20 +81,26 @@ Surface canonical(const MeshView& mesh) {
     });
     for (int32_t v : source) surface.vertices.push_back(caller_point(v));
     surface.frame = Frame::around(surface.vertices);
-    if (surface.frame.scale == 0)
+    if (surface.frame.longest == 0)
         throw Error(PW_ERROR_DEGENERATE, "All vertices are at the same place. Choose a mesh that has an extent.");
-    if (surface.frame.scale < smallest_extent)
+    if (surface.frame.longest < smallest_model)
         throw Error(PW_ERROR_NOT_FINITE, "The model is too small to be measured. Scale it up.");
     for (Point& p : surface.vertices) p = surface.frame.to_working(p);
 
     std::vector<int32_t> number(mesh.vertex_count, -1);
     for (size_t i = 0; i < source.size(); ++i) number[static_cast<size_t>(source[i])] = static_cast<int32_t>(i);
     std::vector<std::pair<Triangle, int32_t>> triangles(mesh.triangle_count);
+    double six_enclosed = 0;
     for (size_t t = 0; t < mesh.triangle_count; ++t) {
         Triangle& tri = triangles[t].first;
         for (size_t k = 0; k < 3; ++k) tri[k] = number[static_cast<size_t>(mesh.triangles[3 * t + k])];
-        std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
+        const auto at = [&](size_t k) { return surface.vertices[static_cast<size_t>(tri[k])]; };
+        six_enclosed += dot(cross(at(0), at(1)), at(2));
         triangles[t].second = mesh.faces ? mesh.faces[t] : static_cast<int32_t>(t);
+    }
+    for (auto& [tri, face] : triangles) {
+        if (six_enclosed < 0) std::swap(tri[1], tri[2]);  // inside out
+        std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
     }
     std::sort(triangles.begin(), triangles.end());
     for (const auto& [tri, face] : triangles) {
@@ -228,14 +234,14 @@ void check_self_intersection(const Surface& surface) {
 
 Frame Frame::around(std::span<const Point> points) {
     Frame frame;
-    double longest = 0;
+    frame.longest = 0;
     for (size_t k = 0; k < 3; ++k) {
         const auto [low, high] = std::minmax_element(points.begin(), points.end(),
                                                      [k](const Point& a, const Point& b) { return a[k] < b[k]; });
         frame.origin[k] = (*low)[k];
-        longest = std::max(longest, (*high)[k] - (*low)[k]);
+        frame.longest = std::max(frame.longest, (*high)[k] - (*low)[k]);
     }
-    frame.scale = longest > 0 ? std::ldexp(1.0, std::ilogb(longest)) : 0;
+    frame.scale = frame.longest > 0 ? std::ldexp(1.0, std::ilogb(frame.longest)) : 0;
     return frame;
 }
 

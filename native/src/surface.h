@@ -25,9 +25,9 @@ struct MeshView {
 // model stands and, but for input rounding, whatever its unit.
 struct Frame {
     Point origin{};
-    double scale = 1;
+    double longest = 1;  // side of the bounding box
+    double scale = 1;    // 0 if longest is
 
-    // scale is 0 if all points are the same.
     static Frame around(std::span<const Point> points);
 
     Point to_working(const Point& p) const;
@@ -37,7 +37,7 @@ struct Frame {
 };
 
 // Vertices are sorted by x, y, z; each triangle starts with its lowest vertex, and triangles are sorted: so nothing
-// downstream depends on the order of the caller's arrays.
+// downstream depends on the order of the caller's arrays. A surface that encloses a negative volume has been turned.
 struct Surface {
     Frame frame;
     std::vector<Point> vertices;         // working coordinates of the vertices in use

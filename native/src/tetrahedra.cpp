@@ -2,16 +2,34 @@
 #include "tetrahedra.h"
 
 #include "predicates.h"
+#include "tetgen_host.h"
 
 #include <tetgen.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <iostream>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <random>
 #include <string>
 #include <utility>
+
+namespace {
+
+uint32_t tetgen_random = 1;  // guarded by the lock in run_tetgen()
+
+}  // namespace
+
+int partwheel_tetgen_printf(const char*, ...) { return 0; }
+
+void partwheel_tetgen_srand(unsigned seed) { tetgen_random = seed % 2147483646u + 1; }
+
+int partwheel_tetgen_rand() {  // Park and Miller's generator
+    tetgen_random = static_cast<uint32_t>(uint64_t{tetgen_random} * 48271 % 2147483647);
+    return static_cast<int>(tetgen_random);
+}
 
 namespace partwheel {
 
@@ -43,6 +61,18 @@ Triangle facet(const Tetrahedron& tet, size_t opposite) {
     }
 }
 
+// TetGen writes some complaints to std::cerr (of which the shared library has a copy of its own): not while this lives.
+class Silence {
+public:
+    Silence() : state_(std::cerr.rdstate()) { std::cerr.setstate(std::ios::badbit); }
+    ~Silence() { std::cerr.clear(state_); }
+    Silence(const Silence&) = delete;
+    Silence& operator=(const Silence&) = delete;
+
+private:
+    std::ios::iostate state_;
+};
+
 // The order in which TetGen is told vertices and triangles: as they come, or shuffled, the same way on every machine.
 struct InputOrder {
     std::vector<int32_t> vertices, triangles;
@@ -70,16 +100,18 @@ void run_tetgen(const Surface& surface, const InputOrder& order, double quality,
         place[v] = static_cast<int32_t>(i);
         std::copy_n(surface.vertices[v].begin(), 3, in.pointlist + 3 * i);
     }
-    in.numberoffacets = static_cast<int>(surface.triangles.size());
     in.facetlist = new tetgenio::facet[surface.triangles.size()];
+    in.numberoffacets = static_cast<int>(surface.triangles.size());
+    // All are initialised before any owns memory, so that running out of it can't leave `in` half made.
+    for (size_t i = 0; i < surface.triangles.size(); ++i) tetgenio::init(&in.facetlist[i]);
     for (size_t i = 0; i < order.triangles.size(); ++i) {
         tetgenio::facet& f = in.facetlist[i];
-        tetgenio::init(&f);
-        f.numberofpolygons = 1;
         f.polygonlist = new tetgenio::polygon[1];
+        f.numberofpolygons = 1;
         tetgenio::polygon& p = f.polygonlist[0];
-        p.numberofvertices = 3;
+        tetgenio::init(&p);
         p.vertexlist = new int[3];
+        p.numberofvertices = 3;
         const Triangle& t = surface.triangles[static_cast<size_t>(order.triangles[i])];
         for (size_t k = 0; k < 3; ++k) p.vertexlist[k] = place[static_cast<size_t>(t[k])];
     }
@@ -88,6 +120,11 @@ void run_tetgen(const Surface& surface, const InputOrder& order, double quality,
         std::snprintf(switches, sizeof switches, "p///180YQFnq%.17g/0", quality);
     else
         std::snprintf(switches, sizeof switches, "p///180YQFn");
+    // TetGen's predicates keep global state: builds in other threads wait here.
+    static std::mutex one_at_a_time;
+    const std::scoped_lock lock(one_at_a_time);
+    const Silence silence;
+    partwheel_tetgen_srand(1);
     try {
         tetrahedralize(switches, &in, &out);
     } catch (int code) {

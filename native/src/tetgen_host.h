@@ -1,0 +1,19 @@
+// Included before all of TetGen's own code by the build: what TetGen gets for printf, rand and srand. It prints even when
+// told to be quiet, and with the C library's own numbers a host that draws some in another thread would change the
+// result. The functions are in tetrahedra.cpp.
+#pragma once
+
+#include <stdio.h>
+#include <stdlib.h>
+
+extern "C" {
+int partwheel_tetgen_printf(const char* format, ...);
+int partwheel_tetgen_rand();
+void partwheel_tetgen_srand(unsigned seed);
+}
+
+#if defined(PARTWHEEL_COMPILES_TETGEN)
+#define printf partwheel_tetgen_printf
+#define rand partwheel_tetgen_rand
+#define srand partwheel_tetgen_srand
+#endif
