@@ -29,7 +29,8 @@ OUTPUT = ROOT / "build" / "gui"
 MESHES = ROOT / "build" / "deps" / "meshes"
 MODELS = ("hand", "homer")
 PATH = "/usr/sbin:/usr/bin:/sbin:/bin"
-PROGRAMS = (os.environ.get("PARTWHEEL_BLENDER", "blender"), "Xvfb", "xdotool", "import")
+BLENDER = os.environ.get("PARTWHEEL_BLENDER", "blender")
+PROGRAMS = (BLENDER, "Xvfb", "xdotool", "import")
 TIME_LIMIT = 180  # seconds a scenario: ten times what one takes, for machines under load
 # Scenarios that run a second time with real input: X events made by xdotool instead of Blender's event_simulate.
 ALSO_WITH_XDOTOOL = ("pick_and_click", "empty_space", "navigate")
@@ -57,6 +58,8 @@ def main():
             if driver == "simulate" or name in ALSO_WITH_XDOTOOL]
 
     OUTPUT.mkdir(parents=True, exist_ok=True)
+    for old in (*OUTPUT.glob("*.png"), *OUTPUT.glob("*.log")):
+        old.unlink()
     with tempfile.TemporaryDirectory(prefix="partwheel-gui-") as work:
         work = pathlib.Path(work)
         environment = clean_environment(work)
@@ -66,7 +69,8 @@ def main():
         for name, driver in runs:
             began = time.monotonic()
             failure, checks = run_scenario(name, driver, work, environment)
-            print(f"{name} ({driver}): {failure or f'ok, {checks} checks'}, {time.monotonic() - began:.1f} s", flush=True)
+            seconds = time.monotonic() - began
+            print(f"{name} ({driver}): {failure or f'ok, {checks} checks'}, {seconds:.1f} s", flush=True)
             if failure:
                 failures.append(f"{name} ({driver}): {failure}")
 
@@ -111,9 +115,9 @@ def prepare_models(zip_path, work):
 def install(zip_path, environment):
     log = OUTPUT / "install.log"
     with log.open("w") as output:
-        code = subprocess.run([PROGRAMS[0], "-b", "-noaudio", "--python-exit-code", "9", "--python", HERE / "install.py",
-                               "--", zip_path.resolve()], env=environment, stdout=output, stderr=output,
-                              timeout=TIME_LIMIT).returncode
+        command = [BLENDER, "-b", "-noaudio", "--python-exit-code", "9", "--python", HERE / "install.py", "--",
+                   zip_path.resolve()]
+        code = subprocess.run(command, env=environment, stdout=output, stderr=output, timeout=TIME_LIMIT).returncode
     if code or "Traceback" in log.read_text():
         sys.exit(f"The add-on could not be installed from {zip_path}: see {log}.")
 
@@ -122,7 +126,7 @@ def run_scenario(name, driver, work, environment):
     """Returns (sentence that says what failed or "", number of checks made)."""
     title = name if driver == "simulate" else f"{name}-{driver}"
     result_path, log_path = work / f"{title}.json", OUTPUT / f"{title}.log"
-    command = [PROGRAMS[0], "-noaudio", "--window-geometry", "0", "0", "1280", "800", "--python-exit-code", "9",
+    command = [BLENDER, "-noaudio", "--window-geometry", "0", "0", "1280", "800", "--python-exit-code", "9",
                *(["--enable-event-simulate"] if driver == "simulate" else []),
                "--python", HERE / "inside.py", "--", name, driver, work, OUTPUT / title, result_path]
     with x_server(environment) as display, log_path.open("w") as log:

@@ -1,7 +1,7 @@
 """The stage that scenarios play on: opens models in Blender's window, sends events, waits, checks, takes pictures.
 
-A scenario is a generator, play(stage), advanced by a Blender timer. It yields (what, predicate) to let Blender run until
-predicate() holds, mostly through the generator methods below: `yield from stage.selected(faces, "after the click")`.
+A scenario is a generator, play(stage), advanced by a Blender timer. It yields (what, predicate) to let Blender run
+until predicate() holds, mostly through the methods below: `yield from stage.selected(faces, "after the click")`.
 """
 import json
 import subprocess
@@ -101,7 +101,10 @@ class Stage:
 
     @property
     def view(self):
-        return View(self.area, self.object, self.wheels.vertices, self.wheels.triangles)
+        return self._view()
+
+    def _view(self, quarter=None):
+        return View(self.area, self.object, self.wheels.vertices, self.wheels.triangles, quarter)
 
     def override(self):
         region = next(region for region in self.area.regions if region.type == "WINDOW")
@@ -210,14 +213,14 @@ class Stage:
             bmesh.update_edit_mesh(self.object.data)
             bpy.ops.ed.undo_push(message="Test selection")
 
-    def spot(self, x, y, above=0):
+    def spot(self, x, y, above=0, quarter=None):
         """(x, y, face) of the safest pixel near a place given as shares (0..1) of the model's extent on the screen, of
-        a face whose wheel has at least so many stops above the start."""
+        a face whose wheel has at least so many stops above the start. quarter: see View."""
         def wanted(face):
             stops, start = self.wheels.stops(face)
             return len(stops) > start + above
 
-        view = self.view
+        view = self._view(quarter)
         centers = view.centers()
         low, high = centers.min(axis=0), centers.max(axis=0)
         return view.spot(*(low + (high - low) * [x, y]), wanted)
@@ -243,8 +246,8 @@ class Stage:
     def settle(self):
         """Waits until the events sent so far have been handled, for checks that something does not happen.
 
-        A simulated event is handled before the timer's next tick. For a real one ten ticks make that very likely; should
-        it come later still, such a check could pass wrongly, never fail wrongly.
+        A simulated event is handled before the timer's next tick. For a real one ten ticks make that very likely;
+        should it come later still, such a check could pass wrongly, never fail wrongly.
         """
         target = self._ticks + (2 if self._driver == "simulate" else 10)
         yield "events handled", lambda: self._ticks >= target

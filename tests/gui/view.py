@@ -7,11 +7,18 @@ import numpy
 
 
 class View:
-    """A 3D viewport and a mesh object in it. Built anew after every change of the view: nothing is kept up to date."""
+    """A 3D viewport and a mesh object in it. Built anew after every change of the view: nothing is kept up to date.
 
-    def __init__(self, area, object, vertices, triangles):
-        self.region = next(region for region in area.regions if region.type == "WINDOW")
-        matrix = area.spaces.active.region_3d.perspective_matrix @ object.matrix_world
+    quarter: in the quad view the number of the quarter, 0 bottom left (front), 1 top left (top), 2 bottom right
+    (right), 3 top right (the user's own view).
+    """
+
+    def __init__(self, area, object, vertices, triangles, quarter=None):
+        windows = [region for region in area.regions if region.type == "WINDOW"]
+        self.region = windows[quarter or 0]
+        space = area.spaces.active
+        view = space.region_3d if quarter is None else space.region_quadviews[quarter]
+        matrix = view.perspective_matrix @ object.matrix_world
         points = numpy.c_[vertices, numpy.ones(len(vertices))] @ numpy.array(matrix).T
         size = numpy.array([self.region.width, self.region.height])
         self._pixels = (points[:, :2] / points[:, 3:] + 1) / 2 * size + [self.region.x, self.region.y]

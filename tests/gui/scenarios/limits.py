@@ -1,4 +1,4 @@
-"""The wheel stops at the smallest part and at the whole object; many notches at once all count; keys do as the wheel."""
+"""The wheel stops at the smallest part and the whole object; many notches at once all count; keys turn it too."""
 
 
 def play(stage):

@@ -1,4 +1,4 @@
-"""A mesh with a hole is refused with a named error, even if it had a hierarchy before; the selection stays as it was."""
+"""A mesh with a hole is refused with a named error, even if it had a hierarchy before; the selection stays."""
 import bmesh
 
 

@@ -1,4 +1,4 @@
-"""The main job: a part is picked at the mouse, grown and shrunk with the wheel, confirmed with a click, undone, redone."""
+"""The main job: a part is picked, grown and shrunk with the wheel, confirmed with a click, undone, redone."""
 from view import picture
 
 
