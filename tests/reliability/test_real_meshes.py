@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""All real meshes of build/deps/meshes through the command line, a process each: what is closed, manifold, oriented and
+free of self-intersection is built; every other one gets the named error it deserves; none crashes or hangs.
+
+What each mesh deserves is found here without the library (surfaces.py). A refusal for self-intersection must be right,
+too: the two faces it names must truly meet, in exact arithmetic.
+"""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+import surfaces
+from conftest import ROOT
+from partwheel.core import meshes
+
+MESHES = ROOT / "build" / "deps" / "meshes"
+FILES = sorted(path.name for path in MESHES.iterdir())
+SECONDS = 300  # many times what the slowest takes, for machines under load
+PROCESSES = 2
+NO_TRIANGLES = {"b9.ply"}  # a cloud of points
+
+
+def build(name):
+    """(exit code, report, what was written beside it)"""
+    run = subprocess.run(
+        [sys.executable, "-m", "partwheel.core", "build", str(MESHES / name), "--json"], capture_output=True, text=True,
+        timeout=SECONDS, env={**os.environ, "PYTHONPATH": str(ROOT / "addon")},
+    )
+    return run.returncode, json.loads(run.stdout) if run.stdout else None, run.stderr
+
+
+@pytest.fixture(scope="session")
+def results():
+    """File name -> a future of build(); large meshes first, so that none is left for the end."""
+    with ThreadPoolExecutor(PROCESSES) as pool:
+        by_size = sorted(FILES, key=lambda name: -(MESHES / name).stat().st_size)
+        yield {name: pool.submit(build, name) for name in by_size}
+
+
+def test_there_are_meshes():
+    assert len(FILES) >= 130, f"{MESHES} holds only {len(FILES)} meshes: run scripts/setup.sh again"
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_built_or_named(name, results):
+    code, report, errors = results[name].result()
+    assert code in (0, 1) and report is not None and "Traceback" not in errors, errors
+    if name in NO_TRIANGLES:
+        assert report["error"]["name"] == "mesh file"
+        return
+    mesh = meshes.read(MESHES / name)
+    defects = surfaces.defects(mesh.vertices, mesh.triangles)
+    if code == 0:
+        assert defects == set()
+        assert report["faces"] == mesh.face_count and report["tets"] > 0 and report["volume"] > 0
+        return
+    error = report["error"]
+    if error["name"] != "self-intersection":
+        assert error["name"] in defects, (defects, error)
+        return
+    assert defects == set()
+    first, second = map(int, re.search(r"faces (\d+) and (\d+) meet", error["message"]).groups())
+    one, two = ([t for t in range(len(mesh.faces)) if mesh.faces[t] == face] for face in (first, second))
+    assert any(surfaces.crossing(mesh.vertices, mesh.triangles, a, b) for a in one for b in two if a != b), error
+
+
+@pytest.mark.parametrize("name", ["3torus.off", "dragknob.off", "cross.off", "joint.off", "helmet.off"])
+def test_what_was_built_has_no_self_intersection(name, results):
+    code, _, _ = results[name].result()
+    mesh = meshes.read(MESHES / name)
+    pairs = list(surfaces.near_pairs(mesh.vertices, mesh.triangles))
+    assert code == 0 and len(pairs) >= 3 * len(mesh.triangles) // 2
+    assert not any(surfaces.crossing(mesh.vertices, mesh.triangles, *pair) for pair in pairs)
