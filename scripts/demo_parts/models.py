@@ -6,7 +6,8 @@ MONKEY = "Blender's monkey"
 
 
 class Click(NamedTuple):
-    """A click with the mouse. at: where in the rectangle that the camera sees the model in, from its left and top, 0..1."""
+    """A click with the mouse. at: where in the rectangle that the model fills, seen from the camera: from the left and
+    from the top, 0..1."""
 
     name: str
     at: tuple

@@ -1,4 +1,4 @@
-"""The demo inside Blender: one model is opened, built, clicked and turned through the wheel; leaves layers and a .blend.
+"""The demo inside Blender: one model is opened, built, clicked and turned through the wheel; leaves layers, a .blend.
 
 Run as: blender -b --python perform.py -- MODEL MESHES FOLDER
 with the add-on installed and enabled. In FOLDER it leaves MODEL.blend and, in layers/MODEL/, report.json (what

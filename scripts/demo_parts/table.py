@@ -47,8 +47,8 @@ def main():
     print(text)
     built = len(reports) - len(refusals)
     stops = sum(len(click["stops"]) for report in reports for click in report.get("clicks", ()))
-    print(f"{built} models built, {len(refusals)} broken ones refused by name, {stops} wheel stops selected and checked, "
-          f"{2 * built} pictures")
+    print(f"{built} models built, {len(refusals)} broken ones refused by name, {stops} wheel stops selected and "
+          f"checked, {2 * built} pictures")
 
 
 if __name__ == "__main__":
