@@ -106,15 +106,17 @@ class Modal(MeshTest):
     def send(self, *arguments, **modifiers):
         return self.tool.modal(self.context, event(*arguments, **modifiers))
 
-    def centre(self, obj=None, offset=0):
-        """A pixel with a face of the object under it: (point, face index)."""
+    def centre(self, obj=None, levels=3):
+        """A pixel with a face of the object under it, with so many stops above the start: (point, face index)."""
         obj = obj or self.obj
         _, _, region, region_view = view()
         picker = part("picking").Picker()
         bm = bmesh.from_edit_mesh(obj.data)
-        for face in list(bm.faces)[offset:]:
-            if face.hide:
-                continue
+        for face in bm.faces:
+            if obj == self.obj:
+                stops, start = self.h.wheel(face.index)
+                if start + levels >= len(stops):
+                    continue
             point = location_3d_to_region_2d(region, region_view, obj.matrix_world @ face.calc_center_median())
             found = picker.face_under(obj, region, region_view, [int(value) for value in point])
             if found and found[0] == face.index:

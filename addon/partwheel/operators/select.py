@@ -106,7 +106,7 @@ class MESH_OT_partwheel_select(bpy.types.Operator):
         modified = event.ctrl or event.alt or event.oskey
         if event.type in PASS or (modified and event.type in UP | DOWN | {"LEFTMOUSE"}):
             return {"PASS_THROUGH"}
-        if event.value not in {"PRESS", "DOUBLE_CLICK"}:  # a second quick press comes as a double click only
+        if event.value not in {"PRESS", "DOUBLE_CLICK"}:  # Blender may call a quick second press a double click
             return {"RUNNING_MODAL"}
         if event.type in CANCEL:
             return self._cancelled(context)
