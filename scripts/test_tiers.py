@@ -53,7 +53,7 @@ def sanitizers():
     result = ctest("sanitizers-native", "asan")
     # Python isn't linked with the runtimes, so they are loaded before it; its own leaks are not looked at.
     runtimes = " ".join(output_of("g++", f"-print-file-name={name}") for name in ("libasan.so", "libstdc++.so"))
-    result += pytest("sanitizers-core", LD_PRELOAD=runtimes, ASAN_OPTIONS="detect_leaks=0",
+    result += pytest("sanitizers-core", "tests/core", LD_PRELOAD=runtimes, ASAN_OPTIONS="detect_leaks=0",
                      UBSAN_OPTIONS="print_stacktrace=1", PARTWHEEL_TEST_LIGHT="1",
                      PARTWHEEL_LIBRARY=str(ROOT / "build/asan/libpartwheel.so"))
     return result
@@ -62,7 +62,13 @@ def sanitizers():
 def core():
     """The Python core on the library as built, without Blender."""
     build("core", "release", "partwheel")
-    return pytest("core")
+    return pytest("core", "tests/core")
+
+
+def reliability():
+    """Every model there is: built, or refused with a named error, and no crash."""
+    build("reliability", "release", "partwheel")
+    return pytest("reliability", "tests/reliability")
 
 
 def addon():
@@ -91,7 +97,7 @@ def gui():
     return own_runner("gui", [VENV / "core/bin/python", "tests/gui/run.py", package], dict(os.environ))
 
 
-TIERS = {function.__name__: function for function in (native, sanitizers, core, addon, gui)}
+TIERS = {function.__name__: function for function in (native, sanitizers, core, reliability, addon, gui)}
 
 
 def main():
@@ -148,11 +154,11 @@ def ctest(log, preset):
     return read_junit(log, report, code)
 
 
-def pytest(log, **environment):
+def pytest(log, tests, **environment):
     setup(log, "setup_core")
     report = fresh(log, "xml")
-    command = [VENV / "core/bin/python", "-m", "pytest", "-rs", "-p", "no:cacheprovider", f"--junitxml={report}",
-               "tests/core"]
+    command = [VENV / "core/bin/python", "-m", "pytest", "-rs", "-p", "no:cacheprovider", "--capture=sys",
+               f"--junitxml={report}", tests]  # what a dying library writes reaches the log
     code = run(log, command, os.environ | environment)
     return read_junit(log, report, code)
 
