@@ -58,8 +58,9 @@ def main():
             if driver == "simulate" or name in ALSO_WITH_XDOTOOL]
 
     OUTPUT.mkdir(parents=True, exist_ok=True)
-    for old in (*OUTPUT.glob("*.png"), *OUTPUT.glob("*.log")):
-        old.unlink()
+    if not arguments.scenario:
+        for old in (*OUTPUT.glob("*.png"), *OUTPUT.glob("*.log")):
+            old.unlink()
     with tempfile.TemporaryDirectory(prefix="partwheel-gui-") as work:
         work = pathlib.Path(work)
         environment = clean_environment(work)
