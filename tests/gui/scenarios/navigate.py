@@ -11,7 +11,7 @@ def play(stage):
 
     at = start
     for what, drag, modifiers in (("orbits", (80, 30), {}), ("pans", (40, -60), {"shift": True}),
-                                  ("zooms", (0, 50), {"ctrl": True})):
+                                  ("zooms", (0, -40), {"ctrl": True})):
         before = stage.view_state()
         stage.mouse.move(x, y)
         yield from stage.settle()
