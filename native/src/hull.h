@@ -14,8 +14,9 @@ namespace partwheel {
 // (all points in one plane) has no facets and volume 0; its `vertices` are all its points.
 struct Hull {
     std::vector<int32_t> vertices;
-    std::vector<Triangle> facets;  // outward; coplanar facets are possible
-    std::vector<double> planes;    // five numbers a facet, each a block of facets.size(): see hull.cpp
+    std::vector<Triangle> facets;      // outward; coplanar facets are possible
+    std::vector<Triangle> neighbours;  // the facet across each facet's edge from corner k to corner k + 1
+    std::vector<double> planes;        // five numbers a facet, each a block of facets.size(): see hull.cpp
     double volume = 0;
 };
 
