@@ -57,6 +57,16 @@ void expect_convex_boundary(const Hull& hull, const Points& points, const std::v
         for (const int32_t v : members) ASSERT_LE(orientation(at(f[0]), at(f[1]), at(f[2]), at(v)), 0);
     }
     for (const auto& [a, b] : edges) ASSERT_TRUE(edges.contains({b, a})) << "an open edge";
+    ASSERT_EQ(hull.neighbours.size(), hull.facets.size());
+    for (size_t f = 0; f < hull.facets.size(); ++f)
+        for (size_t k = 0; k < 3; ++k) {  // across each edge lies the facet that has it the other way round
+            const Triangle& across = hull.facets.at(static_cast<size_t>(hull.neighbours[f][k]));
+            const int32_t from = hull.facets[f][k], to = hull.facets[f][(k + 1) % 3];
+            size_t at_to = 0;
+            while (at_to < 2 && across[at_to] != to) ++at_to;
+            ASSERT_EQ(across[at_to], to);
+            ASSERT_EQ(across[(at_to + 1) % 3], from);
+        }
     ASSERT_EQ(used.size() + hull.facets.size(), edges.size() / 2 + 2) << "not a sphere";
     ASSERT_EQ(sorted(hull.vertices), std::vector<int32_t>(used.begin(), used.end()));
 }
@@ -205,6 +215,89 @@ TEST_F(HullTest, SinglePointsJoinOneByOne) {
             ASSERT_NO_FATAL_FAILURE(expect_hull(hull, points, numbers(0, n + 1)));
             ASSERT_NEAR(volume, hull.volume, 1e-12 * hull.volume + rounding(points));
         }
+    }
+}
+
+// Hulls of hundreds of facets are searched in another way than small ones.
+TEST_F(HullTest, LargeHulls) {
+    const auto on_sphere = [&] {
+        const double u = real(0, 2 * std::numbers::pi), z = real(-1, 1), r = std::sqrt(1 - z * z);
+        return Point{r * std::cos(u), r * std::sin(u), z};
+    };
+    for (int i = 0; i < sized(24, 8); ++i) {
+        Points points;
+        const auto count = static_cast<size_t>(whole(150, 500));
+        while (points.size() < count) {
+            Point p = on_sphere();
+            switch (i % 4) {
+                case 0: break;
+                case 1:  // large coplanar facets: grid points in a ball
+                    for (double& x : p) x = std::round(x * real(8, 10));
+                    break;
+                case 2:  // two balls side by side
+                    if (points.size() % 2 == 0) p[0] += 3;
+                    break;
+                default:  // a cylinder: all corners on two circles and nothing else
+                    p = {std::cos(p[0] * 3), std::sin(p[0] * 3), p[2] > 0 ? 1.0 : 0.0};
+            }
+            points.push_back(p);
+        }
+        if (i % 4 == 2)  // so that the halves are the balls
+            std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return (a[0] > 1.5) < (b[0] > 1.5); });
+        const size_t split = i % 3 == 0 ? count - 1 : i % 3 == 1 ? count / 2 : count - 5;
+        ASSERT_NO_FATAL_FAILURE(expect_all(points, split)) << "round " << i;
+    }
+}
+
+TEST_F(HullTest, PointsJoinALargeHullOneByOne) {
+    for (const bool grid : {false, true}) {
+        Points points;
+        const TriMesh ball = sphere(12, 20);
+        for (Point p : ball.vertices) {
+            for (double& x : p) x = grid ? std::round(12 * x) : x;
+            points.push_back(p);
+        }
+        const size_t first = points.size();
+        for (int k = 0; k < sized(60, 15); ++k) {
+            Point p = points[static_cast<size_t>(whole(0, static_cast<int>(first) - 1))];
+            for (double& x : p) x = grid ? x + whole(-2, 2) : x * real(0.9, 1.2);
+            points.push_back(p);
+        }
+        HullKernel kernel(points);
+        Hull hull = kernel.build(numbers(0, first));
+        ASSERT_GT(hull.facets.size(), 160U);
+        for (size_t n = first; n < points.size(); ++n) {
+            const Hull point = kernel.build(numbers(n, n + 1));
+            const double volume = kernel.united_volume(hull, point);
+            const Hull next = kernel.unite(hull, point);
+            ASSERT_NO_FATAL_FAILURE(expect_hull(next, points, numbers(0, n + 1)));
+            ASSERT_NEAR(volume, next.volume, 1e-12 * next.volume);
+            hull = next;
+        }
+    }
+}
+
+// unite() may use what united_volume() has built, but only of the same two, and only right after.
+TEST_F(HullTest, AskingForOtherVolumesInBetweenChangesNothing) {
+    for (int i = 0; i < sized(100, 20); ++i) {
+        Points points(40);
+        for (Point& p : points)
+            for (double& x : p) x = i % 2 == 0 ? whole(0, 4) : real(0, 4);
+        HullKernel kernel(points);
+        const Hull a = kernel.build(numbers(0, 14)), b = kernel.build(numbers(14, 26)), c = kernel.build(numbers(26, 40));
+        (void)kernel.united_volume(a, b);
+        const Hull ac = kernel.unite(a, c);
+        const Hull ab = kernel.unite(a, b);
+        (void)kernel.united_volume(b, c);
+        (void)kernel.united_volume(a, kernel.build(numbers(3, 4)));
+        const Hull bc = kernel.unite(b, c);
+        std::vector<int32_t> members = numbers(0, 14), tail = numbers(26, 40);
+        members.insert(members.end(), tail.begin(), tail.end());
+        ASSERT_NO_FATAL_FAILURE(expect_hull(ac, points, members));
+        ASSERT_NO_FATAL_FAILURE(expect_hull(ab, points, numbers(0, 26)));
+        ASSERT_NO_FATAL_FAILURE(expect_hull(bc, points, numbers(14, 40)));
+        (void)kernel.united_volume(ab, c);
+        ASSERT_NO_FATAL_FAILURE(expect_hull(kernel.unite(ab, c), points, numbers(0, 40)));
     }
 }
 
