@@ -1,7 +1,7 @@
 # What the library is built from: targets partwheel_cgal (CGAL, Boost, Eigen: headers) and partwheel_tetgen.
 # First what scripts/setup.sh put under PARTWHEEL_DEPS, then the system.
 
-set(fix "Run scripts/build, which installs what is missing, or . scripts/setup.sh && setup_build for that alone.")
+set(fix "Run scripts/build, which installs what is missing.")
 
 # Sets VARIABLE to the directory to include for a header.
 function(find_headers variable name header)
