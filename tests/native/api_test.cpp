@@ -34,7 +34,9 @@ Context new_context() {
     return Context(context);
 }
 
-TriMesh some_shape() { return surface_of("U", block({0, 0, 0}, {5, 1, 2}) + block({0, 0, 0}, {1, 4, 2}) + block({4, 0, 0}, {5, 4, 2})); }
+TriMesh some_shape() {
+    return surface_of("U", block({0, 0, 0}, {5, 1, 2}) + block({0, 0, 0}, {1, 4, 2}) + block({4, 0, 0}, {5, 4, 2}));
+}
 
 void expect_argument_error(pw_status status) {
     EXPECT_EQ(status, PW_ERROR_ARGUMENT);
@@ -52,7 +54,8 @@ TEST(Api, Names) {
         for (const char c : name) EXPECT_TRUE(c == ' ' || c == '-' || (c >= 'a' && c <= 'z')) << name;
     EXPECT_STREQ(pw_status_name(PW_ERROR_SELF_INTERSECTION), "self-intersection");
     const std::vector<std::string> stages{"surface", "tetrahedra", "cluster", "dendrogram", "hierarchy"};
-    for (int s = 0; s < PW_STAGE_COUNT; ++s) EXPECT_EQ(pw_stage_name(static_cast<pw_stage>(s)), stages[static_cast<size_t>(s)]);
+    for (int s = 0; s < PW_STAGE_COUNT; ++s)
+        EXPECT_EQ(pw_stage_name(static_cast<pw_stage>(s)), stages[static_cast<size_t>(s)]);
     for (const int s : {-1, PW_ERROR_INTERNAL + 1, 1000}) {
         EXPECT_NE(pw_status_name(static_cast<pw_status>(s)), nullptr);
         EXPECT_NE(pw_stage_name(static_cast<pw_stage>(s)), nullptr);
@@ -80,7 +83,8 @@ TEST(Api, NullsAreErrors) {
     expect_argument_error(pw_context_progress(nullptr, seconds, nullptr));
     expect_argument_error(pw_context_seconds(nullptr, seconds));
     expect_argument_error(pw_context_seconds(context.get(), nullptr));
-    expect_argument_error(pw_build(nullptr, mesh.vertex_data(), 8, mesh.triangle_data(), 12, nullptr, 12, nullptr, nullptr));
+    expect_argument_error(
+        pw_build(nullptr, mesh.vertex_data(), 8, mesh.triangle_data(), 12, nullptr, 12, nullptr, nullptr));
     expect_argument_error(pw_build(nullptr, nullptr, 8, mesh.triangle_data(), 12, nullptr, 12, nullptr, &loaded));
     expect_argument_error(pw_build(nullptr, mesh.vertex_data(), 8, nullptr, 12, nullptr, 12, nullptr, &loaded));
     expect_argument_error(pw_hierarchy_arrays(nullptr, &a));
@@ -147,8 +151,13 @@ TEST(Api, OutOfRangeIsAnError) {
         expect_argument_error(pw_hierarchy_cut_height(h, height, room, 8, &count));
     for (const size_t parts : {size_t{0}, a.tetrahedron_count + 1, size_t{4097}, huge})
         expect_argument_error(pw_hierarchy_cut_parts(h, parts, room, 8, &count));
-    for (const auto& [first, last] : std::vector<std::pair<size_t, size_t>>{
-             {0, 0}, {1, 0}, {5, 5}, {0, a.tetrahedron_count + 1}, {a.tetrahedron_count, a.tetrahedron_count}, {0, huge}, {huge, huge}})
+    for (const auto& [first, last] : std::vector<std::pair<size_t, size_t>>{{0, 0},
+                                                                            {1, 0},
+                                                                            {5, 5},
+                                                                            {0, a.tetrahedron_count + 1},
+                                                                            {a.tetrahedron_count, a.tetrahedron_count},
+                                                                            {0, huge},
+                                                                            {huge, huge}})
         expect_argument_error(pw_hierarchy_hull(h, first, last, &made));
     // Nothing was written.
     EXPECT_EQ(count, 77U);
@@ -172,7 +181,8 @@ TEST(Api, BuildChecksItsOptionsAndSizes) {
     for (const size_t size : {size_t{0}, sizeof(pw_build_options) - 1, sizeof(pw_build_options) + 1, huge})
         expect_argument_error(status({size, 0}));
     const auto sized_build = [&](size_t vertices, size_t triangles, const int32_t* faces, size_t face_count) {
-        return pw_build(nullptr, mesh.vertex_data(), vertices, mesh.triangle_data(), triangles, faces, face_count, nullptr, &made);
+        return pw_build(nullptr, mesh.vertex_data(), vertices, mesh.triangle_data(), triangles, faces, face_count,
+                        nullptr, &made);
     };
     EXPECT_EQ(sized_build(0, 12, nullptr, 12), PW_ERROR_EMPTY);
     EXPECT_EQ(sized_build(8, 0, nullptr, 0), PW_ERROR_EMPTY);
@@ -195,9 +205,15 @@ TEST(Api, CapacityRules) {
     size_t start = 0;
     const std::vector<std::function<pw_status(int32_t*, size_t, size_t*)>> questions{
         [&](int32_t* out, size_t capacity, size_t* count) { return pw_hierarchy_path(h, 3, out, capacity, count); },
-        [&](int32_t* out, size_t capacity, size_t* count) { return pw_hierarchy_wheel(h, 3, out, capacity, count, &start); },
-        [&](int32_t* out, size_t capacity, size_t* count) { return pw_hierarchy_cut_height(h, 0, out, capacity, count); },
-        [&](int32_t* out, size_t capacity, size_t* count) { return pw_hierarchy_cut_parts(h, 7, out, capacity, count); },
+        [&](int32_t* out, size_t capacity, size_t* count) {
+            return pw_hierarchy_wheel(h, 3, out, capacity, count, &start);
+        },
+        [&](int32_t* out, size_t capacity, size_t* count) {
+            return pw_hierarchy_cut_height(h, 0, out, capacity, count);
+        },
+        [&](int32_t* out, size_t capacity, size_t* count) {
+            return pw_hierarchy_cut_parts(h, 7, out, capacity, count);
+        },
     };
     for (const auto& ask : questions) {
         size_t needed = 0, count = 0;
@@ -228,7 +244,8 @@ TEST(Api, NothingIsWrittenOnFailure) {
     mesh.faces.pop_back();
     auto* const mark = reinterpret_cast<pw_hierarchy*>(&mesh);
     pw_hierarchy* made = mark;
-    EXPECT_EQ(pw_build(nullptr, mesh.vertex_data(), 8, mesh.triangle_data(), 11, mesh.face_data(), 6, nullptr, &made), PW_ERROR_OPEN);
+    EXPECT_EQ(pw_build(nullptr, mesh.vertex_data(), 8, mesh.triangle_data(), 11, mesh.face_data(), 6, nullptr, &made),
+              PW_ERROR_OPEN);
     EXPECT_EQ(made, mark);
     const uint8_t bytes[3] = {1, 2, 3};
     EXPECT_EQ(pw_hierarchy_load(bytes, 3, &made), PW_ERROR_DATA);
@@ -380,8 +397,10 @@ TEST(Api, CancelFromAnotherThreadWhileClustering) {
     // Of the second model the clusters are wide open: each step takes long.
     const TriMesh bear = real_mesh(light() ? "hand.off" : "bear_bis.off"), cheese = real_mesh("cheese.off");
     const Context context = new_context();
-    for (const auto& [mesh, at] : {std::pair(&bear, 0.5), {&bear, 0.8}, {&bear, 0.95}, {&cheese, 0.5}}) {
-        SCOPED_TRACE(mesh->name);
+    for (const auto& run : {std::pair(&bear, 0.5), {&bear, 0.8}, {&bear, 0.95}, {&cheese, 0.5}}) {
+        const TriMesh& mesh = *run.first;
+        const double at = run.second;
+        SCOPED_TRACE(mesh.name);
         std::atomic<bool> done{false};
         pw_status status = PW_OK;
         clockid_t clock{};
@@ -390,7 +409,7 @@ TEST(Api, CancelFromAnotherThreadWhileClustering) {
         std::thread builder([&] {
             pthread_getcpuclockid(pthread_self(), &clock);
             running = true;
-            status = try_build(*mesh, 0, context.get()).status;
+            status = try_build(mesh, 0, context.get()).status;
             ended = cpu_seconds(clock);
             done = true;
         });
@@ -451,7 +470,8 @@ TEST(Api, ManyThreadsAskOneHierarchy) {
             answers.push_back(static_cast<int32_t>(w.start));
         }
         for (size_t n = a.tetrahedron_count; n < a.node_count; n += 29)
-            answers.push_back(static_cast<int32_t>(hull(handle, static_cast<size_t>(a.tet_first[n]), static_cast<size_t>(a.tet_last[n])).vertices.size()));
+            answers.push_back(static_cast<int32_t>(
+                hull(handle, static_cast<size_t>(a.tet_first[n]), static_cast<size_t>(a.tet_last[n])).vertices.size()));
         for (const uint8_t byte : save(handle)) answers.push_back(byte);
         return answers;
     };
@@ -477,10 +497,12 @@ void ask_everything(const Handle& handle) {
     for (const double height : {0.0, 1.0, HUGE_VAL})
         EXPECT_EQ(pw_hierarchy_cut_height(handle.get(), height, room.data(), room.size(), &count), PW_OK);
     for (const size_t parts : {size_t{1}, (a.tetrahedron_count + 1) / 2})
-        EXPECT_EQ(pw_hierarchy_cut_parts(handle.get(), std::min<size_t>(parts, 4096), room.data(), room.size(), &count), PW_OK);
+        EXPECT_EQ(pw_hierarchy_cut_parts(handle.get(), std::min<size_t>(parts, 4096), room.data(), room.size(), &count),
+                  PW_OK);
     for (size_t n = 0; n < a.node_count; n += 1 + a.node_count / 10) {
         pw_mesh* made = nullptr;
-        const pw_status status = pw_hierarchy_hull(handle.get(), static_cast<size_t>(a.tet_first[n]), static_cast<size_t>(a.tet_last[n]), &made);
+        const pw_status status = pw_hierarchy_hull(handle.get(), static_cast<size_t>(a.tet_first[n]),
+                                                   static_cast<size_t>(a.tet_last[n]), &made);
         EXPECT_TRUE(status == PW_OK || status == PW_ERROR_DATA) << pw_error_message();
         pw_mesh_free(made);
     }

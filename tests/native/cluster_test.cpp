@@ -197,14 +197,14 @@ TEST(Cluster, LeafNumbersSettleExactTies) {
 }
 
 TEST(Cluster, ComponentsJoinByConcavityNotDistance) {
-    // A small cube lies near a large one, another small one further along the large one's side but at such a place
-    // that it adds less empty space: two small cubes in line, and one beside a long bar.
-    const Cells bar = block({0, 0, 0}, {10, 1, 1}), near = block({4, 0, 2}, {5, 1, 3}), far = block({12, 0, 0}, {13, 1, 1});
+    // A long bar, a cube near its middle, and another cube further off but in line with the bar.
+    const Cells bar = block({0, 0, 0}, {10, 1, 1}), near = block({4, 0, 2}, {5, 1, 3}),
+                far = block({12, 0, 0}, {13, 1, 1});
     const TetMesh mesh = tets_of(bar + near + far);
     const BinaryTree tree = clustered(mesh);
     ASSERT_EQ(tree.components, 3U);
     const size_t last = tree.merges.size() - 1;
-    // Bar and far: the hull is 13 long, 2 of it empty. Bar and near: a wedge over the bar, more than 2 empty.
+    // With the far one the hull is 13 long, 2 of it empty; with the near one it is a wedge, more of it empty.
     EXPECT_NEAR(tree.merges[last - 1].concavity, 2, 1e-6);
     EXPECT_NEAR(tree.merges[last - 1].hull_volume, 13, 1e-12);
 }

@@ -52,7 +52,8 @@ Tree tree_of(const std::vector<Merge>& merges) {
         if (!node->leaf) {
             const Merge& m = merges[i - merges.size() - 1];
             node->cost = m.concavity;
-            node->children = {tree.nodes[static_cast<size_t>(m.left)].get(), tree.nodes[static_cast<size_t>(m.right)].get()};
+            node->children = {tree.nodes[static_cast<size_t>(m.left)].get(),
+                              tree.nodes[static_cast<size_t>(m.right)].get()};
         }
         tree.nodes.push_back(std::move(node));
     }
@@ -116,8 +117,9 @@ TEST_F(DendrogramTest, PrunesAsListing2) {
 }
 
 TEST_F(DendrogramTest, PrunesRealTreesAsListing2) {
-    for (const TetMesh& mesh : {tets_of(block({0, 0, 0}, {4, 4, 1})), tets_of(block({0, 0, 0}, {6, 1, 1}) + block({0, 0, 0}, {1, 6, 1})),
-                                perturbed(tets_of(block({0, 0, 0}, {3, 3, 3})), 0.1, 1)}) {
+    for (const TetMesh& mesh :
+         {tets_of(block({0, 0, 0}, {4, 4, 1})), tets_of(block({0, 0, 0}, {6, 1, 1}) + block({0, 0, 0}, {1, 6, 1})),
+          perturbed(tets_of(block({0, 0, 0}, {3, 3, 3})), 0.1, 1)}) {
         Progress progress;
         progress.begin();
         const auto merges = cluster(mesh, progress).merges;

@@ -112,8 +112,10 @@ void expect_all(const Points& points, size_t split) {
     ASSERT_NO_FATAL_FAILURE(expect_hull(direct, points, all)) << "built";
     const auto [low, high] = kernel.bounds(direct);
     for (size_t k = 0; k < 3; ++k) {
-        ASSERT_EQ(low[k], (*std::min_element(points.begin(), points.end(), [&](auto& p, auto& q) { return p[k] < q[k]; }))[k]);
-        ASSERT_EQ(high[k], (*std::max_element(points.begin(), points.end(), [&](auto& p, auto& q) { return p[k] < q[k]; }))[k]);
+        ASSERT_EQ(low[k],
+                  (*std::min_element(points.begin(), points.end(), [&](auto& p, auto& q) { return p[k] < q[k]; }))[k]);
+        ASSERT_EQ(high[k],
+                  (*std::max_element(points.begin(), points.end(), [&](auto& p, auto& q) { return p[k] < q[k]; }))[k]);
     }
 }
 
@@ -243,7 +245,8 @@ TEST_F(HullTest, LargeHulls) {
             points.push_back(p);
         }
         if (i % 4 == 2)  // so that the halves are the balls
-            std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return (a[0] > 1.5) < (b[0] > 1.5); });
+            std::sort(points.begin(), points.end(),
+                      [](const Point& a, const Point& b) { return (a[0] > 1.5) < (b[0] > 1.5); });
         const size_t split = i % 3 == 0 ? count - 1 : i % 3 == 1 ? count / 2 : count - 5;
         ASSERT_NO_FATAL_FAILURE(expect_all(points, split)) << "round " << i;
     }
@@ -284,7 +287,8 @@ TEST_F(HullTest, AskingForOtherVolumesInBetweenChangesNothing) {
         for (Point& p : points)
             for (double& x : p) x = i % 2 == 0 ? whole(0, 4) : real(0, 4);
         HullKernel kernel(points);
-        const Hull a = kernel.build(numbers(0, 14)), b = kernel.build(numbers(14, 26)), c = kernel.build(numbers(26, 40));
+        const Hull a = kernel.build(numbers(0, 14)), b = kernel.build(numbers(14, 26)),
+                   c = kernel.build(numbers(26, 40));
         (void)kernel.united_volume(a, b);
         const Hull ac = kernel.unite(a, c);
         const Hull ab = kernel.unite(a, b);

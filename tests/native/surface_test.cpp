@@ -215,8 +215,9 @@ TEST(Surface, MessagesAreSentences) {
     TriMesh mesh = cube();
     mesh.triangles.pop_back();
     mesh.faces.pop_back();
-    for (const Outcome& outcome : {checked(mesh), checked(MeshView{}), checked(surface_of("e", Cells{{0, 0, 0}, {1, 1, 0}})),
-                                   checked(together("same", cube(), cube()))}) {
+    for (const Outcome& outcome :
+         {checked(mesh), checked(MeshView{}), checked(surface_of("e", Cells{{0, 0, 0}, {1, 1, 0}})),
+          checked(together("same", cube(), cube()))}) {
         ASSERT_NE(outcome.status, PW_OK);
         EXPECT_GT(outcome.message.size(), 20U);
         EXPECT_TRUE(std::isupper(static_cast<unsigned char>(outcome.message.front())) != 0 ||
@@ -299,7 +300,8 @@ INSTANTIATE_TEST_SUITE_P(Models, DamagedModels,
 // ---- Order, frame, faces ----
 
 TEST(Surface, CanonicalOrder) {
-    for (const TriMesh& mesh : {cube(), block_surface(), torus(9, 6, 2, 0.5), real_mesh("joint.off"), real_mesh("cross_quad.off")}) {
+    for (const TriMesh& mesh :
+         {cube(), block_surface(), torus(9, 6, 2, 0.5), real_mesh("joint.off"), real_mesh("cross_quad.off")}) {
         SCOPED_TRACE(mesh.name);
         const Surface first = checked(mesh).surface;
         ASSERT_FALSE(first.triangles.empty());
@@ -328,7 +330,8 @@ TEST(Surface, CanonicalOrder) {
 }
 
 TEST(Surface, KeepsTheCallersGeometry) {
-    for (const TriMesh& mesh : {perturbed(torus(9, 6, 2, 0.5), 0.05, 1), moved(cube(), {-7, 1e3, 0.125}), real_mesh("helmet.off")}) {
+    for (const TriMesh& mesh :
+         {perturbed(torus(9, 6, 2, 0.5), 0.05, 1), moved(cube(), {-7, 1e3, 0.125}), real_mesh("helmet.off")}) {
         const Surface s = checked(mesh).surface;
         ASSERT_EQ(s.vertices.size(), s.source_vertex.size());
         Point high{};
@@ -337,7 +340,8 @@ TEST(Surface, KeepsTheCallersGeometry) {
             const Point back = s.frame.to_caller(s.vertices[i]);
             EXPECT_EQ(s.frame.to_working(original), s.vertices[i]);
             for (size_t k = 0; k < 3; ++k) {
-                EXPECT_NEAR(back[k], original[k], 1e-15 * (std::fabs(original[k]) + std::fabs(s.frame.origin[k]) + s.frame.scale));
+                EXPECT_NEAR(back[k], original[k],
+                            1e-15 * (std::fabs(original[k]) + std::fabs(s.frame.origin[k]) + s.frame.scale));
                 EXPECT_GE(s.vertices[i][k], 0);
                 high[k] = std::max(high[k], s.vertices[i][k]);
             }
@@ -381,7 +385,8 @@ TEST(Surface, AllModelsGetTheReferencesAnswer) {
     for (const TriMesh& mesh : real_meshes(sized<size_t>(8000, 700))) {
         SCOPED_TRACE(mesh.name);
         const Outcome outcome = checked(mesh);
-        EXPECT_EQ(pw_status_name(outcome.status), std::string(pw_status_name(expected_status(mesh)))) << outcome.message;
+        EXPECT_EQ(pw_status_name(outcome.status), std::string(pw_status_name(expected_status(mesh))))
+            << outcome.message;
         ++count[pw_status_name(outcome.status)];
     }
     for (const auto& [status, n] : count) std::printf("%d models: %s\n", n, status.c_str());

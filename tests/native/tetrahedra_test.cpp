@@ -43,7 +43,8 @@ double total_volume(const TetMesh& mesh) {
 
 // What must hold of every surface, `volume` being that of its solid in the caller's unit.
 void expect_filled(const Filled& f, double volume) {
-    const auto& [surface, mesh] = f;
+    const Surface& surface = f.surface;
+    const TetMesh& mesh = f.mesh;
     const auto at = [&](int32_t v) -> const Point& { return mesh.vertices[static_cast<size_t>(v)]; };
     ASSERT_FALSE(mesh.tetrahedra.empty());
     ASSERT_EQ(mesh.neighbours.size(), mesh.tetrahedra.size());

@@ -103,7 +103,8 @@ HullMesh hull(const Handle& handle, size_t tet_first, size_t tet_last) {
     size_t vertex_count = 0, triangle_count = 0;
     require_ok(pw_mesh_arrays(made, &vertices, &vertex_count, &triangles, &triangle_count));
     HullMesh mesh;
-    for (size_t v = 0; v < vertex_count; ++v) mesh.vertices.push_back({vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]});
+    for (size_t v = 0; v < vertex_count; ++v)
+        mesh.vertices.push_back({vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]});
     for (size_t t = 0; t < triangle_count; ++t)
         mesh.triangles.push_back({triangles[3 * t], triangles[3 * t + 1], triangles[3 * t + 2]});
     return mesh;
@@ -353,7 +354,8 @@ void Invariants::expect_merges() const {
             ASSERT_FALSE(used[c]) << "a cluster that was merged twice";
             used[c] = true;
         }
-        const auto left = slice[static_cast<size_t>(a_.merges[2 * m])], right = slice[static_cast<size_t>(a_.merges[2 * m + 1])];
+        const auto left = slice[static_cast<size_t>(a_.merges[2 * m])],
+                   right = slice[static_cast<size_t>(a_.merges[2 * m + 1])];
         ASSERT_EQ(left.second, right.first) << "the leaves aren't in the tree's depth-first order";
         slice[tets_ + m] = {left.first, right.second};
     }
@@ -411,7 +413,8 @@ void Invariants::expect_questions() const {
     for (size_t t = 0; t < tets_; ++t) clusters.insert({static_cast<int32_t>(t), static_cast<int32_t>(t + 1)});
     std::vector<std::pair<int32_t, int32_t>> slice(clusters.begin(), clusters.end());
     for (size_t m = 0; m + 1 < tets_; ++m) {
-        slice.push_back({slice[static_cast<size_t>(a_.merges[2 * m])].first, slice[static_cast<size_t>(a_.merges[2 * m + 1])].second});
+        slice.push_back({slice[static_cast<size_t>(a_.merges[2 * m])].first,
+                         slice[static_cast<size_t>(a_.merges[2 * m + 1])].second});
         clusters.insert(slice.back());
     }
     for (const size_t parts : {size_t{1}, size_t{2}, size_t{5}, size_t{40}, tets_}) {

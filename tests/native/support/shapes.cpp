@@ -191,8 +191,8 @@ TriMesh snowman(int rings, int segments) {
 }
 
 TriMesh stacked_cylinders(int segments) {
-    return lathe("stacked cylinders", {{1, 0}, {1, 0.5}, {0.5, 0.5}, {0.5, 1.5}, {1.25, 1.5}, {1.25, 2}, {0.25, 2}, {0.25, 4}},
-                 segments);
+    return lathe("stacked cylinders",
+                 {{1, 0}, {1, 0.5}, {0.5, 0.5}, {0.5, 1.5}, {1.25, 1.5}, {1.25, 2}, {0.25, 2}, {0.25, 4}}, segments);
 }
 
 TriMesh torus(int around, int across, double radius, double tube) {
@@ -337,7 +337,8 @@ Shuffled shuffled(const TriMesh& mesh, unsigned seed) {
 
     result.face = permutation(mesh.face_count);
     std::vector<int32_t> face_place(mesh.face_count);
-    for (size_t f = 0; f < mesh.face_count; ++f) face_place[static_cast<size_t>(result.face[f])] = static_cast<int32_t>(f);
+    for (size_t f = 0; f < mesh.face_count; ++f)
+        face_place[static_cast<size_t>(result.face[f])] = static_cast<int32_t>(f);
 
     for (const int32_t t : permutation(mesh.triangles.size())) {
         Triangle corners = mesh.triangles[static_cast<size_t>(t)];
