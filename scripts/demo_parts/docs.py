@@ -13,7 +13,8 @@ from paint import parts_cells, percent, sheet, wheel_cells
 # Picture -> model, click, and what to call the wheel stop of about this share of the model's area.
 STORIES = {
     "man": ("man-remeshed", "finger tip", (
-        ("finger tip", 0.0007), ("finger", 0.003), ("hand", 0.02), ("arm", 0.08), ("upper body", 0.47), ("body", 1.0))),
+        ("finger tip", 0.0013), ("fingers", 0.0128), ("hand", 0.023), ("arm", 0.092),
+        ("upper body", 0.476), ("body", 1.0))),
     "armadillo": ("armadillo", "finger tip", (
         ("finger tip", 0.0008), ("finger", 0.004), ("hand", 0.03), ("forearm", 0.08), ("arm", 0.155), ("body", 1.0))),
 }
