@@ -95,7 +95,9 @@ void expect_same(const Handle& x, const Handle& y) {
     ASSERT_EQ(a.node_count, b.node_count);
     ASSERT_EQ(a.tetrahedron_count, b.tetrahedron_count);
     ASSERT_EQ(a.vertex_count, b.vertex_count);
-    const auto same = [](const auto* p, const auto* q, size_t n) { return n == 0 || std::memcmp(p, q, n * sizeof *p) == 0; };
+    const auto same = [](const auto* p, const auto* q, size_t n) {
+        return n == 0 || std::memcmp(p, q, n * sizeof *p) == 0;
+    };
     const size_t f = a.face_count, n = a.node_count, t = a.tetrahedron_count, v = a.vertex_count;
     EXPECT_TRUE(same(a.order, b.order, f));
     EXPECT_TRUE(same(a.leaf, b.leaf, f));
