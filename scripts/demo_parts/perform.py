@@ -26,7 +26,7 @@ from models import MODELS, MONKEY  # noqa: E402
 from studio import Studio  # noqa: E402
 
 HEIGHT = 330  # of a picture, in pixels
-CLOSER = 0.25  # a part that is smaller than this in the picture, as a fraction of its size, gets a closer look
+CLOSER = 0.17  # a part that is smaller than this in the picture, as a fraction of its size, gets a closer look
 
 
 def open_model(model, meshes):
@@ -103,7 +103,7 @@ def closer_views(studio, whole, points, polygons, stops):
         part = points[numpy.unique(numpy.concatenate([polygons[face] for face in stops[number]]))]
         tight = studio.view(part, whole.width, whole.height)
         if tight.span < CLOSER * views[-1].span:
-            views.append(tight._replace(span=tight.span * 2.2))
+            views.append(tight._replace(span=tight.span * 2.6))
         chosen[number] = len(views) - 1
     return views, chosen
 

@@ -18,7 +18,7 @@ from denoise import denoise
 from layers import OVERSAMPLING, Layers
 
 FIELD_OF_VIEW = math.radians(16.0)
-SAMPLES = 4  # light paths for each pixel of a layer; denoise() does the rest
+SAMPLES = 3  # light paths for each pixel of a layer; denoise() does the rest
 
 
 class View(NamedTuple):
