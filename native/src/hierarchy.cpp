@@ -354,6 +354,13 @@ static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Merge) 
 
 }  // namespace
 
+size_t Hierarchy::saved_size() const {
+    const size_t vertex = sizeof(Point) + sizeof(int32_t), face = sizeof(int32_t) + sizeof(double);
+    const size_t tetrahedron = sizeof(Tetrahedron) + sizeof(double);
+    return sizeof(Header) + vertices_.size() * vertex + tetrahedra_.size() * tetrahedron + leaf_.size() * face +
+           merges_.size() * sizeof(Merge) + sizeof(uint64_t);
+}
+
 std::vector<uint8_t> Hierarchy::save() const {
     Header header;
     header.faces = leaf_.size();
@@ -362,6 +369,7 @@ std::vector<uint8_t> Hierarchy::save() const {
     header.components = summary_.components;
     header.cavities = summary_.cavities;
     Writer out;
+    out.bytes.reserve(saved_size());
     out.put(&header, 1);
     out.put(vertices_.data(), vertices_.size());
     out.put(source_.data(), source_.size());

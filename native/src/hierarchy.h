@@ -25,6 +25,7 @@ public:
     // Throws Error(PW_ERROR_DATA) for anything but what save() makes.
     static Hierarchy load(std::span<const uint8_t> bytes);
     std::vector<uint8_t> save() const;
+    size_t saved_size() const;  // of what save() returns
 
     pw_arrays arrays() const;
     const pw_summary& summary() const { return summary_; }

@@ -12,7 +12,7 @@
 #include "predicates.h"
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 #include <utility>
 
 namespace partwheel {
