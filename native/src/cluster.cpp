@@ -318,6 +318,6 @@ BinaryTree Clustering::run() {
 
 }  // namespace
 
-BinaryTree cluster(const TetMesh& mesh, Progress& progress) { return Clustering(mesh, progress).run(); }
+BinaryTree cluster(const TetMesh& mesh, Progress& progress, int /*threads: not yet*/) { return Clustering(mesh, progress).run(); }
 
 }  // namespace partwheel

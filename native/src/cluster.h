@@ -53,6 +53,7 @@ struct BinaryTree {
     size_t components = 0;  // clusters left when the dual edges had run out
 };
 
-BinaryTree cluster(const TetMesh& mesh, Progress& progress);
+// threads: 1, or 2 to work ahead on the second core; the tree is the same, bit for bit.
+BinaryTree cluster(const TetMesh& mesh, Progress& progress, int threads = 1);
 
 }  // namespace partwheel
