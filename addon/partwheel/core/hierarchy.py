@@ -76,6 +76,19 @@ def _indices(values, name, shape):
     return np.ascontiguousarray(values, np.int32)
 
 
+def checked_surface(vertices, triangles, faces, face_count):
+    """What Hierarchy.build() was given, as the library takes it: ([vertices, triangles, faces if given], face_count).
+    Raises PartwheelError, ValueError or TypeError."""
+    vertices = _coordinates(vertices)
+    triangles = _indices(triangles, "triangles", (None, 3))
+    arrays = [vertices, triangles]
+    if faces is not None:
+        arrays.append(_indices(faces, "faces", (len(triangles),)))
+    if face_count is None:
+        face_count = len(triangles) if faces is None else int(arrays[2].max(initial=-1)) + 1
+    return arrays, _number(face_count)
+
+
 class _Context:
     """pw_context: progress, cancel and timing of one build."""
 
@@ -103,19 +116,19 @@ class _Context:
 class _Build(threading.Thread):
     """pw_build in a thread of its own: ctypes lets go of Python's lock, so the caller's thread stays free."""
 
-    def __init__(self, context, vertices, triangles, faces, face_count, quality):
+    def __init__(self, context, arrays, face_count, quality):
         super().__init__(name="partwheel-build", daemon=True)
         self.context = context
-        self.arguments = vertices, triangles, faces, face_count, quality
+        self.arguments = arrays, face_count, quality
         self.address = c_void_p()
         self.error = None
 
     def run(self):
-        vertices, triangles, faces, face_count, quality = self.arguments
+        (vertices, triangles, *faces), face_count, quality = self.arguments
         options = BuildOptions(ctypes.sizeof(BuildOptions), quality)
         status = load().pw_build(
             self.context.handle.address, vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles),
-            None if faces is None else faces.ctypes.data, face_count, byref(options), byref(self.address),
+            faces[0].ctypes.data if faces else None, face_count, byref(options), byref(self.address),
         )
         try:
             check(status, self.context.seconds())
@@ -172,14 +185,9 @@ class Hierarchy:
 
         Raises PartwheelError with what is wrong with the surface, or that the build was cancelled.
         """
-        vertices = _coordinates(vertices)
-        triangles = _indices(triangles, "triangles", (None, 3))
-        if faces is not None:
-            faces = _indices(faces, "faces", (len(triangles),))
-        if face_count is None:
-            face_count = len(triangles) if faces is None else int(faces.max(initial=-1)) + 1
+        arrays, face_count = checked_surface(vertices, triangles, faces, face_count)
         context = _Context()
-        build = _Build(context, vertices, triangles, faces, face_count, quality)
+        build = _Build(context, arrays, face_count, quality)
 
         def report():
             if progress is not None and progress(*context.progress()):
