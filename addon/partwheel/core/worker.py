@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Job: a build in a process of its own, so that nothing the native library does can harm this one.
+
+Everything goes through two pipes, so no file and no shared memory can be left behind; and the end of a pipe tells each
+side that the other has died. The other side is worker_process.py.
+"""
+
+import json
+import signal
+import struct
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+from .hierarchy import Hierarchy, checked_surface
+from .library import PartwheelError, Status, load
+
+ENTRY = Path(__file__).with_name("worker_process.py")
+MEMORY_SHARE = 0.8  # of the memory that is available when the build starts
+# Some fifty times what an ordinary build takes: only what would never end should meet this limit.
+SECONDS, SECONDS_PER_TRIANGLE = 120, 0.002
+WATCH_SECONDS = 0.1
+# A message to or from the worker: kind, length, then so many bytes.
+MESSAGE = struct.Struct("<cQ")
+RUNGS = (7, 6, 4)  # what may still be tried, at first and after each failed process; see pw_build_options
+
+HARMLESS = "Nothing else was harmed; the mesh is as it was."
+
+
+class WorkerError(PartwheelError):
+    """The worker process ended, or had to be ended, without an answer. status: Status.INTERNAL, or Status.MEMORY.
+    name: "crash", "time limit", "memory", or "worker" when it could not even be started."""
+
+    def __init__(self, name, message):
+        super().__init__(Status.MEMORY if name == "memory" else Status.INTERNAL, message)
+        self.name = name
+
+
+class Job:
+    """One build in a worker process, which starts at once; arguments as for Hierarchy.build().
+
+    memory_limit: bytes that the worker may use (None: 80 % of what is available now; 0: no limit). Kept on Linux only:
+    macOS does not honour such limits, and on Windows none is set; there the system's own limits hold.
+    time_limit: seconds that one process may take (None: two minutes and 2 ms a triangle).
+
+    A worker that crashes, exits, or goes beyond a limit is followed by another that begins at the next rung of the
+    ladder; failures holds a WorkerError for each. Every method may be called from any thread. The worker ends when this
+    process does, however that happens.
+    """
+
+    def __init__(self, vertices, triangles, faces=None, face_count=None, *, quality=0.0, rungs=0, open_surfaces=False,
+                 threads=0, memory_limit=None, time_limit=None):
+        load()  # a missing library is better told here
+        self._arrays, self._face_count = checked_surface(vertices, triangles, faces, face_count)
+        self._options = {"quality": float(quality), "open_surfaces": int(open_surfaces), "threads": threads}
+        self._rungs = rungs or RUNGS[0]
+        self._memory_limit = int(MEMORY_SHARE * available_memory()) if memory_limit is None else memory_limit
+        self._time_limit = time_limit or SECONDS + SECONDS_PER_TRIANGLE * len(self._arrays[1])
+        self.failures = []
+        self._progress = 0.0, "surface"
+        self._lock = threading.Lock()  # for the two below
+        self._process = None
+        self._cancelled = False
+        self._hierarchy = self._error = None
+        self._thread = threading.Thread(target=self._run, name="partwheel-job", daemon=True)
+        self._thread.start()
+
+    def poll(self):
+        """(fraction 0..1 that never falls, name of the stage) while it runs; None once result() won't block."""
+        return self._progress if self._thread.is_alive() else None
+
+    def wait(self, seconds):
+        """Waits so long at most, and says whether the job is done."""
+        self._thread.join(seconds)
+        return not self._thread.is_alive()
+
+    def cancel(self):
+        """Kills the worker at once. result() then raises PartwheelError with Status.CANCELLED, unless it was done."""
+        with self._lock:
+            self._cancelled = True
+            if self._process:
+                self._process.kill()
+
+    def result(self):
+        """Waits for the end: the Hierarchy. Raises PartwheelError: what is wrong with the surface, that the build was
+        cancelled, or a WorkerError."""
+        try:
+            self._thread.join()
+        except BaseException:  # Ctrl-C
+            self.cancel()
+            raise
+        if self._error:
+            raise self._error
+        return self._hierarchy
+
+    @property
+    def process_id(self):
+        """Of the worker that runs now, or ran last; None before the first."""
+        return self._process and self._process.pid
+
+    # ---- In the job's thread ---------------------------------------------------------------------------------------
+
+    def _run(self):
+        try:
+            for rungs in dict.fromkeys(mask & self._rungs for mask in RUNGS):
+                if rungs:
+                    try:
+                        self._hierarchy = self._attempt(rungs)
+                        return
+                    except WorkerError as error:
+                        self.failures.append(error)
+                        if error.name == "worker":
+                            break
+            self._error = self.failures[-1]
+        except Exception as error:  # whatever it is, result() raises it
+            self._error = error
+
+    def _attempt(self, rungs):
+        """One worker process from start to end: the Hierarchy, or raises PartwheelError."""
+        with self._lock:
+            if self._cancelled:
+                raise PartwheelError(Status.CANCELLED, "The build was cancelled.")
+            try:
+                # -I: nothing of this process's Python, such as Blender's paths, reaches the worker. -S, -B: it starts
+                # faster, and writes no bytecode.
+                self._process = process = subprocess.Popen(
+                    [sys.executable, "-I", "-S", "-B", str(ENTRY)], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                    creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0))
+            except OSError as error:
+                raise WorkerError("worker", f"The worker process could not be started: {error}.") from error
+        late, over = threading.Event(), threading.Event()
+
+        def watch():
+            if not over.wait(self._time_limit):
+                late.set()
+                process.kill()
+
+        watchman = threading.Thread(target=watch, name="partwheel-watch", daemon=True)
+        watchman.start()
+        try:
+            self._send(process.stdin, rungs)
+            answer = self._listen(process.stdout)
+            if not answer:
+                process.wait()  # it has closed its pipe, so it is ending
+        finally:
+            over.set()
+            process.kill()
+            process.wait()
+            watchman.join()
+            process.stdout.close()
+            try:
+                process.stdin.close()
+            except OSError:
+                pass  # the worker died before it had read everything: that is told below
+        if answer:
+            return answer()
+        if self._cancelled:
+            raise PartwheelError(Status.CANCELLED, "The build was cancelled.")
+        if late.is_set():
+            raise WorkerError("time limit", f"The build was still in the stage {self._progress[1]} after "
+                                            f"{self._time_limit:.0f} seconds and was stopped. {HARMLESS} A mesh with "
+                                            "fewer faces (Decimate, or a voxel remesh) is faster.")
+        raise WorkerError("crash", f"The worker process {_ending(process.returncode)} in the stage {self._progress[1]}."
+                                   f" {HARMLESS} Merging vertices by distance, or a voxel remesh, often helps.")
+
+    def _send(self, pipe, rungs):
+        """Hands the surface over. A worker that dies meanwhile is left for _listen() to find."""
+        header = {"options": {**self._options, "rungs": rungs}, "face_count": self._face_count,
+                  "memory_limit": self._memory_limit, "sizes": [array.nbytes for array in self._arrays]}
+        text = json.dumps(header).encode()
+        try:
+            pipe.write(MESSAGE.pack(b"B", len(text)) + text)
+            for array in self._arrays:
+                pipe.write(array.data)
+            pipe.flush()
+        except OSError:
+            pass
+
+    def _listen(self, pipe):
+        """Takes in messages up to the answer: a function that returns the Hierarchy or raises; None without one."""
+        seconds = {}
+        while True:
+            head = _read(pipe, MESSAGE.size)
+            kind, length = MESSAGE.unpack(head) if len(head) == MESSAGE.size else (b"", 0)
+            payload = _read(pipe, length)
+            try:
+                if len(payload) < length or kind not in (b"P", b"S", b"E", b"H"):
+                    return None
+                if kind == b"H":
+                    return self._loaded(payload, seconds)
+                values = json.loads(payload)
+                if kind == b"E":
+                    return self._refused(values, seconds)
+                if kind == b"S":
+                    seconds = {str(stage): float(value) for stage, value in values.items()}
+                else:
+                    fraction, stage = values
+                    self._progress = max(self._progress[0], float(fraction)), str(stage)
+            except (ValueError, TypeError, AttributeError, LookupError):
+                return None  # not what a sound worker writes
+
+    def _loaded(self, data, seconds):
+        def answer():
+            try:
+                hierarchy = Hierarchy.load(data)
+            except PartwheelError as error:
+                raise WorkerError("crash", f"The worker process gave a damaged answer: {error} {HARMLESS}") from error
+            if len(hierarchy.order) != self._face_count:
+                raise WorkerError("crash", f"The worker process gave the answer to another mesh. {HARMLESS}")
+            hierarchy.seconds = seconds
+            return hierarchy
+        return answer
+
+    def _refused(self, values, seconds):
+        error = PartwheelError(int(values["status"]), str(values["message"]), seconds)
+        if error.status == Status.MEMORY:
+            limit = f" It may use {self._memory_limit / 2**30:.1f} GiB." if self._memory_limit else ""
+            error = WorkerError("memory", f"The worker process ran out of memory.{limit} {HARMLESS} A mesh with fewer "
+                                          "faces (Decimate, or a voxel remesh) needs less.")
+
+        def answer():
+            raise error
+        return answer
+
+
+def available_memory():
+    """Bytes that a new process could use without the system having to swap, or 0 where it does not tell."""
+    try:
+        with open("/proc/meminfo", encoding="ascii") as lines:
+            return next(int(line.split()[1]) * 1024 for line in lines if line.startswith("MemAvailable:"))
+    except (OSError, StopIteration):
+        return 0
+
+
+def _read(pipe, length):
+    """So many bytes, or fewer at the pipe's end. In pieces, for a mad worker may announce any length."""
+    pieces = []
+    while length > 0:
+        piece = pipe.read(min(length, 2**20))
+        if not piece:
+            break
+        pieces.append(piece)
+        length -= len(piece)
+    return b"".join(pieces)
+
+
+def _ending(code):
+    """How a process ended, in words."""
+    if code == -getattr(signal, "SIGKILL", 9):
+        return "was killed (SIGKILL, perhaps for want of memory)"
+    if code < 0:
+        try:
+            return f"crashed ({signal.Signals(-code).name})"
+        except ValueError:
+            return f"crashed (signal {-code})"
+    return f"ended without an answer (exit code {code})"

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A library that goes wrong on purpose: the real one, save that pw_build() comes to harm in the stage that is asked for.
+//
+// Linked with the real library, which provides all other functions. PARTWHEEL_FAULT is "FAULT:STAGE", the number of a
+// pw_stage; PARTWHEEL_FAULT_RUNG, if set, spares builds that may not use this rung. The fault happens inside the real
+// pw_build(): a watching thread sends the building one a signal, whose handler does the harm.
+#define _GNU_SOURCE
+#include "partwheel.h"
+
+#include <dlfcn.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+static char fault[32];
+static int fault_stage;
+static const pw_context *watched;
+static pthread_t builder;
+static volatile int running, happened;
+
+static void harm(int number) {
+    (void)number;
+    happened = 1;
+    if (!strcmp(fault, "segv")) *(volatile int *)8 = 1;
+    if (!strcmp(fault, "abort")) abort();
+    if (!strcmp(fault, "exit")) exit(3);
+    if (!strcmp(fault, "exit0")) exit(0);
+    if (!strcmp(fault, "free")) {
+        char *volatile never_allocated = fault + 16;
+        free(never_allocated);
+    }
+    if (!strcmp(fault, "stack")) {
+        volatile char *frame = __builtin_alloca(1 << 20);
+        frame[0] = 1;
+        harm(number + frame[0]);
+    }
+    if (!strcmp(fault, "kill")) raise(SIGKILL);
+    if (!strcmp(fault, "stop")) raise(SIGSTOP);
+    while (!strcmp(fault, "loop")) __asm__ volatile("");
+    if (!strcmp(fault, "fill"))
+        for (size_t size = 1 << 24; size >= 1 << 12; size >>= 2)
+            for (void *p; (p = mmap(0, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)) != MAP_FAILED;)
+                memset(p, 1, size);
+}
+
+static void *watch(void *unused) {
+    for (pw_stage stage; running && !happened; usleep(20))
+        if (pw_context_progress(watched, NULL, &stage) == PW_OK && (int)stage >= fault_stage) {
+            pthread_kill(builder, SIGUSR2);
+            break;
+        }
+    return unused;
+}
+
+pw_status pw_build(pw_context *context, const double *vertices, size_t vertex_count, const int32_t *triangles,
+                   size_t triangle_count, const int32_t *faces, size_t face_count, const pw_build_options *options,
+                   pw_hierarchy **hierarchy) {
+    __typeof__(&pw_build) real = (__typeof__(&pw_build))dlsym(RTLD_NEXT, "pw_build");
+    const char *wanted = getenv("PARTWHEEL_FAULT"), *rung = getenv("PARTWHEEL_FAULT_RUNG");
+    pthread_t watcher;
+    int watching = 0;
+    if (wanted && sscanf(wanted, "%31[^:]:%d", fault, &fault_stage) == 2 &&
+        (!rung || (options->rungs & (uint32_t)atoi(rung)))) {
+        watched = context;
+        builder = pthread_self();
+        running = 1;
+        signal(SIGUSR2, harm);
+        watching = !pthread_create(&watcher, NULL, watch, NULL);
+    }
+    if (!strcmp(fault, "chatter"))
+        for (int i = 0; i < 100000; ++i) printf("This is written to standard output.\n");
+    pw_status status = real(context, vertices, vertex_count, triangles, triangle_count, faces, face_count, options,
+                            hierarchy);
+    running = 0;
+    if (watching) {
+        pthread_join(watcher, NULL);
+        if (!happened) harm(0);  // a stage too short to be met
+    }
+    return status;
+}
+
+// The damaged answer of a process whose memory was written over.
+pw_status pw_hierarchy_save(const pw_hierarchy *hierarchy, uint8_t *bytes, size_t capacity, size_t *count) {
+    __typeof__(&pw_hierarchy_save) real = (__typeof__(&pw_hierarchy_save))dlsym(RTLD_NEXT, "pw_hierarchy_save");
+    pw_status status = real(hierarchy, bytes, capacity, count);
+    if (status == PW_OK && bytes && !strcmp(fault, "scribble")) memset(bytes + *count / 2, 0x5a, 64);
+    return status;
+}

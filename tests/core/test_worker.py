@@ -1,0 +1,310 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Job: the same answers as a build in this process; and whatever befalls the worker, an error with a name, no process,
+no file, no open pipe left, and a new attempt on the next rung.
+
+The harm is done by a real library with one function replaced (faults.c), so the product has no hook for tests.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapes
+from conftest import ROOT
+from partwheel.core import Hierarchy, PartwheelError, Stage, Status
+from partwheel.core.library import load
+from partwheel.core.worker import Job, WorkerError
+
+HERE = Path(__file__).parent
+LINUX = sys.platform == "linux"
+# AddressSanitizer takes more memory than any limit, and answers a crash itself.
+PLAIN = "libasan" not in os.environ.get("LD_PRELOAD", "")
+UNLIMITED = {} if PLAIN else {"memory_limit": 0}
+EXACT = 1  # pw_rung: with it alone there is one attempt
+STAGES = range(len(Stage))
+LIMIT = 400 * 2**20
+
+
+def compiled(source, target, *options):
+    subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-Wall", "-Werror", "-pthread", "-o", target, HERE / source,
+                    *options], check=True)
+    return str(target)
+
+
+@pytest.fixture(scope="session")
+def faults(tmp_path_factory):
+    """A path of the library that goes wrong on purpose."""
+    real = Path(load()._name).resolve()
+    return compiled("faults.c", tmp_path_factory.mktemp("faults") / "libfaults.so", f"-I{ROOT}/native/include", real,
+                    f"-Wl,-rpath,{real.parent}", "-Wl,--no-as-needed", "-ldl")
+
+
+@pytest.fixture
+def harm(faults, monkeypatch):
+    """harm("segv", 2): from now on workers crash in stage 2. This process keeps the library that it has loaded."""
+    def set_fault(fault, stage, rung=None):
+        monkeypatch.setenv("PARTWHEEL_LIBRARY", faults)
+        monkeypatch.setenv("PARTWHEEL_FAULT", f"{fault}:{stage}")
+        if rung:
+            monkeypatch.setenv("PARTWHEEL_FAULT_RUNG", str(rung))
+    return set_fault
+
+
+def state(process):
+    """The state letter of a process, or None if there is none; one that nobody has asked after yet (Z) is none."""
+    try:
+        letter = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return None
+    return None if letter == "Z" else letter
+
+
+def until(predicate, seconds=10.0):
+    """Waits for something that must happen; the seconds it took."""
+    began = time.monotonic()
+    while not predicate():
+        assert time.monotonic() - began < seconds, "not seen in time"
+        time.sleep(0.005)
+    return time.monotonic() - began
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_left(tmp_path, monkeypatch):
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    monkeypatch.chdir(empty)
+    monkeypatch.setenv("TMPDIR", str(empty))
+    pipes = set(os.listdir("/proc/self/fd")) if LINUX else None
+    yield
+    until(lambda: not [thread for thread in threading.enumerate() if thread.name.startswith("partwheel-")])
+    assert list(empty.iterdir()) == []
+    if LINUX:
+        assert set(os.listdir("/proc/self/fd")) == pipes
+        children = Path(f"/proc/self/task/{threading.get_native_id()}/children").read_text().split()
+        assert [child for child in children if b"worker_process" in Path(f"/proc/{child}/cmdline").read_bytes()] == []
+
+
+# ---- Answers
+
+
+def test_the_same_as_in_this_process(case):
+    shape, h = case
+    job = Job(*shape, **UNLIMITED)
+    assert job.result().save() == h.save()
+    assert job.failures == [] and job.poll() is None and job.wait(0)
+    assert state(job.process_id) is None
+
+
+def test_options_and_seconds(build_shape):
+    shape, plain = build_shape("hand.off")
+    finer = Job(*shape, quality=1.4, **UNLIMITED).result()
+    assert finer.save() == Hierarchy.build(*shape, quality=1.4).save() != plain.save()
+    assert list(finer.seconds) == list(plain.seconds) and sum(finer.seconds.values()) > 0
+
+
+def test_named_errors():
+    cube = shapes.cube()
+    for vertices, triangles, status in ((cube.vertices, cube.triangles[1:], Status.OPEN),
+                                        (np.zeros((0, 3)), np.zeros((0, 3), int), Status.EMPTY),
+                                        (cube.vertices * np.nan, cube.triangles, Status.NOT_FINITE),
+                                        (cube.vertices, cube.triangles + 1, Status.INDEX)):
+        job = Job(vertices, triangles, rungs=EXACT, **UNLIMITED)
+        with pytest.raises(PartwheelError) as refused:
+            job.result()
+        assert refused.value.status == status and job.failures == []
+        assert list(refused.value.seconds) == [load().pw_stage_name(stage).decode() for stage in STAGES]
+    with pytest.raises(ValueError, match="vertices"):
+        Job(cube.vertices[:, :2], cube.triangles)
+
+
+def test_progress_never_falls():
+    job = Job(*shapes.off("homer"), **UNLIMITED)
+    seen = []
+    while (progress := job.poll()) is not None:
+        seen.append(progress)
+        job.wait(0.01)
+    job.result()
+    fractions = [fraction for fraction, _ in seen]
+    assert fractions == sorted(fractions) and fractions[0] == 0 and len(set(fractions)) > 2
+    assert {stage for _, stage in seen} <= {load().pw_stage_name(stage).decode() for stage in STAGES}
+
+
+def test_two_at_once(build_shape):
+    names = ["torus", "star", "torus"]
+    jobs = [Job(*build_shape(name)[0], **UNLIMITED) for name in names]
+    for name, job in zip(names, jobs):
+        assert job.result().save() == build_shape(name)[1].save()
+
+
+def test_a_worker_that_can_not_be_started(monkeypatch):
+    monkeypatch.setattr(sys, "executable", "/nowhere/python")
+    with pytest.raises(WorkerError, match="could not be started") as failed:
+        Job(*shapes.cube()).result()
+    assert failed.value.name == "worker"
+
+
+# ---- Harm
+
+if LINUX and PLAIN:
+
+    CRASHES = {"segv": "SIGSEGV", "abort": "SIGABRT", "free": "SIGABRT", "stack": "SIGSEGV", "exit": "exit code 3",
+               "exit0": "exit code 0", "kill": "SIGKILL"}
+
+    @pytest.mark.parametrize("stage", STAGES)
+    @pytest.mark.parametrize("fault", CRASHES)
+    def test_crashes_at_each_stage(harm, fault, stage):
+        harm(fault, stage)
+        job = Job(*shapes.off("hand"), rungs=EXACT)
+        with pytest.raises(WorkerError, match=CRASHES[fault]) as failed:
+            job.result()
+        assert failed.value.name == "crash" and "Nothing else was harmed" in str(failed.value)
+        assert job.failures == [failed.value] and state(job.process_id) is None
+
+    @pytest.mark.parametrize("stage", STAGES)
+    @pytest.mark.parametrize("fault", ["loop", "stop"])
+    def test_what_never_ends_is_ended(harm, fault, stage):
+        harm(fault, stage)
+        began = time.monotonic()
+        job = Job(*shapes.off("hand"), rungs=EXACT, time_limit=1)
+        with pytest.raises(WorkerError, match="after 1 seconds") as failed:
+            job.result()
+        assert failed.value.name == "time limit" and 1 <= time.monotonic() - began < 3
+        assert state(job.process_id) is None
+
+    @pytest.mark.parametrize("stage", STAGES)
+    def test_memory_is_limited(harm, stage, build_shape):
+        harm("fill", stage)
+        shape, h = build_shape("hand.off")
+        job = Job(*shape, rungs=EXACT, memory_limit=LIMIT)
+        most = 0
+        while job.poll() is not None:
+            try:
+                pages = int(Path(f"/proc/{job.process_id}/statm").read_text().split()[1])
+                most = max(most, pages * os.sysconf("SC_PAGE_SIZE"))
+            except OSError:
+                pass  # not there yet, or no more
+            job.wait(0.001)
+        try:
+            assert job.result().save() == h.save() and stage > Stage.CLUSTER  # late, little more memory is asked for
+        except WorkerError as error:
+            assert error.name in {"memory", "crash"}  # a library that does not look at what malloc() says crashes
+        assert LIMIT / 4 < most < LIMIT + 50 * 2**20  # it did fill, and code and libraries come on top
+
+    def test_a_mesh_too_large_for_the_memory():
+        with pytest.raises(WorkerError, match="0.0 GiB") as failed:
+            Job(*shapes.off("bear"), memory_limit=40 * 2**20, rungs=EXACT).result()
+        assert failed.value.name == "memory" and failed.value.status == Status.MEMORY
+
+    def test_a_damaged_answer_is_refused(harm):
+        harm("scribble", len(Stage))
+        with pytest.raises(WorkerError, match="damaged"):
+            Job(*shapes.off("hand"), rungs=EXACT).result()
+
+    def test_what_a_library_prints_is_no_answer(harm, build_shape, capfd):
+        harm("chatter", len(Stage))
+        shape, h = build_shape("hand.off")
+        assert Job(*shape, rungs=EXACT).result().save() == h.save()
+        assert "standard output" in capfd.readouterr().err
+
+    @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGSEGV])
+    def test_killed_from_outside(number):
+        job = Job(*shapes.off("bear"), rungs=EXACT)
+        until(lambda: job.process_id and job.poll()[0] > 0)
+        os.kill(job.process_id, number)
+        with pytest.raises(WorkerError, match=number.name):
+            job.result()
+
+    # ---- The next rung
+
+    def test_the_next_rung_is_tried(harm, build_shape):
+        harm("segv", 1, rung=1)
+        shape, h = build_shape("hand.off")
+        job = Job(*shape)
+        repaired = job.result()
+        assert len(job.failures) == 1 and "SIGSEGV" in str(job.failures[0])
+        assert len(repaired.order) == shape.face_count
+        assert repaired.summary.rung != h.summary.rung == "exact"
+
+    def test_all_rungs_fail(harm):
+        harm("abort", 0)
+        job = Job(*shapes.cube())
+        with pytest.raises(WorkerError) as failed:
+            job.result()
+        assert len(job.failures) == 3 and job.failures[-1] is failed.value
+
+    # ---- Cancel
+
+    @pytest.mark.parametrize("fault", ["loop", "stop"])
+    @pytest.mark.parametrize("stage", STAGES)
+    def test_cancel_frees_the_machine(harm, fault, stage):
+        harm(fault, stage)
+        job = Job(*shapes.off("hand"))
+        until(lambda: job.process_id and state(job.process_id) == {"loop": "R", "stop": "T"}[fault])
+        process, began = job.process_id, time.monotonic()
+        job.cancel()
+        until(lambda: state(process) is None, 0.5)
+        with pytest.raises(PartwheelError) as stopped:
+            job.result()
+        assert time.monotonic() - began < 0.5
+        assert stopped.value.status == Status.CANCELLED and job.failures == [] and job.process_id == process
+
+    def test_cancel_at_any_time():
+        shape = shapes.off("hand")
+        alone = Hierarchy.build(*shape).save()
+        for milliseconds in (0, 1, 5, 10, 20, 30, 40, 60, 80, 100, 150, 1000):
+            job = Job(*shape)
+            job.wait(milliseconds / 1000)
+            job.cancel()
+            try:
+                assert job.result().save() == alone
+            except PartwheelError as error:
+                assert error.status == Status.CANCELLED and milliseconds < 1000
+            job.cancel()
+
+    # ---- The end of the parent
+
+    PARENT = textwrap.dedent("""
+        import sys, time, shapes
+        from partwheel.core.worker import Job
+        job = Job(*shapes.off("hand"))
+        while not job.process_id:
+            job.wait(0.01)
+        print(job.process_id, flush=True)
+        job.result()
+    """)
+
+    def parent(**environment):
+        """(a process that builds, its worker's id)"""
+        path = os.pathsep.join([str(ROOT / "addon"), str(HERE)])
+        process = subprocess.Popen([sys.executable, "-c", PARENT], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   text=True, env={**os.environ, "PYTHONPATH": path, **environment})
+        return process, int(process.stdout.readline())
+
+    def ends(process, number, worker):
+        process.send_signal(number)
+        process.communicate(timeout=10)
+        until(lambda: state(worker) is None, 1)
+
+    @pytest.mark.parametrize("fault", ["loop", "stop"])
+    @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+    def test_the_worker_ends_with_its_parent(harm, fault, number):
+        harm(fault, 1)
+        process, worker = parent(PARTWHEEL_LIBRARY=os.environ["PARTWHEEL_LIBRARY"])
+        until(lambda: state(worker) == {"loop": "R", "stop": "T"}[fault])
+        ends(process, number, worker)
+
+    def test_the_worker_ends_with_its_parent_where_the_system_sends_no_signal(harm, tmp_path):
+        """As on macOS and Windows: the end of the pipe alone tells the worker, and that while the library runs."""
+        harm("loop", 1)
+        source = tmp_path / "no_prctl.c"
+        source.write_text("int prctl(int option, ...) { return option * 0; }")
+        process, worker = parent(LD_PRELOAD=compiled(source, tmp_path / "no_prctl.so"))
+        until(lambda: state(worker) == "R" and Path(f"/proc/{worker}/maps").read_text().count("no_prctl"))
+        ends(process, signal.SIGKILL, worker)
