@@ -1,14 +1,14 @@
-# The benchmarks: each tests/bench/*_bench.cpp is a program of its own.
+# The benchmarks: each tests/bench/*_bench.cpp is a program of its own, which scripts/bench runs.
 
-find_package(benchmark)
-if(NOT benchmark_FOUND)
-  message(FATAL_ERROR "Google Benchmark was not found. ${fix} Or configure with -DPARTWHEEL_BENCHMARKS=OFF.")
-endif()
+add_library(partwheel_measured OBJECT tests/bench/measured.cpp tests/bench/tetgen_watch.cpp native/src/api.cpp)
+target_compile_definitions(partwheel_measured PRIVATE PW_BUILDING)
+target_link_libraries(partwheel_measured PUBLIC partwheel_engine PRIVATE partwheel_tetgen)
+# The library's call of TetGen goes through tetgen_watch.cpp, which measures it.
+target_link_options(partwheel_measured INTERFACE LINKER:--wrap=_Z14tetrahedralizePcP8tetgenioS1_S1_S1_)
 
 file(GLOB programs CONFIGURE_DEPENDS tests/bench/*_bench.cpp)
 foreach(source ${programs})
   get_filename_component(name "${source}" NAME_WE)
   add_executable(${name} "${source}")
-  target_compile_definitions(${name} PRIVATE PARTWHEEL_MESHES="${PARTWHEEL_MESHES}")
-  target_link_libraries(${name} PRIVATE partwheel_engine benchmark::benchmark benchmark::benchmark_main)
+  target_link_libraries(${name} PRIVATE partwheel_measured)
 endforeach()

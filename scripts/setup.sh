@@ -4,6 +4,7 @@
 #
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
 #   setup_core      build/venv/core: Python with numpy, trimesh, pytest
+#   setup_bench     build/venv/bench: numpy, scipy, matplotlib for the benchmarks; build/venv/peers: what they compare with
 #   setup_bpy       build/venv/bpy-VERSION for each of $bpy_versions
 #   setup_blender   the distribution's Blender
 #   setup_display   a virtual screen with software OpenGL, and tools to click on it
@@ -142,7 +143,7 @@ start_setup() {
 }
 
 setup_build() {
-    start_setup && packages g++ clang cmake ninja-build ccache libgtest-dev libbenchmark-dev \
+    start_setup && packages g++ clang cmake ninja-build ccache libgtest-dev \
         python3 python3-venv python3-pip ca-certificates || return
     into "$deps/root" fill_headers && into "$deps/tetgen-0.8.0" fill_tetgen && into "$deps/meshes" fill_meshes
 }
@@ -150,6 +151,10 @@ setup_build() {
 setup_core() {
     start_setup && packages python3 python3-venv ca-certificates || return
     venv core /usr/bin/python3 numpy scipy trimesh pytest
+}
+
+setup_bench() {
+    setup_build && venv bench /usr/bin/python3 numpy scipy matplotlib && venv peers /usr/bin/python3 coacd vhacdx numpy
 }
 
 setup_bpy() {

@@ -1,91 +1,101 @@
-// Seconds of each stage of a build on real models, and their ratio to TetGen's in the same run.
+// Time and memory of each stage of a build, and of TetGen by itself, as JSON.
 //
-//   cmake --preset bench && cmake --build --preset bench
-//   build/bench/stages_bench --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
+//   stages_bench MODEL.off REPETITIONS [QUALITY]
 //
-// Counters, per model: seconds of the stages by their names, `ratio` of clustering and dendrogram to the mesher, `tets`.
+// Each repetition runs every stage from the model's arrays to the saved bytes in one thread, then clusters the same
+// tetrahedra again with two. `seconds` are [wall, cpu]; `peak` is the most memory in bytes that the process held during
+// each stage of the first repetition, `start` what it held before.
+#include "cluster.h"
+#include "dendrogram.h"
 #include "hierarchy.h"
+#include "measured.h"
 
-#include <benchmark/benchmark.h>
-
-#include <chrono>
-#include <fstream>
+#include <cstdio>
+#include <exception>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
 
 using namespace partwheel;
+using namespace partwheel::bench;
 
-struct Model {
-    std::vector<double> vertices;
-    std::vector<int32_t> triangles;
+struct Stage {
+    const char* name;
+    Seconds seconds;
+    size_t peak;
 };
 
-// An OFF file of triangles.
-Model read_off(const std::string& path) {
-    std::ifstream in(path);
-    std::string word;
-    size_t vertices = 0, triangles = 0, edges = 0;
-    in >> word >> vertices >> triangles >> edges;
-    Model model;
-    model.vertices.resize(3 * vertices);
-    for (double& c : model.vertices) in >> c;
-    for (size_t t = 0; t < triangles; ++t) {
-        int corners = 0;
-        int32_t a = 0, b = 0, c = 0;
-        in >> corners >> a >> b >> c;
-        std::getline(in, word);  // colours, in some files
-        if (corners == 3) model.triangles.insert(model.triangles.end(), {a, b, c});
-    }
-    return model;
+struct Repetition {
+    std::vector<Stage> stages;
+    TetgenWatch tetgen;
+    size_t tets = 0, bytes = 0;
+};
+
+Repetition run(const Model& model, double quality) {
+    const MeshView view{model.vertices.data(), model.vertex_count(), model.triangles.data(), model.triangle_count(),
+                        nullptr, model.triangle_count()};
+    Repetition r;
+    Progress progress;
+    tetgen_watch() = {};
+    const auto staged = [&](const char* name, auto stage) {
+        reset_peak_memory();
+        Stopwatch watch;
+        auto result = stage();
+        const Seconds seconds = watch.lap();
+        r.stages.push_back({name, seconds, peak_memory()});
+        return result;
+    };
+    const Surface surface = staged("surface", [&] { return check_surface(view, progress); });
+    const TetMesh mesh = staged("tetrahedra", [&] { return tetrahedralize(surface, quality, progress); });
+    const BinaryTree tree = staged("cluster", [&] { return cluster(mesh, progress, 1); });
+    const std::vector<uint8_t> kept = staged("dendrogram", [&] { return prune(tree.merges); });
+    const auto saved = staged("hierarchy", [&] {
+        return Hierarchy(surface, mesh, tree, kept, model.vertices.data()).save();
+    });
+    staged("cluster_two_threads", [&] { return cluster(mesh, progress, 2); });
+    r.tetgen = tetgen_watch();
+    r.tets = mesh.tetrahedra.size();
+    r.bytes = saved.size();
+    return r;
 }
 
-void build(benchmark::State& state, const std::string& name) {
-    const Model model = read_off(std::string(PARTWHEEL_MESHES) + "/" + name + ".off");
-    if (model.triangles.empty()) {
-        state.SkipWithError("the model is not there");
-        return;
-    }
-    const MeshView view{model.vertices.data(), model.vertices.size() / 3, model.triangles.data(),
-                        model.triangles.size() / 3, nullptr, model.triangles.size() / 3};
-    for (auto _ : state) {
-        Progress progress;
-        using Clock = std::chrono::steady_clock;
-        auto then = Clock::now();
-        const auto lap = [&] {
-            const auto now = Clock::now();
-            const double seconds = std::chrono::duration<double>(now - then).count();
-            then = now;
-            return seconds;
-        };
-        const Surface surface = check_surface(view, progress);
-        const double surface_seconds = lap();
-        const TetMesh mesh = tetrahedralize(surface, 0, progress);
-        const double tetrahedra_seconds = lap();
-        const BinaryTree tree = cluster(mesh, progress);
-        const double cluster_seconds = lap();
-        const std::vector<uint8_t> kept = prune(tree.merges);
-        const double dendrogram_seconds = lap();
-        const Hierarchy hierarchy(surface, mesh, tree, kept, model.vertices.data());
-        benchmark::DoNotOptimize(hierarchy.save());
-        const double hierarchy_seconds = lap();
-        state.counters["surface"] = surface_seconds;
-        state.counters["tetrahedra"] = tetrahedra_seconds;
-        state.counters["cluster"] = cluster_seconds;
-        state.counters["dendrogram"] = dendrogram_seconds;
-        state.counters["hierarchy"] = hierarchy_seconds;
-        state.counters["ratio"] = (cluster_seconds + dendrogram_seconds) / tetrahedra_seconds;
-        state.counters["tets"] = static_cast<double>(mesh.tetrahedra.size());
-    }
-}
+void print(const Seconds& s) { std::printf("[%.6f, %.6f]", s.wall, s.cpu); }
 
-BENCHMARK_CAPTURE(build, hand, "hand")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(build, elephant, "elephant")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(build, refined_elephant, "refined_elephant")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(build, fandisk, "fandisk")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(build, turbine, "turbine")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(build, bear, "bear")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(build, armadillo, "armadillo")->Unit(benchmark::kMillisecond);
+void print(const Repetition& r) {
+    std::printf("{\"tetgen\": ");
+    print(r.tetgen.seconds);
+    for (const Stage& stage : r.stages) {
+        std::printf(", \"%s\": ", stage.name);
+        print(stage.seconds);
+    }
+    std::printf("}");
+}
 
 }  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        if (argc < 3) throw std::runtime_error("usage: stages_bench MODEL.off REPETITIONS [QUALITY]");
+        const Model model = read_off(argv[1]);
+        const int repetitions = std::stoi(argv[2]);
+        const double quality = argc > 3 ? std::stod(argv[3]) : 0;
+        const size_t start = peak_memory();
+        const Repetition first = run(model, quality);
+        std::printf("{\"faces\": %zu, \"tets\": %zu, \"saved\": %zu, \"tetgen_calls\": %zu,\n \"peak\": {\"start\": %zu, "
+                    "\"tetgen\": %zu", model.triangle_count(), first.tets, first.bytes, first.tetgen.calls, start,
+                    first.tetgen.peak_memory);
+        for (const Stage& stage : first.stages) std::printf(", \"%s\": %zu", stage.name, stage.peak);
+        std::printf("},\n \"seconds\": [");
+        print(first);
+        for (int i = 1; i < repetitions; ++i) {
+            std::printf(",\n  ");
+            print(run(model, quality));
+        }
+        std::printf("]}\n");
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "%s\n", e.what());
+        return 1;
+    }
+}

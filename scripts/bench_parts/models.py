@@ -1,0 +1,260 @@
+"""Models to measure with: real ones, and shapes made by formula. Coordinates of what is made here are single-precision
+numbers, as in Blender; that also keeps TetGen from the exactly regular input that it is very slow on.
+
+A mesh is (vertices (V,3) float64, triangles (T,3) int), closed and counter-clockwise seen from outside.
+"""
+
+import tarfile
+from pathlib import Path
+
+import numpy as np
+from programs import ROOT, WORK, Failure
+from scipy.spatial import ConvexHull, Delaunay
+
+DEMO = ROOT / "build" / "deps" / "meshes"  # of CGAL's demos
+PSB = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # the Princeton Segmentation Benchmark, not part of the project
+NATURAL = DEMO / "bear.off"  # 27,648 faces; what is subdivided
+SEED = 1
+
+
+def real(low, high):
+    """OFF files of all real models with low to high faces, smallest first, and a sentence on where they are from."""
+    if PSB.exists():
+        folder = WORK / "psb"
+        if not (folder / "complete").exists():
+            folder.mkdir(parents=True, exist_ok=True)
+            with tarfile.open(PSB) as archive:
+                for member in archive:
+                    if member.isfile() and member.name.endswith(".off"):
+                        (folder / Path(member.name).name).write_bytes(archive.extractfile(member).read())
+            (folder / "complete").touch()
+        files, source = sorted(folder.glob("*.off")), "the Princeton Segmentation Benchmark"
+    else:
+        files = sorted(DEMO.glob("*.off"))
+        source = f"libcgal-demo, for the Princeton Segmentation Benchmark is not there ({PSB.relative_to(ROOT.parent)})"
+    sizes = [(face_count(file), file) for file in files]
+    return [file for faces, file in sorted(sizes) if low <= faces <= high], source
+
+
+def spread(files, count):
+    """count of them, evenly from first to last."""
+    if len(files) <= count:
+        return files
+    return [files[round(i * (len(files) - 1) / (count - 1))] for i in range(count)]
+
+
+def face_count(path):
+    """0 for a file that is not in OFF."""
+    with open(path) as file:
+        words = file.readline().split() + file.readline().split()
+    return int(words[2]) if words[0] == "OFF" and len(words) > 2 and words[2].isdigit() else 0
+
+
+def read(path):
+    words = path.read_text().split()
+    v, f = int(words[1]), int(words[2])
+    vertices = np.array(words[4:4 + 3 * v], float).reshape(v, 3)
+    triangles = np.array(words[4 + 3 * v:4 + 3 * v + 4 * f], int).reshape(f, 4)
+    if not (triangles[:, 0] == 3).all():
+        raise Failure(f"{path} has faces that are no triangles")
+    return vertices, triangles[:, 1:]
+
+
+def write(name, mesh):
+    """The path of an OFF file with the mesh, its coordinates rounded to single precision."""
+    vertices, triangles = mesh
+    WORK.mkdir(parents=True, exist_ok=True)
+    path = WORK / f"{name}.off"
+    with open(path, "w") as file:
+        file.write(f"OFF\n{len(vertices)} {len(triangles)} 0\n")
+        np.savetxt(file, vertices.astype(np.float32), fmt="%.9g")
+        np.savetxt(file, np.column_stack([np.full(len(triangles), 3), triangles]), fmt="%d")
+    return path
+
+
+# ---- A natural model, as fine as you like
+
+
+def subdivided(mesh, faces):
+    """The mesh with triangles bisected, longest edges first, to exactly so many faces. New vertices lie on the curved
+    PN triangles of Vlachos et al. 2001, so that the surface stays smooth and nothing becomes coplanar."""
+    vertices, triangles = np.array(mesh[0], float), np.array(mesh[1], int)
+    while len(triangles) < faces:
+        normals = vertex_normals(vertices, triangles)
+        half = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2)  # edges: from corner k to k + 1
+        length = np.linalg.norm(vertices[half[:, :, 0]] - vertices[half[:, :, 1]], axis=2)
+        ends = np.sort(half, axis=2)
+        key = ends[:, :, 0] * len(vertices) + ends[:, :, 1]
+        # The longest edge of each triangle, equal ones by their ends. An edge that is the longest of both its triangles
+        # can be bisected with no regard to any other.
+        corner = np.lexsort((key, length), axis=1)[:, -1]
+        mine = key[np.arange(len(triangles)), corner]
+        order = np.argsort(mine, kind="stable")
+        same = np.flatnonzero(mine[order][1:] == mine[order][:-1])
+        one, two = order[same], order[same + 1]
+        longest = np.argsort(-length[one, corner[one]], kind="stable")[:(faces - len(triangles)) // 2]
+        if not len(longest):
+            raise Failure("a model with an odd number of faces can't be subdivided to an even one, or the reverse")
+        one, two = one[longest], two[longest]
+        a, b = triangles[one, corner[one]], triangles[one, (corner[one] + 1) % 3]
+        along = vertices[b] - vertices[a]
+        bow = ((along * normals[a]).sum(1)[:, None] * normals[a] - (along * normals[b]).sum(1)[:, None] * normals[b]) / 8
+        middle = len(vertices) + np.arange(len(one))
+        vertices = np.vstack([vertices, (vertices[a] + vertices[b]) / 2 - bow])
+        added = []
+        for t in (one, two):
+            k = corner[t]
+            start, end, opposite = triangles[t, k], triangles[t, (k + 1) % 3], triangles[t, (k + 2) % 3]
+            triangles[t] = np.column_stack([start, middle, opposite])
+            added.append(np.column_stack([middle, end, opposite]))
+        triangles = np.vstack([triangles, *added])
+    return vertices, triangles
+
+
+def vertex_normals(vertices, triangles):
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    normals = np.zeros_like(vertices)
+    for k in range(3):
+        np.add.at(normals, triangles[:, k], np.cross(b - a, c - a))
+    return normals / np.linalg.norm(normals, axis=1)[:, None]
+
+
+# ---- Worst cases
+
+
+def ball(faces):
+    """The convex hull of random points on a sphere: every union is convex or as good as, all costs are nearly 0."""
+    points = np.random.default_rng(SEED).normal(size=(faces // 2 + 2, 3))
+    return hull(rounded(points / np.linalg.norm(points, axis=1)[:, None]))
+
+
+def strip(faces):
+    """A ribbon a thousand times as long as wide, in waves."""
+    rings = faces // 8 + 1
+    t = np.linspace(0, 1000, rings)
+    wave = np.sin(t / 7)
+    section = np.array([[-0.5, 0], [0, -0.1], [0.5, 0], [0, 0.1]])
+    vertices = np.stack([np.column_stack([t, wave + y, 0.3 * np.cos(t / 5) + z]) for y, z in section], axis=1)
+    return tube(jittered(vertices.reshape(-1, 3), 1e-4), rings, len(section))
+
+
+def box(faces):
+    """A cube with random points on its sides: exactly coplanar, irregular. Every union of tetrahedra that is convex
+    costs exactly 0, and so do very many others."""
+    random = np.random.default_rng(SEED)
+    # Points on the edges are shared by two sides, so that the sides fit; V - 2 = F / 2.
+    n = faces // 2 + 2 - 8
+    on_edge = max(1, int(np.sqrt(n) / 10))
+    points = [corner for corner in np.ndindex(2, 2, 2)]
+    for axis in range(3):
+        for ends in np.ndindex(2, 2):
+            for along in random.uniform(size=on_edge):
+                points.append(np.insert(np.array(ends, float), axis, along))
+    inside = n - 12 * on_edge
+    for i in range(inside):
+        side = i % 6
+        points.append(np.insert(random.uniform(size=2), side % 3, side // 3))
+    points = rounded(np.array(points, float))
+    triangles = []
+    for axis in range(3):
+        for end in (0, 1):
+            on = np.flatnonzero(points[:, axis] == end)
+            u, v = (axis + 1) % 3, (axis + 2) % 3
+            flat = Delaunay(points[on][:, [u, v]]).simplices
+            p = points[on][:, [u, v]][flat]
+            cross = ((p[:, 1, 0] - p[:, 0, 0]) * (p[:, 2, 1] - p[:, 0, 1])
+                     - (p[:, 1, 1] - p[:, 0, 1]) * (p[:, 2, 0] - p[:, 0, 0]))
+            flat[(cross > 0) != (end == 1)] = flat[(cross > 0) != (end == 1)][:, ::-1]
+            triangles.append(on[flat[cross != 0]])
+    return points, np.vstack(triangles)
+
+
+def comb(faces):
+    """A bar with hundreds of teeth: one cluster with very many neighbours."""
+    height = 12
+    teeth = max(2, round(faces / (8 * height + 14)))  # each with its piece of the bar
+    cells = np.zeros((2 * teeth + 1, 1, height + 1), bool)
+    cells[:, :, 0] = True
+    cells[1::2] = True
+    vertices, triangles = surface_of(cells)
+    return jittered(vertices, 1e-3), triangles
+
+
+def porous(faces):
+    """A cube with hundreds of cavities, each a ball of 80 faces."""
+    side = max(2, round((faces / 80) ** (1 / 3)))
+    corners = np.array(list(np.ndindex(2, 2, 2)), float)
+    vertices, triangles = hull(corners * side)
+    vertices, triangles = [vertices], [triangles]
+    ball_vertices, ball_triangles = icosphere()
+    random = np.random.default_rng(SEED)
+    for place in np.ndindex(side, side, side):
+        turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
+        turn *= np.linalg.det(turn)
+        triangles.append(ball_triangles[:, ::-1] + sum(map(len, vertices)))
+        vertices.append(0.35 * ball_vertices @ turn + np.array(place) + 0.5)
+    return np.vstack(vertices), np.vstack(triangles)
+
+
+def jittered(vertices, amount):
+    return vertices + np.random.default_rng(SEED).uniform(-amount, amount, vertices.shape)
+
+
+def rounded(vertices):
+    """To single precision, before what must be exact is made from them."""
+    return vertices.astype(np.float32).astype(float)
+
+
+def hull(points):
+    """Their convex hull, all points being extreme."""
+    made = ConvexHull(points)
+    triangles = made.simplices.copy()
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    inward = (np.cross(b - a, c - a) * made.equations[:, :3]).sum(1) < 0
+    triangles[inward] = triangles[inward][:, ::-1]
+    used, place = np.unique(triangles, return_inverse=True)
+    return points[used], place.reshape(triangles.shape)
+
+
+def tube(vertices, rings, across):
+    """Rings of `across` vertices each, joined one to the next, closed by a fan at each end."""
+    ring, k = np.meshgrid(np.arange(rings - 1), np.arange(across), indexing="ij")
+    a, b = ring * across + k, ring * across + (k + 1) % across
+    c, d = a + across, b + across
+    sides = np.concatenate([np.stack([a, b, d], -1), np.stack([a, d, c], -1)], axis=2).reshape(-1, 3)
+    fan = np.array([[0, k + 1, k] for k in range(1, across - 1)])
+    triangles = np.vstack([sides, fan, fan[:, ::-1] + (rings - 1) * across])
+    return outward(vertices, triangles)
+
+
+def surface_of(cells):
+    """The outside of a grid of unit cubes, two triangles a square."""
+    full = np.pad(cells, 1)
+    squares = []
+    for axis in range(3):
+        for step in (-1, 1):
+            bare = np.argwhere(full & ~np.roll(full, -step, axis))
+            corner = bare - 1
+            corner[:, axis] += step > 0
+            u, v = np.eye(3, dtype=int)[(axis + 1) % 3], np.eye(3, dtype=int)[(axis + 2) % 3]
+            square = np.stack([corner, corner + u, corner + u + v, corner + v], axis=1)
+            squares.append(square if step > 0 else square[:, ::-1])
+    corners = np.vstack(squares)
+    points, place = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    a, b, c, d = place.reshape(-1, 4).T
+    return points.astype(float), np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+
+
+def icosphere():
+    """The icosahedron, bisected once: 80 faces on the unit sphere."""
+    g = (1 + 5 ** 0.5) / 2
+    points = np.array([p for s in (-1, 1) for t in (-g, g) for p in ((0, s, t), (s, t, 0), (t, 0, s))], float)
+    vertices, triangles = hull(points / np.linalg.norm(points, axis=1)[:, None])
+    middles = {tuple(sorted(edge)) for t in triangles for edge in ((t[0], t[1]), (t[1], t[2]), (t[2], t[0]))}
+    vertices = np.vstack([vertices, [vertices[a] + vertices[b] for a, b in sorted(middles)]])
+    return hull(vertices / np.linalg.norm(vertices, axis=1)[:, None])
+
+
+def outward(vertices, triangles):
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    return vertices, triangles if (np.cross(a, b) * c).sum() > 0 else triangles[:, ::-1]

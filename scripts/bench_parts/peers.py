@@ -1,0 +1,56 @@
+"""Other ways to find parts, on the same models in the same run: CoACD, V-HACD, CGAL's SDF segmentation."""
+
+from pathlib import Path
+from statistics import median
+
+import models
+from programs import BUILD, ROOT, Failure, run, stages
+
+PYTHON = ROOT / "build" / "venv" / "peers" / "bin" / "python"
+PEER = Path(__file__).with_name("peer.py")
+PEERS = {
+    "CoACD": (PYTHON, PEER, "coacd"),
+    "V-HACD": (PYTHON, PEER, "vhacd"),
+    "CGAL SDF": (BUILD / "sdf_bench",),
+}
+STAGES = ("surface", "tetrahedra", "cluster", "dendrogram", "hierarchy")
+TIME_LIMIT = 600
+
+
+def measure(quick):
+    """Each peer with its defaults, each model in a process of its own, turn about. Ours is the whole hierarchy, from
+    arrays to saved bytes, in one thread; CoACD and V-HACD take all cores they like. Seconds are wall time."""
+    files, source = models.real(10_000, 30_000)
+    rows = []
+    for first in [0] if quick else models.spread(range(len(files)), 6)[:-1]:
+        # From there on the first that is closed.
+        tried = ((file, ours(file)) for file in files[first:])
+        file, mine = next((found for found in tried if "error" not in found[1]), (None, None))
+        if file is None:
+            raise Failure("no model could be built")
+        row = {"model": file.stem, "faces": models.face_count(file), "Partwheel": mine}
+        for name, command in PEERS.items():
+            report, why_not = run(*command, file, time_limit=TIME_LIMIT)
+            row[name] = report or {"error": why_not}
+        rows.append(row)
+        print(f"   {file.stem}, {row['faces']} faces: " + ", ".join(
+            f"{name} {row[name]['error']}" if "error" in row[name] else
+            f"{name} {row[name]['seconds'][0]:.1f} s {row[name]['peak'] / 1e6:.0f} MB" for name in ("Partwheel", *PEERS)))
+    return {"source": source, "models": rows, "medians": {name: medians(rows, name) for name in ("Partwheel", *PEERS)}}
+
+
+def ours(file):
+    report, why_not = stages(file, 1)
+    if report is None:
+        return {"error": why_not}
+    seconds = report["seconds"][0]
+    return {"seconds": [sum(seconds[stage][i] for stage in STAGES) for i in (0, 1)],
+            "peak": max(report["peak"][stage] for stage in ("tetgen", *STAGES))}
+
+
+def medians(rows, name):
+    done = [row[name] for row in rows if "error" not in row[name]]
+    if not done:
+        return {"done": 0}
+    return {"done": len(done), "wall": median(r["seconds"][0] for r in done), "cpu": median(r["seconds"][1] for r in done),
+            "peak": median(r["peak"] for r in done), "parts": median(r.get("parts", 0) for r in done)}

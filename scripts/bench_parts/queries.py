@@ -1,0 +1,21 @@
+"""What a user waits for on a finished hierarchy: a click, a notch, loading."""
+
+import models
+from programs import BUILD, Failure, run
+
+FACES = 400_000
+QUICK = 100_000
+CLICKS = 20_000
+
+
+def measure(quick):
+    faces = QUICK if quick else FACES
+    path = models.write(f"natural-{faces}", models.subdivided(models.read(models.NATURAL), faces))
+    report, why_not = run(BUILD / "queries_bench", path, CLICKS)
+    if report is None:
+        raise Failure(f"the model of {faces} faces: {why_not}")
+    # Processor time, for a query that another process interrupts has not become slower.
+    longest = max(report[query]["longest"] for query in ("path", "wheel", "node_faces"))
+    load_over_build = report["load"][1] / report["build"][1]
+    print(f"   longest of {CLICKS} clicks {1000 * longest:.3f} ms, loading {100 * load_over_build:.1f} % of building")
+    return {"clicks": CLICKS, "longest": longest, "load_over_build": load_over_build, **report}

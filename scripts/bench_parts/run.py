@@ -1,0 +1,61 @@
+"""The benchmarks: runs the sections asked for, each into build/bench/SECTION.json, then prints the table of them all.
+
+Called by scripts/bench, whose first lines say what the arguments mean.
+"""
+
+import argparse
+import datetime
+import json
+import sys
+
+import peers
+import plot
+import queries
+import ratio
+import scale
+import table
+import worst
+from programs import BUILD, ROOT, Failure, machine
+
+SECTIONS = {module.__name__: module for module in (ratio, scale, worst, queries, peers)}
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures, and prints what holds.")
+    parser.add_argument("section", nargs="*", help=" ".join(SECTIONS))
+    parser.add_argument("--quick", action="store_true", help="fewer and smaller models, some 3 minutes")
+    parser.add_argument("--readme", action="store_true", help="also put table and plot into README.md and docs/images")
+    arguments = parser.parse_args()
+    for name in arguments.section:
+        if name not in SECTIONS:
+            parser.error(f"there is no section {name}: {', '.join(SECTIONS)}")
+
+    for name in arguments.section or SECTIONS:
+        print(f"== {name}: {SECTIONS[name].__doc__.splitlines()[0]}")
+        began = datetime.datetime.now()
+        measured = SECTIONS[name].measure(arguments.quick)
+        seconds = (datetime.datetime.now() - began).total_seconds()
+        report = {"quick": arguments.quick, "date": f"{began:%Y-%m-%d}", "seconds": round(seconds), **machine(),
+                  **measured}
+        path = BUILD / f"{name}.json"
+        path.write_text(json.dumps(report, indent=1) + "\n")
+        print(f"   {seconds:.0f} s, {path.relative_to(ROOT)}")
+
+    reports = {name: json.loads((BUILD / f"{name}.json").read_text()) for name in SECTIONS
+               if (BUILD / f"{name}.json").exists()}
+    text = table.text(reports)
+    (BUILD / "table.md").write_text(text)
+    if "scale" in reports:
+        plot.draw(reports["scale"], BUILD / "scale.png")
+    print(f"\n{text}")
+    if arguments.readme:
+        table.into_readme(text, reports, ROOT)
+    return 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except Failure as reason:
+        print(f"bench: FAILED: {reason}", file=sys.stderr)
+        sys.exit(1)

@@ -1,0 +1,118 @@
+"""The table: what was measured, its goal, whether it holds; and beside it the peers. In Markdown."""
+
+import shutil
+import textwrap
+
+from programs import BUILD, ROOT, Failure
+
+BEGIN, END = "<!-- scripts/bench --readme: from here", "<!-- to here -->"
+PLOT = "docs/images/scale.png"
+
+
+def text(reports):
+    """The table of all sections that there are reports of."""
+    makers = {"ratio": ratio, "scale": scale, "worst": worst, "queries": queries}
+    rows = [("", "measured", "goal", "holds")]
+    for name, rows_of in makers.items():
+        if name in reports:
+            rows += rows_of(reports[name])
+    parts = [markdown(rows)] if len(rows) > 1 else []
+    if "peers" in reports:
+        parts += [peers(reports["peers"])]
+    return "\n\n".join([*parts, footnote(reports)]) + "\n"
+
+
+def ratio(report):
+    count = len(report["models"])
+    over = f"median of {count} models of 10k to 60k faces"
+    return [
+        row(f"clustering + dendrogram / TetGen, one thread, {over}", report["htc"], 1.0, "{:.2f}"),
+        row("clustering, two threads / one", report["two_threads"], 0.7, "{:.2f}"),
+        row("arrays to saved hierarchy, all stages, one thread / TetGen", report["pipeline"], 2.5, "{:.2f}"),
+    ]
+
+
+def scale(report):
+    sizes = report["sizes"]
+    low, high = sizes[0], sizes[-1]
+    span = f"{low['faces'] // 1000}k to {high['faces'] // 1000}k faces"
+    # Growth beyond log^2, at the size where it is largest.
+    beyond = max(size["growth"] / size["log2_growth"] for size in sizes[1:])
+    over = max(size["over_tetgen"] for size in sizes) / 1000
+    return [
+        row(f"time a tetrahedron, {span}: growth / growth of log²", beyond, 1.0, "{:.2f}"),
+        row("peak memory over TetGen's own, kB a tetrahedron", over, 1.5, "{:.2f}"),
+        (f"{high['faces']:,} faces, one thread",
+         f"{high['htc_seconds']:.1f} s clustering, {high['tetgen_seconds']:.1f} s TetGen, {high['peak'] / 1e9:.2f} GB",
+         "finishes", "yes" if high["faces"] >= 1_000_000 else "not tried"),
+    ]
+
+
+def worst(report):
+    rows = []
+    for case in report["cases"]:
+        name = f"time a tetrahedron / a natural model's: {case['case']}"
+        if "error" in case:
+            rows.append((name, case["error"], "≤ 5", "**no**"))
+        else:
+            rows.append(row(f"{name}, {case['faces']:,} faces", case["ratio"], 5, "{:.2f}"))
+    return rows
+
+
+def queries(report):
+    faces = f"{report['faces']:,} faces"
+    return [
+        row(f"longest path, wheel or faces of a node in {report['clicks']:,} clicks, {faces}, ms",
+            1000 * report["longest"], 1.0, "{:.3f}"),
+        row("loading a saved hierarchy / building it", report["load_over_build"], 0.05, "{:.3f}"),
+    ]
+
+
+def row(what, value, goal, form):
+    return what, form.format(value), f"≤ {goal:g}", "yes" if value <= goal else "**no**"
+
+
+def peers(report):
+    count = len(report["models"])
+    rows = [(f"median of {count} models" if count > 1 else "one model", "wall s", "processor s", "memory MB",
+             "parts")]
+    for name, m in report["medians"].items():
+        if not m["done"]:
+            rows.append((name, "none done", "", "", ""))
+            continue
+        failed = f" ({m['done']} of {count})" if m["done"] < count else ""
+        parts = "all levels" if name == "Partwheel" else f"{m['parts']:.0f}"
+        rows.append((name + failed, f"{m['wall']:.1f}", f"{m['cpu']:.1f}", f"{m['peak'] / 1e6:.0f}", parts))
+    return markdown(rows)
+
+
+def footnote(reports):
+    some = next(iter(reports.values()))
+    quick = sorted(name for name, report in reports.items() if report["quick"])
+    commits = sorted({report["commit"] for report in reports.values()})
+    sentences = [f"{some['processor']}, {some['cores']} cores; {some['date']}, commit {', '.join(commits)}."]
+    if "ratio" in reports:
+        sentences.append(f"Models: {reports['ratio']['source']}; scale and worst cases against libcgal-demo's bear, "
+                         "subdivided.")
+    if quick:
+        sentences.append(f"Measured with --quick, which settles nothing: {', '.join(quick)}.")
+    return textwrap.fill(" ".join(sentences), 120)
+
+
+def markdown(rows):
+    lines = ["| " + " | ".join(map(str, cells)) + " |" for cells in rows]
+    lines.insert(1, "|---" * len(rows[0]) + "|")
+    return "\n".join(lines)
+
+
+def into_readme(table, reports, root=ROOT):
+    """Replaces what README.md has between the two marks, and the plot."""
+    readme = root / "README.md"
+    before, begin, rest = readme.read_text("utf-8").partition(BEGIN)
+    mark, end, after = rest.partition(END)
+    if not begin or not end:
+        raise Failure(f"README.md has no marks '{BEGIN} ...' and '{END}'")
+    plot = f"![Time and memory against size]({PLOT})\n\n" if "scale" in reports else ""
+    readme.write_text(f"{before}{BEGIN}{mark.splitlines()[0]}\n\n{plot}{table}\n{END}{after}", "utf-8")
+    if plot:
+        shutil.copyfile(BUILD / "scale.png", root / PLOT)

@@ -1,0 +1,52 @@
+"""Shapes that are hard on the clustering, against a natural model of as many faces."""
+
+from statistics import median
+
+import models
+from programs import Failure, stages
+
+CASES = (
+    # name, shape or None for the natural model, faces, quality
+    ("convex ball", models.ball, 50_000, 0),
+    ("long thin strip", models.strip, 50_000, 0),
+    ("coplanar box", models.box, 100_000, 0),
+    ("comb", models.comb, 50_000, 0),
+    ("porous cube", models.porous, 50_000, 0),
+    ("interior points", None, 50_000, 1.4),
+)
+
+
+def measure(quick):
+    ordinary = {}  # seconds a tetrahedron by number of faces
+    rows = []
+    for name, shape, faces, quality in CASES:
+        if quick:
+            faces //= 5
+        if faces not in ordinary:
+            ordinary[faces] = seconds_per_tet(f"ordinary-{faces}", natural(faces), quick)
+            if "error" in ordinary[faces]:
+                raise Failure(f"the natural model of {faces} faces: {ordinary[faces]['error']}")
+        mesh = shape(faces) if shape else natural(faces)
+        row = {"case": name, **seconds_per_tet(name.replace(" ", "-") + f"-{faces}", mesh, quick, quality)}
+        if "error" in row:
+            print(f"   {name}: {row['error']}")
+        else:
+            row["ratio"] = row["per_tet"] / ordinary[faces]["per_tet"]
+            print(f"   {name}: {row['faces']} faces, {row['tets']} tetrahedra, {1e6 * row['per_tet']:.1f} us each, "
+                  f"{row['ratio']:.2f} x ordinary; TetGen {row['tetgen_seconds']:.1f} s")
+        rows.append(row)
+    return {"cases": rows, "ordinary": ordinary}
+
+
+def natural(faces):
+    """The natural model with so many faces: subdivided, or by chance smaller than asked for: as it is."""
+    return models.subdivided(models.read(models.NATURAL), faces)
+
+
+def seconds_per_tet(name, mesh, quick, quality=0):
+    report, why_not = stages(models.write(name, mesh), 1 if quick else 3, quality)
+    if report is None:
+        return {"error": why_not}
+    seconds = median(r["cluster"][1] + r["dendrogram"][1] for r in report["seconds"])
+    return {"faces": report["faces"], "tets": report["tets"], "per_tet": seconds / report["tets"],
+            "tetgen_seconds": median(r["tetgen"][1] for r in report["seconds"])}
