@@ -53,17 +53,19 @@ typedef enum pw_status {
     PW_ERROR_CANCELLED = 12,        /* pw_context_cancel() was called */
     PW_ERROR_MEMORY = 13,           /* out of memory */
     PW_ERROR_DATA = 14,             /* bytes that are not a saved hierarchy, or a damaged or newer one */
-    PW_ERROR_INTERNAL = 15          /* a bug of ours, please report it */
+    PW_ERROR_INTERNAL = 15,         /* a bug of ours, please report it */
+    PW_ERROR_NOT_SOLID = 16         /* a sheet, not a solid: plane, cloth, car door; see pw_build_options.open_surfaces */
 } pw_status;
 
 /* The stages of a build, in their order; each is a source file of the library. */
 typedef enum pw_stage {
     PW_STAGE_SURFACE = 0,    /* checks of the input */
-    PW_STAGE_TETRAHEDRA = 1, /* TetGen */
-    PW_STAGE_CLUSTER = 2,    /* Listing 1 of the paper */
-    PW_STAGE_DENDROGRAM = 3, /* Listing 2 of the paper */
-    PW_STAGE_HIERARCHY = 4,  /* flat arrays */
-    PW_STAGE_COUNT = 5
+    PW_STAGE_REPAIR = 1,     /* repairing or wrapping it; passed over in no time if it is clean */
+    PW_STAGE_TETRAHEDRA = 2, /* TetGen */
+    PW_STAGE_CLUSTER = 3,    /* Listing 1 of the paper */
+    PW_STAGE_DENDROGRAM = 4, /* Listing 2 of the paper */
+    PW_STAGE_HIERARCHY = 5,  /* flat arrays */
+    PW_STAGE_COUNT = 6
 } pw_stage;
 
 /* Version of the library, "major.minor.patch". Never null; owned by the library. */
@@ -102,6 +104,13 @@ PW_API pw_status pw_context_seconds(const pw_context *context, double *seconds);
 
 /* ---- Building ------------------------------------------------------------------------------------------------- */
 
+/* The ways to a surface that can be filled, from the best one down. A build takes the first that works. */
+typedef enum pw_rung {
+    PW_RUNG_EXACT = 1,    /* the caller's surface as it is: closed, manifold, oriented, free of self-intersection */
+    PW_RUNG_REPAIRED = 2, /* stitched, oriented, holes filled, overlapping parts united; most vertices are the caller's */
+    PW_RUNG_WRAPPED = 4   /* a new, closed surface close around it */
+} pw_rung;
+
 typedef struct pw_build_options {
     /* sizeof(pw_build_options), so that later versions can tell. */
     size_t struct_size;
@@ -109,11 +118,19 @@ typedef struct pw_build_options {
      * 1.1 or more: points are added inside until every tetrahedron's circumradius is at most this many times its
      * shortest edge, away from the surface, which never changes (the paper's Figure 9). 1.4 is usual. */
     double quality;
+    /* The rungs allowed: a sum of pw_rung; 0 means all. With PW_RUNG_EXACT alone nothing is repaired, and the status
+     * names what is wrong with the surface. */
+    uint32_t rungs;
+    /* 0: an open surface that is not meant as a solid (plane, cloth, car door) is refused with PW_ERROR_NOT_SOLID.
+     * 1: it is wrapped as a thin solid. */
+    int32_t open_surfaces;
+    /* 0: as many threads as help. 1 or more: at most so many. The result is the same, bit for bit. */
+    int32_t threads;
 } pw_build_options;
 
 typedef struct pw_hierarchy pw_hierarchy;
 
-/* Builds the hierarchy of a closed surface.
+/* Builds the hierarchy of a surface.
  *
  * context         may be null.
  * vertices        vertex_count x 3 coordinates, at most 1e100 in size; the longest side of the bounding box must be at
@@ -126,12 +143,17 @@ typedef struct pw_hierarchy pw_hierarchy;
  * options         null: defaults.
  * hierarchy       receives a new handle, to be freed with pw_hierarchy_free.
  *
- * The surface must be closed, manifold, consistently oriented and free of self-intersection; else the status names
- * what is wrong and the message where. Any number of components and cavities is fine; a region is solid where the
- * winding number of the surface about it is not 0. No vertex of the surface is moved and none is added to it.
+ * A surface that is closed, manifold, consistently oriented and free of self-intersection is used as it is: no vertex
+ * is moved and none is added to it (PW_RUNG_EXACT). Any number of components and cavities is fine; a region is solid
+ * where the winding number of the surface about it is not 0. Any other surface is repaired or wrapped, as
+ * options->rungs allows, and every source face goes with the part of the surface used that is nearest to it:
+ * pw_summary and pw_hierarchy_account() say what was done. The caller's mesh is never changed.
  *
  * The result does not depend on the order of the vertices or triangles, nor on the corner a triangle starts with. Any
- * thread may build; several at once take turns in TetGen, which keeps global state. */
+ * thread may build; several at once take turns in TetGen, which keeps global state.
+ *
+ * TetGen and CGAL have bugs of their own, that a broken mesh may find: a crash or a loop without end can't be excluded.
+ * Whoever has unsaved work in memory runs builds in another process. */
 PW_API pw_status pw_build(pw_context *context, const double *vertices, size_t vertex_count, const int32_t *triangles,
                           size_t triangle_count, const int32_t *faces, size_t face_count,
                           const pw_build_options *options, pw_hierarchy **hierarchy);
@@ -167,8 +189,8 @@ typedef struct pw_arrays {
     const double *height;      /* (N,)   the node's place in the dendrogram: its concavity, 0 in class 0 */
     const double *volume;      /* (N,)   of the node's tetrahedra */
     const double *area;        /* (N,)   of the node's source faces */
-    const double *vertices;    /* (V,3)  the used source vertices, unchanged, in a canonical order; then added ones */
-    const int32_t *source;     /* (V,)   the source vertex of each vertex, -1 for points that were added inside */
+    const double *vertices;    /* (V,3)  the surface's, in a canonical order; then points that were added inside */
+    const int32_t *source;     /* (V,)   the source vertex that each vertex is, unchanged; -1 for all others */
     const int32_t *tetrahedra; /* (T,4)  positively oriented: vertex 3 sees 0, 1, 2 counter-clockwise */
     const int32_t *merges;     /* (T-1,2) the unpruned binary tree, in the order of merging: merge m joins the two
                                 *         clusters named, i < T being leaf i and T + j what merge j made */
@@ -182,9 +204,17 @@ typedef struct pw_summary {
     size_t added_vertices; /* points that the mesher added inside */
     double volume;         /* of the solid */
     double hull_volume;    /* of its convex hull */
+    pw_rung rung;          /* how the surface used came from the caller's */
+    double deviation;      /* the largest distance from the caller's surface to the one used, relative to the diagonal of
+                              the caller's bounding box: 0 on the exact rung, else measured at points of every triangle
+                              that are at most 1/200 of the diagonal apart */
 } pw_summary;
 
 PW_API pw_status pw_hierarchy_summary(const pw_hierarchy *hierarchy, pw_summary *summary);
+
+/* What was done to the surface, in sentences (ASCII); "" on the exact rung. Owned by the hierarchy; "" if that is null.
+ */
+PW_API const char *pw_hierarchy_account(const pw_hierarchy *hierarchy);
 
 /* ---- Questions ------------------------------------------------------------------------------------------------ */
 

@@ -2,6 +2,7 @@
 #include "partwheel.h"
 
 #include "hierarchy.h"
+#include "ladder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <new>
 #include <span>
 #include <string>
+#include <thread>
 
 using namespace partwheel;
 
@@ -89,17 +91,20 @@ private:
     Progress& progress_;
 };
 
-Hierarchy build(const MeshView& mesh, double quality, Progress& progress) {
-    progress.enter(PW_STAGE_SURFACE);
-    const Surface surface = check_surface(mesh, progress);
-    progress.enter(PW_STAGE_TETRAHEDRA);
-    const TetMesh tets = tetrahedralize(surface, quality, progress);
+// Clustering knows what to do with two; a third would wait.
+int threads_to_use(int32_t asked) {
+    const int useful = std::thread::hardware_concurrency() < 2 ? 1 : 2;
+    return asked == 0 ? useful : std::min<int>(asked, 2);
+}
+
+Hierarchy build(const MeshView& mesh, const LadderOptions& options, int threads, Progress& progress) {
+    const Solid solid = climb(mesh, options, progress);
     progress.enter(PW_STAGE_CLUSTER);
-    const BinaryTree tree = cluster(tets, progress);
+    const BinaryTree tree = cluster(solid.mesh, progress, threads);
     progress.enter(PW_STAGE_DENDROGRAM);
     const std::vector<uint8_t> kept = prune(tree.merges);
     progress.enter(PW_STAGE_HIERARCHY);
-    Hierarchy hierarchy(surface, tets, tree, kept, mesh.vertices);
+    Hierarchy hierarchy(solid.surface, solid.mesh, tree, kept, mesh.vertices);
     progress.advance(1);
     return hierarchy;
 }
@@ -126,6 +131,7 @@ const char* pw_status_name(pw_status status) {
         case PW_ERROR_MEMORY: return "memory";
         case PW_ERROR_DATA: return "data";
         case PW_ERROR_INTERNAL: return "internal";
+        case PW_ERROR_NOT_SOLID: return "not solid";
     }
     return "unknown";
 }
@@ -133,6 +139,7 @@ const char* pw_status_name(pw_status status) {
 const char* pw_stage_name(pw_stage stage) {
     switch (stage) {
         case PW_STAGE_SURFACE: return "surface";
+        case PW_STAGE_REPAIR: return "repair";
         case PW_STAGE_TETRAHEDRA: return "tetrahedra";
         case PW_STAGE_CLUSTER: return "cluster";
         case PW_STAGE_DENDROGRAM: return "dendrogram";
@@ -182,19 +189,21 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
         require(hierarchy != nullptr, "hierarchy must not be null.");
         require(vertices != nullptr || vertex_count == 0, "vertices is null, but vertex_count is not 0.");
         require(triangles != nullptr || triangle_count == 0, "triangles is null, but triangle_count is not 0.");
-        double quality = 0;
-        if (options) {
-            require(options->struct_size == sizeof(pw_build_options),
-                    "pw_build_options::struct_size is not that of this version of the library.");
-            quality = options->quality;
-            require(quality == 0 || (quality >= smallest_quality && std::isfinite(quality)),
-                    "quality must be 0, or a number of at least 1.1.");
-        }
+        const pw_build_options given = options ? *options : pw_build_options{sizeof given, 0, 0, 0, 0};
+        require(given.struct_size == sizeof given,
+                "pw_build_options::struct_size is not that of this version of the library.");
+        require(given.quality == 0 || (given.quality >= smallest_quality && std::isfinite(given.quality)),
+                "quality must be 0, or a number of at least 1.1.");
+        require(given.rungs <= (PW_RUNG_EXACT | PW_RUNG_REPAIRED | PW_RUNG_WRAPPED),
+                "rungs must be a sum of 1 (exact), 2 (repaired) and 4 (wrapped), or 0 for all.");
+        require(given.open_surfaces == 0 || given.open_surfaces == 1, "open_surfaces must be 0 or 1.");
+        require(given.threads >= 0, "threads must be 0 or more.");
         Progress unwatched;
         Progress& progress = context ? context->progress : unwatched;
         const Watch watch(progress);
         const MeshView mesh{vertices, vertex_count, triangles, triangle_count, faces, face_count};
-        *hierarchy = new pw_hierarchy{build(mesh, quality, progress)};
+        *hierarchy = new pw_hierarchy{
+            build(mesh, {given.quality, given.rungs, given.open_surfaces == 1}, threads_to_use(given.threads), progress)};
     });
 }
 
@@ -212,6 +221,10 @@ pw_status pw_hierarchy_summary(const pw_hierarchy* hierarchy, pw_summary* summar
         require(hierarchy != nullptr && summary != nullptr, "hierarchy and summary must not be null.");
         *summary = hierarchy->hierarchy.summary();
     });
+}
+
+const char* pw_hierarchy_account(const pw_hierarchy* hierarchy) {
+    return hierarchy ? hierarchy->hierarchy.account().c_str() : "";
 }
 
 pw_status pw_hierarchy_path(const pw_hierarchy* hierarchy, size_t face, int32_t* nodes, size_t capacity,

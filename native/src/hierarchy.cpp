@@ -37,26 +37,20 @@ std::vector<int32_t> depth_first(std::span<const Merge> merges) {
 // The tetrahedron behind most of each face's area, and the areas.
 void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const int32_t> leaf_of_tet,
                   std::vector<int32_t>& leaf, std::vector<double>& face_area) {
-    std::vector<int32_t> triangles(surface.triangles.size());
-    std::iota(triangles.begin(), triangles.end(), 0);
-    const auto face_of = [&](int32_t t) { return surface.source_face[static_cast<size_t>(t)]; };
-    const auto leaf_behind = [&](int32_t t) {
-        return leaf_of_tet[static_cast<size_t>(mesh.tet_of_triangle[static_cast<size_t>(t)])];
+    std::vector<Piece> pieces = surface.pieces;
+    const auto leaf_behind = [&](const Piece& piece) {
+        return leaf_of_tet[static_cast<size_t>(mesh.tet_of_triangle[static_cast<size_t>(piece.triangle)])];
     };
-    std::sort(triangles.begin(), triangles.end(), [&](int32_t a, int32_t b) {
-        return std::tuple(face_of(a), leaf_behind(a), a) < std::tuple(face_of(b), leaf_behind(b), b);
+    std::sort(pieces.begin(), pieces.end(), [&](const Piece& a, const Piece& b) {
+        return std::tuple(a.face, leaf_behind(a), a) < std::tuple(b.face, leaf_behind(b), b);
     });
     leaf.assign(surface.face_count, -1);
     face_area.assign(surface.face_count, 0);
     std::vector<double> most(surface.face_count, -1);
-    for (size_t i = 0; i < triangles.size();) {
-        const int32_t f = face_of(triangles[i]), l = leaf_behind(triangles[i]);
+    for (size_t i = 0; i < pieces.size();) {
+        const int32_t f = pieces[i].face, l = leaf_behind(pieces[i]);
         double shared = 0;
-        for (; i < triangles.size() && face_of(triangles[i]) == f && leaf_behind(triangles[i]) == l; ++i) {
-            const Triangle& t = surface.triangles[static_cast<size_t>(triangles[i])];
-            const auto at = [&](size_t k) { return surface.vertices[static_cast<size_t>(t[k])]; };
-            shared += area(at(0), at(1), at(2));
-        }
+        for (; i < pieces.size() && pieces[i].face == f && leaf_behind(pieces[i]) == l; ++i) shared += pieces[i].area;
         const auto face = static_cast<size_t>(f);
         face_area[face] += shared;
         if (shared > most[face]) {
@@ -72,13 +66,14 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const BinaryTr
                      std::span<const uint8_t> kept, const double* caller_vertices) {
     const Frame& frame = surface.frame;
     source_ = surface.source_vertex;
-    for (int32_t v : source_) {
-        const double* p = caller_vertices + 3 * static_cast<size_t>(v);
+    source_.resize(mesh.vertices.size(), -1);
+    for (size_t v = 0; v < source_.size(); ++v) {
+        if (source_[v] < 0) {
+            vertices_.push_back(frame.to_caller(mesh.vertices[v]));
+            continue;
+        }
+        const double* p = caller_vertices + 3 * static_cast<size_t>(source_[v]);
         vertices_.push_back({p[0], p[1], p[2]});
-    }
-    for (size_t v = vertices_.size(); v < mesh.vertices.size(); ++v) {
-        vertices_.push_back(frame.to_caller(mesh.vertices[v]));
-        source_.push_back(-1);
     }
 
     const size_t leaves = mesh.tetrahedra.size();
@@ -106,6 +101,10 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const BinaryTr
 
     summary_.components = tree.components;
     summary_.cavities = mesh.cavities;
+    summary_.added_vertices = mesh.vertices.size() - surface.vertices.size();
+    summary_.rung = surface.rung;
+    summary_.deviation = surface.deviation;
+    account_ = surface.account;
     finish(kept);
 }
 
@@ -184,7 +183,6 @@ void Hierarchy::finish(std::span<const uint8_t> kept) {
     }
 
     frame_ = Frame::around(vertices_);
-    summary_.added_vertices = static_cast<size_t>(std::count(source_.begin(), source_.end(), -1));
     summary_.volume = volume.back();
     summary_.hull_volume = merges_.empty() ? volume.back() : merges_.back().hull_volume;
 }
@@ -288,7 +286,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the saved form is written as memory holds it");
 
 constexpr std::array<char, 8> magic = {'P', 'W', 'H', 'I', 'E', 'R', '\r', '\n'};
-constexpr uint32_t format_version = 1;
+constexpr uint32_t format_version = 2;
 
 // FNV-1a, by words of 8 bytes where they last: any single changed byte changes the hash.
 uint64_t hash(std::span<const uint8_t> bytes) {
@@ -346,11 +344,12 @@ private:
 struct Header {
     std::array<char, 8> magic = partwheel::magic;
     uint32_t version = format_version;
-    uint32_t reserved = 0;
-    uint64_t faces = 0, tetrahedra = 0, vertices = 0, components = 0, cavities = 0;
+    uint32_t rung = 0;
+    uint64_t faces = 0, tetrahedra = 0, vertices = 0, components = 0, cavities = 0, added_vertices = 0, account = 0;
+    double deviation = 0;
 };
 
-static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Merge) == 24 && sizeof(Header) == 56);
+static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Merge) == 24 && sizeof(Header) == 80);
 
 }  // namespace
 
@@ -358,7 +357,7 @@ size_t Hierarchy::saved_size() const {
     const size_t vertex = sizeof(Point) + sizeof(int32_t), face = sizeof(int32_t) + sizeof(double);
     const size_t tetrahedron = sizeof(Tetrahedron) + sizeof(double);
     return sizeof(Header) + vertices_.size() * vertex + tetrahedra_.size() * tetrahedron + leaf_.size() * face +
-           merges_.size() * sizeof(Merge) + sizeof(uint64_t);
+           merges_.size() * sizeof(Merge) + account_.size() + sizeof(uint64_t);
 }
 
 std::vector<uint8_t> Hierarchy::save() const {
@@ -368,6 +367,10 @@ std::vector<uint8_t> Hierarchy::save() const {
     header.vertices = vertices_.size();
     header.components = summary_.components;
     header.cavities = summary_.cavities;
+    header.added_vertices = summary_.added_vertices;
+    header.account = account_.size();
+    header.rung = summary_.rung;
+    header.deviation = summary_.deviation;
     Writer out;
     out.bytes.reserve(saved_size());
     out.put(&header, 1);
@@ -378,6 +381,7 @@ std::vector<uint8_t> Hierarchy::save() const {
     out.put(leaf_.data(), leaf_.size());
     out.put(face_area_.data(), face_area_.size());
     out.put(merges_.data(), merges_.size());
+    out.put(account_.data(), account_.size());
     const uint64_t h = hash(out.bytes);
     out.put(&h, 1);
     return std::move(out.bytes);
@@ -389,7 +393,6 @@ Hierarchy Hierarchy::load(std::span<const uint8_t> bytes) {
     in.get(&header, 1);
     if (header.magic != magic) refuse("it is something else");
     if (header.version != format_version) refuse("it was written by another version of Partwheel");
-    if (header.reserved != 0) refuse("it is damaged");
     uint64_t stored_hash;
     if (bytes.size() < sizeof header + sizeof stored_hash) refuse("it is cut short");
     std::memcpy(&stored_hash, bytes.data() + bytes.size() - sizeof stored_hash, sizeof stored_hash);
@@ -407,6 +410,11 @@ Hierarchy Hierarchy::load(std::span<const uint8_t> bytes) {
     h.merges_ = in.get_vector<Merge>(header.tetrahedra - 1);
     h.summary_.components = header.components;
     h.summary_.cavities = header.cavities;
+    h.summary_.added_vertices = header.added_vertices;
+    h.summary_.rung = static_cast<pw_rung>(header.rung);
+    h.summary_.deviation = header.deviation;
+    const auto account = in.get_vector<char>(header.account);
+    h.account_.assign(account.begin(), account.end());
     in.get(&stored_hash, 1);
     if (!in.at_end()) refuse("it goes on after its end");
     h.check_stored();
@@ -434,6 +442,16 @@ void Hierarchy::check_stored() const {
     for (double a : face_area_)
         if (!measure(a)) refuse("an area is impossible");
     if (summary_.components == 0 || summary_.components > leaves) refuse("its counts are impossible");
+
+    const auto strangers = static_cast<size_t>(std::count(source_.begin(), source_.end(), -1));
+    const bool exact = summary_.rung == PW_RUNG_EXACT;
+    if (!exact && summary_.rung != PW_RUNG_REPAIRED && summary_.rung != PW_RUNG_WRAPPED) refuse("its rung is unknown");
+    if (exact ? summary_.added_vertices != strangers : summary_.added_vertices > strangers)
+        refuse("its counts are impossible");
+    if (!measure(summary_.deviation) || (exact && summary_.deviation != 0)) refuse("its deviation is impossible");
+    const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
+    if (exact != account_.empty() || !std::all_of(account_.begin(), account_.end(), printable))
+        refuse("its account can't be read");
 
     std::vector<std::pair<int32_t, int32_t>> slice(leaves + merges);
     std::vector<bool> used(leaves + merges, false);

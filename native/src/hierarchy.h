@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace partwheel {
@@ -29,6 +30,7 @@ public:
 
     pw_arrays arrays() const;
     const pw_summary& summary() const { return summary_; }
+    const std::string& account() const { return account_; }
     size_t face_count() const { return leaf_.size(); }
     size_t node_count() const { return parent_.size(); }
     size_t tetrahedron_count() const { return tetrahedra_.size(); }
@@ -55,6 +57,7 @@ private:
     std::vector<double> face_area_;
     std::vector<Merge> merges_;
     pw_summary summary_{};
+    std::string account_;
 
     // Derived by finish().
     Frame frame_;

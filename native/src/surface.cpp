@@ -1,4 +1,4 @@
-// The input triangles, checked and put in a canonical order.
+// A surface put in a canonical order, and checked.
 #include "surface.h"
 
 #include "predicates.h"
@@ -63,53 +63,6 @@ void check_arrays(const MeshView& mesh) {
                                         " has no triangle. The mesh data are damaged.");
 }
 
-// The vertices in use, sorted by their coordinates, and the triangles in terms of them, sorted as well.
-Surface canonical(const MeshView& mesh) {
-    const auto caller_point = [&](int32_t v) {
-        const double* p = mesh.vertices + 3 * static_cast<size_t>(v);
-        return Point{p[0], p[1], p[2]};
-    };
-    Surface surface;
-    surface.face_count = mesh.face_count;
-
-    std::vector<int32_t>& source = surface.source_vertex;
-    source.assign(mesh.triangles, mesh.triangles + 3 * mesh.triangle_count);
-    std::sort(source.begin(), source.end());
-    source.erase(std::unique(source.begin(), source.end()), source.end());
-    std::sort(source.begin(), source.end(), [&](int32_t a, int32_t b) {
-        return std::pair(caller_point(a), a) < std::pair(caller_point(b), b);
-    });
-    for (int32_t v : source) surface.vertices.push_back(caller_point(v));
-    surface.frame = Frame::around(surface.vertices);
-    if (surface.frame.longest == 0)
-        throw Error(PW_ERROR_DEGENERATE, "All vertices are at the same place. Choose a mesh that has an extent.");
-    if (surface.frame.longest < smallest_model)
-        throw Error(PW_ERROR_NOT_FINITE, "The model is too small to be measured. Scale it up.");
-    for (Point& p : surface.vertices) p = surface.frame.to_working(p);
-
-    std::vector<int32_t> number(mesh.vertex_count, -1);
-    for (size_t i = 0; i < source.size(); ++i) number[static_cast<size_t>(source[i])] = static_cast<int32_t>(i);
-    std::vector<std::pair<Triangle, int32_t>> triangles(mesh.triangle_count);
-    double six_enclosed = 0;
-    for (size_t t = 0; t < mesh.triangle_count; ++t) {
-        Triangle& tri = triangles[t].first;
-        for (size_t k = 0; k < 3; ++k) tri[k] = number[static_cast<size_t>(mesh.triangles[3 * t + k])];
-        const auto at = [&](size_t k) { return surface.vertices[static_cast<size_t>(tri[k])]; };
-        six_enclosed += dot(cross(at(0), at(1)), at(2));
-        triangles[t].second = mesh.faces ? mesh.faces[t] : static_cast<int32_t>(t);
-    }
-    for (auto& [tri, face] : triangles) {
-        if (six_enclosed < 0) std::swap(tri[1], tri[2]);  // inside out
-        std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
-    }
-    std::sort(triangles.begin(), triangles.end());
-    for (const auto& [tri, face] : triangles) {
-        surface.triangles.push_back(tri);
-        surface.source_face.push_back(face);
-    }
-    return surface;
-}
-
 // How many things are wrong in one way, and the lowest source face that has it.
 struct Finding {
     size_t count = 0;
@@ -127,7 +80,7 @@ void check_degenerate(const Surface& surface) {
     for (size_t t = 0; t < surface.triangles.size(); ++t) {
         const Triangle& tri = surface.triangles[t];
         const auto at = [&](size_t k) { return surface.vertices[static_cast<size_t>(tri[k])]; };
-        if (collinear(at(0), at(1), at(2))) flat.add(surface.source_face[t]);
+        if (collinear(at(0), at(1), at(2))) flat.add(surface.pieces[t].face);
     }
     if (flat.count)
         throw Error(PW_ERROR_DEGENERATE, counted(flat.count, "triangle has", "triangles have") + " no area, " +
@@ -162,7 +115,7 @@ void check_manifold(const Surface& surface) {
     for (size_t i = 0; i < edges.size();) {
         size_t end = i + 1;
         while (end < edges.size() && edges[end].key == edges[i].key) ++end;
-        const int32_t face = surface.source_face[edges[i].half / 3];
+        const int32_t face = surface.pieces[edges[i].half / 3].face;
         if (end - i == 1)
             open.add(face);
         else if (end - i > 2)
@@ -196,7 +149,7 @@ void check_manifold(const Surface& surface) {
         if (visited[start]) continue;
         for (uint32_t h = start; !visited[h]; h = twin[h / 3 * 3 + (h + 2) % 3]) visited[h] = true;
         const auto v = static_cast<size_t>(surface.triangles[start / 3][start % 3]);
-        if (has_fan[v]) pinched.add(surface.source_face[start / 3]);
+        if (has_fan[v]) pinched.add(surface.pieces[start / 3].face);
         has_fan[v] = true;
     }
     if (pinched.count)
@@ -220,7 +173,7 @@ void check_self_intersection(const Surface& surface) {
     pmp::self_intersections<CGAL::Sequential_tag>(mesh.faces(), mesh, std::back_inserter(pairs),
                                                   CGAL::parameters::maximum_number(1));
     if (pairs.empty()) return;
-    const auto source = [&](Mesh::Face_index f) { return surface.source_face[static_cast<size_t>(f)]; };
+    const auto source = [&](Mesh::Face_index f) { return surface.pieces[static_cast<size_t>(f)].face; };
     const auto [low, high] = std::minmax({source(pairs[0].first), source(pairs[0].second)});
     const std::string where = low == high ? "within face " + std::to_string(low)
                                           : "where faces " + std::to_string(low) + " and " + std::to_string(high) +
@@ -254,16 +207,79 @@ Point Frame::to_caller(const Point& p) const {
     return {p[0] * scale + origin[0], p[1] * scale + origin[1], p[2] * scale + origin[2]};
 }
 
-Surface check_surface(const MeshView& mesh, Progress& progress) {
+Surface read_mesh(const MeshView& mesh) {
     check_arrays(mesh);
-    progress.advance(0.1);
-    Surface surface = canonical(mesh);
+    const auto point = [&](int32_t v) {
+        const double* p = mesh.vertices + 3 * static_cast<size_t>(v);
+        return Point{p[0], p[1], p[2]};
+    };
+    std::vector<int32_t> used(mesh.triangles, mesh.triangles + 3 * mesh.triangle_count);
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    std::sort(used.begin(), used.end(),
+              [&](int32_t a, int32_t b) { return std::pair(point(a), a) < std::pair(point(b), b); });
+    std::vector<Point> points;
+    std::vector<int32_t> number(mesh.vertex_count, -1);
+    for (int32_t v : used) {
+        number[static_cast<size_t>(v)] = static_cast<int32_t>(points.size());
+        points.push_back(point(v));
+    }
+    const Frame frame = Frame::around(points);
+    if (frame.longest == 0)
+        throw Error(PW_ERROR_DEGENERATE, "All vertices are at the same place. Choose a mesh that has an extent.");
+    if (frame.longest < smallest_model)
+        throw Error(PW_ERROR_NOT_FINITE, "The model is too small to be measured. Scale it up.");
+    for (Point& p : points) p = frame.to_working(p);
+    std::vector<Triangle> triangles(mesh.triangle_count);
+    for (size_t t = 0; t < mesh.triangle_count; ++t)
+        for (size_t k = 0; k < 3; ++k) triangles[t][k] = number[static_cast<size_t>(mesh.triangles[3 * t + k])];
+    Surface surface = canonical(frame, std::move(points), std::move(used), triangles);
+    if (mesh.faces)
+        for (Piece& piece : surface.pieces) piece.face = mesh.faces[piece.face];
+    surface.face_count = mesh.face_count;
+    return surface;
+}
+
+Surface canonical(const Frame& frame, std::vector<Point> vertices, std::vector<int32_t> source_vertex,
+                  std::span<const Triangle> triangles) {
+    Surface surface;
+    surface.frame = frame;
+    surface.vertices = std::move(vertices);
+    surface.source_vertex = std::move(source_vertex);
+    surface.face_count = triangles.size();
+    const auto at = [&](int32_t v) { return surface.vertices[static_cast<size_t>(v)]; };
+    std::vector<std::pair<Triangle, int32_t>> sorted;
+    double six_enclosed = 0;
+    for (size_t t = 0; t < triangles.size(); ++t) {
+        const Triangle& tri = triangles[t];
+        six_enclosed += dot(cross(at(tri[0]), at(tri[1])), at(tri[2]));
+        sorted.emplace_back(tri, static_cast<int32_t>(t));
+    }
+    for (auto& [tri, from] : sorted) {
+        if (six_enclosed < 0) std::swap(tri[1], tri[2]);  // inside out
+        std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
+    }
+    std::sort(sorted.begin(), sorted.end());
+    for (const auto& [tri, from] : sorted) {
+        const auto t = static_cast<int32_t>(surface.triangles.size());
+        surface.triangles.push_back(tri);
+        surface.pieces.push_back({from, t, area(at(tri[0]), at(tri[1]), at(tri[2]))});
+    }
+    return surface;
+}
+
+void check_surface(const Surface& surface, Progress& progress) {
     progress.advance(0.3);
     check_degenerate(surface);
     check_manifold(surface);
     progress.advance(0.5);
     check_self_intersection(surface);
     progress.advance(1);
+}
+
+Surface check_surface(const MeshView& mesh, Progress& progress) {
+    Surface surface = read_mesh(mesh);
+    check_surface(surface, progress);
     return surface;
 }
 

@@ -1,4 +1,4 @@
-// The input triangles, checked: closed, manifold, oriented, free of self-intersection; in a canonical order.
+// A surface in a canonical order, and the checks: closed, manifold, oriented, free of self-intersection.
 #pragma once
 
 #include "geometry.h"
@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace partwheel {
@@ -36,18 +37,43 @@ struct Frame {
     double area_to_caller(double a) const { return a * scale * scale; }
 };
 
+// A part of a source face, and the triangle of the surface used that it goes with.
+struct Piece {
+    int32_t face = 0;
+    int32_t triangle = 0;
+    double area = 0;  // working
+
+    auto operator<=>(const Piece&) const = default;
+};
+
 // Vertices are sorted by x, y, z; each triangle starts with its lowest vertex, and triangles are sorted: so nothing
 // downstream depends on the order of the caller's arrays. A surface that encloses a negative volume has been turned.
 struct Surface {
     Frame frame;
     std::vector<Point> vertices;         // working coordinates of the vertices in use
-    std::vector<int32_t> source_vertex;  // the caller's index of each
+    std::vector<int32_t> source_vertex;  // the caller's index of each; -1: not a vertex of the caller's
     std::vector<Triangle> triangles;
-    std::vector<int32_t> source_face;  // the caller's face of each triangle
-    size_t face_count = 0;
+    std::vector<Piece> pieces;  // of every source face at least one; pieces[t] of triangle t where the surface is exact
+    size_t face_count = 0;      // the caller's
+
+    // How it came from the caller's mesh: see pw_summary and pw_hierarchy_account.
+    pw_rung rung = PW_RUNG_EXACT;
+    double deviation = 0;
+    std::string account;
 };
 
-// Checks what pw_build documents, in the order of pw_status; throws an Error that names the first thing that fails.
+// The caller's arrays in canonical order, good or bad. Throws an Error where they aren't a mesh with an extent.
+Surface read_mesh(const MeshView& mesh);
+
+// Triangles in canonical order; the vertices are in it, and in use. Triangle t of those given is the piece of face t.
+Surface canonical(const Frame& frame, std::vector<Point> vertices, std::vector<int32_t> source_vertex,
+                  std::span<const Triangle> triangles);
+
+// Checks what pw_build documents of the exact rung, in the order of pw_status; throws an Error that names the first
+// thing that fails.
+void check_surface(const Surface& surface, Progress& progress);
+
+// Both in one.
 Surface check_surface(const MeshView& mesh, Progress& progress);
 
 }  // namespace partwheel

@@ -11,7 +11,7 @@ import pytest
 from conftest import ROOT
 from partwheel.core import Hierarchy
 
-STAGES = ["surface", "tetrahedra", "cluster", "dendrogram", "hierarchy"]
+STAGES = ["surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy"]
 
 
 def run(*arguments, python=(sys.executable,), **environment):
@@ -51,13 +51,31 @@ def test_quality(hand):
 
 
 def test_named_errors(meshes_directory, tmp_path):
-    result = run("build", meshes_directory / "open_cube.off", "--json", "-o", tmp_path / "none")
+    result = run("build", meshes_directory / "open_cube.off", "--json", "--rungs", "exact", "-o", tmp_path / "none")
     report = json.loads(result.stdout)
     assert result.returncode == 1 and report["error"]["name"] == "open" and report["tets"] is None
     assert report["seconds"]["surface"] > 0 and report["error"]["message"].endswith(".")
     assert not (tmp_path / "none").exists()
-    result = run("build", meshes_directory / "open_cube.off")
+    result = run("build", meshes_directory / "open_cube.off", "--rungs", "exact")
     assert result.returncode == 1 and "open" in result.stderr and result.stdout == ""
+
+
+def test_rungs(meshes_directory):
+    cube = meshes_directory / "open_cube.off"
+    for rungs, expected in ((), "repaired"), (("--rungs", "exact,wrapped"), "wrapped"):
+        report = json.loads(run("build", cube, "--json", *rungs).stdout)
+        assert report["error"] is None and report["rung"] == expected and report["account"].endswith(".")
+        assert report["deviation"] == 0 if expected == "repaired" else 0 < report["deviation"] < 0.02
+    words = run("build", cube).stdout
+    assert "repaired" in words and "1 hole filled" in words
+
+
+def test_open_surfaces(meshes_directory):
+    plane = meshes_directory / "plane.off"
+    refused = run("build", plane, "--json")
+    assert refused.returncode == 1 and json.loads(refused.stdout)["error"]["name"] == "not solid"
+    report = json.loads(run("build", plane, "--json", "--open-surfaces").stdout)
+    assert report["error"] is None and report["rung"] == "wrapped" and "thin" in report["account"]
 
 
 def test_a_file_that_is_no_mesh(tmp_path):
@@ -70,7 +88,8 @@ def test_a_file_that_is_no_mesh(tmp_path):
 
 
 @pytest.mark.parametrize("arguments", [[], ["build"], ["grow", "x.off"], ["build", "x.off", "--json=yes"],
-                                       ["build", "x.off", "--quality", "high"], ["build", "missing.off"],
+                                       ["build", "x.off", "--quality", "high"],
+                                       ["build", "x.off", "--rungs", "exact,best"], ["build", "missing.off"],
                                        ["build", "/"]])
 def test_wrong_usage(arguments):
     assert run(*arguments).returncode == 2

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import shapes
 from conftest import ROOT
-from partwheel.core import Hierarchy, PartwheelError, Status
+from partwheel.core import Hierarchy, PartwheelError, Rung, Status
 
 CUBE = shapes.cube()
 
@@ -83,14 +83,14 @@ CASES = {
 def test_broken_surfaces_are_named(name):
     status, make = CASES[name]
     with pytest.raises(PartwheelError) as refused:
-        Hierarchy.build(*make())
+        Hierarchy.build(*make(), rungs=Rung.EXACT)
     assert refused.value.status == status, str(refused.value)
     assert refused.value.name and str(refused.value).endswith(".")
 
 
 def test_a_pillow_holds_no_volume():
     with pytest.raises(PartwheelError) as refused:
-        Hierarchy.build(*pillow())
+        Hierarchy.build(*pillow(), rungs=Rung.EXACT)
     assert refused.value.status in {Status.NO_VOLUME, Status.SELF_INTERSECTION, Status.NON_MANIFOLD}
 
 
@@ -98,6 +98,13 @@ def test_a_pillow_holds_no_volume():
 def test_quality_out_of_range(quality):
     with pytest.raises(PartwheelError) as refused:
         Hierarchy.build(*CUBE, quality=quality)
+    assert refused.value.status == Status.ARGUMENT
+
+
+@pytest.mark.parametrize("options", [{"rungs": 8}, {"rungs": -1}, {"threads": -1}])
+def test_options_out_of_range(options):
+    with pytest.raises(PartwheelError) as refused:
+        Hierarchy.build(*CUBE, **options)
     assert refused.value.status == Status.ARGUMENT
 
 
@@ -122,9 +129,9 @@ def test_arrays_of_the_wrong_kind_never_reach_the_library():
 
 def test_seconds_of_a_failed_build():
     with pytest.raises(PartwheelError) as refused:
-        Hierarchy.build(*CASES["two cubes in one place"][1]())
+        Hierarchy.build(*CASES["two cubes in one place"][1](), rungs=Rung.EXACT)
     seconds = refused.value.seconds
-    assert list(seconds) == ["surface", "tetrahedra", "cluster", "dendrogram", "hierarchy"]
+    assert list(seconds) == ["surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy"]
     assert seconds["surface"] > 0 and seconds["cluster"] == 0
 
 

@@ -8,9 +8,9 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 import shapes
-from partwheel.core import Hierarchy, PartwheelError, Status
+from partwheel.core import Hierarchy, PartwheelError, Rung, Status
 
-STAGES = ["surface", "tetrahedra", "cluster", "dendrogram", "hierarchy"]
+STAGES = ["surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy"]
 
 
 def test_progress_never_falls_and_ends_whole():
@@ -96,7 +96,7 @@ def test_error_messages_belong_to_their_build():
 
     def build(shape):
         try:
-            Hierarchy.build(*shape)
+            Hierarchy.build(*shape, rungs=Rung.EXACT)
         except PartwheelError as error:
             return error.name, str(error)
 

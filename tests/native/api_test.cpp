@@ -48,15 +48,15 @@ void expect_argument_error(pw_status status) {
 TEST(Api, Names) {
     EXPECT_STREQ(pw_version(), PW_VERSION);
     std::set<std::string> names;
-    for (int s = PW_OK; s <= PW_ERROR_INTERNAL; ++s) names.insert(pw_status_name(static_cast<pw_status>(s)));
-    EXPECT_EQ(names.size(), static_cast<size_t>(PW_ERROR_INTERNAL) + 1);
+    for (int s = PW_OK; s <= PW_ERROR_NOT_SOLID; ++s) names.insert(pw_status_name(static_cast<pw_status>(s)));
+    EXPECT_EQ(names.size(), static_cast<size_t>(PW_ERROR_NOT_SOLID) + 1);
     for (const std::string& name : names)
         for (const char c : name) EXPECT_TRUE(c == ' ' || c == '-' || (c >= 'a' && c <= 'z')) << name;
     EXPECT_STREQ(pw_status_name(PW_ERROR_SELF_INTERSECTION), "self-intersection");
-    const std::vector<std::string> stages{"surface", "tetrahedra", "cluster", "dendrogram", "hierarchy"};
+    const std::vector<std::string> stages{"surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy"};
     for (int s = 0; s < PW_STAGE_COUNT; ++s)
         EXPECT_EQ(pw_stage_name(static_cast<pw_stage>(s)), stages[static_cast<size_t>(s)]);
-    for (const int s : {-1, PW_ERROR_INTERNAL + 1, 1000}) {
+    for (const int s : {-1, PW_ERROR_NOT_SOLID + 1, 1000}) {
         EXPECT_NE(pw_status_name(static_cast<pw_status>(s)), nullptr);
         EXPECT_NE(pw_stage_name(static_cast<pw_stage>(s)), nullptr);
     }
@@ -177,9 +177,12 @@ TEST(Api, BuildChecksItsOptionsAndSizes) {
                         mesh.face_data(), mesh.face_count, &options, &made);
     };
     for (const double quality : {-1.0, 0.5, 1.0, 1.0999, std::nan(""), HUGE_VAL, -HUGE_VAL, 5e-324})
-        expect_argument_error(status({sizeof(pw_build_options), quality}));
+        expect_argument_error(status({sizeof(pw_build_options), quality, 0, 0, 0}));
     for (const size_t size : {size_t{0}, sizeof(pw_build_options) - 1, sizeof(pw_build_options) + 1, huge})
-        expect_argument_error(status({size, 0}));
+        expect_argument_error(status({size, 0, 0, 0, 0}));
+    for (const uint32_t rungs : {8U, 15U, ~0U}) expect_argument_error(status({sizeof(pw_build_options), 0, rungs, 0, 0}));
+    for (const int32_t open : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, open, 0}));
+    expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, -1}));
     const auto sized_build = [&](size_t vertices, size_t triangles, const int32_t* faces, size_t face_count) {
         return pw_build(nullptr, mesh.vertex_data(), vertices, mesh.triangle_data(), triangles, faces, face_count,
                         nullptr, &made);
@@ -195,7 +198,7 @@ TEST(Api, BuildChecksItsOptionsAndSizes) {
         expect_argument_error(sized_build(8, 12, mesh.face_data(), large));
     }
     EXPECT_EQ(made, nullptr);
-    ASSERT_EQ(status({sizeof(pw_build_options), 1.1}), PW_OK);
+    ASSERT_EQ(status({sizeof(pw_build_options), 1.1, 0, 0, 0}), PW_OK);
     pw_hierarchy_free(made);
 }
 
@@ -244,7 +247,8 @@ TEST(Api, NothingIsWrittenOnFailure) {
     mesh.faces.pop_back();
     auto* const mark = reinterpret_cast<pw_hierarchy*>(&mesh);
     pw_hierarchy* made = mark;
-    EXPECT_EQ(pw_build(nullptr, mesh.vertex_data(), 8, mesh.triangle_data(), 11, mesh.face_data(), 6, nullptr, &made),
+    const pw_build_options exact{sizeof exact, 0, PW_RUNG_EXACT, 0, 0};
+    EXPECT_EQ(pw_build(nullptr, mesh.vertex_data(), 8, mesh.triangle_data(), 11, mesh.face_data(), 6, &exact, &made),
               PW_ERROR_OPEN);
     EXPECT_EQ(made, mark);
     const uint8_t bytes[3] = {1, 2, 3};

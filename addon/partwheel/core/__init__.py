@@ -2,6 +2,6 @@
 """The native library for Python: numpy arrays in, a Hierarchy out. Nothing here knows Blender."""
 
 from .hierarchy import Hierarchy, Summary
-from .library import LibraryError, PartwheelError, Stage, Status, version
+from .library import LibraryError, PartwheelError, Rung, Stage, Status, version
 
-__all__ = ["Hierarchy", "LibraryError", "PartwheelError", "Stage", "Status", "Summary", "version"]
+__all__ = ["Hierarchy", "LibraryError", "PartwheelError", "Rung", "Stage", "Status", "Summary", "version"]

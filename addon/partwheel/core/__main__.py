@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The command line: python3 -m partwheel.core build MODEL [-o FILE] [--json] [--quality Q]
+"""The command line: python3 -m partwheel.core build MODEL [-o FILE] [--json] [options]
 
 Exit codes: 0 built, 1 a named error, 2 wrong usage (a file that can't be opened or written included)."""
 
@@ -10,7 +10,7 @@ from pathlib import Path
 
 from . import meshes
 from .hierarchy import Hierarchy
-from .library import LibraryError, PartwheelError
+from .library import LibraryError, PartwheelError, Rung
 
 BUILT, NAMED_ERROR, USAGE = 0, 1, 2
 
@@ -28,14 +28,28 @@ def peak_memory():
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="python3 -m partwheel.core", description="Partwheel without Blender.")
     commands = parser.add_subparsers(dest="command", required=True)
-    build = commands.add_parser("build", help="build the hierarchy of parts of a closed surface")
+    build = commands.add_parser("build", help="build the hierarchy of parts of a surface")
     build.add_argument("model", type=Path, help="a mesh file: OFF, or any other format that trimesh reads")
     build.add_argument("-o", "--output", type=Path, metavar="FILE", help="save the hierarchy here")
     build.add_argument("--json", action="store_true", help="print the report as JSON on one line")
     build.add_argument("--quality", type=float, default=0.0, metavar="Q",
                        help="0: no points are added inside (default); 1.1 or more: bound on circumradius to shortest "
                             "edge of the tetrahedra, 1.4 is usual")
+    build.add_argument("--rungs", default="exact,repaired,wrapped", type=rungs, metavar="R,...",
+                       help="the ways allowed to a surface that can be filled, the first that works is taken: exact, "
+                            "repaired, wrapped (default: all)")
+    build.add_argument("--open-surfaces", action="store_true",
+                       help="wrap a sheet (plane, cloth, car door) as a thin solid instead of refusing it")
+    build.add_argument("--threads", type=int, default=0, metavar="N", help="at most so many (default: what helps)")
     return parser.parse_args(arguments)
+
+
+def rungs(text):
+    """"exact,wrapped" -> the sum of their Rung values. For argparse: raises ValueError for any other word."""
+    try:
+        return sum({Rung[word.upper()] for word in text.split(",")})
+    except KeyError as error:
+        raise ValueError(f"{error} is no rung") from error
 
 
 def show_progress(fraction, stage):
@@ -49,12 +63,14 @@ def build(options, report):
                   welded_vertices=mesh.welded)
     try:
         hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count,
-                                    quality=options.quality, progress=show_progress if sys.stderr.isatty() else None)
+                                    quality=options.quality, rungs=options.rungs,
+                                    open_surfaces=options.open_surfaces, threads=options.threads,
+                                    progress=show_progress if sys.stderr.isatty() else None)
     finally:
         if sys.stderr.isatty():
             print("\r" + " " * 20, end="\r", file=sys.stderr, flush=True)
     report.update(tets=len(hierarchy.tetrahedra), nodes=len(hierarchy.parent), seconds=hierarchy.seconds,
-                  **hierarchy.summary._asdict())
+                  account=hierarchy.account, **hierarchy.summary._asdict())
     if options.output:
         options.output.write_bytes(hierarchy.save())
 
@@ -64,7 +80,9 @@ def describe(report):
     if report["error"]:
         return f"{report['model']}: {report['error']['name']}. {report['error']['message']}"
     lines = [f"{report['model']}: {report['faces']} faces, {report['tets']} tets, components: {report['components']}, "
-             f"cavities: {report['cavities']}, nodes: {report['nodes']}"]
+             f"cavities: {report['cavities']}, nodes: {report['nodes']}, {report['rung']}"]
+    if report["account"]:
+        lines.append(report["account"])
     if report["welded_vertices"]:
         lines.append(f"This format does not share vertices: {report['welded_vertices']} exact copies were joined.")
     lines += [f"  {stage:<12} {seconds:9.3f} s" for stage, seconds in report["seconds"].items()]

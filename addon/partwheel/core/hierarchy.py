@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .library import STAGE_COUNT, Arrays, BuildOptions, PartwheelError, Stage, Status, SummaryStruct, check, load
+from .library import STAGE_COUNT, Arrays, BuildOptions, PartwheelError, Rung, Stage, Status, SummaryStruct, check, load
 
 POLL_SECONDS = 0.1
 
@@ -18,13 +18,16 @@ POLL_SECONDS = 0.1
 class Summary(NamedTuple):
     """What a build found. components: parts of the solid without a common facet. cavities: enclosed regions that are
     not solid. added_vertices: points that the mesher added inside. volume, hull_volume: of the solid and of its convex
-    hull, in the unit of the coordinates cubed."""
+    hull, in the unit of the coordinates cubed. rung: "exact", "repaired" or "wrapped", how the surface used came from
+    the caller's; deviation: the largest distance between them, relative to the diagonal of the bounding box."""
 
     components: int
     cavities: int
     added_vertices: int
     volume: float
     hull_volume: float
+    rung: str
+    deviation: float
 
 
 class _Handle:
@@ -116,16 +119,15 @@ class _Context:
 class _Build(threading.Thread):
     """pw_build in a thread of its own: ctypes lets go of Python's lock, so the caller's thread stays free."""
 
-    def __init__(self, context, arrays, face_count, quality):
+    def __init__(self, context, arrays, face_count, options):
         super().__init__(name="partwheel-build", daemon=True)
         self.context = context
-        self.arguments = arrays, face_count, quality
+        self.arguments = arrays, face_count, options
         self.address = c_void_p()
         self.error = None
 
     def run(self):
-        (vertices, triangles, *faces), face_count, quality = self.arguments
-        options = BuildOptions(ctypes.sizeof(BuildOptions), quality)
+        (vertices, triangles, *faces), face_count, options = self.arguments
         status = load().pw_build(
             self.context.handle.address, vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles),
             faces[0].ctypes.data if faces else None, face_count, byref(options), byref(self.address),
@@ -148,10 +150,11 @@ class Hierarchy:
     first, last (N,), tet_first, tet_last (N,)
     cost_class (N,), cost (N,), height (N,)     Eq. 3 of the paper and the node's place in the dendrogram
     volume (N,), area (N,)
-    vertices (V,3), source (V,)     source: the source vertex, -1 for added points
+    vertices (V,3), source (V,)     source: the source vertex that each is, -1 for all others
     tetrahedra (T,4), merges (T-1,2)
 
-    summary: a Summary. seconds: stage name -> seconds of the build, empty after load().
+    summary: a Summary. account: what was done to the surface, in sentences; "" if it was exact. seconds: stage name ->
+    seconds of the build, empty after load().
     """
 
     def __init__(self, address, seconds=None):
@@ -170,16 +173,22 @@ class Hierarchy:
                                       dtypes.get(name, np.int32)))
         summary = SummaryStruct()
         check(load().pw_hierarchy_summary(address, byref(summary)))
-        self.summary = Summary(*(getattr(summary, name) for name in Summary._fields))
+        summary = {name: getattr(summary, name) for name in Summary._fields}
+        self.summary = Summary(**summary | {"rung": Rung(summary["rung"]).name.lower()})
+        self.account = load().pw_hierarchy_account(address).decode()
 
     @classmethod
-    def build(cls, vertices, triangles, faces=None, face_count=None, *, quality=0.0, progress=None):
-        """Builds the hierarchy of a closed surface.
+    def build(cls, vertices, triangles, faces=None, face_count=None, *, quality=0.0, rungs=0, open_surfaces=False,
+              threads=0, progress=None):
+        """Builds the hierarchy of a surface: as it is, or else repaired, or else wrapped.
 
         vertices (V,3) coordinates; triangles (T,3) indices, counter-clockwise from outside; faces (T,) the source face
         of each triangle (None: every triangle is one); face_count how many there are (None: the largest + 1).
         quality: 0 adds no points inside; 1.1 or more (1.4 is usual) bounds the tetrahedra's circumradius to shortest
         edge (the paper's Figure 9).
+        rungs: the ways allowed to a surface that can be filled, a sum of Rung (0: all); the first that works is taken.
+        open_surfaces: wrap a sheet (plane, cloth, car door) as a thin solid, instead of refusing it with NOT_SOLID.
+        threads: 0 as many as help, else at most so many; the result is the same.
         progress(fraction, stage): called in this thread about ten times a second while the build runs in another;
         returning True cancels the build. If it raises, the build is stopped and the exception goes on.
 
@@ -187,7 +196,9 @@ class Hierarchy:
         """
         arrays, face_count = checked_surface(vertices, triangles, faces, face_count)
         context = _Context()
-        build = _Build(context, arrays, face_count, quality)
+        options = BuildOptions(ctypes.sizeof(BuildOptions), quality, _number(rungs), bool(open_surfaces),
+                               _number(threads))
+        build = _Build(context, arrays, face_count, options)
 
         def report():
             if progress is not None and progress(*context.progress()):

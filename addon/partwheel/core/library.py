@@ -6,7 +6,7 @@ import enum
 import functools
 import os
 import sys
-from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_size_t, c_uint8, c_void_p
+from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_size_t, c_uint8, c_uint32, c_void_p
 from pathlib import Path
 
 FILE_NAME = {"win32": "partwheel.dll", "darwin": "libpartwheel.dylib"}.get(sys.platform, "libpartwheel.so")
@@ -31,16 +31,26 @@ class Status(enum.IntEnum):
     MEMORY = 13
     DATA = 14
     INTERNAL = 15
+    NOT_SOLID = 16
 
 
 class Stage(enum.IntEnum):
     """pw_stage: the stages of a build, in their order."""
 
     SURFACE = 0
-    TETRAHEDRA = 1
-    CLUSTER = 2
-    DENDROGRAM = 3
-    HIERARCHY = 4
+    REPAIR = 1
+    TETRAHEDRA = 2
+    CLUSTER = 3
+    DENDROGRAM = 4
+    HIERARCHY = 5
+
+
+class Rung(enum.IntEnum):
+    """pw_rung: the ways to a surface that can be filled, from the best one down."""
+
+    EXACT = 1
+    REPAIRED = 2
+    WRAPPED = 4
 
 
 STAGE_COUNT = len(Stage)
@@ -49,7 +59,10 @@ STAGE_COUNT = len(Stage)
 class BuildOptions(ctypes.Structure):
     """pw_build_options."""
 
-    _fields_ = [("struct_size", c_size_t), ("quality", c_double)]
+    _fields_ = [
+        ("struct_size", c_size_t), ("quality", c_double), ("rungs", c_uint32), ("open_surfaces", c_int32),
+        ("threads", c_int32),
+    ]
 
 
 class Arrays(ctypes.Structure):
@@ -68,7 +81,7 @@ class SummaryStruct(ctypes.Structure):
 
     _fields_ = [
         ("components", c_size_t), ("cavities", c_size_t), ("added_vertices", c_size_t), ("volume", c_double),
-        ("hull_volume", c_double),
+        ("hull_volume", c_double), ("rung", c_int), ("deviation", c_double),
     ]
 
 
@@ -88,6 +101,7 @@ FUNCTIONS = {
     "pw_hierarchy_free": (None, [c_void_p]),
     "pw_hierarchy_arrays": (c_int, [c_void_p, POINTER(Arrays)]),
     "pw_hierarchy_summary": (c_int, [c_void_p, POINTER(SummaryStruct)]),
+    "pw_hierarchy_account": (c_char_p, [c_void_p]),
     "pw_hierarchy_path": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_wheel": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t), POINTER(c_size_t)]),
     "pw_hierarchy_faces": (c_int, [c_void_p, c_size_t, POINTER(c_void_p), POINTER(c_size_t)]),

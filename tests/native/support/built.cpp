@@ -36,8 +36,8 @@ std::vector<T> filled(Ask ask) {
 
 }  // namespace
 
-Built try_build(const TriMesh& mesh, double quality, pw_context* context) {
-    const pw_build_options options{sizeof(pw_build_options), quality};
+Built try_build(const TriMesh& mesh, double quality, pw_context* context, uint32_t rungs) {
+    const pw_build_options options{sizeof(pw_build_options), quality, rungs, 0, 0};
     pw_hierarchy* made = nullptr;
     Built built;
     built.status = pw_build(context, mesh.vertex_data(), mesh.vertices.size(), mesh.triangle_data(),

@@ -20,9 +20,10 @@ struct Built {
     Handle handle;        // null on failure
 };
 
-Built try_build(const TriMesh& mesh, double quality = 0, pw_context* context = nullptr);
+Built try_build(const TriMesh& mesh, double quality = 0, pw_context* context = nullptr,
+                uint32_t rungs = PW_RUNG_EXACT);
 
-// Throws with the library's message if it can't be built.
+// On the exact rung. Throws with the library's message if it can't be built.
 Handle build(const TriMesh& mesh, double quality = 0);
 
 pw_arrays arrays(const Handle& handle);

@@ -1,0 +1,80 @@
+// Each source face goes with the triangles of the surface used that are nearest to it.
+#include "attach.h"
+
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/AABB_triangle_primitive.h>
+#include <CGAL/Simple_cartesian.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace partwheel {
+
+namespace {
+
+using Kernel = CGAL::Simple_cartesian<double>;  // distances are measured, nothing is decided by them
+using Triangles = std::vector<Kernel::Triangle_3>;
+using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_triangle_primitive<Kernel, Triangles::iterator>>>;
+
+// Beyond so many samples of one mesh they stand further apart.
+constexpr double most_samples = 1e6;
+
+Kernel::Point_3 to_cgal(const Point& p) { return {p[0], p[1], p[2]}; }
+
+double length(const Point& p) { return std::sqrt(dot(p, p)); }
+
+double diagonal(const Surface& source) {
+    Point high{};  // the lower corner is the origin of working coordinates
+    for (const Point& p : source.vertices)
+        for (size_t k = 0; k < 3; ++k) high[k] = std::max(high[k], p[k]);
+    return length(high);
+}
+
+}  // namespace
+
+void attach(const Surface& source, Surface& surface, Progress& progress) {
+    Triangles triangles;
+    for (const Triangle& t : surface.triangles) {
+        const auto at = [&](size_t k) { return to_cgal(surface.vertices[static_cast<size_t>(t[k])]); };
+        triangles.emplace_back(at(0), at(1), at(2));
+    }
+    Tree tree(triangles.begin(), triangles.end());
+    tree.build();
+
+    double area = 0;
+    for (const Piece& piece : source.pieces) area += piece.area;
+    const double size = diagonal(source);
+    const double spacing = std::max(size * sample_spacing, std::sqrt(2 * area / most_samples));
+    Tree::Point_and_primitive_id nearest(triangles[0].vertex(0), triangles.begin());
+    double farthest = 0;
+    const auto find = [&](const Point& p) {
+        nearest = tree.closest_point_and_primitive(to_cgal(p), nearest);
+        farthest = std::max(farthest, CGAL::squared_distance(nearest.first, to_cgal(p)));
+        return static_cast<int32_t>(nearest.second - triangles.begin());
+    };
+
+    surface.pieces.clear();
+    for (size_t s = 0; s < source.pieces.size(); ++s) {
+        if (s % 256 == 0) progress.advance(0.9 + 0.1 * static_cast<double>(s) / static_cast<double>(source.pieces.size()));
+        const Triangle& t = source.triangles[s];
+        const auto at = [&](size_t k) { return source.vertices[static_cast<size_t>(t[k])]; };
+        const Point u = at(1) - at(0), v = at(2) - at(0);
+        for (size_t k = 0; k < 3; ++k) find(at(k));
+        // Cut into n^2 equal triangles, of which each is a piece.
+        const double longest = std::max({length(u), length(v), length(u - v)});
+        const auto n = static_cast<int>(std::max(1.0, std::ceil(longest / spacing)));
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < 2 * (n - i) - 1; ++j) {
+                const double a = (i + (j % 2 == 0 ? 1.0 : 2.0) / 3) / n, b = (j / 2 + (j % 2 == 0 ? 1.0 : 2.0) / 3) / n;
+                Point p = at(0);
+                for (size_t k = 0; k < 3; ++k) p[k] += a * u[k] + b * v[k];
+                surface.pieces.push_back({source.pieces[s].face, find(p), source.pieces[s].area / n / n});
+            }
+    }
+    surface.face_count = source.face_count;
+    surface.deviation = std::sqrt(farthest) / size;
+}
+
+}  // namespace partwheel

@@ -1,0 +1,63 @@
+// The third rung: a new closed surface close around the source, by CGAL's alpha wrapping.
+#include "wrap.h"
+
+#include "attach.h"
+#include "mend.h"
+
+#include <CGAL/alpha_wrap_3.h>
+
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+namespace partwheel {
+
+namespace {
+
+// Told of every step; CGAL offers no other way to stop a wrap.
+class Watcher : public CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
+public:
+    explicit Watcher(Progress& progress) : progress_(progress) {}
+    template <class Wrapper, class Gate>
+    void before_facet_treatment(const Wrapper&, const Gate&) {
+        if (++steps_ % 256 == 0) progress_.advance(0.2 + 0.6 * (1 - std::exp(-static_cast<double>(steps_) / 3e5)));
+    }
+
+private:
+    Progress& progress_;
+    size_t steps_ = 0;
+};
+
+}  // namespace
+
+Surface wrap(const Surface& source, bool open_surfaces, Progress& progress) {
+    const Mended mended = mend(source, progress);
+    if (mended.solids == 0 && !open_surfaces)
+        throw Error(PW_ERROR_NOT_SOLID,
+                    "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as "
+                    "there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then taken "
+                    "as thin solids.");
+    std::vector<CgalKernel::Point_3> points(mended.mesh.points().begin(), mended.mesh.points().end());
+    std::vector<std::array<size_t, 3>> faces;
+    for (const auto f : mended.mesh.faces()) {
+        auto& corners = faces.emplace_back();
+        size_t k = 0;
+        for (const auto v : CGAL::vertices_around_face(mended.mesh.halfedge(f), mended.mesh)) corners[k++] = v;
+    }
+    const CGAL::Bbox_3 box = CGAL::bbox_3(points.begin(), points.end());
+    const double diagonal = std::hypot(box.x_span(), box.y_span(), box.z_span());
+    const double alpha = diagonal / 100, offset = alpha / 30;
+    Watcher watcher(progress);
+    CgalMesh wrapped;
+    CGAL::alpha_wrap_3(points, faces, alpha, offset, wrapped, CGAL::parameters::default_values(),
+                       CGAL::parameters::visitor(watcher));
+
+    Surface surface = to_surface(source, wrapped);
+    attach(source, surface, progress);
+    surface.rung = PW_RUNG_WRAPPED;
+    surface.account = mended.solids == 0 ? "Wrapped as a thin solid: the mesh is a sheet." :
+        "Wrapped: a new closed surface was put round the mesh.";
+    return surface;
+}
+
+}  // namespace partwheel
