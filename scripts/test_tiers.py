@@ -20,6 +20,7 @@ OUTPUT = ROOT / "build" / "test"
 VENV = ROOT / "build" / "venv"
 TIME_LIMIT = 1800  # seconds for any one command, so that nothing hangs for ever
 SHOWN = 60  # lines of a failed command's output
+THREADED = "[Tt]hread|Cancel|Progress"  # the names of tests in which threads meet
 
 
 class CouldNotRun(Exception):
@@ -57,6 +58,19 @@ def sanitizers():
                      UBSAN_OPTIONS="print_stacktrace=1", PARTWHEEL_TEST_LIGHT="1",
                      PARTWHEEL_LIBRARY=str(ROOT / "build/asan/libpartwheel.so"))
     return result
+
+
+def threads():
+    """The native tests that use threads, watched by ThreadSanitizer."""
+    build("threads", "tsan")
+    return ctest("threads", "tsan", "--tests-regex", THREADED)
+
+
+def determinism():
+    """The same bits from g++ and clang, optimized or not, in one thread or two."""
+    for preset in ("release", "clang", "unoptimized"):
+        build("determinism", preset, "partwheel")
+    return pytest("determinism", "tests/determinism")
 
 
 def core():
@@ -97,7 +111,8 @@ def gui():
     return own_runner("gui", [VENV / "core/bin/python", "tests/gui/run.py", package], dict(os.environ))
 
 
-TIERS = {function.__name__: function for function in (native, sanitizers, core, reliability, addon, gui)}
+TIERS = {function.__name__: function
+         for function in (native, sanitizers, threads, determinism, core, reliability, addon, gui)}
 
 
 def main():
@@ -148,9 +163,10 @@ def make_package(log):
     return pathlib.Path((OUTPUT / f"{log}.log").read_text().splitlines()[-1])
 
 
-def ctest(log, preset):
+def ctest(log, preset, *options):
     report = fresh(log, "xml")
-    code = run(log, ["ctest", "--preset", preset, "--parallel", str(os.cpu_count()), "--output-junit", report])
+    code = run(log, ["ctest", "--preset", preset, "--parallel", str(os.cpu_count()), "--output-junit", report,
+                     *options])
     return read_junit(log, report, code)
 
 

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Builds the cases with the library that PARTWHEEL_LIBRARY names; prints {case: what was saved, as a digest} as JSON.
+
+Run as: python digests.py THREADS
+"""
+
+import hashlib
+import json
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "addon"))
+
+from partwheel.core import Hierarchy, meshes  # noqa: E402  (found only now)
+
+MESHES = ROOT / "build" / "deps" / "meshes"
+CASES = {  # name: file, options of the build
+    **{name: (f"{name}.off", {}) for name in (
+        "helmet", "rotor", "pinion", "hand", "handle", "couplingdown", "knot", "elephant", "triceratops", "femur")},
+    "rotor with points inside": ("rotor.off", {"quality": 1.4}),
+    "hand with points inside": ("hand.off", {"quality": 1.4}),
+}
+
+
+def digest(file, options, threads):
+    mesh = meshes.read(MESHES / file)
+    hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, threads=threads, **options)
+    return hashlib.sha256(hierarchy.save()).hexdigest()
+
+
+if __name__ == "__main__":
+    print(json.dumps({name: digest(*case, int(sys.argv[1])) for name, case in CASES.items()}))

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Saved hierarchies are the same bits from every compiler, optimized or not, in one thread or two.
+
+The libraries are those of build/PRESET/libpartwheel.so, which scripts/test builds; each runs in a process of its own.
+"""
+
+import functools
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from digests import CASES, ROOT
+
+# What must not matter: preset, threads, environment. The first is what all are compared with.
+CONFIGURATIONS = {
+    "g++ -O2, one thread": ("release", 1, {}),
+    "g++ -O2, two threads": ("release", 2, {}),
+    "clang++ -O2, one thread": ("clang", 1, {}),
+    "clang++ -O2, two threads": ("clang", 2, {}),
+    "g++ -O0, one thread": ("unoptimized", 1, {}),
+    "g++ -O0, two threads": ("unoptimized", 2, {}),
+}
+REFERENCE, *OTHERS = CONFIGURATIONS
+
+
+@functools.cache
+def digests(configuration):
+    preset, threads, environment = CONFIGURATIONS[configuration]
+    library = ROOT / "build" / preset / "libpartwheel.so"
+    assert library.exists(), f"{library} is not there: scripts/build {preset} partwheel"
+    run = subprocess.run([sys.executable, str(Path(__file__).with_name("digests.py")), str(threads)],
+                         capture_output=True, text=True, timeout=900,
+                         env=os.environ | environment | {"PARTWHEEL_LIBRARY": str(library)})
+    assert run.returncode == 0, run.stderr
+    return json.loads(run.stdout)
+
+
+def test_models_differ():
+    # A digest that says nothing about the model would agree with itself in every configuration.
+    assert len(set(digests(REFERENCE).values())) == len(CASES)
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("configuration", OTHERS)
+def test_same_bits(configuration, case):
+    assert digests(configuration)[case] == digests(REFERENCE)[case]
