@@ -17,16 +17,18 @@ bl_info = {
 
 
 def register():
-    from . import operators, session, ui
+    from . import operators, preferences, session, ui
 
+    preferences.register()
     session.register()
     operators.register()
     ui.register()
 
 
 def unregister():
-    from . import operators, session, ui
+    from . import operators, preferences, session, ui
 
     ui.unregister()
     operators.unregister()
     session.unregister()
+    preferences.unregister()

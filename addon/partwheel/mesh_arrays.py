@@ -59,9 +59,17 @@ def _triangulated(polygon, vertices):
     return triangulate(vertices[corners], corners)
 
 
-def topology(mesh):
-    """A digest of which polygons use which vertices; moving vertices does not change it."""
-    digest = hashlib.blake2b(np.int64(len(mesh.vertices)).tobytes(), digest_size=16)
-    digest.update(read(mesh.polygons, "loop_total", np.int32))
-    digest.update(read(mesh.loops, "vertex_index", np.int32))
-    return digest.digest()
+class Fingerprint(NamedTuple):
+    """What a hierarchy depends on, as digests of 16 bytes. topology: which polygons use which vertices, the same
+    wherever the vertices are. positions: where they are."""
+
+    topology: bytes
+    positions: bytes
+
+
+def fingerprint(mesh):
+    topology = hashlib.blake2b(np.int64(len(mesh.vertices)).tobytes(), digest_size=16)
+    topology.update(read(mesh.polygons, "loop_total", np.int32))
+    topology.update(read(mesh.loops, "vertex_index", np.int32))
+    positions = hashlib.blake2b(read(mesh.vertices, "co", np.float32, 3), digest_size=16)
+    return Fingerprint(topology.digest(), positions.digest())

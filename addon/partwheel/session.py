@@ -1,24 +1,56 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which mesh has which hierarchy, for as long as Blender runs, and when one no longer fits its mesh.
+"""Which mesh has which hierarchy, when one no longer fits its mesh, and its way into files and out of them.
 
-A hierarchy belongs to a topology: polygons and their vertices. Moving vertices keeps it; any other edit makes it stale,
-and a stale one is never used. No pointer into Blender's data is kept: undo and file loading would make it dangle.
+A hierarchy belongs to a topology: polygons and their vertices. Moving vertices keeps it, and the user may have it made
+anew; any other edit makes it stale, and a stale one is never used: every use compares fingerprints. No pointer into
+Blender's data is kept: undo and file loading would make it dangle.
 """
 
-from typing import NamedTuple
+import dataclasses
+from enum import Enum, auto
 
+import bmesh
 import bpy
 
-from . import mesh_arrays
+from . import mesh_arrays, stored
 from .core import Hierarchy
+from .core.worker import Job, available_memory
+from .mesh_arrays import Fingerprint
+from .preferences import preferences
+
+
+@dataclasses.dataclass
+class Entry:
+    """A mesh's hierarchy."""
+
+    built: Fingerprint  # what it was built for
+    counts: tuple  # of vertices and polygons then
+    hierarchy: Hierarchy
+    packed: bytes = None  # for files; made when a file is first saved
+    seen: Fingerprint = None  # the mesh as it was when last looked at,
+    sure: bool = True  # and whether it still is, for all that Blender has told since
+
+    def look(self, fingerprint):
+        self.seen, self.sure = fingerprint, True
+
+
+class State(Enum):
+    """How a mesh stands to its hierarchy."""
+
+    NONE = auto()
+    UNOPENED = auto()  # it came with the file and will be opened, or refused, at its first use
+    FITS = auto()
+    MOVED = auto()  # usable, but vertices have moved since
+    CHANGED = auto()  # not usable
+
+
+class Outdated(Exception):
+    """A build ended and its mesh is not there any more, or not as it was. str() is sentences for the user."""
+
 
 _entries = {}
-
-
-class Entry(NamedTuple):
-    topology: bytes
-    counts: tuple  # of vertices and polygons: enough to draw the panel by
-    hierarchy: Hierarchy
+_unopened = {}  # what came with the file, packed
+_running = None  # the Build that has not ended
 
 
 def _key(mesh):
@@ -28,45 +60,207 @@ def _key(mesh):
 
 def hierarchy(obj):
     """The hierarchy of the object's mesh, or None if there is none for its present topology."""
-    entry = _entries.get(_key(obj.data))
-    if entry and entry.topology != mesh_arrays.topology(mesh_arrays.up_to_date(obj)):
-        del _entries[_key(obj.data)]
-        return None
-    return entry and entry.hierarchy
-
-
-def build(obj, quality=0.0, progress=None):
-    """Builds and keeps the hierarchy of the object's mesh, see Hierarchy.build. The mesh is not changed."""
     mesh = mesh_arrays.up_to_date(obj)
-    surface = mesh_arrays.surface(mesh)
-    built = Hierarchy.build(*surface, quality=quality, progress=progress)
-    alive = {_key(other) for other in bpy.data.meshes}
-    for gone in _entries.keys() - alive:
-        del _entries[gone]
-    counts = len(mesh.vertices), len(mesh.polygons)
-    _entries[_key(mesh)] = Entry(mesh_arrays.topology(mesh), counts, built)
-    return built
-
-
-def peek(obj):
-    """For the panel, which draws often: (hierarchy or None, whether it still fits as far as the counts tell)."""
-    entry = _entries.get(_key(obj.data))
+    now = mesh_arrays.fingerprint(mesh)
+    entry = _entries.get(_key(mesh))
+    if not entry or entry.built.topology != now.topology:
+        entry = _twin(now) or _open(mesh, now) or entry
     if not entry:
-        return None, False
-    mesh = obj.data
-    return entry.hierarchy, obj.mode == "EDIT" or entry.counts == (len(mesh.vertices), len(mesh.polygons))
+        return None
+    _entries[_key(mesh)] = entry
+    entry.look(now)
+    return entry.hierarchy if entry.built.topology == now.topology else None
+
+
+def _twin(now):
+    """A new entry with the hierarchy of a mesh that is the same in all: the one that was duplicated, for instance."""
+    entry = next((entry for entry in _entries.values() if entry.built == now), None)
+    return entry and dataclasses.replace(entry)
+
+
+def _open(mesh, now):
+    """A new entry with the hierarchy that came with the mesh from a file, or None."""
+    packed = _unopened.pop(_key(mesh), None) or _carried(mesh)
+    if packed is None:
+        return None
+    try:
+        built, opened = stored.unpack(packed, now.topology, len(mesh.polygons))
+    except stored.Refused as reason:
+        print(f"Partwheel: the parts saved with {mesh.name} are left aside, for {reason}.")
+        return None
+    return Entry(built, _counts(mesh), opened, packed)
+
+
+def _carried(mesh):
+    """What an appended or linked mesh has brought along; taken off it, if it can be changed."""
+    packed = mesh.get(stored.PROPERTY)
+    if packed is not None and not mesh.library:
+        del mesh[stored.PROPERTY]
+    return packed
+
+
+def _counts(mesh):
+    return len(mesh.vertices), len(mesh.polygons)
+
+
+# ---- Building
+
+
+def running():
+    """Whether a build is under way. There is one at a time."""
+    return _running is not None
+
+
+class Build:
+    """A build of the object's mesh in a process of its own. The mesh is not changed, nor kept from changing."""
+
+    def __init__(self, obj, quality=0.0, open_surfaces=False):
+        global _running
+        mesh = mesh_arrays.up_to_date(obj)
+        self.name = mesh.name
+        self._key, self._counts, self._built = _key(mesh), _counts(mesh), mesh_arrays.fingerprint(mesh)
+        share, seconds = preferences().memory_share / 100, 60 * preferences().time_limit
+        self.job = Job(*mesh_arrays.surface(mesh), quality=quality, open_surfaces=open_surfaces,
+                       memory_limit=int(share * available_memory()), time_limit=seconds or None)
+        _running = self
+
+    def cancel(self):
+        """Kills the worker. finish() is still to be called."""
+        self.job.cancel()
+
+    def finish(self):
+        """Waits for the end and keeps the result: the Hierarchy. Raises PartwheelError, or Outdated if the mesh was
+        edited or deleted meanwhile."""
+        global _running
+        try:
+            built = self.job.result()
+        finally:
+            _running = None
+        obj = _user(self._key)
+        if obj is None:
+            raise Outdated(f"The mesh {self.name} is gone, so its parts were left aside.")
+        mesh = mesh_arrays.up_to_date(obj)
+        now = mesh_arrays.fingerprint(mesh)
+        if now.topology != self._built.topology:
+            raise Outdated(f"{mesh.name} was edited while its parts were being built, so they were left aside. Build "
+                           "them again when the mesh is as you want it.")
+        alive = {_key(other) for other in bpy.data.meshes}
+        for known in (_entries, _unopened):
+            for gone in known.keys() - alive:
+                del known[gone]
+        _unopened.pop(self._key, None)
+        _entries[self._key] = Entry(self._built, self._counts, built, seen=now)
+        return built
+
+
+def _user(key):
+    """An object with the mesh, in Edit Mode if there is one such, or None."""
+    users = [obj for obj in bpy.data.objects if obj.type == "MESH" and _key(obj.data) == key]
+    return next((obj for obj in users if obj.mode == "EDIT"), users[0] if users else None)
+
+
+def forget(obj):
+    """Lets the hierarchy of the object's mesh go, also the one that came with the file."""
+    _entries.pop(_key(obj.data), None)
+    _unopened.pop(_key(obj.data), None)
+    _carried(obj.data)
+
+
+# ---- For the panel, which draws often
+
+
+def state(mesh):
+    """(State, Entry or None). In Edit Mode as far as the counts and the last use tell; else exactly."""
+    entry = _entries.get(_key(mesh))
+    if not entry:
+        unopened = _key(mesh) in _unopened or stored.PROPERTY in mesh
+        return (State.UNOPENED if unopened else State.NONE), None
+    if mesh.is_editmode:
+        bm = bmesh.from_edit_mesh(mesh)
+        if (len(bm.verts), len(bm.faces)) != entry.counts:
+            return State.CHANGED, entry
+    elif not entry.sure:
+        entry.look(mesh_arrays.fingerprint(mesh))
+    if entry.seen.topology != entry.built.topology:
+        return State.CHANGED, entry
+    return (State.FITS if entry.seen == entry.built else State.MOVED), entry
 
 
 @bpy.app.handlers.persistent
-def _forget(*_):
+def _edited(_scene, depsgraph):
+    if _entries:
+        for update in depsgraph.updates:
+            if update.is_updated_geometry and isinstance(update.id, bpy.types.Mesh):
+                entry = _entries.get(_key(update.id.original))
+                if entry:
+                    entry.sure = False
+
+
+@bpy.app.handlers.persistent
+def _undone(*_):
+    for entry in _entries.values():
+        entry.sure = False
+
+
+# ---- Files
+
+
+@bpy.app.handlers.persistent
+def _before_saving(*_):
+    if not preferences().save_with_file:
+        return
+    for mesh in bpy.data.meshes:
+        if mesh.library:
+            continue
+        fits, entry = state(mesh)
+        if fits in {State.FITS, State.MOVED} and not entry.packed:
+            entry.packed = stored.pack(entry.built, entry.hierarchy)
+        packed = _unopened.get(_key(mesh)) if fits == State.UNOPENED else entry and entry.packed
+        if packed:
+            _carried(mesh)  # Blender 4.2 to 5.0 cut bytes off at a 0 where they replace others
+            mesh[stored.PROPERTY] = packed
+
+
+@bpy.app.handlers.persistent
+def _after_saving(*_):
+    for mesh in bpy.data.meshes:
+        if not mesh.library and stored.PROPERTY in mesh:
+            del mesh[stored.PROPERTY]
+
+
+@bpy.app.handlers.persistent
+def _after_loading(*_):
     """Another file was opened: its meshes are others."""
+    _stop()
     _entries.clear()
+    _unopened.clear()
+    for mesh in bpy.data.meshes:
+        if stored.PROPERTY in mesh and not mesh.library:
+            _unopened[_key(mesh)] = _carried(mesh)
+
+
+def _stop():
+    global _running
+    if _running:
+        _running.cancel()
+        _running = None
+
+
+HANDLERS = {"load_post": _after_loading, "save_pre": _before_saving, "save_post": _after_saving,
+            "save_post_fail": _after_saving,  # from Blender 4.0
+            "depsgraph_update_post": _edited, "undo_post": _undone, "redo_post": _undone}
 
 
 def register():
-    bpy.app.handlers.load_post.append(_forget)
+    for name, function in HANDLERS.items():
+        if hasattr(bpy.app.handlers, name):
+            getattr(bpy.app.handlers, name).append(function)
 
 
 def unregister():
-    bpy.app.handlers.load_post.remove(_forget)
+    for name, function in HANDLERS.items():
+        if hasattr(bpy.app.handlers, name):
+            getattr(bpy.app.handlers, name).remove(function)
+    _stop()
     _entries.clear()
+    _unopened.clear()

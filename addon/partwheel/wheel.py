@@ -5,6 +5,13 @@ from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
+class Building:
+    """The parts are still being found: after that this face, the one that was clicked, is picked, if there is one."""
+
+    face: int = None
+
+
+@dataclass(frozen=True)
 class Waiting:
     """Nothing is picked yet: the next click picks."""
 

@@ -2,6 +2,7 @@
 """What the add-on's tests share: the installed package, meshes, and what is selected."""
 
 import importlib
+import time
 import unittest
 from pathlib import Path
 
@@ -31,6 +32,27 @@ def read_off(name):
 BOX = ([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)],
        [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
 
+SHEET = ([(x, y, 0.1 * x * x) for x in range(4) for y in range(4)],
+         [(4 * x + y, 4 * x + y + 4, 4 * x + y + 5, 4 * x + y + 1) for x in range(3) for y in range(3)])
+
+
+def until(predicate, seconds=10.0):
+    """Waits for something that must happen; the seconds it took."""
+    began = time.monotonic()
+    while not predicate():
+        if time.monotonic() - began > seconds:
+            raise AssertionError(f"not seen within {seconds} s")
+        time.sleep(0.005)
+    return time.monotonic() - began
+
+
+def alive(process):
+    """Whether there is such a process, and not only what is left of one that nobody has asked after."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
 
 class MeshTest(unittest.TestCase):
     """Each test starts in an empty scene, in Object Mode, with nothing built."""
@@ -41,7 +63,7 @@ class MeshTest(unittest.TestCase):
         for data in (bpy.data.objects, bpy.data.meshes, bpy.data.libraries):
             for item in list(data):
                 data.remove(item)
-        part("session")._entries.clear()
+        part("session")._after_loading()
         bpy.context.tool_settings.mesh_select_mode = (False, False, True)
 
     def add(self, vertices, polygons, name="model"):
@@ -52,6 +74,7 @@ class MeshTest(unittest.TestCase):
 
     def link(self, obj):
         bpy.context.collection.objects.link(obj)
+        bpy.context.view_layer.update()
         for other in bpy.context.view_layer.objects:
             other.select_set(other == obj)
         bpy.context.view_layer.objects.active = obj

@@ -10,11 +10,14 @@ Start it with a HOME of its own: it installs into the user's directories. RESULT
 
 import json
 import sys
+import time
 import traceback
 import unittest
 from pathlib import Path
 
 import bpy
+
+SLOW = 3  # seconds
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
@@ -37,6 +40,20 @@ def installed(zip_path):
     return module
 
 
+class Timed(unittest.TextTestResult):
+    """Says which tests take long."""
+
+    def startTest(self, test):
+        self.began = time.monotonic()
+        super().startTest(test)
+
+    def stopTest(self, test):
+        super().stopTest(test)
+        seconds = time.monotonic() - self.began
+        if seconds > SLOW:
+            self.stream.writeln(f"({seconds:.1f} s: {test.id()})")
+
+
 def main():
     zip_path, result_path = sys.argv[sys.argv.index("--") + 1:]
     result_path = Path(result_path).resolve()
@@ -46,7 +63,7 @@ def main():
 
         common.MODULE = installed(str(Path(zip_path).resolve()))
         suite = unittest.defaultTestLoader.discover(str(Path(__file__).resolve().parent), "test_*.py")
-        run = unittest.TextTestRunner(stream=sys.stdout, verbosity=2, buffer=False).run(suite)
+        run = unittest.TextTestRunner(stream=sys.stdout, verbosity=2, resultclass=Timed).run(suite)
         failures = [f"{test.id()}: {text.strip().splitlines()[-1]}" for test, text in run.failures + run.errors]
         failures += [f"{test.id()} was skipped: {reason}" for test, reason in run.skipped]
         result = {"passed": run.testsRun - len(failures), "failed": len(failures), "failures": failures}

@@ -7,13 +7,15 @@ are called. The GUI tier does the same with real events.
 
 import contextlib
 import io
+import time
 import types
 
 import bmesh
 import bpy
+import common
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from common import BOX, MeshTest, flags, part, read_off, selected
+from common import BOX, SHEET, MeshTest, alive, flags, part, read_off, selected, until
 from mathutils import Euler, Matrix, Vector
 
 
@@ -59,8 +61,10 @@ class FakeContext:
 
     def __init__(self):
         self.window, self.area, self.region, _ = view()
-        self.handlers, self.status, self.header = [], [], []
-        self.window_manager = types.SimpleNamespace(modal_handler_add=self.handlers.append)
+        self.handlers, self.status, self.header, self.timers = [], [], [], []
+        self.window_manager = types.SimpleNamespace(
+            modal_handler_add=self.handlers.append, event_timer_remove=self.timers.remove,
+            event_timer_add=lambda seconds, window: self.timers.append(seconds) or seconds)
         self.workspace = types.SimpleNamespace(status_text_set=self.status.append)
         real = self.area
         self.area = types.SimpleNamespace(type="VIEW_3D", header_text_set=self.header.append, regions=real.regions)
@@ -77,15 +81,17 @@ def event(kind, point=(0, 0), value="PRESS", **modifiers):
 
 
 class Tool:
-    """An instance of the operator's methods without an operator."""
+    """An instance of an operator's methods without an operator."""
 
-    def __init__(self, **properties):
+    def __init__(self, operator="select", **properties):
         self.reports = []
+        self.operator = operator
         self.face_index, self.level, self.extend = 0, 0, False
+        self.quality, self.open_surfaces = 0.0, False
         vars(self).update(properties)
 
     def __getattr__(self, name):
-        value = vars(part("operators.select").MESH_OT_partwheel_select).get(name)
+        value = vars(getattr(part(f"operators.{self.operator}"), f"MESH_OT_partwheel_{self.operator}")).get(name)
         if value is None:
             raise AttributeError(name)
         return value.__get__(self) if isinstance(value, types.FunctionType) else value
@@ -94,10 +100,14 @@ class Tool:
         self.reports.append((kind, message))
 
 
-class Modal(MeshTest):
-    def start(self, name="hand", point=None, **properties):
+class ToolTest(MeshTest):
+    """Starts the tool and feeds it."""
+
+    def start(self, name="hand", point=None, build=True, **properties):
         self.obj = self.add(*(read_off(name) if isinstance(name, str) else name))
         self.h = self.hierarchy(self.obj)
+        if build:
+            self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         show(self.obj)
         self.edit(self.obj)
         self.context, self.tool = FakeContext(), Tool(**properties)
@@ -129,6 +139,10 @@ class Modal(MeshTest):
 
     def is_over(self):
         self.assertEqual((self.context.status[-1], self.context.header[-1]), (None, None))
+
+
+class Modal(ToolTest):
+    """With a hierarchy built before."""
 
     def test_pick_then_wheel_then_confirm(self):
         self.assertEqual(self.start(), {"RUNNING_MODAL"})
@@ -252,16 +266,6 @@ class Modal(MeshTest):
             self.is_over()
             self.setUp()
 
-    def test_a_mesh_that_can_not_be_built_is_reported(self):
-        vertices, polygons = BOX
-        with self.assertRaises(part("core").PartwheelError):
-            self.start((vertices, polygons[1:]))
-        self.edit(self.obj)
-        self.tool, self.context = Tool(), FakeContext()
-        self.assertEqual(self.tool.invoke(self.context, event("W", (1, 1))), {"CANCELLED"})
-        self.assertIn("open", self.tool.reports[-1][1])
-        self.assertEqual(self.context.handlers, [])
-
     def test_not_over_a_3d_view(self):
         self.start(BOX)
         self.send("ESC")
@@ -285,6 +289,201 @@ class Modal(MeshTest):
         self.assertEqual(selected(self.obj), {outside, *self.h.faces(stops[start + 1]).tolist()})
         self.send("WHEELDOWNMOUSE", point)
         self.assertEqual(selected(self.obj), {outside, *self.h.faces(stops[start]).tolist()})
+
+
+class WhileBuilding(ToolTest):
+    """The first use: a worker process builds, Blender's own work goes on, then the face that was clicked is picked."""
+
+    def begin(self, name="hand", over=True):
+        """Starts the tool over a face of a mesh without a hierarchy, or beside the mesh."""
+        self.start(name, build=False)
+        self.send("ESC")
+        part("session")._after_loading()
+        self.tool, self.context = Tool(), FakeContext()
+        point, self.face = self.centre() if over else ((1, 1), None)
+        self.before = flags(self.obj)
+        self.assertEqual(self.tool.invoke(self.context, event("W", point, ctrl=True)), {"RUNNING_MODAL"})
+        self.assertTrue(part("session").running())
+        self.assertEqual((len(self.context.handlers), len(self.context.timers)), (1, 1))
+        self.assertIn("Esc", self.context.status[-1])
+        self.job = self.tool.building.build.job
+
+    def build_on(self):
+        """Sends timer events until the build is over: the tool's answer to the last."""
+        until(lambda: self.job.poll() is None)
+        return self.send("TIMER")
+
+    def nothing_runs(self):
+        self.assertFalse(part("session").running())
+        self.assertEqual(self.context.timers, [])
+        self.assertIsNone(self.context.status[-1])
+        self.assertFalse(alive(self.job.process_id))
+
+    def test_then_the_clicked_face_is_picked(self):
+        self.begin()
+        _, _, _, region_view = view()
+        shown = []
+        while self.job.poll():
+            self.assertEqual(self.send("TIMER"), {"PASS_THROUGH"})
+            shown.append(self.context.status[-1])
+            self.job.wait(0.02)
+        self.assertTrue(any("%" in text and "cluster" in text for text in shown), shown)
+        self.assertEqual(flags(self.obj), self.before)
+        self.obj.matrix_world = Matrix.Translation((0, 0, 500)) @ self.obj.matrix_world  # as if the view had turned
+        bpy.context.view_layer.update()
+        self.assertEqual(self.build_on(), {"RUNNING_MODAL"})
+        self.assertEqual((self.context.timers, part("session").running()), ([], False))
+        self.expect(self.face, 0)
+        self.send("WHEELUPMOUSE")
+        self.expect(self.face, 1)
+        self.assertEqual(self.send("RET"), {"FINISHED"})
+        self.assertIn({"INFO"}, [kind for kind, _ in self.tool.reports])
+
+    def test_beside_the_mesh_the_next_click_picks(self):
+        self.begin(over=False)
+        self.assertEqual(self.build_on(), {"RUNNING_MODAL"})
+        self.assertEqual(flags(self.obj), self.before)
+        point, face = self.centre()
+        self.assertEqual(self.send("LEFTMOUSE", point), {"RUNNING_MODAL"})
+        self.expect(face, 0)
+
+    def test_all_but_escape_goes_to_blender(self):
+        self.begin()
+        for kind in ("LEFTMOUSE", "RIGHTMOUSE", "MIDDLEMOUSE", "WHEELUPMOUSE", "RET", "TAB", "Z", "MOUSEMOVE"):
+            self.assertEqual(self.send(kind), {"PASS_THROUGH"}, kind)
+        self.assertEqual(self.send("ESC", (0, 0), "RELEASE"), {"PASS_THROUGH"})
+        self.assertEqual(self.send("ESC"), {"CANCELLED"})
+        self.nothing_runs()
+        self.assertEqual(flags(self.obj), self.before)
+
+    def test_escape_kills_the_worker_at_once(self):
+        self.begin("bear")
+        until(lambda: self.job.poll()[0] > 0.05)
+        began = time.perf_counter()
+        self.assertEqual(self.send("ESC"), {"CANCELLED"})
+        self.nothing_runs()
+        self.assertLess(time.perf_counter() - began, 0.5)
+        self.assertEqual(flags(self.obj), self.before)
+        self.assertIn("Cancelled", self.tool.reports[-1][1])
+        self.assertIsNone(part("session").hierarchy(self.obj))
+
+    def test_edited_meanwhile(self):
+        self.begin()
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.subdivide()
+        self.assertEqual(self.build_on(), {"CANCELLED"})
+        self.nothing_runs()
+        self.assertEqual(self.tool.reports[-1][0], {"WARNING"})
+        self.assertIn("edited", self.tool.reports[-1][1])
+        self.assertIsNone(part("session").hierarchy(self.obj))
+
+    def test_moved_meanwhile(self):
+        self.begin()
+        bm = bmesh.from_edit_mesh(self.obj.data)
+        bm.verts.ensure_lookup_table()
+        bm.verts[0].co.x += 0.01
+        self.assertEqual(self.build_on(), {"RUNNING_MODAL"})
+        self.expect(self.face, 0)
+        session = part("session")
+        self.assertEqual(session.state(self.obj.data)[0], session.State.MOVED)
+
+    def test_undone_meanwhile(self):
+        for message, undo, expected in (("moved", 1, {"RUNNING_MODAL"}), ("subdivided", 1, {"CANCELLED"})):
+            self.setUp()
+            self.obj = self.add(*read_off("hand"))
+            name = self.obj.name
+            self.edit(self.obj)
+            bpy.ops.ed.undo_push(message="before")
+            if message == "moved":
+                bpy.ops.transform.translate(value=(1, 0, 0))
+            else:
+                bpy.ops.mesh.select_all(action="SELECT")
+                bpy.ops.mesh.subdivide()
+            bpy.ops.ed.undo_push(message=message)
+            self.tool, self.context = Tool(), FakeContext()
+            self.assertEqual(self.tool.invoke(self.context, event("W", (1, 1))), {"RUNNING_MODAL"})
+            self.job = self.tool.building.build.job
+            bpy.ops.ed.undo()
+            self.obj = bpy.data.objects[name]
+            self.assertEqual(self.build_on(), expected)
+            self.assertEqual(self.tool.modal(self.context, event("ESC")), {"CANCELLED"}) if expected == {
+                "RUNNING_MODAL"} else self.nothing_runs()
+
+    def test_edit_mode_left_meanwhile(self):
+        self.begin()
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertEqual(self.build_on(), {"CANCELLED"})
+        self.nothing_runs()
+        self.assertEqual(self.tool.reports[-1][0], {"INFO"})
+        self.assertIsNotNone(part("session").hierarchy(self.obj))
+
+    def test_deleted_meanwhile(self):
+        self.begin()
+        bpy.ops.object.mode_set(mode="OBJECT")
+        bpy.data.meshes.remove(self.obj.data)
+        self.assertEqual(self.build_on(), {"CANCELLED"})
+        self.nothing_runs()
+        self.assertIn("gone", self.tool.reports[-1][1])
+        self.assertFalse(part("session")._entries)
+
+    def test_a_mesh_that_can_not_be_built_is_reported(self):
+        self.obj = self.add(*SHEET)
+        self.edit(self.obj)
+        before = flags(self.obj)
+        self.assertIn("not a solid", self.refusal())
+        self.assertEqual(flags(self.obj), before)
+
+    def refusal(self):
+        """What the tool reports when the mesh can't be built."""
+        self.tool, self.context = Tool(), FakeContext()
+        self.assertEqual(self.tool.invoke(self.context, event("W", (1, 1))), {"RUNNING_MODAL"})
+        self.job = self.tool.building.build.job
+        self.assertEqual(self.build_on(), {"CANCELLED"})
+        self.nothing_runs()
+        kind, message = self.tool.reports[-1]
+        self.assertEqual(kind, {"ERROR"})
+        return message
+
+    def test_only_one_at_a_time(self):
+        self.begin()
+        for operator in (bpy.ops.mesh.partwheel_build, bpy.ops.mesh.partwheel_select):
+            self.assertFalse(operator.poll())
+        self.send("ESC")
+        for operator in (bpy.ops.mesh.partwheel_build, bpy.ops.mesh.partwheel_select):
+            self.assertTrue(operator.poll())
+
+    def test_blender_ends_the_tool(self):
+        self.begin("bear")
+        self.tool.cancel(self.context)
+        self.nothing_runs()
+
+    def test_disabling_the_add_on_kills_the_worker(self):
+        self.begin("bear")
+        bpy.ops.preferences.addon_disable(module=common.MODULE)
+        try:
+            until(lambda: not alive(self.job.process_id), 1)
+        finally:
+            bpy.ops.preferences.addon_enable(module=common.MODULE)
+
+    def test_opening_a_file_kills_the_worker(self):
+        self.begin("bear")
+        bpy.ops.object.mode_set(mode="OBJECT")
+        bpy.ops.wm.read_homefile(app_template="", use_empty=False)
+        until(lambda: not alive(self.job.process_id), 1)
+        self.assertFalse(part("session").running())
+
+    def test_the_build_operator(self):
+        self.start(build=False)
+        self.send("ESC")
+        part("session")._after_loading()
+        for over, answer in (("ESC", {"CANCELLED"}), ("TIMER", {"FINISHED"})):
+            self.tool, self.context = Tool("build", quality=1.4), FakeContext()
+            self.assertEqual(self.tool.invoke(self.context, event("A")), {"RUNNING_MODAL"})
+            self.job = self.tool.building.build.job
+            self.assertEqual(self.send("LEFTMOUSE"), {"PASS_THROUGH"})
+            self.assertEqual(self.build_on() if over == "TIMER" else self.send(over), answer)
+            self.nothing_runs()
+            self.assertEqual(part("session").hierarchy(self.obj) is None, over == "ESC")
 
 
 class Pick(MeshTest):

@@ -5,7 +5,7 @@ import random
 
 import bmesh
 import bpy
-from common import BOX, MeshTest, flags, part, read_off, selected
+from common import BOX, SHEET, MeshTest, flags, part, read_off, selected
 from mathutils import Vector
 
 
@@ -157,11 +157,13 @@ class Select(MeshTest):
         self.assertIn("Face 6", self.refusal(face_index=6))
         self.assertEqual(selected(obj), {2})
         bpy.ops.object.mode_set(mode="OBJECT")
-        bpy.ops.mesh.primitive_monkey_add()
-        bpy.ops.object.mode_set(mode="EDIT")
-        before = flags(bpy.context.object)
-        self.assertIn("open", self.refusal(face_index=0))
-        self.assertEqual(flags(bpy.context.object), before)
+        sheet = self.add(*SHEET)
+        bm = self.edit(sheet)
+        bm.faces.ensure_lookup_table()
+        bm.faces[2].select_set(True)
+        before = flags(sheet)
+        self.assertIn("not a solid", self.refusal(face_index=0))
+        self.assertEqual(flags(sheet), before)
 
     def test_only_in_edit_mode(self):
         self.add(*BOX)

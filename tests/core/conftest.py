@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "addon"), str(Path(__file__).parent)]
+sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "tests" / "faults"), str(Path(__file__).parent)]
 
 import shapes  # noqa: E402
 from partwheel.core import Hierarchy  # noqa: E402

@@ -2,7 +2,7 @@
 """Job: the same answers as a build in this process; and whatever befalls the worker, an error with a name, no process,
 no file, no open pipe left, and a new attempt on the next rung.
 
-The harm is done by a real library with one function replaced (faults.c), so the product has no hook for tests.
+The harm is done by a real library with one function replaced (tests/faults), so the product has no hook for tests.
 """
 
 import os
@@ -14,6 +14,7 @@ import threading
 import time
 from pathlib import Path
 
+import faults
 import numpy as np
 import pytest
 import shapes
@@ -32,25 +33,16 @@ STAGES = range(len(Stage))
 LIMIT = 400 * 2**20
 
 
-def compiled(source, target, *options):
-    subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-Wall", "-Werror", "-pthread", "-o", target, HERE / source,
-                    *options], check=True)
-    return str(target)
-
-
 @pytest.fixture(scope="session")
-def faults(tmp_path_factory):
-    """A path of the library that goes wrong on purpose."""
-    real = Path(load()._name).resolve()
-    return compiled("faults.c", tmp_path_factory.mktemp("faults") / "libfaults.so", f"-I{ROOT}/native/include", real,
-                    f"-Wl,-rpath,{real.parent}", "-Wl,--no-as-needed", "-ldl")
+def library_with_faults(tmp_path_factory):
+    return faults.library(load()._name, tmp_path_factory.mktemp("faults"))
 
 
 @pytest.fixture
-def harm(faults, monkeypatch):
+def harm(library_with_faults, monkeypatch):
     """harm("segv", 2): from now on workers crash in stage 2. This process keeps the library that it has loaded."""
     def set_fault(fault, stage, rung=None):
-        monkeypatch.setenv("PARTWHEEL_LIBRARY", faults)
+        monkeypatch.setenv("PARTWHEEL_LIBRARY", library_with_faults)
         monkeypatch.setenv("PARTWHEEL_FAULT", f"{fault}:{stage}")
         if rung:
             monkeypatch.setenv("PARTWHEEL_FAULT_RUNG", str(rung))
@@ -305,6 +297,6 @@ if LINUX and PLAIN:
         harm("loop", 1)
         source = tmp_path / "no_prctl.c"
         source.write_text("int prctl(int option, ...) { return option * 0; }")
-        process, worker = parent(LD_PRELOAD=compiled(source, tmp_path / "no_prctl.so"))
+        process, worker = parent(LD_PRELOAD=faults.compiled(source, tmp_path / "no_prctl.so"))
         until(lambda: state(worker) == "R" and Path(f"/proc/{worker}/maps").read_text().count("no_prctl"))
         ends(process, signal.SIGKILL, worker)

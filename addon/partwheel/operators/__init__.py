@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators: build, select by wheel."""
+"""The operators: build, clear, select by wheel."""
 
 import bpy
 
-from .build import MESH_OT_partwheel_build
+from .build import MESH_OT_partwheel_build, MESH_OT_partwheel_clear
 from .select import MESH_OT_partwheel_select
 
-CLASSES = (MESH_OT_partwheel_build, MESH_OT_partwheel_select)
+CLASSES = (MESH_OT_partwheel_build, MESH_OT_partwheel_clear, MESH_OT_partwheel_select)
 
 
 def register():

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_build: builds the hierarchy of the active mesh."""
+"""mesh.partwheel_build: builds the hierarchy of the active mesh; mesh.partwheel_clear: lets it go.
+
+How a build looks to the user is here too: beside Blender's own work, with its progress at the cursor and in the status
+bar, or, for scripts and without windows, until it is done.
+"""
 
 import time
 
@@ -8,47 +12,130 @@ import bpy
 from .. import session
 from ..core import LibraryError, PartwheelError
 
+TICK = 0.1  # seconds between two looks at the worker
+BUSY = "Parts are being built already; Esc over the 3D view stops that."
 
-class Progress:
-    """Shows a build's progress at the mouse cursor, or in the terminal when Blender runs without windows."""
 
-    def __init__(self, context):
-        self.manager = context.window_manager
-        self.percent = -1
+class Building:
+    """A build of the active mesh on an operator's behalf: what came of it is reported through the operator.
 
-    def __enter__(self):
+    hierarchy: None until it is done, and if it fails."""
+
+    def __init__(self, operator, context, quality=0.0, open_surfaces=False):
+        """Raises LibraryError or PartwheelError when it can't even begin."""
+        self.operator, self.hierarchy = operator, None
+        self.began = time.perf_counter()
+        self.build = session.Build(context.active_object, quality, open_surfaces)
+        self.timer = None
+        self.printed = 0
+
+    # ---- Until it is done
+
+    def wait(self, context):
+        """For scripts: blocks, and shows progress at the cursor, or in the terminal when there are no windows."""
+        self._begin_progress(context)
+        try:
+            while not self.build.job.wait(TICK):
+                self._show(context, *(self.build.job.poll() or (1.0, "")))
+        finally:  # Ctrl-C too
+            self.build.cancel()
+            self._end_progress(context)
+            self._conclude()
+        return self.hierarchy
+
+    # ---- Beside Blender's own work
+
+    def watch(self, context):
+        """From now on step() is to be called with every event."""
+        self.timer = context.window_manager.event_timer_add(TICK, window=context.window)
+        self._begin_progress(context)
+        self._tell(context, 0.0, "")
+
+    def step(self, context, event):
+        """Looks after the build: whether it is over. Esc cancels it."""
+        if event.type == "ESC" and event.value == "PRESS":
+            self.build.cancel()
+        elif event.type != "TIMER":
+            return False
+        progress = self.build.job.poll()
+        if progress and event.type == "TIMER":
+            self._show(context, *progress)
+            self._tell(context, *progress)
+            return False
+        self._stop_watching(context)
+        self._conclude()
+        return True
+
+    def abandon(self, context):
+        """Blender ends the operator: the window closes or another file opens."""
+        self.build.cancel()
+        self._stop_watching(context)
+        self._conclude()
+
+    def _stop_watching(self, context):
+        context.window_manager.event_timer_remove(self.timer)
+        self._end_progress(context)
+        if context.workspace:
+            context.workspace.status_text_set(None)
+
+    def _tell(self, context, fraction, stage):
+        context.workspace.status_text_set(f"Partwheel finds the parts of {self.build.name}: {fraction:.0%} {stage}   "
+                                          "Esc: Cancel")
+
+    # ---- Both
+
+    def _begin_progress(self, context):
         if not bpy.app.background:
-            self.manager.progress_begin(0, 100)
-        return self
+            context.window_manager.progress_begin(0, 100)
 
-    def __exit__(self, *_):
+    def _end_progress(self, context):
         if not bpy.app.background:
-            self.manager.progress_end()
+            context.window_manager.progress_end()
 
-    def __call__(self, fraction, stage):
+    def _show(self, context, fraction, stage):
         percent = int(fraction * 100)
-        if bpy.app.background and percent >= self.percent + 10:
+        if not bpy.app.background:
+            context.window_manager.progress_update(percent)
+        elif percent >= self.printed + 10:
             print(f"Partwheel: {percent:3d} % {stage}", flush=True)
-            self.percent = percent
-        elif not bpy.app.background:
-            self.manager.progress_update(percent)
+            self.printed = percent
+
+    def _conclude(self):
+        """Takes the result over, if there is one, and reports."""
+        name, report = self.build.name, self.operator.report
+        try:
+            self.hierarchy = self.build.finish()
+        except PartwheelError as error:
+            cancelled = error.name == "cancelled"
+            report({"INFO" if cancelled else "ERROR"}, "Cancelled: no parts were built." if cancelled
+                   else f"No parts for {name} ({error.name}): {error}")
+            return
+        except session.Outdated as reason:
+            report({"WARNING"}, str(reason))
+            return
+        for failure in self.build.job.failures:
+            report({"WARNING"}, f"A way that was tried first failed ({failure.name}): {failure}")
+        seconds = time.perf_counter() - self.began
+        report({"INFO"}, f"{name}: {len(self.hierarchy.order)} faces, {len(self.hierarchy.tetrahedra)} tets, "
+                         f"{seconds:.1f} s. {self.hierarchy.account}".rstrip())
 
 
-def build_reporting(operator, context, quality=0.0):
-    """Builds for the active object and reports through the operator what came of it: the hierarchy, or None."""
-    obj = context.active_object
-    begin = time.perf_counter()
+def start(operator, context, **options):
+    """A Building, or None and a report."""
     try:
-        with Progress(context) as progress:
-            hierarchy = session.build(obj, quality, progress)
+        return Building(operator, context, **options)
     except (PartwheelError, LibraryError) as error:
         name = getattr(error, "name", "library")
-        operator.report({"ERROR"}, f"No parts for {obj.data.name} ({name}): {error}")
+        operator.report({"ERROR"}, f"No parts for {context.active_object.data.name} ({name}): {error}")
         return None
-    seconds = time.perf_counter() - begin
-    operator.report({"INFO"}, f"{obj.data.name}: {len(hierarchy.order)} faces, {len(hierarchy.tetrahedra)} tets, "
-                              f"{seconds:.1f} s")
-    return hierarchy
+
+
+def idle(cls):
+    """For poll(): whether no build is under way; if one is, Blender shows why the operator is grey."""
+    if session.running():
+        cls.poll_message_set(BUSY)
+        return False
+    return True
 
 
 class MESH_OT_partwheel_build(bpy.types.Operator):
@@ -64,11 +151,58 @@ class MESH_OT_partwheel_build(bpy.types.Operator):
                     "(1.4 is usual, smaller is slower)",
         default=0.0, min=0.0, soft_max=3.0,
     )
+    open_surfaces: bpy.props.BoolProperty(
+        name="Open Surfaces",
+        description="Take a surface that encloses nothing, such as cloth or a car's door, for a thin solid, instead of "
+                    "refusing it",
+        default=False,
+    )
 
     @classmethod
     def poll(cls, context):
         obj = context.active_object
-        return obj is not None and obj.type == "MESH" and obj.mode in {"OBJECT", "EDIT"}
+        return obj is not None and obj.type == "MESH" and obj.mode in {"OBJECT", "EDIT"} and idle(cls)
 
     def execute(self, context):
-        return {"FINISHED"} if build_reporting(self, context, self.quality) else {"CANCELLED"}
+        building = self._start(context)
+        return {"FINISHED"} if building and building.wait(context) else {"CANCELLED"}
+
+    def invoke(self, context, _event):
+        if context.window is None:
+            return self.execute(context)
+        self.building = self._start(context)
+        if not self.building:
+            return {"CANCELLED"}
+        self.building.watch(context)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if not self.building.step(context, event):
+            return {"PASS_THROUGH"}
+        return {"FINISHED"} if self.building.hierarchy else {"CANCELLED"}
+
+    def cancel(self, context):
+        self.building.abandon(context)
+
+    def _start(self, context):
+        return start(self, context, quality=self.quality, open_surfaces=self.open_surfaces)
+
+
+class MESH_OT_partwheel_clear(bpy.types.Operator):
+    """Let the parts of the active mesh go, also those saved with the file. The mesh stays as it is"""
+
+    bl_idname = "mesh.partwheel_clear"
+    bl_label = "Clear Part Hierarchy"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context):
+        obj = context.active_object
+        return obj is not None and obj.type == "MESH" and session.state(obj.data)[0] != session.State.NONE
+
+    def execute(self, context):
+        session.forget(context.active_object)
+        for area in context.screen.areas if context.screen else ():
+            area.tag_redraw()
+        return {"FINISHED"}

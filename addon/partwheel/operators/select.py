@@ -9,7 +9,7 @@ from .. import session, wheel
 from ..core import PartwheelError
 from ..picking import Picker, view_under
 from ..selection import Selection
-from .build import build_reporting
+from .build import idle, start
 
 UP = {"WHEELUPMOUSE", "PAGE_UP", "NUMPAD_PLUS"}
 DOWN = {"WHEELDOWNMOUSE", "PAGE_DOWN", "NUMPAD_MINUS"}
@@ -46,13 +46,16 @@ class MESH_OT_partwheel_select(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return context.mode == "EDIT_MESH" and context.edit_object is not None
+        return context.mode == "EDIT_MESH" and context.edit_object is not None and idle(cls)
 
     # ---- Without a window ------------------------------------------------------------------------------------------
 
     def execute(self, context):
         obj = context.edit_object
-        hierarchy = session.hierarchy(obj) or build_reporting(self, context)
+        hierarchy = session.hierarchy(obj)
+        if not hierarchy:
+            building = start(self, context)
+            hierarchy = building and building.wait(context)
         if not hierarchy:
             return {"CANCELLED"}
         try:
@@ -69,15 +72,8 @@ class MESH_OT_partwheel_select(bpy.types.Operator):
         if context.window is None or context.area is None or context.area.type != "VIEW_3D":
             self.report({"ERROR"}, "Parts are picked in a 3D view: start this with the mouse over one.")
             return {"CANCELLED"}
-        obj = context.edit_object
-        self.hierarchy = session.hierarchy(obj) or build_reporting(self, context)
-        if not self.hierarchy:
-            return {"CANCELLED"}
-        self.object_name = obj.name_full
-        self.selection = Selection(obj)
-        self.picker = Picker()
         self.state = wheel.Waiting()
-        result = self._guarded(context, lambda: self._click(context, event, missed="Click a face of the mesh"))
+        result = self._guarded(context, lambda: self._begun(context, event))
         if result == {"RUNNING_MODAL"}:
             context.window_manager.modal_handler_add(self)
         return result
@@ -87,7 +83,10 @@ class MESH_OT_partwheel_select(bpy.types.Operator):
 
     def cancel(self, context):
         """Blender itself ends the tool: the window closes or another file opens."""
-        self._end(context)
+        if isinstance(self.state, wheel.Building):
+            self.building.abandon(context)
+        else:
+            self._end(context)
 
     def _guarded(self, context, step):
         """One step; whatever goes wrong in it, the selection is put back and the tool ends, with a report."""
@@ -98,7 +97,41 @@ class MESH_OT_partwheel_select(bpy.types.Operator):
             self.report({"ERROR"}, f"Partwheel stopped: {error}. The full report is in the system console.")
             return self._cancelled(context)
 
+    def _begun(self, context, event):
+        obj = context.edit_object
+        self.object_name, self.selection, self.picker = obj.name_full, Selection(obj), Picker()
+        self.hierarchy = session.hierarchy(obj)
+        if self.hierarchy:
+            return self._click(context, event, missed="Click a face of the mesh")
+        self.building = start(self, context)
+        if not self.building:
+            return {"CANCELLED"}
+        # Which face was meant is found now: the user may turn the view while the parts are being built.
+        self.state = wheel.Building(self._face_under(context, event)[0])
+        self.building.watch(context)
+        return {"RUNNING_MODAL"}
+
+    def _built_on(self, context, event):
+        """While the parts are being built all but Esc goes to Blender itself; then the face is picked."""
+        if not self.building.step(context, event):
+            return {"PASS_THROUGH"}
+        face, self.state = self.state.face, wheel.Waiting()
+        self.hierarchy = self.building.hierarchy
+        if not self.hierarchy:
+            return {"CANCELLED"}
+        obj = context.edit_object
+        if obj is None or obj.name_full != self.object_name or context.area is None:
+            self.report({"INFO"}, "The parts are built. Start Select Part by Wheel in Edit Mode to pick them.")
+            return {"CANCELLED"}
+        self.selection, self.picker = Selection(obj), Picker()
+        if face is not None:
+            return self._show(context, wheel.pick(self.hierarchy, face))
+        self._tell(context, "Click a face of the mesh", WAITING_KEYS)
+        return {"RUNNING_MODAL"}
+
     def _handle(self, context, event):
+        if isinstance(self.state, wheel.Building):
+            return self._built_on(context, event)
         if not self._still_there(context):
             self.report({"WARNING"}, "Partwheel stopped: the mesh is no longer being edited as it was.")
             self._end(context)
@@ -128,23 +161,28 @@ class MESH_OT_partwheel_select(bpy.types.Operator):
 
     def _click(self, context, event, missed):
         """Picks the face under the mouse, or says why there is none and waits on."""
-        view = view_under(context.window, event.mouse_x, event.mouse_y)
-        obj = context.edit_object
-        hit = other = None
-        if view:
-            _, region, region_view = view
-            point = event.mouse_x - region.x, event.mouse_y - region.y
-            hits = [(self.picker.face_under(each, region, region_view, point), each)
-                    for each in context.objects_in_mode_unique_data]
-            hits = [(found, each) for found, each in hits if found]
-            if hits:
-                hit, other = min(hits, key=lambda pair: pair[0][1])
-        if hit and other.data == obj.data:
-            return self._show(context, wheel.pick(self.hierarchy, hit[0]))
-        if hit:
-            missed = f"That is {other.name}; only the active object, {obj.name}, can be picked from"
+        face, other = self._face_under(context, event)
+        if face is not None:
+            return self._show(context, wheel.pick(self.hierarchy, face))
+        if other:
+            missed = f"That is {other}; only the active object, {context.edit_object.name}, can be picked from"
         self._tell(context, missed, WAITING_KEYS)
         return {"RUNNING_MODAL"}
+
+    def _face_under(self, context, event):
+        """(index of the active object's face under the mouse or None, name of another edited object that is there)."""
+        view = view_under(context.window, event.mouse_x, event.mouse_y)
+        if not view:
+            return None, None
+        _, region, region_view = view
+        point = event.mouse_x - region.x, event.mouse_y - region.y
+        hits = [(self.picker.face_under(each, region, region_view, point), each)
+                for each in context.objects_in_mode_unique_data]
+        hits = [(found, each) for found, each in hits if found]
+        if not hits:
+            return None, None
+        (face, _), hit = min(hits, key=lambda pair: pair[0][1])
+        return (face, None) if hit.data == context.edit_object.data else (None, hit.name)
 
     def _show(self, context, state):
         """Goes to a state with a picked part and selects it."""
@@ -170,6 +208,9 @@ class MESH_OT_partwheel_select(bpy.types.Operator):
         return {"CANCELLED"}
 
     def _cancelled(self, context):
+        if isinstance(self.state, wheel.Building):
+            self.building.abandon(context)
+            return {"CANCELLED"}
         try:
             if self._still_there(context):
                 self.selection.restore(context.edit_object)

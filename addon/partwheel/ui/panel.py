@@ -1,10 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The panel in the 3D view's sidebar: the active mesh's hierarchy, and what can be done with a selected part."""
 
+import textwrap
+
 import bpy
 
 from .. import session
 from .menu import draw_handoffs
+
+State = session.State
+STATES = {
+    State.NONE: ["No parts yet"],
+    State.UNOPENED: ["Parts came with the file"],
+    State.FITS: [],
+    State.MOVED: ["Vertices have moved since:", "the parts can be recomputed"],
+    State.CHANGED: ["The mesh has changed: its parts", "are built anew at the next use"],
+}
+BUILD = {State.FITS: "Recompute", State.MOVED: "Recompute", State.CHANGED: "Recompute"}
+RUNGS = {
+    "exact": "From the mesh exactly as it is", "repaired": "From a repaired copy of the mesh",
+    "wrapped": "From a wrap around the mesh",
+}
+PIXELS_A_LETTER = 6.5  # of Blender's interface font, on average, at a scale of 1
 
 
 class VIEW3D_PT_partwheel(bpy.types.Panel):
@@ -20,18 +37,33 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
 
     def draw(self, context):
         layout = self.layout
-        hierarchy, fits = session.peek(context.active_object)
-        if hierarchy and fits:
-            layout.label(text=f"{len(hierarchy.order)} faces, {len(hierarchy.tetrahedra)} tets")
-            layout.label(text=f"Built in {sum(hierarchy.seconds.values()):.1f} s")
-        else:
-            layout.label(text="The mesh has changed" if hierarchy else "No parts yet")
-        layout.operator("mesh.partwheel_build", text="Rebuild" if hierarchy else "Build")
         if context.mode == "EDIT_MESH":
             column = layout.column()
             column.operator_context = "INVOKE_REGION_WIN"
             column.operator("mesh.partwheel_select")
             draw_handoffs(column)
+            layout.separator()
+        state, entry = session.state(context.active_object.data)
+        if entry:
+            self._describe(context, entry.hierarchy)
+        column = layout.column(align=True)
+        for line in STATES[state]:
+            column.label(text=line)
+        row = layout.row(align=True)
+        row.operator("mesh.partwheel_build", text=BUILD.get(state, "Build"))
+        if state != State.NONE:
+            row.operator("mesh.partwheel_clear", text="", icon="X")
+
+    def _describe(self, context, hierarchy):
+        column = self.layout.column(align=True)
+        column.label(text=f"{len(hierarchy.order):,} faces, {len(hierarchy.tetrahedra):,} tets")
+        seconds = sum(hierarchy.seconds.values())
+        column.label(text=f"Built in {seconds:.1f} s" if seconds else "Came with the file")
+        column.label(text=RUNGS[hierarchy.summary.rung])
+        if hierarchy.account:
+            width = context.region.width / context.preferences.system.ui_scale / PIXELS_A_LETTER
+            for line in textwrap.wrap(hierarchy.account, max(int(width), 20)):
+                column.label(text=line)
 
 
 def register():

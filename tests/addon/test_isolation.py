@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whatever befalls the worker process, Blender's session and selection are as before, and the error is shown."""
+
+import os
+import signal
+import sys
+import tempfile
+import threading
+from pathlib import Path
+
+import bpy
+from common import MeshTest, alive, flags, part, read_off, until
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "faults"))
+import faults  # noqa: E402
+
+
+class Isolation(MeshTest):
+    @classmethod
+    def setUpClass(cls):
+        directory = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(directory.cleanup)
+        cls.library = faults.library(part("core.library").load()._name, directory.name)
+
+    def harm(self, fault, stage):
+        """From now on, and to the end of the test, workers come to harm; Blender itself has loaded the real library."""
+        self.addCleanup(os.environ.pop, "PARTWHEEL_LIBRARY", None)
+        os.environ.update(PARTWHEEL_LIBRARY=self.library, PARTWHEEL_FAULT=f"{fault}:{stage}")
+
+    def edited(self, name="cross_quad"):
+        """A mesh in Edit Mode with a selection, its active face and a history."""
+        obj = self.add(*read_off(name))
+        bm = self.edit(obj)
+        bm.faces.ensure_lookup_table()
+        for index in (5, 7, 9):
+            bm.faces[index].select_set(True)
+            bm.select_history.add(bm.faces[index])
+        bm.faces.active = bm.faces[9]
+        return obj, flags(obj)
+
+    def refusal(self, operator=None, **arguments):
+        with self.assertRaises(RuntimeError) as refused:
+            (operator or bpy.ops.mesh.partwheel_select)(**arguments)
+        return str(refused.exception)
+
+    def unharmed(self, obj, before):
+        self.assertEqual((obj.mode, flags(obj)), ("EDIT", before))
+        self.assertFalse(part("session").running())
+        self.assertIsNone(part("session").hierarchy(obj))
+        self.assertEqual([thread.name for thread in threading.enumerate() if thread.name.startswith("partwheel-")], [])
+
+    def test_crashes_at_each_stage(self):
+        obj, before = self.edited()
+        faults = {"abort": "SIGABRT", "exit": "exit code 3", "kill": "SIGKILL", "scribble": "damaged"}
+        for stage in part("core").Stage:  # each fault at each stage: tests/core/test_worker.py
+            for fault, word in {"segv": "SIGSEGV", **(faults if stage == 2 else {})}.items():
+                with self.subTest(f"{fault} {stage.name}"):
+                    self.harm(fault, int(stage))
+                    message = self.refusal(face_index=3)
+                    self.assertIn(word, message)
+                    self.assertIn("crash", message)
+                    self.unharmed(obj, before)
+
+    def test_endless_loops_and_stopped_workers_at_each_stage(self):
+        obj, before = self.edited()
+        build = part("session").Job
+        self.addCleanup(setattr, part("session"), "Job", build)
+        part("session").Job = lambda *surface, **options: build(*surface, **{**options, "time_limit": 0.3})
+        for stage in part("core").Stage:
+            for fault in ("loop", "stop"):
+                with self.subTest(f"{fault} {stage.name}"):
+                    self.harm(fault, int(stage))
+                    self.assertIn("time limit", self.refusal(face_index=3))
+                    self.unharmed(obj, before)
+
+    def test_memory_at_each_stage(self):
+        obj, before = self.edited()
+        available = part("session").available_memory
+        self.addCleanup(setattr, part("session"), "available_memory", available)
+        part("session").available_memory = lambda: 500 * 2**20  # of which preferences allow 80 %
+        for stage in list(part("core").Stage)[:3]:  # in the last ones little more memory is asked for
+            with self.subTest(stage.name):
+                self.harm("fill", int(stage))
+                self.assertRegex(self.refusal(face_index=3), "memory|crash")
+                self.unharmed(obj, before)
+
+    def test_killed_while_it_builds(self):
+        obj, before = self.edited()
+        self.harm("loop", 1)
+        session = part("session")
+        for number in (signal.SIGKILL, signal.SIGTERM):
+            killed = []
+
+            def kill():
+                while session.running():
+                    if session._running.job.process_id not in killed:
+                        killed.append(session._running.job.process_id)
+                        os.kill(killed[-1], number)
+
+            build, original = session.Build, session.Build.__init__
+
+            def begin(self, *arguments, **options):
+                original(self, *arguments, **options)
+                until(lambda: self.job.process_id)
+                threading.Thread(target=kill).start()
+
+            build.__init__ = begin
+            try:
+                self.assertIn(number.name, self.refusal(face_index=3))
+            finally:
+                build.__init__ = original
+            self.assertTrue(killed and not any(map(alive, killed)))
+            self.unharmed(obj, before)
+
+    def test_it_works_again_afterwards(self):
+        obj, _ = self.edited()
+        self.harm("segv", 1)
+        self.refusal(bpy.ops.mesh.partwheel_build)
+        os.environ.pop("PARTWHEEL_LIBRARY")
+        self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=3), {"FINISHED"})
+        self.assertEqual(len(part("session").hierarchy(obj).order), len(obj.data.polygons))

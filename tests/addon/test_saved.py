@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hierarchies in .blend files: there again after opening, linking and appending; refused when not wholly sound."""
+
+import contextlib
+import io
+import os
+import random
+import tempfile
+import zlib
+from pathlib import Path
+
+import bpy
+import common
+from common import BOX, MeshTest, part, read_off
+
+
+class Saved(MeshTest):
+    def setUp(self):
+        super().setUp()
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.path = str(Path(directory.name) / "saved.blend")
+        self.State = part("session").State
+
+    def state(self, obj):
+        return part("session").state(obj.data)[0]
+
+    def kept(self, obj):
+        return part("session").hierarchy(obj)
+
+    def built(self, name="hand"):
+        obj = self.add(*(BOX if name == "box" else read_off(name)))
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+        return obj
+
+    def save(self):
+        bpy.ops.wm.save_as_mainfile(filepath=self.path)
+
+    def open(self):
+        bpy.ops.wm.open_mainfile(filepath=self.path)
+        obj = bpy.data.objects["model"]
+        bpy.context.view_layer.objects.active = obj
+        return obj
+
+    def properties(self):
+        return [mesh.name for mesh in bpy.data.meshes if part("stored").PROPERTY in mesh]
+
+    def test_there_again(self):
+        obj = self.built()
+        saved = self.kept(obj).save()
+        self.save()
+        self.assertEqual(self.properties(), [])
+        obj = self.open()
+        self.assertEqual(self.properties(), [])
+        self.assertEqual(self.state(obj), self.State.UNOPENED)
+        self.assertEqual(self.kept(obj).save(), saved)
+        self.assertEqual(self.state(obj), self.State.FITS)
+        self.assertEqual(saved, self.hierarchy(obj).save())
+
+    def test_no_build_after_opening(self):
+        self.built()
+        self.save()
+        obj = self.open()
+        self.edit(obj)
+        session = part("session")
+        original = session.Build
+        self.addCleanup(setattr, session, "Build", original)
+        session.Build = None
+        self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=700), {"FINISHED"})
+
+    def test_saved_in_edit_mode_and_again_unopened(self):
+        obj = self.built()
+        saved = self.kept(obj).save()
+        self.edit(obj)
+        self.save()
+        self.assertEqual(obj.mode, "EDIT")
+        self.open()
+        self.save()
+        obj = self.open()
+        self.assertEqual(self.kept(obj).save(), saved)
+
+    def test_moved_since(self):
+        obj = self.built()
+        obj.data.vertices[0].co.z += 0.01
+        self.save()
+        obj = self.open()
+        self.assertIsNotNone(self.kept(obj))
+        self.assertEqual(self.state(obj), self.State.MOVED)
+
+    def test_a_changed_mesh_saves_none(self):
+        obj = self.built()
+        self.edit(obj)
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.subdivide()
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.save()
+        self.assertEqual(self.state(self.open()), self.State.NONE)
+
+    def test_the_preference_leaves_it_out(self):
+        preferences = bpy.context.preferences.addons[common.MODULE].preferences
+        self.built()
+        self.save()
+        with_it = os.path.getsize(self.path)
+        preferences.save_with_file = False
+        self.addCleanup(setattr, preferences, "save_with_file", True)
+        self.save()
+        self.assertLess(os.path.getsize(self.path), with_it - 100_000)
+        self.assertEqual(self.state(self.open()), self.State.NONE)
+
+    def test_cleared_ones_are_not_saved(self):
+        self.built()
+        self.save()
+        self.open()
+        bpy.ops.mesh.partwheel_clear()
+        self.save()
+        self.assertEqual(self.state(self.open()), self.State.NONE)
+
+    def test_undo_after_saving_does_not_bring_bytes_back(self):
+        self.built()
+        bpy.ops.ed.undo_push(message="built")
+        self.save()
+        bpy.context.object.location.x += 1
+        bpy.ops.ed.undo_push(message="moved")
+        bpy.ops.ed.undo()
+        self.assertEqual(self.properties(), [])
+
+    def test_the_user_s_own_properties_stay(self):
+        obj = self.built()
+        obj.data["mine"] = b"\0\1"
+        self.save()
+        obj = self.open()
+        self.assertEqual((obj.data["mine"], list(obj.data.keys())), (b"\0\1", ["mine"]))
+
+    # ---- Linked and appended
+
+    def bring(self, link):
+        """The saved object, linked or appended to a new file."""
+        bpy.ops.wm.read_homefile()
+        MeshTest.setUp(self)
+        with bpy.data.libraries.load(self.path, link=link) as (there, here):
+            here.objects = there.objects
+        return self.link(bpy.data.objects["model"])
+
+    def test_appended(self):
+        saved = self.kept(self.built()).save()
+        self.save()
+        obj = self.bring(link=False)
+        self.assertEqual(self.state(obj), self.State.UNOPENED)
+        self.assertEqual(self.kept(obj).save(), saved)
+        self.assertEqual(self.properties(), [])
+
+    def test_linked(self):
+        saved = self.kept(self.built()).save()
+        self.save()
+        obj = self.bring(link=True)
+        self.assertIsNotNone(obj.data.library)
+        self.assertEqual(self.kept(obj).save(), saved)
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})  # and a new one may be built
+        self.assertEqual(self.kept(obj).save(), saved)
+
+    def test_linked_without(self):
+        obj = self.add(*BOX)
+        bpy.data.libraries.write(self.path, {obj})
+        obj = self.bring(link=True)
+        self.assertIsNone(self.kept(obj))
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+        self.assertEqual(len(self.kept(obj).order), 6)
+
+    # ---- Another file
+
+    def test_opening_a_file_forgets_what_was_built(self):
+        self.add(*BOX)
+        self.save()
+        self.built("box")
+        bpy.ops.wm.open_mainfile(filepath=self.path)
+        self.assertEqual(self.state(bpy.data.objects["model"]), self.State.NONE)
+        self.assertFalse(part("session")._entries)
+
+    # ---- Bytes that are not sound
+
+    def after_tampering(self, change):
+        """The hierarchy after opening a file whose bytes were changed, which must be said on the console."""
+        obj = self.built("cross_quad")
+        stored, session = part("stored"), part("session")
+        packed = stored.pack(part("mesh_arrays").fingerprint(obj.data), self.kept(obj))
+        self.assertEqual(len(stored.unpack(packed, packed[28:44], len(obj.data.polygons))[1].order),
+                         len(obj.data.polygons))
+        session._entries.clear()
+        obj.data[stored.PROPERTY] = change(packed)
+        output = io.StringIO()
+        with contextlib.redirect_stdout(output):
+            found = self.kept(obj)
+        self.assertEqual(found is None, "left aside" in output.getvalue())
+        if found is None:
+            self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+            self.assertEqual(len(self.kept(obj).order), len(obj.data.polygons))
+        MeshTest.setUp(self)
+        return found
+
+    def test_sound_bytes_are_taken(self):
+        self.assertIsNotNone(self.after_tampering(lambda packed: packed))
+
+    def test_tampered_bytes_are_refused(self):
+        draw = random.Random(3)
+        stored = part("stored")
+
+        def flipped(packed):
+            place = draw.randrange(len(packed))
+            return packed[:place] + bytes([packed[place] ^ 1 << draw.randrange(8)]) + packed[place + 1:]
+
+        def forged(packed, topology=None, size=None, saved=None):
+            """With a right hash over wrong contents."""
+            head = list(stored.HEADER.unpack_from(packed))
+            saved = zlib.decompress(packed[stored.HEADER.size:]) if saved is None else saved
+            rest = stored.HEADER.pack(b"", 0, b"", topology or head[3], head[4], size or len(saved))[
+                stored.HASHED_FROM:] + zlib.compress(saved, 1)
+            return packed[:12] + stored._hash(rest) + rest
+
+        box = part("core").Hierarchy.build(BOX[0], [t for a, b, c, d in BOX[1] for t in ((a, b, c), (a, c, d))])
+        self.assertIsNotNone(self.after_tampering(forged))  # forging alone changes nothing
+        for change in (*[flipped] * 20, lambda p: b"", lambda p: p[:30], lambda p: p[:-1], lambda p: p + b"0",
+                       lambda p: p[:-4000], lambda p: "text", lambda p: 7, lambda p: [1.5, 2.5], lambda p: {"a": b"b"},
+                       lambda p: p[:8] + b"\2\0\0\0" + p[12:],
+                       lambda p: forged(p, topology=bytes(16)), lambda p: forged(p, size=10),
+                       lambda p: forged(p, size=2**60), lambda p: forged(p, saved=b""),
+                       lambda p: forged(p, saved=box.save()), lambda p: forged(p, saved=bytes(10**7)),
+                       lambda p: forged(p, saved=bytes(10**7), size=1000)):
+            self.assertIsNone(self.after_tampering(change))

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""When a hierarchy is kept, shared, left aside and let go: after every kind of edit, never one of another topology."""
+
+import bmesh
+import bpy
+from common import BOX, MeshTest, part, read_off
+
+
+class Staleness(MeshTest):
+    def setUp(self):
+        super().setUp()
+        self.State = part("session").State
+
+    def kept(self, obj):
+        """The hierarchy in use, after a check that it is the very one that a build would give."""
+        h = part("session").hierarchy(obj)
+        if h:
+            self.assertEqual(h.save(), self.hierarchy(obj).save())
+        return h
+
+    def state(self, obj):
+        return part("session").state(obj.data)[0]
+
+    def built(self, name="cross_quad"):
+        obj = self.add(*(BOX if name == "box" else read_off(name)))
+        self.assertEqual(self.state(obj), self.State.NONE)
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+        self.assertEqual(self.state(obj), self.State.FITS)
+        return obj
+
+    # ---- Edits
+
+    def test_moved_vertices_keep_it(self):
+        obj = self.built()
+        first = self.kept(obj)
+        obj.data.vertices[0].co.z += 0.01
+        obj.data.update()
+        bpy.context.view_layer.update()
+        self.assertEqual(self.state(obj), self.State.MOVED)
+        self.assertIs(part("session").hierarchy(obj), first)
+        self.assertEqual(self.state(obj), self.State.MOVED)
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+        self.assertEqual(self.state(obj), self.State.FITS)
+        self.assertIsNot(self.kept(obj), first)
+
+    def test_moved_vertices_in_edit_mode(self):
+        obj = self.built("hand")
+        first = self.kept(obj)
+        bm = self.edit(obj)
+        bm.verts.ensure_lookup_table()
+        bm.verts[0].co.x += 0.01
+        self.assertIs(part("session").hierarchy(obj), first)
+        self.assertEqual(self.state(obj), self.State.MOVED)
+        bm.verts[0].co.x += 0.01
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertEqual(self.state(obj), self.State.MOVED)
+
+    def test_other_edits_do_not(self):
+        obj = self.built("hand")
+        bm = self.edit(obj)
+        bm.faces.ensure_lookup_table()
+        bm.faces[0].select_set(True)
+        bpy.ops.mesh.poke()
+        self.assertEqual(self.state(obj), self.State.CHANGED)
+        self.assertIsNone(self.kept(obj))
+        bpy.ops.mesh.partwheel_select(face_index=0)
+        self.assertEqual(self.state(obj), self.State.FITS)
+        self.assertEqual(len(self.kept(obj).order), 2390 + 2)
+
+    def test_same_counts_but_other_polygons(self):
+        obj = self.built("box")
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.flip_normals()
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertEqual(self.state(obj), self.State.CHANGED)
+        self.assertIsNone(self.kept(obj))
+
+    def test_another_triangulation_of_the_same_counts(self):
+        obj = self.built("hand")
+        bm = self.edit(obj)
+        edge = next(edge for edge in bm.edges if edge.calc_face_angle() < 0.1)
+        self.assertTrue(bmesh.ops.rotate_edges(bm, edges=[edge])["edges"])
+        bmesh.update_edit_mesh(obj.data)
+        self.assertIsNone(self.kept(obj))
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertEqual(self.state(obj), self.State.CHANGED)
+
+    # ---- Undo and redo
+
+    def test_undo_and_redo_in_object_mode(self):
+        obj = self.built()
+        faces = len(obj.data.polygons)
+        name = obj.name
+        bpy.ops.ed.undo_push(message="built")
+        bm = bmesh.new()
+        bm.from_mesh(obj.data)
+        bmesh.ops.triangulate(bm, faces=bm.faces)
+        bm.to_mesh(obj.data)
+        bm.free()
+        bpy.ops.ed.undo_push(message="triangulated")
+        self.assertEqual(self.state(obj), self.State.CHANGED)
+        for _ in range(2):
+            bpy.ops.ed.undo()
+            obj = bpy.data.objects[name]
+            self.assertEqual((len(obj.data.polygons), self.state(obj)), (faces, self.State.FITS))
+            self.assertEqual(len(self.kept(obj).order), faces)
+            bpy.ops.ed.redo()
+            obj = bpy.data.objects[name]
+            self.assertEqual((len(obj.data.polygons), self.state(obj)), (2 * faces, self.State.CHANGED))
+            self.assertIsNone(self.kept(obj))
+        bpy.ops.mesh.partwheel_build()
+        self.assertEqual(len(self.kept(obj).order), 2 * faces)
+        bpy.ops.ed.undo()
+        self.assertIsNone(self.kept(bpy.data.objects[name]))
+
+    def test_undo_and_redo_in_edit_mode(self):
+        obj = self.built("hand")
+        name = obj.name
+        self.edit(obj)
+        bpy.ops.mesh.partwheel_select(face_index=700)
+        bpy.ops.ed.undo_push(message="picked")
+        bpy.ops.mesh.delete(type="FACE")
+        bpy.ops.ed.undo_push(message="deleted")
+        self.assertIsNone(self.kept(obj))
+        bpy.ops.ed.undo()
+        obj = bpy.data.objects[name]
+        self.assertEqual(len(self.kept(obj).order), 2390)
+        bpy.ops.ed.redo()
+        self.assertIsNone(self.kept(bpy.data.objects[name]))
+
+    # ---- Several objects
+
+    def test_each_mesh_has_its_own(self):
+        one, two = self.add(*BOX, "one"), self.add(*read_off("cross_quad"), "two")
+        bpy.ops.mesh.partwheel_build()
+        self.assertIsNone(self.kept(one))
+        self.assertEqual(len(self.kept(two).order), len(two.data.polygons))
+        bpy.context.view_layer.objects.active = one
+        bpy.ops.mesh.partwheel_build()
+        self.assertEqual(len(self.kept(one).order), 6)
+
+    def test_users_of_one_mesh_share_it(self):
+        one = self.built("box")
+        self.assertIs(self.kept(self.link(bpy.data.objects.new("two", one.data))), self.kept(one))
+
+    def test_a_duplicate_has_it_at_once(self):
+        one = self.built()
+        bpy.ops.object.duplicate()
+        two = bpy.context.object
+        self.assertNotEqual(one.data, two.data)
+        self.assertIs(self.kept(two), self.kept(one))
+        two.data.vertices[0].co.z += 0.01  # one's is not touched by that
+        bpy.context.view_layer.update()
+        self.assertEqual((self.state(one), self.state(two)), (self.State.FITS, self.State.MOVED))
+        bpy.ops.mesh.partwheel_build()
+        self.assertIsNot(self.kept(two), self.kept(one))
+
+    def test_the_same_topology_elsewhere_is_another_mesh(self):
+        one = self.built()
+        bpy.ops.object.duplicate()
+        two = bpy.context.object
+        two.data.vertices[0].co.z += 0.01
+        self.assertIsNotNone(self.kept(one))
+        self.assertIsNone(self.kept(two))
+
+    def test_join_and_separate(self):
+        one = self.built()
+        faces = len(one.data.polygons)
+        two = self.add(*BOX)
+        two.location.x = 100
+        bpy.ops.mesh.partwheel_build()
+        one.select_set(True)
+        bpy.context.view_layer.objects.active = one
+        bpy.ops.object.join()
+        self.assertEqual(len(one.data.polygons), faces + 6)
+        self.assertEqual(self.state(one), self.State.CHANGED)
+        self.assertIsNone(self.kept(one))
+        bpy.ops.mesh.partwheel_build()
+        self.assertEqual(len(self.kept(one).order), faces + 6)
+        self.edit(one)
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.separate(type="LOOSE")
+        bpy.ops.object.mode_set(mode="OBJECT")
+        for obj in bpy.context.scene.objects:
+            self.assertIsNone(self.kept(obj))
+            bpy.context.view_layer.objects.active = obj
+            bpy.ops.mesh.partwheel_build()
+            self.assertEqual(len(self.kept(obj).order), len(obj.data.polygons))
+
+    def test_deleted_and_made_anew_under_the_same_name(self):
+        obj = self.built("box")
+        name = obj.data.name
+        bpy.data.meshes.remove(obj.data)
+        other = self.add(*read_off("cross_quad"))
+        other.data.name = name
+        self.assertEqual(other.data.name, name)
+        self.assertIsNone(self.kept(other))
+
+    def test_those_of_removed_meshes_are_let_go(self):
+        obj = self.built("box")
+        bpy.data.meshes.remove(obj.data)
+        self.add(*read_off("cross_quad"), "another")
+        bpy.ops.mesh.partwheel_build()
+        self.assertEqual(len(part("session")._entries), 1)
+
+    # ---- Clear
+
+    def test_clear(self):
+        obj = self.built()
+        bpy.ops.mesh.partwheel_clear()
+        self.assertEqual(self.state(obj), self.State.NONE)
+        self.assertIsNone(self.kept(obj))
+        self.assertFalse(bpy.ops.mesh.partwheel_clear.poll())

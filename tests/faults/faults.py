@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Compiles the library that goes wrong on purpose (faults.c) around the real one. Linux only."""
+
+import subprocess
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+
+
+def compiled(source, target, *options):
+    """A shared library from one C file: its path."""
+    subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-Wall", "-Werror", "-pthread", "-o", target, source, *options],
+                   check=True)
+    return str(target)
+
+
+def library(real, directory):
+    """The path of a library in this directory that is the real one, save for what faults.c says."""
+    real = Path(real).resolve()
+    return compiled(HERE / "faults.c", Path(directory) / "libfaults.so", f"-I{HERE.parents[1]}/native/include", real,
+                    f"-Wl,-rpath,{real.parent}", "-Wl,--no-as-needed", "-ldl")
