@@ -13,7 +13,7 @@ PEERS = {
     "V-HACD": (PYTHON, PEER, "vhacd"),
     "CGAL SDF": (BUILD / "sdf_bench",),
 }
-STAGES = ("surface", "tetrahedra", "cluster", "dendrogram", "hierarchy")
+STAGES = ("solid", "cluster", "dendrogram", "hierarchy")
 TIME_LIMIT = 600
 
 

@@ -6,7 +6,7 @@ import models
 from programs import Failure, stages
 
 OURS = ("cluster", "dendrogram")
-PIPELINE = ("surface", "tetrahedra", "cluster", "dendrogram", "hierarchy")
+PIPELINE = ("solid", "cluster", "dendrogram", "hierarchy")
 CPU, WALL = 1, 0
 
 

@@ -8,7 +8,7 @@ from programs import Failure, stages
 
 SIZES = (50_000, 100_000, 200_000, 400_000, 1_000_000)
 QUICK = (50_000, 100_000, 200_000)
-STAGES = ("surface", "tetrahedra", "cluster", "dendrogram", "hierarchy")
+STAGES = ("solid", "cluster", "dendrogram", "hierarchy")
 
 
 def measure(quick):

@@ -2,12 +2,13 @@
 //
 //   stages_bench MODEL.off REPETITIONS [QUALITY]
 //
-// Each repetition runs every stage from the model's arrays to the saved bytes in one thread, then clusters the same
-// tetrahedra again with two. `seconds` are [wall, cpu]; `peak` is the most memory in bytes that the process held during
+// Each repetition runs every stage of pw_build from the model's arrays to the saved bytes in one thread, `solid` being the
+// checks of the surface and its filling by TetGen; then it clusters the same tetrahedra again with two threads. `seconds` are [wall, cpu]; `peak` is the most memory in bytes that the process held during
 // each stage of the first repetition, `start` what it held before.
 #include "cluster.h"
 #include "dendrogram.h"
 #include "hierarchy.h"
+#include "ladder.h"
 #include "measured.h"
 
 #include <cstdio>
@@ -47,12 +48,13 @@ Repetition run(const Model& model, double quality) {
         r.stages.push_back({name, seconds, peak_memory()});
         return result;
     };
-    const Surface surface = staged("surface", [&] { return check_surface(view, progress); });
-    const TetMesh mesh = staged("tetrahedra", [&] { return tetrahedralize(surface, quality, progress); });
+    const LadderOptions options{.quality = quality, .rungs = PW_RUNG_EXACT};
+    const Solid solid = staged("solid", [&] { return climb(view, options, progress); });
+    const TetMesh& mesh = solid.mesh;
     const BinaryTree tree = staged("cluster", [&] { return cluster(mesh, progress, 1); });
     const std::vector<uint8_t> kept = staged("dendrogram", [&] { return prune(tree.merges); });
     const auto saved = staged("hierarchy", [&] {
-        return Hierarchy(surface, mesh, tree, kept, model.vertices.data()).save();
+        return Hierarchy(solid.surface, mesh, tree, kept, model.vertices.data()).save();
     });
     staged("cluster_two_threads", [&] { return cluster(mesh, progress, 2); });
     r.tetgen = tetgen_watch();
