@@ -20,6 +20,8 @@ CASES = {  # name: file, options of the build
         "helmet", "rotor", "pinion", "hand", "handle", "couplingdown", "knot", "elephant", "triceratops", "femur")},
     "rotor with points inside": ("rotor.off", {"quality": 1.4}),
     "hand with points inside": ("hand.off", {"quality": 1.4}),
+    "head, repaired": ("head.off", {}),
+    "pig, wrapped": ("pig.off", {}),
 }
 
 

@@ -20,7 +20,6 @@ CONFIGURATIONS = {
     "g++ -O2, two threads": ("release", 2, {}),
     "clang++ -O2, one thread": ("clang", 1, {}),
     "clang++ -O2, two threads": ("clang", 2, {}),
-    "g++ -O0, one thread": ("unoptimized", 1, {}),
     "g++ -O0, two threads": ("unoptimized", 2, {}),
 }
 REFERENCE, *OTHERS = CONFIGURATIONS
