@@ -10,7 +10,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
+#include <span>
 #include <utility>
 
 namespace partwheel {
@@ -18,9 +18,8 @@ namespace partwheel {
 double ranked_concavity(double hull_volume, double volume) {
     const double concavity = hull_volume - volume;
     if (!(concavity > convex_tolerance * hull_volume)) return 0;
-    int exponent = 0;
-    const double mantissa = std::frexp(concavity, &exponent);
-    return std::ldexp(std::nearbyint(std::ldexp(mantissa, concavity_bits)), exponent - concavity_bits);
+    constexpr uint64_t last = uint64_t{1} << (53 - concavity_bits);
+    return std::bit_cast<double>((std::bit_cast<uint64_t>(concavity) + last / 2) & ~(last - 1));
 }
 
 namespace {
@@ -37,46 +36,82 @@ struct Link {
 };
 
 struct Cluster {
-    Hull hull;
+    Hull hull;               // none while it is one tetrahedron
+    double hull_volume = 0;
     double volume = 0;
-    int32_t size = 1;    // in tetrahedra
+    int32_t size = 1;    // in tetrahedra; 0 once it has gone into another
     int32_t low = 0;     // its lowest tetrahedron
     int32_t number = 0;  // in the tree, see Merge
     std::vector<Link> links;
-    bool alive = true;
 };
 
 struct Edge {
-    int32_t a = 0, b = 0;    // clusters
+    int32_t a, b;            // clusters
     double hull_volume = 0;  // of their union, or a lower bound of it
     bool exact = false;
-    Cost cost{};  // as it stands in the queue: of the exact hull volume or of the bound
+    bool tried = false;  // the bound has been worked out for these clusters
 };
 
 // The edges, cheapest first: a heap with four children a node that knows where each edge is, so that costs change in
-// place. Most comparisons are settled by one number: concavity, or C2 among convex unions; the rest by the whole cost.
+// place.
 class EdgeQueue {
 public:
-    explicit EdgeQueue(const std::vector<Edge>& edges) : edges_(edges) {}
+    // Most comparisons are settled by one number: concavity, or C2 among convex unions.
+    struct Item {
+        uint64_t rank;
+        uint64_t balance;
+        uint64_t tie;
+        int32_t edge;
+
+        Item() = default;
+        Item(const Cost& cost, int32_t e)
+            // Doubles that are not negative are ordered as their bits; the free sign bit tells the class.
+            : rank(cost.concavity > 0 ? not_convex | std::bit_cast<uint64_t>(cost.concavity)
+                                      : std::bit_cast<uint64_t>(cost.balance)),
+              balance(std::bit_cast<uint64_t>(cost.balance)),
+              tie(uint64_t{static_cast<uint32_t>(cost.low)} << 32 | static_cast<uint32_t>(cost.high)), edge(e) {}
+
+        double concavity() const { return rank & not_convex ? std::bit_cast<double>(rank & ~not_convex) : 0; }
+        bool operator<(const Item& other) const {
+            if (rank != other.rank) [[likely]]
+                return rank < other.rank;
+            return balance != other.balance ? balance < other.balance : tie < other.tie;
+        }
+
+    private:
+        static constexpr uint64_t not_convex = uint64_t{1} << 63;
+    };
+
+    void reserve(size_t edges) {
+        heap_.reserve(edges);
+        place_.reserve(edges);
+    }
+
+    // Without restoring the order, see sort().
+    void append(const Cost& cost, int32_t edge) {
+        place_.resize(static_cast<size_t>(edge) + 1, absent);
+        heap_.emplace_back();
+        put(heap_.size() - 1, {cost, edge});
+    }
+
+    void sort() {
+        for (size_t i = heap_.size() / children + 1; i-- > 0;)
+            if (i < heap_.size()) sink(i, Item(heap_[i]));
+    }
 
     bool empty() const { return heap_.empty(); }
     int32_t top() const { return heap_[0].edge; }
 
-    // The edge is new, or its cost has changed.
-    void update(int32_t edge) {
-        if (place_.size() < edges_.size()) place_.resize(edges_.size(), absent);
-        size_t i = place_[static_cast<size_t>(edge)];
-        if (i == absent) {
-            i = heap_.size();
-            heap_.emplace_back();
-        }
-        settle(i, {rank(cost(edge)), edge});
+    // What comes after the top one; null if there is nothing.
+    const Item* runner_up() const {
+        const auto first = heap_.begin() + 1, end = heap_.begin() + static_cast<ptrdiff_t>(std::min(children + 1, heap_.size()));
+        return heap_.size() < 2 ? nullptr : &*std::min_element(first, end);
     }
 
+    void update(const Cost& cost, int32_t edge) { settle(place_[static_cast<size_t>(edge)], {cost, edge}); }
+
     void remove(int32_t edge) {
-        const size_t i = place_[static_cast<size_t>(edge)];
-        if (i == absent) return;
-        place_[static_cast<size_t>(edge)] = absent;
+        const size_t i = std::exchange(place_[static_cast<size_t>(edge)], absent);
         const Item last = heap_.back();
         heap_.pop_back();
         if (i < heap_.size()) settle(i, last);
@@ -86,24 +121,6 @@ private:
     static constexpr uint32_t absent = 0xffffffff;
     static constexpr size_t children = 4;
 
-    struct Item {
-        uint64_t rank;
-        int32_t edge;
-    };
-
-    const Cost& cost(int32_t edge) const { return edges_[static_cast<size_t>(edge)].cost; }
-
-    // Doubles that are not negative are ordered as their bits; the free sign bit tells the class.
-    static uint64_t rank(const Cost& cost) {
-        constexpr uint64_t not_convex = uint64_t{1} << 63;
-        return cost.concavity > 0 ? not_convex | std::bit_cast<uint64_t>(cost.concavity)
-                                  : std::bit_cast<uint64_t>(cost.balance);
-    }
-
-    bool before(const Item& x, const Item& y) const {
-        return x.rank != y.rank ? x.rank < y.rank : cost(x.edge) < cost(y.edge);
-    }
-
     void put(size_t i, const Item& item) {
         heap_[i] = item;
         place_[static_cast<size_t>(item.edge)] = static_cast<uint32_t>(i);
@@ -111,24 +128,26 @@ private:
 
     // Puts the item where it belongs, above or below the gap at i.
     void settle(size_t i, const Item& item) {
-        while (i > 0 && before(item, heap_[(i - 1) / children])) {
+        while (i > 0 && item < heap_[(i - 1) / children]) {
             put(i, heap_[(i - 1) / children]);
             i = (i - 1) / children;
         }
+        sink(i, item);
+    }
+
+    void sink(size_t i, const Item& item) {
         for (;;) {
             const size_t first = children * i + 1, end = std::min(first + children, heap_.size());
             if (first >= end) break;
             size_t least = first;
-            for (size_t c = first + 1; c < end; ++c)
-                if (before(heap_[c], heap_[least])) least = c;
-            if (!before(heap_[least], item)) break;
+            for (size_t c = first + 1; c < end; ++c) least = heap_[c] < heap_[least] ? c : least;
+            if (!(heap_[least] < item)) break;
             put(i, heap_[least]);
             i = least;
         }
         put(i, item);
     }
 
-    const std::vector<Edge>& edges_;
     std::vector<Item> heap_;
     std::vector<uint32_t> place_;  // of each edge in heap_
 };
@@ -141,70 +160,125 @@ public:
 private:
     Cluster& at(int32_t c) { return clusters_[static_cast<size_t>(c)]; }
     const Cluster& at(int32_t c) const { return clusters_[static_cast<size_t>(c)]; }
-
-    void add_edge(int32_t a, int32_t b);
     Edge& edge_at(int32_t e) { return edges_[static_cast<size_t>(e)]; }
-    void reprice(int32_t edge);
+    const Edge& edge_at(int32_t e) const { return edges_[static_cast<size_t>(e)]; }
+    const Point& point(int32_t v) const { return mesh_.vertices[static_cast<size_t>(v)]; }
+
+    int32_t add_edge(int32_t a, int32_t b);
+    Cost cost(const Edge& edge) const;
+    std::span<const int32_t> corners(int32_t c) const;
+    std::pair<int32_t, int32_t> by_size(const Edge& edge) const;
+    double union_of_neighbours(int32_t a, int32_t b) const;
+    double enough(const Edge& edge) const;
     void evaluate(int32_t edge);
     void contract_all();
     void contract(int32_t edge);
+    Hull unite(const Edge& edge);
     void join_components();
 
+    const TetMesh& mesh_;
     Progress& progress_;
     HullKernel kernel_;
     std::vector<Cluster> clusters_;
     std::vector<Edge> edges_;
-    EdgeQueue queue_{edges_};
+    EdgeQueue queue_;
     std::vector<int32_t> link_of_;  // scratch of contract(): cluster -> position in the merged links, or -1
     BinaryTree tree_;
 };
 
 Clustering::Clustering(const TetMesh& mesh, Progress& progress)
-    : progress_(progress), kernel_(mesh.vertices), clusters_(mesh.tetrahedra.size()),
+    : mesh_(mesh), progress_(progress), kernel_(mesh.vertices), clusters_(mesh.tetrahedra.size()),
       link_of_(mesh.tetrahedra.size(), -1) {
     const auto count = static_cast<int32_t>(mesh.tetrahedra.size());
     for (int32_t t = 0; t < count; ++t) {
-        Cluster& c = at(t);
         const Tetrahedron& tet = mesh.tetrahedra[static_cast<size_t>(t)];
-        c.hull = kernel_.build(tet);
-        c.volume = c.hull.volume;
+        Cluster& c = at(t);
+        c.volume = c.hull_volume = six_volumes(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3])) / 6;
         c.low = c.number = t;
         c.links.reserve(4);
     }
     edges_.reserve(2 * mesh.tetrahedra.size());
+    queue_.reserve(2 * mesh.tetrahedra.size());
+    tree_.merges.reserve(mesh.tetrahedra.size());
     for (int32_t t = 0; t < count; ++t) {
-        for (int32_t other : mesh.neighbours[static_cast<size_t>(t)])
-            if (other > t) add_edge(t, other);
-        if (t % 1024 == 0) progress_.advance(0.2 * t / count);
+        for (const int32_t other : mesh.neighbours[static_cast<size_t>(t)])
+            if (other > t) {
+                Edge& e = edge_at(add_edge(t, other));
+                e.hull_volume = union_of_neighbours(t, other);
+                e.exact = true;
+                queue_.append(cost(e), static_cast<int32_t>(edges_.size()) - 1);
+            }
+        if (t % 1024 == 0) progress_.advance(0.1 * t / count);
     }
+    queue_.sort();
 }
 
-void Clustering::add_edge(int32_t a, int32_t b) {
+int32_t Clustering::add_edge(int32_t a, int32_t b) {
     const auto edge = static_cast<int32_t>(edges_.size());
     edges_.push_back({.a = a, .b = b});
     at(a).links.push_back({b, edge});
     at(b).links.push_back({a, edge});
-    evaluate(edge);
+    return edge;
 }
 
-// Sets the edge's cost from what is known of its hull volume.
-void Clustering::reprice(int32_t edge) {
-    Edge& e = edge_at(edge);
+// The edge's cost as far as its hull volume is known.
+Cost Clustering::cost(const Edge& e) const {
     const Cluster &a = at(e.a), &b = at(e.b);
     const double hull_volume = e.exact ? e.hull_volume : e.hull_volume * (1 - bound_slack);
     const auto square = [](int32_t n) { return static_cast<double>(n) * static_cast<double>(n); };
-    e.cost = {ranked_concavity(hull_volume, a.volume + b.volume), square(a.size) + square(b.size),
-              std::min(a.low, b.low), std::max(a.low, b.low)};
-    queue_.update(edge);
+    return {ranked_concavity(hull_volume, a.volume + b.volume), square(a.size) + square(b.size),
+            std::min(a.low, b.low), std::max(a.low, b.low)};
 }
 
+// The vertices of a cluster's hull.
+std::span<const int32_t> Clustering::corners(int32_t c) const {
+    if (at(c).hull) return at(c).hull.vertices();
+    return mesh_.tetrahedra[static_cast<size_t>(at(c).low)];
+}
+
+// The edge's clusters, the one whose hull has more facets first, or the lower one.
+std::pair<int32_t, int32_t> Clustering::by_size(const Edge& e) const {
+    const size_t a = at(e.a).hull.facet_count(), b = at(e.b).hull.facet_count();
+    const bool ordered = a != b ? a > b : at(e.a).low < at(e.b).low;
+    return ordered ? std::pair(e.a, e.b) : std::pair(e.b, e.a);
+}
+
+// The volume of the union of two tetrahedra with a common facet: theirs, and what the far corner of b sees of a's others.
+double Clustering::union_of_neighbours(int32_t a, int32_t b) const {
+    constexpr size_t facets[4][3] = {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}};  // opposite each corner, outward
+    const Tetrahedron& s = mesh_.tetrahedra[static_cast<size_t>(a)];
+    const Tetrahedron& t = mesh_.tetrahedra[static_cast<size_t>(b)];
+    const auto& beyond = mesh_.neighbours[static_cast<size_t>(b)];
+    const Point& far = point(t[static_cast<size_t>(std::find(beyond.begin(), beyond.end(), a) - beyond.begin())]);
+    double seen = 0;
+    for (size_t k = 0; k < 4; ++k) {
+        if (mesh_.neighbours[static_cast<size_t>(a)][k] == b) continue;
+        const auto& f = facets[k];
+        seen += std::max(0.0, six_volumes(point(s[f[0]]), point(s[f[1]]), point(s[f[2]]), far));
+    }
+    return at(a).volume + at(b).volume + seen / 6;
+}
+
+// A volume with which this edge, now the queue's first, would come after its second.
+double Clustering::enough(const Edge& e) const {
+    const EdgeQueue::Item* second = queue_.runner_up();
+    if (!second || e.tried) return std::numeric_limits<double>::infinity();
+    const double volume = at(e.a).volume + at(e.b).volume;
+    // Rather more than that, for the roundings and the slack.
+    if (second->concavity() == 0) return volume / (1 - convex_tolerance) * (1 + 1e-9);
+    return (volume + second->concavity() * (1 + 1e-8)) * (1 + 1e-10);
+}
+
+// Finds the exact volume of an edge's hull; or, at the first try, only that it is more than enough.
 void Clustering::evaluate(int32_t edge) {
     Edge& e = edge_at(edge);
-    const bool ordered = at(e.a).low < at(e.b).low;
-    const Cluster &first = at(ordered ? e.a : e.b), &second = at(ordered ? e.b : e.a);
-    e.hull_volume = kernel_.united_volume(first.hull, second.hull);
-    e.exact = true;
-    reprice(edge);
+    const auto [large, small] = by_size(e);
+    if (!at(large).hull) at(large).hull = kernel_.build(corners(large));
+    const HullKernel::Measure measure = kernel_.united_volume(at(large).hull, corners(small), enough(e));
+    e.hull_volume = measure.exact ? measure.volume : std::max(e.hull_volume, measure.volume);
+    e.exact = measure.exact;
+    e.tried = true;
+    queue_.update(cost(e), edge);
 }
 
 void Clustering::contract_all() {
@@ -216,9 +290,17 @@ void Clustering::contract_all() {
         }
         contract(top);
         if (tree_.merges.size() % 256 == 0)
-            progress_.advance(0.2 + 0.8 * static_cast<double>(tree_.merges.size()) /
+            progress_.advance(0.1 + 0.9 * static_cast<double>(tree_.merges.size()) /
                                         static_cast<double>(clusters_.size()));
     }
+}
+
+Hull Clustering::unite(const Edge& e) {
+    const auto [large, small] = by_size(e);
+    if (at(large).hull) return kernel_.unite(at(large).hull, corners(small));
+    std::array<int32_t, 8> both;
+    std::copy_n(corners(small).begin(), 4, std::copy_n(corners(large).begin(), 4, both.begin()));
+    return kernel_.build(both);
 }
 
 void Clustering::contract(int32_t contracted) {
@@ -230,21 +312,19 @@ void Clustering::contract(int32_t contracted) {
     Cluster &m = at(stay), &g = at(go);
 
     const bool ordered = m.low < g.low;
-    Cluster &first = ordered ? m : g, &second = ordered ? g : m;
-    Merge merge;
-    merge.left = first.number;
-    merge.right = second.number;
-    merge.concavity = ranked_concavity(edge.hull_volume, first.volume + second.volume);
-    merge.hull_volume = edge.hull_volume;
-    m.hull = kernel_.unite(first.hull, second.hull);
-    m.volume = first.volume + second.volume;
+    const Cluster &first = ordered ? m : g, &second = ordered ? g : m;
+    const double volume = first.volume + second.volume;
+    tree_.merges.push_back({first.number, second.number, ranked_concavity(edge.hull_volume, volume), edge.hull_volume});
+    m.hull = unite(edge);
+    m.hull_volume = m.hull.volume();
+    m.volume = volume;
     m.size += g.size;
-    m.low = first.low;
-    m.number = static_cast<int32_t>(clusters_.size() + tree_.merges.size());
-    tree_.merges.push_back(merge);
+    m.low = std::min(m.low, g.low);
+    m.number = static_cast<int32_t>(clusters_.size() + tree_.merges.size() - 1);
 
     std::erase_if(m.links, [&](const Link& l) { return l.cluster == go; });
-    for (size_t i = 0; i < m.links.size(); ++i) link_of_[static_cast<size_t>(m.links[i].cluster)] = static_cast<int32_t>(i);
+    for (size_t i = 0; i < m.links.size(); ++i)
+        link_of_[static_cast<size_t>(m.links[i].cluster)] = static_cast<int32_t>(i);
     for (const Link& link : g.links) {
         if (link.cluster == stay) continue;
         Cluster& other = at(link.cluster);
@@ -263,15 +343,15 @@ void Clustering::contract(int32_t contracted) {
             other.links.erase(back);
         }
     }
-    for (const Link& link : m.links) link_of_[static_cast<size_t>(link.cluster)] = -1;
     g = Cluster{};
-    g.alive = false;
+    g.size = 0;
 
     for (const Link& link : m.links) {
+        link_of_[static_cast<size_t>(link.cluster)] = -1;
         Edge& e = edge_at(link.edge);
-        e.hull_volume = std::max({e.hull_volume, m.hull.volume, at(link.cluster).hull.volume});
-        e.exact = false;
-        reprice(link.edge);
+        e.hull_volume = std::max({e.hull_volume, m.hull_volume, at(link.cluster).hull_volume});
+        e.exact = e.tried = false;
+        queue_.update(cost(e), link.edge);
     }
 }
 
@@ -279,12 +359,19 @@ void Clustering::contract(int32_t contracted) {
 void Clustering::join_components() {
     std::vector<int32_t> rest;
     for (size_t c = 0; c < clusters_.size(); ++c)
-        if (clusters_[c].alive) rest.push_back(static_cast<int32_t>(c));
+        if (clusters_[c].size > 0) rest.push_back(static_cast<int32_t>(c));
     std::sort(rest.begin(), rest.end(), [&](int32_t a, int32_t b) { return at(a).low < at(b).low; });
+    for (const int32_t c : rest)
+        if (!at(c).hull) at(c).hull = kernel_.build(corners(c));
+    const auto join = [&](int32_t a, int32_t b) {
+        const int32_t edge = add_edge(a, b);
+        queue_.append(cost(edge_at(edge)), edge);
+        evaluate(edge);
+    };
     const auto count = static_cast<int32_t>(rest.size());
     if (count <= all_pairs_components) {
         for (int32_t i = 0; i < count; ++i)
-            for (int32_t j = i + 1; j < count; ++j) add_edge(rest[static_cast<size_t>(i)], rest[static_cast<size_t>(j)]);
+            for (int32_t j = i + 1; j < count; ++j) join(rest[static_cast<size_t>(i)], rest[static_cast<size_t>(j)]);
         return;
     }
 
@@ -303,7 +390,7 @@ void Clustering::join_components() {
             if (q->second != i) pairs.push_back(std::minmax(i, q->second));
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    for (const auto& [i, j] : pairs) add_edge(rest[static_cast<size_t>(i)], rest[static_cast<size_t>(j)]);
+    for (const auto& [i, j] : pairs) join(rest[static_cast<size_t>(i)], rest[static_cast<size_t>(j)]);
 }
 
 BinaryTree Clustering::run() {

@@ -264,15 +264,17 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last) const {
     for (int32_t v : used) points.push_back(frame_.to_working(vertices_[static_cast<size_t>(v)]));
     std::vector<int32_t> all(points.size());
     std::iota(all.begin(), all.end(), 0);
-    const Hull hull = HullKernel(points).build(all);
+    HullKernel kernel(points);
+    const Hull hull = kernel.build(all);
 
     TriangleMesh mesh;
     std::vector<int32_t> number(points.size(), -1);
-    for (int32_t v : hull.vertices) {
+    for (int32_t v : hull.vertices()) {
         number[static_cast<size_t>(v)] = static_cast<int32_t>(mesh.vertices.size());
         mesh.vertices.push_back(vertices_[static_cast<size_t>(used[static_cast<size_t>(v)])]);
     }
-    for (Triangle t : hull.facets) {
+    for (const HullFacet& facet : hull.facets()) {
+        Triangle t = facet.corners;
         for (int32_t& v : t) v = number[static_cast<size_t>(v)];
         mesh.triangles.push_back(t);
     }

@@ -5,344 +5,565 @@
 // keeps the vertices exactly the extreme points, and no degenerate facet can arise: an edge of the rim has a facet on
 // its far side that strictly doesn't see the point, so the point is not on the edge's line.
 //
-// The hulls of clusters are mostly tiny: there all facets are tested, in blocks without a branch. On a large hull a walk
-// finds one facet that sees the point, and the others are its neighbours.
+// The hulls of clusters are mostly tiny: there all facets are tested, two at a time. On a large hull a walk finds one
+// facet that sees the point. What a point sees can't be foreseen, so the inner loops don't branch on it.
 #include "hull.h"
 
 #include "predicates.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <utility>
+#include <cstring>
+#include <new>
+#include <vector>
 
 namespace partwheel {
 
 namespace {
 
 // From so many facets on a walk beats testing them all.
-constexpr size_t large_hull = 160;
+constexpr size_t large_hull = 64;
 
-// The facets of the hull at work, as a structure of arrays. A facet's plane: x px + y py + z pz - offset is six times the
-// volume of facet and p, wrong by at most `error`. neighbours[f][k] is across the edge from corner k to corner k + 1.
-struct Facets {
-    std::vector<Triangle> corners, neighbours;
-    std::vector<double> x, y, z, offset, error;
+// A point that adds less than this part of the hull's volume does not count when the volume is all that is asked for.
+constexpr double negligible = 1e-14;
 
-    size_t size() const { return corners.size(); }
-    void resize(size_t n) {
-        corners.resize(n);
-        neighbours.resize(n);
-        for (auto* v : {&x, &y, &z, &offset, &error}) v->resize(n);
-    }
-};
+constexpr size_t next_corner[3] = {1, 2, 0};
 
-// The same arrays wherever they are.
-struct FacetsView {
-    const Triangle *corners, *neighbours;
-    const double *x, *y, *z, *offset, *error;
-    size_t size;
+// One vector register of every 64-bit machine. A closed surface of triangles has an even number of facets.
+using Pair = double __attribute__((vector_size(16)));
+using PairBits = int64_t __attribute__((vector_size(16)));
+using Four = int32_t __attribute__((vector_size(16)));
 
-    double side(size_t f, const Point& p) const { return x[f] * p[0] + y[f] * p[1] + z[f] * p[2] - offset[f]; }
-};
-
-FacetsView view(const Facets& f) {
-    return {f.corners.data(), f.neighbours.data(), f.x.data(),     f.y.data(),
-            f.z.data(),       f.offset.data(),     f.error.data(), f.size()};
+template <class Vector, class Number>
+Vector vector_at(const Number* numbers) {
+    Vector v;
+    std::memcpy(&v, numbers, sizeof v);
+    return v;
 }
 
-FacetsView view(const Hull& hull) {
-    const size_t n = hull.facets.size();
-    const double* p = hull.planes.data();
-    return {hull.facets.data(), hull.neighbours.data(), p, p + n, p + 2 * n, p + 3 * n, p + 4 * n, n};
+constexpr size_t whole_fours(size_t n) { return (n + 3) / 4 * 4; }
+
+// Among numbers that have been filled up to whole fours.
+bool contains(std::span<const int32_t> numbers, int32_t v) {
+    Four equal = {0, 0, 0, 0};
+    for (size_t i = 0; i < numbers.size(); i += 4) equal |= vector_at<Four>(&numbers[i]) == v;
+    const auto halves = std::bit_cast<std::array<int64_t, 2>>(equal);
+    return (halves[0] | halves[1]) != 0;
 }
+
+// Twice the larger of 0 and x, without a branch.
+double twice_positive(double x) { return x + std::fabs(x); }
+
+double reach_of(const Point& p) { return std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])}); }
+
+// The planes of facets. Of a point p relative to the hull's origin, x px + y py + z pz - offset is six times the volume
+// of facet and p.
+struct Plane {
+    Point normal;
+    double offset;
+    double size;  // the sum of the absolute products in the normal
+};
+
+// A side is wrong by at most size * reach * this, where reach bounds the coordinates of the point and of the hull's
+// vertices relative to the origin: 4 roundings in a normal, 2 in the two differences with the origin, 3 in each dot
+// product, all of these twice as the difference of point and vertex is up to 2 reach, and 2 in the last subtraction.
+constexpr double side_error = 24 * 0x1p-53;
+
+constexpr size_t plane_numbers = 5;
 
 }  // namespace
+
+// ---- Hulls at rest: one block of memory each, from the kernel's pool --------------------------------------------------
+
+size_t Hull::Block::bytes(size_t vertices, size_t facets) {
+    return sizeof(Block) + facets * (plane_numbers * sizeof(double) + sizeof(HullFacet)) +
+           whole_fours(vertices) * sizeof(int32_t);
+}
+double* Hull::Block::planes() { return reinterpret_cast<double*>(this + 1); }
+HullFacet* Hull::Block::facets() { return reinterpret_cast<HullFacet*>(planes() + plane_numbers * facet_count); }
+int32_t* Hull::Block::vertices() { return reinterpret_cast<int32_t*>(facets() + facet_count); }
+
+// Free blocks in lists by size; what is larger comes from the system.
+class Hull::Pool {
+public:
+    Pool() = default;
+    Pool(const Pool&) = delete;
+    Pool& operator=(const Pool&) = delete;
+    ~Pool() {
+        for (void* chunk : chunks_) ::operator delete(chunk, std::align_val_t{unit});
+    }
+
+    void* allocate(size_t bytes) {
+        const size_t units = (bytes + unit - 1) / unit;
+        if (units >= classes) return ::operator new(units * unit, std::align_val_t{unit});
+        if (Free* head = free_[units]) {
+            free_[units] = head->next;
+            return head;
+        }
+        if (left_ < units * unit) {
+            chunks_.push_back(::operator new(chunk_bytes, std::align_val_t{unit}));
+            next_ = static_cast<std::byte*>(chunks_.back());
+            left_ = chunk_bytes;
+        }
+        left_ -= units * unit;
+        return std::exchange(next_, next_ + units * unit);
+    }
+
+    void free(void* block, size_t bytes) {
+        const size_t units = (bytes + unit - 1) / unit;
+        if (units >= classes)
+            ::operator delete(block, std::align_val_t{unit});
+        else
+            free_[units] = new (block) Free{free_[units]};
+    }
+
+private:
+    static constexpr size_t unit = 64, classes = 128, chunk_bytes = size_t{1} << 20;
+    struct Free {
+        Free* next;
+    };
+    Free* free_[classes] = {};
+    std::vector<void*> chunks_;
+    std::byte* next_ = nullptr;
+    size_t left_ = 0;
+};
+
+void Hull::Release::operator()(Block* block) const {
+    block->pool->free(block, Block::bytes(block->vertex_count, block->facet_count));
+}
+
+std::span<const int32_t> Hull::vertices() const {
+    if (!block_) return {};
+    return {block_->vertices(), block_->vertex_count};
+}
+std::span<const HullFacet> Hull::facets() const {
+    if (!block_) return {};
+    return {block_->facets(), block_->facet_count};
+}
+
+// ---- The kernel -------------------------------------------------------------------------------------------------------
 
 class HullKernel::Impl {
 public:
     explicit Impl(std::span<const Point> points) : points_(points), mark_(points.size(), 0), facet_from_(points.size(), -1) {
-        double largest = 0;
-        for (const Point& p : points)
-            for (double c : p) largest = std::max(largest, std::fabs(c));
-        // With every coordinate at most M and N the sum of the absolute products in a normal, a plane's side() is off
-        // by at most 16 eps M N: 8 from the normal, 3 from each dot product, 2 from their difference.
-        error_factor_ = 24 * 0x1p-53 * largest;
+        reserve(64);
     }
 
     Hull build(std::span<const int32_t> vertices);
-    Hull unite(const Hull& a, const Hull& b);
-    double united_volume(const Hull& a, const Hull& b);
+    Hull unite(const Hull& hull, std::span<const int32_t> points);
+    Measure united_volume(const Hull& hull, std::span<const int32_t> points, double enough);
     std::pair<Point, Point> bounds(const Hull& hull) const;
 
 private:
+    // A hull's facets, at rest or at work.
+    struct View {
+        const double *x, *y, *z, *offset, *size;
+        const HullFacet* facets;
+        size_t count;
+        Point origin;
+        double reach;
+
+        double side(size_t f, const Point& p) const { return x[f] * p[0] + y[f] * p[1] + z[f] * p[2] - offset[f]; }
+        Pair sides(size_t f, const Point& p) const {
+            return vector_at<Pair>(x + f) * p[0] + vector_at<Pair>(y + f) * p[1] + vector_at<Pair>(z + f) * p[2] -
+                   vector_at<Pair>(offset + f);
+        }
+        // A facet's size times this bounds the error of a side.
+        double error_factor(const Point& p) const { return side_error * std::max(reach, reach_of(p)); }
+    };
+
+    // A point that is not surely inside.
+    struct Candidate {
+        double volume6 = 0;  // six times what it alone adds to the hull, to rounding; on a large hull a lower bound
+        int32_t vertex = 0;
+    };
+
+    static constexpr size_t none = ~size_t{0};
+
     const Point& at(int32_t v) const { return points_[static_cast<size_t>(v)]; }
+    static View view(const Hull& hull);
+    View view() const;
 
-    int sign_of_side(const FacetsView& facets, size_t f, const Point& p) const;
-    bool classify(const FacetsView& facets, const Point& p);
-    bool scan(const FacetsView& facets, const Point& p);
-    bool walk(const FacetsView& facets, const Point& p);
-    double six_volumes_seen(const FacetsView& facets, const Point& p) const;
+    int exact_side(const View& h, size_t f, int32_t vertex) const;
+    size_t walk(const View& h, const Point& p, size_t start);
+    size_t find_seen(const View& h, const Point& p, int32_t vertex, size_t start);
+    double flood(const View& h, size_t f, const Point& p, int32_t vertex);
+    bool surely_inside(const View& h, const Point& p, double& volume6);
+    void survey(const Hull& hull, std::span<const int32_t> points);
 
+    void reserve(size_t facets);
     void load(const Hull& hull);
-    void set_facet(size_t f, const Triangle& corners);
-    void erase_facet(size_t f);
+    Plane plane(const Triangle& corners) const;
+    void set_plane(size_t f, const Plane& plane);
     bool insert(int32_t vertex);
+    void close_gaps();
     Hull unload();
+    Hull allocate(std::span<const int32_t> vertices, size_t facets);
     bool load_simplex(std::span<const int32_t> vertices);
-    void prepare(const Hull& hull);
 
     std::span<const Point> points_;
-    double error_factor_ = 0;
+    Hull::Pool pool_;
 
-    // The hull at work. If united_ is set, it is the union of these two.
-    std::pair<const Hull*, const Hull*> united_{};
-    Facets facets_;
+    // The hull at work: its facets are in the first count_ places, but for the gaps.
+    size_t count_ = 0;
+    std::vector<double> x_, y_, z_, offset_, size_;
+    std::vector<HullFacet> facets_;
+    std::vector<uint32_t> gaps_;
+    size_t latest_ = 0;  // one of them: the newest, if any has been made
+    Point origin_{};
+    double reach_ = 0;
     double volume6_ = 0;
 
-    // Of the hull in question, at work or at rest.
-    Point inside_{};              // a point inside it
-    std::vector<uint32_t> mark_;  // mark_[v] == stamp_: v is one of its vertices
-    uint32_t stamp_ = 0;
+    // What the last survey found, of these arguments, those that add most first. The first inserted_ are in the hull at
+    // work, if that is loaded_.
+    const Hull::Block* surveyed_ = nullptr;
+    const int32_t* surveyed_points_ = nullptr;
+    std::vector<Candidate> candidates_;
+    size_t inserted_ = 0;
+    bool loaded_ = false;
 
     // Scratch.
     struct RimEdge {
         int32_t from, to;
         int32_t beyond;  // the facet that stays
     };
-    std::vector<RimEdge> rim_;
-    std::vector<uint32_t> seen_;        // facets that the last point classified sees
-    std::vector<uint32_t> facet_mark_;  // of facets, in the manner of mark_
+    size_t seen_count_ = 0, rim_count_ = 0;
+    std::vector<uint32_t> seen_;        // the facets that the last point flooded from sees
+    std::vector<RimEdge> rim_;          // the edges around them
+    std::vector<uint32_t> facet_mark_;  // facet_mark_[f] == facet_stamp_: f is one of those in question
     uint32_t facet_stamp_ = 0;
-    std::vector<int32_t> facet_from_;   // the new facet whose rim edge starts at a vertex
+    std::vector<uint32_t> mark_;  // of vertices, in the same manner
+    uint32_t stamp_ = 0;
+    std::vector<int32_t> facet_from_;  // the new facet whose rim edge starts at a vertex
+    std::vector<int32_t> vertices_;
 };
 
-// The exact side of a facet that p is on: 1 outside, 0 in the plane.
-int HullKernel::Impl::sign_of_side(const FacetsView& facets, size_t f, const Point& p) const {
-    const double side = facets.side(f, p);
-    if (side > facets.error[f]) return 1;
-    if (side < -facets.error[f]) return -1;
-    const Triangle& t = facets.corners[f];
-    return orientation(at(t[0]), at(t[1]), at(t[2]), p);
+HullKernel::Impl::View HullKernel::Impl::view(const Hull& hull) {
+    Hull::Block& b = *hull.block_;
+    const size_t n = b.facet_count;
+    const double* p = b.planes();
+    return {p, p + n, p + 2 * n, p + 3 * n, p + 4 * n, b.facets(), n, b.origin, b.reach};
 }
 
-// Whether p is strictly outside. If so, seen_ holds the facets that see it, strictly or in whose plane it lies.
-bool HullKernel::Impl::classify(const FacetsView& facets, const Point& p) {
-    return (facets.size >= large_hull && walk(facets, p)) || scan(facets, p);
+HullKernel::Impl::View HullKernel::Impl::view() const {
+    return {x_.data(), y_.data(), z_.data(), offset_.data(), size_.data(), facets_.data(), count_, origin_, reach_};
 }
 
-bool HullKernel::Impl::scan(const FacetsView& facets, const Point& p) {
-    // Whole blocks of facets that surely don't see p are passed over: the loop inside has no branch.
-    constexpr size_t block = 8;
-    seen_.clear();
-    bool outside = false;
-    for (size_t begin = 0; begin < facets.size; begin += block) {
-        const size_t end = std::min(begin + block, facets.size);
-        double highest = -1;
-        for (size_t f = begin; f < end; ++f) highest = std::max(highest, facets.side(f, p) + facets.error[f]);
-        if (highest < 0) continue;
-        for (size_t f = begin; f < end; ++f) {
-            const int sign = sign_of_side(facets, f, p);
-            if (sign < 0) continue;
-            outside |= sign > 0;
-            seen_.push_back(static_cast<uint32_t>(f));
-        }
-    }
-    return outside;
+// 1: the vertex is outside the facet, 0: in its plane.
+int HullKernel::Impl::exact_side(const View& h, size_t f, int32_t vertex) const {
+    const Triangle& t = h.facets[f].corners;
+    return orientation(at(t[0]), at(t[1]), at(t[2]), at(vertex));
 }
 
-// Looks for a facet that sees p by going to better and better neighbours, then for the others around it. False if it
-// finds none: p may be outside all the same.
+// Looks for a facet that surely sees p by going to better and better neighbours. None if it finds none: p may be outside
+// all the same.
 //
-// Better is what the ray from inside_ to p meets later, relative to its length: that is a linear function of the facets'
-// polar points, and these are the corners of a convex polytope, so that with exact numbers no facet but the best would be
-// without a better neighbour. (Nearly) equally good ones, as in coplanar facets, are tried once each.
-bool HullKernel::Impl::walk(const FacetsView& facets, const Point& p) {
+// Better is what the ray from the origin to p meets later, relative to its length: that is a linear function of the
+// facets' polar points, and these are the corners of a convex polytope, so that with exact numbers no facet but the best
+// would be without a better neighbour. (Nearly) equally good ones, as in coplanar facets, are tried once each.
+size_t HullKernel::Impl::walk(const View& h, const Point& p, size_t start) {
     constexpr double equal = 1e-9;
-    if (facet_mark_.size() < facets.size) facet_mark_.resize(2 * facets.size, 0);
+    const double factor = h.error_factor(p);
     ++facet_stamp_;
-    const auto rate = [&](size_t f) {
-        const double depth = -facets.side(f, inside_);
-        return depth > 0 ? facets.side(f, p) / depth : -HUGE_VAL;
-    };
-    size_t f = seen_.empty() || seen_[0] >= facets.size ? 0 : seen_[0];
-    for (double here = rate(f); facets.side(f, p) <= facets.error[f];) {
+    const auto rate = [&](size_t f) { return h.offset[f] > 0 ? h.side(f, p) / h.offset[f] : -HUGE_VAL; };
+    size_t f = start;
+    for (double here = rate(f); h.side(f, p) <= h.size[f] * factor;) {
         facet_mark_[f] = facet_stamp_;
         size_t best = f;
         double there = -HUGE_VAL;
-        for (int32_t n : facets.neighbours[f]) {
+        for (const int32_t n : h.facets[f].neighbours) {
             const auto g = static_cast<size_t>(n);
-            if (facet_mark_[g] == facet_stamp_) continue;
-            const double rated = rate(g);
-            if (rated > there) {
-                there = rated;
-                best = g;
-            }
+            const double rated = facet_mark_[g] == facet_stamp_ ? -HUGE_VAL : rate(g);
+            best = rated > there ? g : best;
+            there = std::max(there, rated);
         }
-        if (!(there >= here - equal)) return false;
+        if (!(there >= here - equal)) return none;
         f = best;
         here = there;
     }
-
-    ++facet_stamp_;
-    seen_.assign(1, static_cast<uint32_t>(f));
-    facet_mark_[f] = facet_stamp_;
-    for (size_t i = 0; i < seen_.size(); ++i)
-        for (int32_t n : facets.neighbours[seen_[i]]) {
-            const auto g = static_cast<size_t>(n);
-            if (facet_mark_[g] == facet_stamp_ || sign_of_side(facets, g, p) < 0) continue;
-            facet_mark_[g] = facet_stamp_;
-            seen_.push_back(static_cast<uint32_t>(g));
-        }
-    // As scan() has them: so the result does not depend on which of the two found them.
-    std::sort(seen_.begin(), seen_.end());
-    return true;
+    return f;
 }
 
-// Six times the volume between p and the facets it sees; after classify().
-double HullKernel::Impl::six_volumes_seen(const FacetsView& facets, const Point& p) const {
-    double sum = 0;
-    for (uint32_t f : seen_) {
-        const Triangle& t = facets.corners[f];
-        sum += six_volumes(at(t[0]), at(t[1]), at(t[2]), p);
+// Some facet that the vertex is strictly outside of; none if it is in the hull. p is the vertex relative to the origin,
+// start a facet near it, if one is known.
+size_t HullKernel::Impl::find_seen(const View& h, const Point& p, int32_t vertex, size_t start) {
+    if (h.count >= large_hull)
+        if (const size_t f = walk(h, p, start); f != none) return f;
+    const double factor = h.error_factor(p);
+    for (size_t f = 0; f < h.count; f += 2) {
+        const Pair side = h.sides(f, p), error = factor * vector_at<Pair>(h.size + f);
+        const auto negative = std::bit_cast<PairBits>(side + error);
+        if ((negative[0] & negative[1]) < 0) continue;
+        for (size_t k = 0; k < 2; ++k)
+            if (side[k] > error[k] || (side[k] >= -error[k] && exact_side(h, f + k, vertex) > 0)) return f + k;
     }
-    return sum;
+    return none;
+}
+
+// seen_ becomes the facets that see the vertex, strictly or in whose plane it lies, f being one of them, and rim_ the
+// edges around them. Returns six times the volume between them and the vertex.
+double HullKernel::Impl::flood(const View& h, size_t f, const Point& p, int32_t vertex) {
+    // Whatever is written past the end of seen_ or rim_ is overwritten unless it turns out to belong there.
+    const double factor = h.error_factor(p);
+    const uint32_t yes = facet_stamp_ + 1, no = yes + 1;
+    facet_stamp_ += 2;
+    uint32_t *const seen = seen_.data(), *const mark = facet_mark_.data();
+    RimEdge* rim = rim_.data();
+    size_t count = 1;
+    seen[0] = static_cast<uint32_t>(f);
+    mark[f] = yes;
+    double volume = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const HullFacet& facet = h.facets[seen[i]];
+        volume += twice_positive(h.side(seen[i], p));
+        for (size_t k = 0; k < 3; ++k) {
+            const auto g = static_cast<uint32_t>(facet.neighbours[k]);
+            const double side = h.side(g, p), error = h.size[g] * factor;
+            bool sees = side > 0;
+            if (std::fabs(side) <= error) [[unlikely]]
+                sees = mark[g] < yes ? exact_side(h, g, vertex) >= 0 : mark[g] == yes;
+            seen[count] = g;
+            count += sees & (mark[g] != yes);
+            mark[g] = sees ? yes : no;
+            *rim = {facet.corners[k], facet.corners[next_corner[k]], facet.neighbours[k]};
+            rim += !sees;
+        }
+    }
+    seen_count_ = count;
+    rim_count_ = static_cast<size_t>(rim - rim_.data());
+    return volume / 2;
+}
+
+// As far as rounded numbers tell. volume6 is six times what the point adds to the hull, to rounding.
+bool HullKernel::Impl::surely_inside(const View& h, const Point& p, double& volume6) {
+    const double factor = h.error_factor(p);
+    Pair sum = {0, 0};
+    PairBits negative = {-1, -1};
+    for (size_t f = 0; f < h.count; f += 2) {
+        const Pair side = h.sides(f, p);
+        sum += side + std::bit_cast<Pair>(std::bit_cast<PairBits>(side) & std::numeric_limits<int64_t>::max());
+        negative &= std::bit_cast<PairBits>(side + factor * vector_at<Pair>(h.size + f));
+    }
+    volume6 = (sum[0] + sum[1]) / 2;
+    return (negative[0] & negative[1]) < 0;
+}
+
+void HullKernel::Impl::survey(const Hull& hull, std::span<const int32_t> points) {
+    surveyed_ = hull.block_.get();
+    surveyed_points_ = points.data();
+    candidates_.clear();
+    inserted_ = 0;
+    loaded_ = false;
+    const View h = view(hull);
+    reserve(h.count);
+    const std::span<const int32_t> own = hull.vertices();
+    constexpr size_t few = 64;
+    size_t start = 0;
+    for (const int32_t v : points) {
+        if (own.size() > few ? std::binary_search(own.begin(), own.end(), v) : contains(own, v)) continue;
+        const Point p = at(v) - h.origin;
+        if (h.count >= large_hull)
+            if (const size_t f = walk(h, p, start); f != none) {
+                candidates_.push_back({h.side(f, p), v});
+                start = f;
+                continue;
+            }
+        Candidate found{.vertex = v};
+        if (!surely_inside(h, p, found.volume6)) candidates_.push_back(found);
+    }
+    std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+        return a.volume6 != b.volume6 ? a.volume6 > b.volume6 : a.vertex < b.vertex;
+    });
+}
+
+// Makes room for work on a hull of so many facets, and for one point more.
+void HullKernel::Impl::reserve(size_t facets) {
+    if (facets_.size() >= 3 * facets + 3) return;
+    const size_t room = 6 * facets + 6;
+    for (auto* numbers : {&x_, &y_, &z_, &offset_, &size_}) numbers->resize(room);
+    facets_.resize(room);
+    seen_.resize(room + 1);
+    rim_.resize(3 * room + 1);
+    facet_mark_.resize(room, 0);
 }
 
 void HullKernel::Impl::load(const Hull& hull) {
-    united_ = {};
-    const FacetsView from = view(hull);
-    facets_.corners = hull.facets;
-    facets_.neighbours = hull.neighbours;
-    facets_.x.assign(from.x, from.x + from.size);
-    facets_.y.assign(from.y, from.y + from.size);
-    facets_.z.assign(from.z, from.z + from.size);
-    facets_.offset.assign(from.offset, from.offset + from.size);
-    facets_.error.assign(from.error, from.error + from.size);
-    volume6_ = 6 * hull.volume;
+    const View h = view(hull);
+    count_ = h.count;
+    std::copy_n(h.x, count_, x_.data());
+    std::copy_n(h.y, count_, y_.data());
+    std::copy_n(h.z, count_, z_.data());
+    std::copy_n(h.offset, count_, offset_.data());
+    std::copy_n(h.size, count_, size_.data());
+    std::copy_n(h.facets, count_, facets_.data());
+    gaps_.clear();
+    latest_ = 0;
+    origin_ = h.origin;
+    reach_ = h.reach;
+    volume6_ = 6 * hull.volume();
+    loaded_ = true;
 }
 
-void HullKernel::Impl::set_facet(size_t f, const Triangle& corners) {
-    const Point& a = at(corners[0]);
-    const Point u = at(corners[1]) - a, v = at(corners[2]) - a;
+Plane HullKernel::Impl::plane(const Triangle& corners) const {
+    const Point& c = at(corners[2]);
+    const Point u = at(corners[0]) - c, v = at(corners[1]) - c;
     const Point n = cross(u, v);
     const double size = std::fabs(u[1] * v[2]) + std::fabs(u[2] * v[1]) + std::fabs(u[2] * v[0]) +
                         std::fabs(u[0] * v[2]) + std::fabs(u[0] * v[1]) + std::fabs(u[1] * v[0]);
-    facets_.corners[f] = corners;
-    facets_.x[f] = n[0];
-    facets_.y[f] = n[1];
-    facets_.z[f] = n[2];
-    facets_.offset[f] = dot(n, a);
-    facets_.error[f] = error_factor_ * size;
+    return {n, dot(n, c - origin_), size};
 }
 
-// The last facet takes its place.
-void HullKernel::Impl::erase_facet(size_t f) {
-    const size_t last = facets_.size() - 1;
-    if (f != last) {
-        facets_.corners[f] = facets_.corners[last];
-        facets_.neighbours[f] = facets_.neighbours[last];
-        for (auto* v : {&facets_.x, &facets_.y, &facets_.z, &facets_.offset, &facets_.error}) (*v)[f] = (*v)[last];
-        for (int32_t n : facets_.neighbours[f]) {
-            Triangle& back = facets_.neighbours[static_cast<size_t>(n)];
-            *std::find(back.begin(), back.end(), static_cast<int32_t>(last)) = static_cast<int32_t>(f);
-        }
-    }
-    facets_.resize(last);
+void HullKernel::Impl::set_plane(size_t f, const Plane& plane) {
+    x_[f] = plane.normal[0];
+    y_[f] = plane.normal[1];
+    z_[f] = plane.normal[2];
+    offset_[f] = plane.offset;
+    size_[f] = plane.size;
 }
 
 // Returns false if the vertex is in the hull already.
 bool HullKernel::Impl::insert(int32_t vertex) {
-    const Point& p = at(vertex);
-    if (!classify(view(facets_), p)) return false;
-    volume6_ += six_volumes_seen(view(facets_), p);
+    reserve(count_);
+    const Point p = at(vertex) - origin_;
+    const size_t seen = find_seen(view(), p, vertex, latest_);
+    if (seen == none) return false;
+    volume6_ += flood(view(), seen, p, vertex);
+    reach_ = std::max(reach_, reach_of(p));
 
-    if (facet_mark_.size() < facets_.size()) facet_mark_.resize(2 * facets_.size(), 0);
-    ++facet_stamp_;
-    for (uint32_t f : seen_) facet_mark_[f] = facet_stamp_;
-    rim_.clear();
-    for (uint32_t f : seen_)
-        for (size_t k = 0; k < 3; ++k) {
-            const int32_t beyond = facets_.neighbours[f][k];
-            if (facet_mark_[static_cast<size_t>(beyond)] != facet_stamp_)
-                rim_.push_back({facets_.corners[f][k], facets_.corners[f][(k + 1) % 3], beyond});
-        }
-
-    // The new facets take the places of those that go, then further ones.
-    const size_t before = facets_.size();
-    if (rim_.size() > seen_.size()) facets_.resize(before + rim_.size() - seen_.size());
-    const auto place = [&](size_t i) { return i < seen_.size() ? size_t{seen_[i]} : before + i - seen_.size(); };
-    for (size_t i = 0; i < rim_.size(); ++i) {
-        const auto [from, to, beyond] = rim_[i];
-        const size_t f = place(i);
-        set_facet(f, {from, to, vertex});
-        facets_.neighbours[f][0] = beyond;
-        const Triangle& across = facets_.corners[static_cast<size_t>(beyond)];
-        const auto k = static_cast<size_t>(std::find(across.begin(), across.end(), to) - across.begin());
-        facets_.neighbours[static_cast<size_t>(beyond)][k] = static_cast<int32_t>(f);
-        facet_from_[static_cast<size_t>(from)] = static_cast<int32_t>(f);
+    // The new facets take the places of those that go, then gaps, then further places.
+    const std::span<const RimEdge> rim(rim_.data(), rim_count_);
+    size_t places = std::min(seen_count_, rim.size());
+    for (; places < rim.size() && !gaps_.empty(); gaps_.pop_back()) seen_[places++] = gaps_.back();
+    while (places < rim.size()) seen_[places++] = static_cast<uint32_t>(count_++);
+    for (size_t i = rim.size(); i < seen_count_; ++i) {
+        gaps_.push_back(seen_[i]);
+        set_plane(seen_[i], {{}, HUGE_VAL, 0});
     }
-    for (size_t i = 0; i < rim_.size(); ++i) {
-        const size_t f = place(i);
-        const int32_t next = facet_from_[static_cast<size_t>(rim_[i].to)];
-        facets_.neighbours[f][1] = next;
-        facets_.neighbours[static_cast<size_t>(next)][2] = static_cast<int32_t>(f);
+    latest_ = seen_[0];
+    HullFacet* const facets = facets_.data();
+    int32_t* const facet_from = facet_from_.data();
+    for (size_t i = 0; i < rim.size(); ++i) {
+        const auto [from, to, beyond] = rim[i];
+        const uint32_t f = seen_[i];
+        facets[f].corners = {from, to, vertex};
+        set_plane(f, plane({from, to, vertex}));
+        facets[f].neighbours[0] = beyond;
+        HullFacet& across = facets[beyond];
+        across.neighbours[size_t{across.corners[1] == to} + 2 * size_t{across.corners[2] == to}] = static_cast<int32_t>(f);
+        facet_from[from] = static_cast<int32_t>(f);
     }
-    for (size_t i = seen_.size(); i-- > rim_.size();) erase_facet(seen_[i]);
+    for (size_t i = 0; i < rim.size(); ++i) {
+        const int32_t next = facet_from[rim[i].to];
+        facets[seen_[i]].neighbours[1] = next;
+        facets[next].neighbours[2] = static_cast<int32_t>(seen_[i]);
+    }
     return true;
 }
 
+// Moves the last facets into the gaps.
+void HullKernel::Impl::close_gaps() {
+    std::sort(gaps_.begin(), gaps_.end());
+    for (size_t next = 0, end = gaps_.size(); next < end; --count_) {
+        const size_t last = count_ - 1;
+        if (gaps_[end - 1] == last) {
+            --end;
+            continue;
+        }
+        const size_t f = gaps_[next++];
+        set_plane(f, {{x_[last], y_[last], z_[last]}, offset_[last], size_[last]});
+        facets_[f] = facets_[last];
+        for (const int32_t n : facets_[f].neighbours) {
+            Triangle& back = facets_[static_cast<size_t>(n)].neighbours;
+            *std::find(back.begin(), back.end(), static_cast<int32_t>(last)) = static_cast<int32_t>(f);
+        }
+    }
+    gaps_.clear();
+}
+
 Hull HullKernel::Impl::unload() {
-    Hull hull;
-    hull.facets = facets_.corners;
-    hull.neighbours = facets_.neighbours;
-    hull.planes.reserve(5 * facets_.size());
-    for (const auto* v : {&facets_.x, &facets_.y, &facets_.z, &facets_.offset, &facets_.error})
-        hull.planes.insert(hull.planes.end(), v->begin(), v->end());
+    close_gaps();
+    vertices_.clear();
     ++stamp_;
-    for (const Triangle& f : hull.facets)
-        for (int32_t v : f)
-            if (std::exchange(mark_[static_cast<size_t>(v)], stamp_) != stamp_) hull.vertices.push_back(v);
+    for (size_t f = 0; f < count_; ++f)
+        for (const int32_t v : facets_[f].corners)
+            if (std::exchange(mark_[static_cast<size_t>(v)], stamp_) != stamp_) vertices_.push_back(v);
+    std::sort(vertices_.begin(), vertices_.end());
+
+    Hull hull = allocate(vertices_, count_);
+    Hull::Block& block = *hull.block_;
+    double* to = block.planes();
+    for (const auto* numbers : {&x_, &y_, &z_, &offset_, &size_}) to = std::copy_n(numbers->data(), count_, to);
+    std::copy_n(facets_.data(), count_, block.facets());
+    block.origin = origin_;
+    block.reach = reach_;
     // Measured anew, so that rounding doesn't pile up over a long chain of unions.
-    const Point& apex = at(hull.vertices[0]);
-    double sum = 0;
-    for (const Triangle& f : hull.facets) sum -= six_volumes(at(f[0]), at(f[1]), at(f[2]), apex);
-    hull.volume = sum / 6;
+    Pair sum = {0, 0};
+    for (size_t f = 0; f < count_; f += 2) sum += vector_at<Pair>(&offset_[f]);
+    block.volume = (sum[0] + sum[1]) / 6;
+    return hull;
+}
+
+Hull HullKernel::Impl::allocate(std::span<const int32_t> vertices, size_t facets) {
+    Hull hull;
+    hull.block_.reset(new (pool_.allocate(Hull::Block::bytes(vertices.size(), facets))) Hull::Block{});
+    hull.block_->pool = &pool_;
+    hull.block_->vertex_count = static_cast<uint32_t>(vertices.size());
+    hull.block_->facet_count = static_cast<uint32_t>(facets);
+    int32_t* const to = hull.block_->vertices();
+    std::fill(std::copy(vertices.begin(), vertices.end(), to), to + whole_fours(vertices.size()), -1);
     return hull;
 }
 
 // Starts with four of these points that span a tetrahedron; false if all lie in one plane.
 bool HullKernel::Impl::load_simplex(std::span<const int32_t> vertices) {
-    united_ = {};
     const auto first = vertices.begin(), end = vertices.end();
     if (first == end) return false;
-    const Point& a = at(*first);
-    const auto second = std::find_if(first, end, [&](int32_t v) { return at(v) != a; });
-    if (second == end) return false;
-    const Point& b = at(*second);
-    const auto third = std::find_if(second, end, [&](int32_t v) { return !collinear(a, b, at(v)); });
-    if (third == end) return false;
-    const Point& c = at(*third);
-    const auto fourth = std::find_if(first, end, [&](int32_t v) { return orientation(a, b, c, at(v)) != 0; });
-    if (fourth == end) return false;
+    auto second = first, third = first, fourth = first;
+    if (vertices.size() >= 4 &&
+        orientation(at(vertices[0]), at(vertices[1]), at(vertices[2]), at(vertices[3])) != 0) {
+        second = first + 1;
+        third = first + 2;
+        fourth = first + 3;
+    } else {
+        const Point& a = at(*first);
+        second = std::find_if(first, end, [&](int32_t v) { return at(v) != a; });
+        if (second == end) return false;
+        const Point& b = at(*second);
+        third = std::find_if(second, end, [&](int32_t v) { return !collinear(a, b, at(v)); });
+        if (third == end) return false;
+        const Point& c = at(*third);
+        fourth = std::find_if(first, end, [&](int32_t v) { return orientation(a, b, c, at(v)) != 0; });
+        if (fourth == end) return false;
+    }
 
     std::array<int32_t, 4> t = {*first, *second, *third, *fourth};
-    if (orientation(a, b, c, at(t[3])) < 0) std::swap(t[0], t[1]);
-    facets_.resize(4);
-    set_facet(0, {t[0], t[2], t[1]});
-    set_facet(1, {t[0], t[1], t[3]});
-    set_facet(2, {t[1], t[2], t[3]});
-    set_facet(3, {t[2], t[0], t[3]});
-    facets_.neighbours = {{3, 2, 1}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
-    inside_ = {};
-    for (int32_t v : t)
-        for (size_t k = 0; k < 3; ++k) inside_[k] += at(v)[k] / 4;
+    if (orientation(at(t[0]), at(t[1]), at(t[2]), at(t[3])) < 0) std::swap(t[0], t[1]);
+    origin_ = {};
+    for (const int32_t v : t)
+        for (size_t k = 0; k < 3; ++k) origin_[k] += at(v)[k] / 4;
+    reach_ = 0;
+    for (const int32_t v : t) reach_ = std::max(reach_, reach_of(at(v) - origin_));
+    const HullFacet facets[] = {{{t[0], t[2], t[1]}, {3, 2, 1}},
+                                {{t[0], t[1], t[3]}, {0, 2, 3}},
+                                {{t[1], t[2], t[3]}, {0, 3, 1}},
+                                {{t[2], t[0], t[3]}, {0, 1, 2}}};
+    count_ = 4;
+    gaps_.clear();
+    latest_ = 0;
+    for (size_t f = 0; f < 4; ++f) {
+        facets_[f] = facets[f];
+        set_plane(f, plane(facets[f].corners));
+    }
     volume6_ = six_volumes(at(t[0]), at(t[1]), at(t[2]), at(t[3]));
     return true;
 }
 
 Hull HullKernel::Impl::build(std::span<const int32_t> vertices) {
+    surveyed_ = nullptr;
     // Extreme points first: most others are then inside from the start.
-    std::vector<int32_t> order;
+    std::vector<int32_t>& order = vertices_;
+    order.clear();
     for (int direction = 0; direction < 13 && vertices.size() > 32; ++direction) {
         const int code = direction + 14;  // the 13 lattice directions of a half space, in base 3
         const Point d = {static_cast<double>(code / 9 - 1), static_cast<double>(code / 3 % 3 - 1),
@@ -355,84 +576,62 @@ Hull HullKernel::Impl::build(std::span<const int32_t> vertices) {
     order.insert(order.end(), vertices.begin(), vertices.end());
 
     if (!load_simplex(order)) {
-        Hull flat;
-        ++stamp_;
-        for (int32_t v : vertices)
-            if (std::exchange(mark_[static_cast<size_t>(v)], stamp_) != stamp_) flat.vertices.push_back(v);
-        return flat;
+        std::sort(order.begin(), order.end());
+        order.erase(std::unique(order.begin(), order.end()), order.end());
+        return allocate(order, 0);
     }
     ++stamp_;
-    for (const Triangle& f : facets_.corners)
-        for (int32_t v : f) mark_[static_cast<size_t>(v)] = stamp_;
-    for (int32_t v : order)
+    for (size_t f = 0; f < count_; ++f)
+        for (const int32_t v : facets_[f].corners) mark_[static_cast<size_t>(v)] = stamp_;
+    for (const int32_t v : order)
         if (std::exchange(mark_[static_cast<size_t>(v)], stamp_) != stamp_) insert(v);
     return unload();
 }
 
-// Marks the hull's vertices and finds a point inside it.
-void HullKernel::Impl::prepare(const Hull& hull) {
-    ++stamp_;
-    for (int32_t v : hull.vertices) mark_[static_cast<size_t>(v)] = stamp_;
-    seen_.clear();
-    inside_ = {};
-    const auto count = static_cast<double>(hull.vertices.size());
-    for (int32_t v : hull.vertices)
-        for (size_t k = 0; k < 3; ++k) inside_[k] += at(v)[k] / count;
-}
-
-Hull HullKernel::Impl::unite(const Hull& a, const Hull& b) {
-    if (a.facets.empty() && b.facets.empty()) {
-        std::vector<int32_t> all = a.vertices;
-        all.insert(all.end(), b.vertices.begin(), b.vertices.end());
+Hull HullKernel::Impl::unite(const Hull& hull, std::span<const int32_t> points) {
+    if (hull.facet_count() == 0) {
+        std::vector<int32_t> all(hull.vertices().begin(), hull.vertices().end());
+        all.insert(all.end(), points.begin(), points.end());
         return build(all);
     }
     // Often its volume has just been asked for.
-    if (std::exchange(united_, {}) == std::pair(&a, &b)) return unload();
-    const Hull& large = a.facets.size() >= b.facets.size() ? a : b;
-    const Hull& small = &large == &a ? b : a;
-    prepare(large);
-    load(large);
-    bool grown = false;
-    for (int32_t v : small.vertices)
-        if (mark_[static_cast<size_t>(v)] != stamp_) grown |= insert(v);
-    return grown ? unload() : large;
+    if (surveyed_ != hull.block_.get() || surveyed_points_ != points.data()) survey(hull, points);
+    surveyed_ = nullptr;
+    if (!loaded_) load(hull);
+    while (inserted_ < candidates_.size()) insert(candidates_[inserted_++].vertex);
+    return unload();
 }
 
-double HullKernel::Impl::united_volume(const Hull& a, const Hull& b) {
-    if (a.facets.empty() && b.facets.empty()) return unite(a, b).volume;
-    const Hull& large = a.facets.size() >= b.facets.size() ? a : b;
-    const Hull& small = &large == &a ? b : a;
-    prepare(large);
-    const FacetsView facets = view(large);
-
-    // While only one point is outside, nothing is built.
-    int32_t outside = -1;
-    double seen = 0;
-    bool loaded = false;
-    for (int32_t v : small.vertices) {
-        if (mark_[static_cast<size_t>(v)] == stamp_) continue;
-        if (loaded) {
-            insert(v);
-        } else if (classify(facets, at(v))) {
-            if (outside < 0) {
-                outside = v;
-                seen = six_volumes_seen(facets, at(v));
-            } else {
-                load(large);
-                insert(outside);
-                insert(v);
-                loaded = true;
-            }
-        }
+HullKernel::Measure HullKernel::Impl::united_volume(const Hull& hull, std::span<const int32_t> points, double enough) {
+    if (hull.facet_count() == 0) return {unite(hull, points).volume(), true};
+    survey(hull, points);
+    const double volume = hull.volume();
+    if (candidates_.empty()) return {volume, true};
+    Candidate& first = candidates_[0];
+    if (hull.facet_count() >= large_hull) {
+        const View h = view(hull);
+        const Point p = at(first.vertex) - h.origin;
+        const size_t f = find_seen(h, p, first.vertex, 0);
+        first.volume6 = f == none ? 0 : flood(h, f, p, first.vertex);
     }
-    if (!loaded) return large.volume + seen / 6;
-    united_ = {&a, &b};
-    return volume6_ / 6;
+    const double with_first = volume + first.volume6 / 6;
+    if (candidates_.size() == 1 || candidates_[1].volume6 <= negligible * volume) return {with_first, true};
+    if (with_first > enough) return {with_first, false};
+    load(hull);
+    while (inserted_ < candidates_.size()) {
+        if (volume6_ / 6 > enough) {
+            surveyed_ = nullptr;
+            return {volume6_ / 6, false};
+        }
+        if (candidates_[inserted_].volume6 <= negligible * volume) break;
+        insert(candidates_[inserted_++].vertex);
+    }
+    return {volume6_ / 6, true};
 }
 
 std::pair<Point, Point> HullKernel::Impl::bounds(const Hull& hull) const {
-    Point low = at(hull.vertices.at(0)), high = low;
-    for (int32_t v : hull.vertices)
+    Point low = at(hull.vertices().front()), high = low;
+    for (const int32_t v : hull.vertices())
         for (size_t k = 0; k < 3; ++k) {
             low[k] = std::min(low[k], at(v)[k]);
             high[k] = std::max(high[k], at(v)[k]);
@@ -443,8 +642,10 @@ std::pair<Point, Point> HullKernel::Impl::bounds(const Hull& hull) const {
 HullKernel::HullKernel(std::span<const Point> points) : impl_(std::make_unique<Impl>(points)) {}
 HullKernel::~HullKernel() = default;
 Hull HullKernel::build(std::span<const int32_t> vertices) { return impl_->build(vertices); }
-Hull HullKernel::unite(const Hull& a, const Hull& b) { return impl_->unite(a, b); }
-double HullKernel::united_volume(const Hull& a, const Hull& b) { return impl_->united_volume(a, b); }
+Hull HullKernel::unite(const Hull& hull, std::span<const int32_t> points) { return impl_->unite(hull, points); }
+HullKernel::Measure HullKernel::united_volume(const Hull& hull, std::span<const int32_t> points, double enough) {
+    return impl_->united_volume(hull, points, enough);
+}
 std::pair<Point, Point> HullKernel::bounds(const Hull& hull) const { return impl_->bounds(hull); }
 
 }  // namespace partwheel

@@ -3,21 +3,51 @@
 
 #include "geometry.h"
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace partwheel {
 
+struct HullFacet {
+    Triangle corners;     // outward; facets may be coplanar
+    Triangle neighbours;  // the facet across the edge from corner k to corner k + 1
+};
+
 // The convex hull of some vertices of one mesh: exactly its extreme points, and its triangulated boundary. A flat set
-// (all points in one plane) has no facets and volume 0; its `vertices` are all its points.
-struct Hull {
-    std::vector<int32_t> vertices;
-    std::vector<Triangle> facets;      // outward; coplanar facets are possible
-    std::vector<Triangle> neighbours;  // the facet across each facet's edge from corner k to corner k + 1
-    std::vector<double> planes;        // five numbers a facet, each a block of facets.size(): see hull.cpp
-    double volume = 0;
+// (all points in one plane) has no facets and volume 0; its vertices are all its points. Made by a HullKernel, which it
+// must not outlive; never changes.
+class Hull {
+public:
+    explicit operator bool() const { return block_ != nullptr; }
+    std::span<const int32_t> vertices() const;  // in rising order
+    std::span<const HullFacet> facets() const;
+    size_t facet_count() const { return block_ ? block_->facet_count : 0; }
+    double volume() const { return block_ ? block_->volume : 0; }
+
+private:
+    friend class HullKernel;
+    class Pool;
+
+    // The head of one block of memory: after it come the planes, five numbers a facet, each an array; the facets; and
+    // the vertices, filled up to whole fours.
+    struct alignas(64) Block {
+        uint32_t vertex_count, facet_count;
+        double volume;
+        Point origin;  // a point inside, near which the numbers of the planes are small
+        double reach;  // of the vertices, from there
+        Pool* pool;
+
+        static size_t bytes(size_t vertices, size_t facets);
+        double* planes();
+        HullFacet* facets();
+        int32_t* vertices();
+    };
+    struct Release {
+        void operator()(Block* block) const;
+    };
+    std::unique_ptr<Block, Release> block_;
 };
 
 // Does the hull work on one array of points, with scratch memory that it keeps between calls: one kernel a thread.
@@ -34,12 +64,19 @@ public:
     // conv of these vertices; repetitions are allowed.
     Hull build(std::span<const int32_t> vertices);
 
-    // conv(a u b). The hulls' vertices suffice: conv(A u B) = conv(conv(A) u conv(B)).
-    Hull unite(const Hull& a, const Hull& b);
+    // conv(hull u points), points being numbers of vertices. For two hulls: conv(A u B) = conv(A u vertices of conv(B)).
+    Hull unite(const Hull& hull, std::span<const int32_t> points);
 
-    // The volume of conv(a u b), without building it where it can be had for less. What had to be built is kept for a
-    // unite() of the same two objects that follows: they must not change in between.
-    double united_volume(const Hull& a, const Hull& b);
+    struct Measure {
+        double volume;
+        bool exact;  // else it is a lower bound
+    };
+
+    // The volume of conv(hull u points), without building it where it can be had for less; or, once it is seen to be
+    // more than enough, a lower bound above enough. What had to be built is kept for a unite() of the same arguments
+    // that follows.
+    Measure united_volume(const Hull& hull, std::span<const int32_t> points,
+                          double enough = std::numeric_limits<double>::infinity());
 
     // The lower and upper corner of the hull's bounding box.
     std::pair<Point, Point> bounds(const Hull& hull) const;

@@ -26,9 +26,14 @@ std::vector<int32_t> numbers(size_t from, size_t to) {
     return n;
 }
 
-std::vector<int32_t> sorted(std::vector<int32_t> v) {
-    std::sort(v.begin(), v.end());
-    return v;
+std::vector<int32_t> list(std::span<const int32_t> numbers) { return {numbers.begin(), numbers.end()}; }
+
+Hull unite(HullKernel& kernel, const Hull& a, const Hull& b) { return kernel.unite(a, b.vertices()); }
+
+double united_volume(HullKernel& kernel, const Hull& a, const Hull& b) {
+    const HullKernel::Measure measure = kernel.united_volume(a, b.vertices());
+    EXPECT_TRUE(measure.exact);
+    return measure.volume;
 }
 
 // What a volume may be off by: the points' spread cubed times a few roundings. Spread, not size: six_volumes() works on
@@ -48,7 +53,8 @@ void expect_convex_boundary(const Hull& hull, const Points& points, const std::v
     std::set<std::pair<int32_t, int32_t>> edges;
     std::set<int32_t> used;
     const auto at = [&](int32_t v) -> const Point& { return points[static_cast<size_t>(v)]; };
-    for (const Triangle& f : hull.facets) {
+    for (const HullFacet& facet : hull.facets()) {
+        const Triangle& f = facet.corners;
         for (size_t k = 0; k < 3; ++k) {
             ASSERT_TRUE(edges.emplace(f[k], f[(k + 1) % 3]).second) << "an edge twice in the same direction";
             used.insert(f[k]);
@@ -57,18 +63,18 @@ void expect_convex_boundary(const Hull& hull, const Points& points, const std::v
         for (const int32_t v : members) ASSERT_LE(orientation(at(f[0]), at(f[1]), at(f[2]), at(v)), 0);
     }
     for (const auto& [a, b] : edges) ASSERT_TRUE(edges.contains({b, a})) << "an open edge";
-    ASSERT_EQ(hull.neighbours.size(), hull.facets.size());
-    for (size_t f = 0; f < hull.facets.size(); ++f)
+    for (const HullFacet& f : hull.facets())
         for (size_t k = 0; k < 3; ++k) {  // across each edge lies the facet that has it the other way round
-            const Triangle& across = hull.facets.at(static_cast<size_t>(hull.neighbours[f][k]));
-            const int32_t from = hull.facets[f][k], to = hull.facets[f][(k + 1) % 3];
+            ASSERT_LT(static_cast<size_t>(f.neighbours[k]), hull.facets().size());
+            const Triangle& across = hull.facets()[static_cast<size_t>(f.neighbours[k])].corners;
+            const int32_t from = f.corners[k], to = f.corners[(k + 1) % 3];
             size_t at_to = 0;
             while (at_to < 2 && across[at_to] != to) ++at_to;
             ASSERT_EQ(across[at_to], to);
             ASSERT_EQ(across[(at_to + 1) % 3], from);
         }
-    ASSERT_EQ(used.size() + hull.facets.size(), edges.size() / 2 + 2) << "not a sphere";
-    ASSERT_EQ(sorted(hull.vertices), std::vector<int32_t>(used.begin(), used.end()));
+    ASSERT_EQ(used.size() + hull.facets().size(), edges.size() / 2 + 2) << "not a sphere";
+    ASSERT_EQ(list(hull.vertices()), std::vector<int32_t>(used.begin(), used.end()));
 }
 
 // Members are numbers of points.
@@ -77,21 +83,21 @@ void expect_hull(const Hull& hull, const Points& points, const std::vector<int32
     for (const int32_t v : members) chosen.push_back(points[static_cast<size_t>(v)]);
     const ReferenceHull reference = reference_hull(chosen);
     if (reference.flat) {
-        EXPECT_TRUE(hull.facets.empty());
-        EXPECT_EQ(hull.volume, 0);
+        EXPECT_TRUE(hull.facets().empty());
+        EXPECT_EQ(hull.volume(), 0);
         std::set<int32_t> all(members.begin(), members.end());
-        EXPECT_EQ(sorted(hull.vertices), std::vector<int32_t>(all.begin(), all.end()));
+        EXPECT_EQ(list(hull.vertices()), std::vector<int32_t>(all.begin(), all.end()));
         return;
     }
     ASSERT_NO_FATAL_FAILURE(expect_convex_boundary(hull, points, members));
     std::vector<Point> extreme, expected;
-    for (const int32_t v : hull.vertices) extreme.push_back(points[static_cast<size_t>(v)]);
+    for (const int32_t v : hull.vertices()) extreme.push_back(points[static_cast<size_t>(v)]);
     for (const int32_t i : reference.extreme) expected.push_back(chosen[static_cast<size_t>(i)]);
     std::sort(extreme.begin(), extreme.end());
     std::sort(expected.begin(), expected.end());
     ASSERT_EQ(extreme, expected);
     const auto volume = static_cast<double>(reference.volume);
-    ASSERT_NEAR(hull.volume, volume, 1e-12 * volume + rounding(chosen));
+    ASSERT_NEAR(hull.volume(), volume, 1e-12 * volume + rounding(chosen));
 }
 
 // Splits the points in two, at random or one from the rest; builds both, unites them, and holds all against CGAL.
@@ -101,13 +107,13 @@ void expect_all(const Points& points, size_t split) {
     const Hull a = kernel.build(left), b = kernel.build(right);
     ASSERT_NO_FATAL_FAILURE(expect_hull(a, points, left)) << "left";
     ASSERT_NO_FATAL_FAILURE(expect_hull(b, points, right)) << "right";
-    const double volume = kernel.united_volume(a, b);
-    const double turned_volume = kernel.united_volume(b, a);
-    const Hull united = kernel.unite(a, b), turned = kernel.unite(b, a);
+    const double volume = united_volume(kernel, a, b);
+    const double turned_volume = united_volume(kernel, b, a);
+    const Hull united = unite(kernel, a, b), turned = unite(kernel, b, a);
     ASSERT_NO_FATAL_FAILURE(expect_hull(united, points, all)) << "united";
     ASSERT_NO_FATAL_FAILURE(expect_hull(turned, points, all)) << "united the other way round";
-    ASSERT_NEAR(volume, united.volume, 1e-12 * united.volume + rounding(points));
-    ASSERT_NEAR(turned_volume, united.volume, 1e-12 * united.volume + rounding(points));
+    ASSERT_NEAR(volume, united.volume(), 1e-12 * united.volume() + rounding(points));
+    ASSERT_NEAR(turned_volume, united.volume(), 1e-12 * united.volume() + rounding(points));
     const Hull direct = kernel.build(all);
     ASSERT_NO_FATAL_FAILURE(expect_hull(direct, points, all)) << "built";
     const auto [low, high] = kernel.bounds(direct);
@@ -212,10 +218,10 @@ TEST_F(HullTest, SinglePointsJoinOneByOne) {
         Hull hull = kernel.build(numbers(0, 4));
         for (size_t n = 4; n < points.size(); ++n) {
             const Hull point = kernel.build(numbers(n, n + 1));
-            const double volume = kernel.united_volume(hull, point);
-            hull = kernel.unite(hull, point);
+            const double volume = united_volume(kernel, hull, point);
+            hull = unite(kernel, hull, point);
             ASSERT_NO_FATAL_FAILURE(expect_hull(hull, points, numbers(0, n + 1)));
-            ASSERT_NEAR(volume, hull.volume, 1e-12 * hull.volume + rounding(points));
+            ASSERT_NEAR(volume, hull.volume(), 1e-12 * hull.volume() + rounding(points));
         }
     }
 }
@@ -268,14 +274,14 @@ TEST_F(HullTest, PointsJoinALargeHullOneByOne) {
         }
         HullKernel kernel(points);
         Hull hull = kernel.build(numbers(0, first));
-        ASSERT_GT(hull.facets.size(), 160U);
+        ASSERT_GT(hull.facets().size(), 160U);
         for (size_t n = first; n < points.size(); ++n) {
             const Hull point = kernel.build(numbers(n, n + 1));
-            const double volume = kernel.united_volume(hull, point);
-            const Hull next = kernel.unite(hull, point);
+            const double volume = united_volume(kernel, hull, point);
+            Hull next = unite(kernel, hull, point);
             ASSERT_NO_FATAL_FAILURE(expect_hull(next, points, numbers(0, n + 1)));
-            ASSERT_NEAR(volume, next.volume, 1e-12 * next.volume);
-            hull = next;
+            ASSERT_NEAR(volume, next.volume(), 1e-12 * next.volume());
+            hull = std::move(next);
         }
     }
 }
@@ -289,20 +295,54 @@ TEST_F(HullTest, AskingForOtherVolumesInBetweenChangesNothing) {
         HullKernel kernel(points);
         const Hull a = kernel.build(numbers(0, 14)), b = kernel.build(numbers(14, 26)),
                    c = kernel.build(numbers(26, 40));
-        (void)kernel.united_volume(a, b);
-        const Hull ac = kernel.unite(a, c);
-        const Hull ab = kernel.unite(a, b);
-        (void)kernel.united_volume(b, c);
-        (void)kernel.united_volume(a, kernel.build(numbers(3, 4)));
-        const Hull bc = kernel.unite(b, c);
+        (void)united_volume(kernel, a, b);
+        const Hull ac = unite(kernel, a, c);
+        const Hull ab = unite(kernel, a, b);
+        (void)united_volume(kernel, b, c);
+        (void)united_volume(kernel, a, kernel.build(numbers(3, 4)));
+        const Hull bc = unite(kernel, b, c);
         std::vector<int32_t> members = numbers(0, 14), tail = numbers(26, 40);
         members.insert(members.end(), tail.begin(), tail.end());
         ASSERT_NO_FATAL_FAILURE(expect_hull(ac, points, members));
         ASSERT_NO_FATAL_FAILURE(expect_hull(ab, points, numbers(0, 26)));
         ASSERT_NO_FATAL_FAILURE(expect_hull(bc, points, numbers(14, 40)));
-        (void)kernel.united_volume(ab, c);
-        ASSERT_NO_FATAL_FAILURE(expect_hull(kernel.unite(ab, c), points, numbers(0, 40)));
+        (void)united_volume(kernel, ab, c);
+        ASSERT_NO_FATAL_FAILURE(expect_hull(unite(kernel, ab, c), points, numbers(0, 40)));
     }
+}
+
+// A volume that is more than enough may be a lower bound, but never a wrong one, and leaves no trace.
+TEST_F(HullTest, EnoughIsALowerBound) {
+    size_t bounds = 0;
+    for (int i = 0; i < sized(300, 60); ++i) {
+        Points points(static_cast<size_t>(whole(12, i % 4 == 0 ? 300 : 40)));
+        for (Point& p : points)
+            for (double& x : p) x = i % 2 == 0 ? whole(0, 4) : real(0, 4);
+        const size_t half = points.size() / 2;
+        HullKernel kernel(points), fresh(points);
+        const Hull a = kernel.build(numbers(0, half)), b = kernel.build(numbers(half, points.size()));
+        if (a.facets().empty()) continue;
+        const double whole_volume = united_volume(kernel, a, b);
+        for (const double part : {0.0, 0.3, 0.7, 0.95, 1.0, 1.1}) {
+            const double enough = a.volume() + part * (whole_volume - a.volume());
+            const HullKernel::Measure measure = kernel.united_volume(a, b.vertices(), enough);
+            if (measure.exact) {
+                EXPECT_NEAR(measure.volume, whole_volume, 1e-12 * whole_volume);
+            } else {
+                EXPECT_GT(measure.volume, enough);
+                EXPECT_LE(measure.volume, whole_volume * (1 + 1e-12));
+                ++bounds;
+            }
+            const Hull united = unite(kernel, a, b);
+            ASSERT_NO_FATAL_FAILURE(expect_hull(united, points, numbers(0, points.size())));
+            // The same hull, facet for facet, as without having asked for the volume.
+            const Hull twin = unite(fresh, fresh.build(numbers(0, half)), b);
+            ASSERT_EQ(united.facets().size(), twin.facets().size());
+            for (size_t f = 0; f < twin.facets().size(); ++f)
+                ASSERT_EQ(united.facets()[f].corners, twin.facets()[f].corners);
+        }
+    }
+    EXPECT_GT(bounds, 100U);
 }
 
 TEST_F(HullTest, OneInsideTheOther) {
@@ -314,9 +354,9 @@ TEST_F(HullTest, OneInsideTheOther) {
                                         : Point{double(whole(0, 4)), double(whole(0, 4)), double(whole(0, 4))});
         HullKernel kernel(points);
         const Hull outer = kernel.build(numbers(0, 8)), inner = kernel.build(numbers(8, 18));
-        EXPECT_NEAR(kernel.united_volume(outer, inner), 64, 1e-12);
-        EXPECT_NEAR(kernel.united_volume(inner, outer), 64, 1e-12);
-        ASSERT_NO_FATAL_FAILURE(expect_hull(kernel.unite(inner, outer), points, numbers(0, 18)));
+        EXPECT_NEAR(united_volume(kernel, outer, inner), 64, 1e-12);
+        EXPECT_NEAR(united_volume(kernel, inner, outer), 64, 1e-12);
+        ASSERT_NO_FATAL_FAILURE(expect_hull(unite(kernel, inner, outer), points, numbers(0, 18)));
     }
 }
 
@@ -335,9 +375,9 @@ TEST_F(HullTest, SharedVerticesAndRepetitions) {
         std::vector<int32_t> both = left;
         both.insert(both.end(), right.begin(), right.end());
         ASSERT_NO_FATAL_FAILURE(expect_hull(a, points, left));
-        const Hull united = kernel.unite(a, b);
+        const Hull united = unite(kernel, a, b);
         ASSERT_NO_FATAL_FAILURE(expect_hull(united, points, both));
-        ASSERT_NEAR(kernel.united_volume(a, b), united.volume, 1e-12 * united.volume + rounding(points));
+        ASSERT_NEAR(united_volume(kernel, a, b), united.volume(), 1e-12 * united.volume() + rounding(points));
     }
 }
 
@@ -354,14 +394,14 @@ TEST_F(HullTest, ManyTouchingTetrahedra) {
         for (size_t i = 1; i < order.size(); ++i) {
             const auto& tet = mesh.tetrahedra[static_cast<size_t>(order[i])];
             const Hull next = kernel.build(tet);
-            const double volume = kernel.united_volume(hull, next);
-            hull = kernel.unite(hull, next);
+            const double volume = united_volume(kernel, hull, next);
+            hull = unite(kernel, hull, next);
             members.insert(members.end(), tet.begin(), tet.end());
-            ASSERT_NEAR(volume, hull.volume, 1e-12);
+            ASSERT_NEAR(volume, hull.volume(), 1e-12);
             ASSERT_NO_FATAL_FAILURE(expect_hull(hull, mesh.vertices, members));
         }
-        EXPECT_EQ(hull.vertices.size(), 8);
-        EXPECT_NEAR(hull.volume, 12, 1e-12);
+        EXPECT_EQ(hull.vertices().size(), 8);
+        EXPECT_NEAR(hull.volume(), 12, 1e-12);
     }
 }
 
@@ -372,9 +412,13 @@ TEST_F(HullTest, SameEveryTime) {
     HullKernel used(points), fresh(points);
     for (size_t n = 4; n < 40; ++n) (void)used.build(numbers(0, n));
     const Hull a = used.build(numbers(10, 100)), b = fresh.build(numbers(10, 100));
-    EXPECT_EQ(a.vertices, b.vertices);
-    EXPECT_EQ(a.facets, b.facets);
-    EXPECT_EQ(a.volume, b.volume);
+    EXPECT_EQ(list(a.vertices()), list(b.vertices()));
+    ASSERT_EQ(a.facets().size(), b.facets().size());
+    for (size_t f = 0; f < a.facets().size(); ++f) {
+        EXPECT_EQ(a.facets()[f].corners, b.facets()[f].corners);
+        EXPECT_EQ(a.facets()[f].neighbours, b.facets()[f].neighbours);
+    }
+    EXPECT_EQ(a.volume(), b.volume());
 }
 
 }  // namespace
