@@ -43,7 +43,9 @@ require_version(Eigen "${found}" 3.4 "${EIGEN_INCLUDE}")
 add_library(partwheel_cgal INTERFACE)
 target_include_directories(partwheel_cgal SYSTEM INTERFACE "${CGAL_INCLUDE}" "${BOOST_INCLUDE}" "${EIGEN_INCLUDE}")
 # Without GMP and MPFR there is nothing to ship beside the library, and numbers are the same everywhere.
-target_compile_definitions(partwheel_cgal INTERFACE CGAL_DISABLE_GMP=1 CGAL_DISABLE_MPFR=1)
+# CGAL's own checks stay on in a release: broken meshes then end in an exception, not in a crash.
+target_compile_definitions(partwheel_cgal INTERFACE CGAL_DISABLE_GMP=1 CGAL_DISABLE_MPFR=1 CGAL_DEBUG=1
+                                                   CGAL_NO_WARNINGS=1)
 
 if(PARTWHEEL_SYSTEM_TETGEN)
   find_path(TETGEN_INCLUDE tetgen.h)

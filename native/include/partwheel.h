@@ -207,7 +207,8 @@ typedef struct pw_summary {
     pw_rung rung;          /* how the surface used came from the caller's */
     double deviation;      /* the largest distance from the caller's surface to the one used, relative to the diagonal of
                               the caller's bounding box: 0 on the exact rung, else measured at points of every triangle
-                              that are at most 1/200 of the diagonal apart */
+                              about 1/100 of the diagonal apart. Parts of the caller's surface that lie inside the
+                              solid, such as the back of an eye, count as well */
 } pw_summary;
 
 PW_API pw_status pw_hierarchy_summary(const pw_hierarchy *hierarchy, pw_summary *summary);

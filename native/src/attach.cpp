@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <vector>
 
 namespace partwheel {
@@ -21,6 +22,9 @@ using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_triangle_primi
 // Beyond so many samples of one mesh they stand further apart.
 constexpr double most_samples = 1e6;
 
+// A distance of less than this, relative to the diagonal, is none.
+constexpr double rounding = 1e-12;
+
 Kernel::Point_3 to_cgal(const Point& p) { return {p[0], p[1], p[2]}; }
 
 double length(const Point& p) { return std::sqrt(dot(p, p)); }
@@ -32,9 +36,16 @@ double diagonal(const Surface& source) {
     return length(high);
 }
 
+// By the parity of crossings along a ray in a direction that no model is likely to be built along. Not exact: it is
+// asked of many samples, and only of those far from the surface.
+bool is_outside(const Tree& tree, const Point& p) {
+    const Kernel::Ray_3 ray(to_cgal(p), Kernel::Vector_3(0.5377, 0.3141, 0.7823));
+    return tree.number_of_intersected_primitives(ray) % 2 == 0;
+}
+
 }  // namespace
 
-void attach(const Surface& source, Surface& surface, Progress& progress) {
+double attach(const Surface& source, Surface& surface, Progress& progress) {
     Triangles triangles;
     for (const Triangle& t : surface.triangles) {
         const auto at = [&](size_t k) { return to_cgal(surface.vertices[static_cast<size_t>(t[k])]); };
@@ -48,10 +59,12 @@ void attach(const Surface& source, Surface& surface, Progress& progress) {
     const double size = diagonal(source);
     const double spacing = std::max(size * sample_spacing, std::sqrt(2 * area / most_samples));
     Tree::Point_and_primitive_id nearest(triangles[0].vertex(0), triangles.begin());
-    double farthest = 0;
+    double farthest = 0, outside = near_enough * size;
     const auto find = [&](const Point& p) {
         nearest = tree.closest_point_and_primitive(to_cgal(p), nearest);
-        farthest = std::max(farthest, CGAL::squared_distance(nearest.first, to_cgal(p)));
+        const double distance = std::sqrt(CGAL::squared_distance(nearest.first, to_cgal(p)));
+        farthest = std::max(farthest, distance);
+        if (distance > outside && is_outside(tree, p)) outside = distance;
         return static_cast<int32_t>(nearest.second - triangles.begin());
     };
 
@@ -74,7 +87,14 @@ void attach(const Surface& source, Surface& surface, Progress& progress) {
             }
     }
     surface.face_count = source.face_count;
-    surface.deviation = std::sqrt(farthest) / size;
+    surface.deviation = farthest < rounding * size ? 0 : farthest / size;
+    return outside > near_enough * size ? outside / size : 0;
+}
+
+std::string percent(double share) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2g %%", 100 * share);
+    return text;
 }
 
 }  // namespace partwheel

@@ -4,6 +4,8 @@
 #include "repair.h"
 #include "wrap.h"
 
+#include <CGAL/assertions.h>
+
 namespace partwheel {
 
 namespace {
@@ -24,6 +26,23 @@ bool may_go_on(const Error& error) {
     }
 }
 
+Solid step(const Surface& source, pw_rung rung, const LadderOptions& options, Progress& progress) {
+    Solid solid;
+    if (rung == PW_RUNG_EXACT) check_surface(source, progress);
+    progress.enter(PW_STAGE_REPAIR);
+    try {
+        if (rung == PW_RUNG_EXACT) solid.surface = source;
+        if (rung == PW_RUNG_REPAIRED) solid.surface = repair(source, progress);
+        if (rung == PW_RUNG_WRAPPED) solid.surface = wrap(source, options.open_surfaces, progress);
+    } catch (const CGAL::Failure_exception&) {  // an assertion of CGAL's
+        throw Error(PW_ERROR_SELF_INTERSECTION,
+                    "The mesh is too broken to be repaired or wrapped. Remesh it and try again.");
+    }
+    progress.enter(PW_STAGE_TETRAHEDRA);
+    solid.mesh = tetrahedralize(solid.surface, options.quality, progress);
+    return solid;
+}
+
 }  // namespace
 
 Solid climb(const MeshView& mesh, const LadderOptions& options, Progress& progress) {
@@ -34,15 +53,7 @@ Solid climb(const MeshView& mesh, const LadderOptions& options, Progress& progre
     for (const pw_rung rung : {PW_RUNG_EXACT, PW_RUNG_REPAIRED, PW_RUNG_WRAPPED}) {
         if (!(rungs & rung)) continue;
         try {
-            Solid solid;
-            if (rung == PW_RUNG_EXACT) check_surface(source, progress);
-            progress.enter(PW_STAGE_REPAIR);
-            if (rung == PW_RUNG_EXACT) solid.surface = source;
-            if (rung == PW_RUNG_REPAIRED) solid.surface = repair(source, progress);
-            if (rung == PW_RUNG_WRAPPED) solid.surface = wrap(source, options.open_surfaces, progress);
-            progress.enter(PW_STAGE_TETRAHEDRA);
-            solid.mesh = tetrahedralize(solid.surface, options.quality, progress);
-            return solid;
+            return step(source, rung, options, progress);
         } catch (const Error& error) {
             const bool last = rungs < 2U * static_cast<uint32_t>(rung);
             if (last || !may_go_on(error)) throw;

@@ -14,6 +14,7 @@
 #include <CGAL/boost/graph/Euler_operations.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -39,6 +40,7 @@ void read_soup(const Surface& source, std::vector<CgalPoint>& points, std::vecto
         if (v == 0 || p != source.vertices[v - 1]) points.emplace_back(p[0], p[1], p[2]);
         number.push_back(points.size() - 1);
     }
+    done.merged = number.size() - points.size();
     std::set<Corners> known;
     for (const Triangle& t : source.triangles) {
         const auto at = [&](size_t k) { return source.vertices[static_cast<size_t>(t[k])]; };
@@ -86,7 +88,15 @@ CgalMesh oriented(std::vector<CgalPoint> points, std::vector<Corners> triangles,
     return mesh;
 }
 
-double area_of(const CgalMesh& mesh, const std::vector<Face>& faces) { return pmp::area(faces, mesh); }
+double volume_of(const CgalMesh& mesh, const std::vector<Face>& faces) {
+    double volume = 0;
+    for (const Face f : faces) {
+        const auto h = mesh.halfedge(f);
+        volume += CGAL::volume(CgalPoint(CGAL::ORIGIN), mesh.point(mesh.source(h)), mesh.point(mesh.target(h)),
+                               mesh.point(mesh.target(mesh.next(h))));
+    }
+    return volume;
+}
 
 // The faces that close a hole, or none if that fails.
 std::vector<Face> fill(CgalMesh& mesh, Halfedge rim) {
@@ -123,7 +133,9 @@ void fill_holes(Mended& mended, Progress& progress) {
         ++holes[p];
     }
     for (size_t p = 0; p < parts; ++p) {
-        const bool sheet = area_of(mesh, patch[p]) > sheet_share * area_of(mesh, own[p]);
+        const double area = pmp::area(own[p], mesh), added = pmp::area(patch[p], mesh);
+        const double volume = std::fabs(volume_of(mesh, own[p]) + volume_of(mesh, patch[p]));
+        const bool sheet = added > sheet_area * area && volume < sheet_volume * std::pow(area + added, 1.5);
         ++(sheet ? mended.sheets : mended.solids);
         if (!sheet) mended.done.holes += holes[p];
         if (sheet)
@@ -134,17 +146,17 @@ void fill_holes(Mended& mended, Progress& progress) {
 
 }  // namespace
 
-std::string Mending::account() const {
-    std::string text;
-    const auto add = [&](size_t n, const char* one, const char* many) {
-        if (n) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + (n == 1 ? one : many);
-    };
-    add(dropped, "triangle without area or doubled left out", "triangles without area or doubled left out");
-    add(split, "vertex split", "vertices split");
-    add(turned, "triangle turned round", "triangles turned round");
-    add(stitched, "pair of edges stitched", "pairs of edges stitched");
-    add(holes, "hole filled", "holes filled");
-    return text.empty() ? "nothing" : text;
+void Account::add(size_t count, const char* one, const char* many) {
+    if (count) text_ += (text_.empty() ? "" : ", ") + std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+void Mending::tell(Account& account) const {
+    account.add(merged, "vertex merged with another", "vertices merged with others");
+    account.add(dropped, "triangle without area or doubled left out", "triangles without area or doubled left out");
+    account.add(split, "vertex split", "vertices split");
+    account.add(turned, "triangle turned round", "triangles turned round");
+    account.add(stitched, "pair of edges stitched", "pairs of edges stitched");
+    account.add(holes, "hole filled", "holes filled");
 }
 
 Mended mend(const Surface& source, Progress& progress) {
