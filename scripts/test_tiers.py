@@ -67,8 +67,8 @@ def threads():
 
 
 def determinism():
-    """The same bits from g++ and clang, optimized or not, in one thread or two."""
-    for preset in ("release", "clang", "unoptimized"):
+    """The same bits from g++ and clang, optimized or not, with AVX2 or without, in one thread or two."""
+    for preset in ("release", "clang", "avx2", "unoptimized"):
         build("determinism", preset, "partwheel")
     return pytest("determinism", "tests/determinism")
 
@@ -80,8 +80,9 @@ def core():
 
 
 def reliability():
-    """Every model there is: built, or refused with a named error, and no crash."""
+    """Every model there is: built, or a sheet and named so, and no crash; a table in build/test."""
     build("reliability", "release", "partwheel")
+    setup("reliability", "setup_blender")  # whose primitives are among the models
     return pytest("reliability", "tests/reliability")
 
 
