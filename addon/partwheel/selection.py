@@ -25,8 +25,9 @@ class Selection:
     method. Masks are (n,) bool, one for each vertex, edge or face of the mesh.
     """
 
-    def __init__(self, obj):
-        mesh = mesh_arrays.up_to_date(obj)
+    def __init__(self, obj, mesh=None):
+        """mesh: the object's, if that is known to be up to date."""
+        mesh = mesh or mesh_arrays.up_to_date(obj)
         bm = bmesh.from_edit_mesh(mesh)
         for kind in KINDS:
             _sequence(bm, kind).index_update()
@@ -36,12 +37,9 @@ class Selection:
         self.visible = ~mesh_arrays.read(mesh.polygons, "hide", bool)
         corners = mesh_arrays.read(mesh.polygons, "loop_total", np.int32)
         self.loop_face = np.repeat(np.arange(len(mesh.polygons)), corners)
-        self.loop_element = {
-            "VERT": mesh_arrays.read(mesh.loops, "vertex_index", np.int32),
-            "EDGE": mesh_arrays.read(mesh.loops, "edge_index", np.int32),
-            "FACE": self.loop_face,
-        }
         self.kind = next(kind for kind in KINDS if kind in bm.select_mode)
+        index = {"VERT": "vertex_index", "EDGE": "edge_index"}.get(self.kind)
+        self.loop_element = mesh_arrays.read(mesh.loops, index, np.int32) if index else self.loop_face
         self.now = self.before[self.kind]
 
     def fits(self, obj):
@@ -59,7 +57,7 @@ class Selection:
         chosen[faces] = True
         chosen &= self.visible
         target = np.zeros_like(self.now)
-        target[self.loop_element[self.kind][chosen[self.loop_face]]] = True
+        target[self.loop_element[chosen[self.loop_face]]] = True
         if extend:
             target |= self.before[self.kind]
         bm = bmesh.from_edit_mesh(obj.data)

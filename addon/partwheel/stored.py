@@ -14,8 +14,10 @@ from .mesh_arrays import Fingerprint
 
 PROPERTY = "partwheel"
 MAGIC, VERSION = b"PWPARTS\0", 1
-HEADER = struct.Struct("<8sI16s16s16sQ")  # magic, version, hash of all that follows, fingerprint, unpacked size
-HASHED_FROM = struct.calcsize("<8sI16s")
+# Magic, version, fingerprint, unpacked size, hash of these. What follows has hashes of its own: zlib's, and that of the
+# saved hierarchy.
+HEADER = struct.Struct("<8sI16s16sQ")
+HASH_SIZE = 16
 # Saved hierarchies shrink to 0.6; what promises to grow more than this is made to fill the memory.
 MOST_GROWTH = 64
 
@@ -26,31 +28,36 @@ class Refused(Exception):
 
 def pack(fingerprint, hierarchy):
     saved = hierarchy.save()
-    rest = HEADER.pack(b"", 0, b"", *fingerprint, len(saved))[HASHED_FROM:] + zlib.compress(saved, 1)
-    return struct.pack("<8sI16s", MAGIC, VERSION, _hash(rest)) + rest
+    header = HEADER.pack(MAGIC, VERSION, *fingerprint, len(saved))
+    return header + _hash(header) + zlib.compress(saved, 1)
 
 
 def unpack(data, topology, face_count):
     """(Fingerprint when it was built, Hierarchy). Raises Refused."""
-    if not isinstance(data, bytes) or len(data) < HEADER.size or not data.startswith(MAGIC):
+    start = HEADER.size + HASH_SIZE
+    if not isinstance(data, bytes) or len(data) < start or not data.startswith(MAGIC):
         raise Refused("it is not ours")
-    _, version, digest, *fingerprint, size = HEADER.unpack_from(data)
+    _, version, *fingerprint, size = HEADER.unpack_from(data)
     fingerprint = Fingerprint(*fingerprint)
     if version != VERSION:
         raise Refused("it is of another version")
-    if digest != _hash(data[HASHED_FROM:]) or size > MOST_GROWTH * len(data):
+    if _hash(data[:HEADER.size]) != data[HEADER.size:start] or size > MOST_GROWTH * len(data):
         raise Refused("it is damaged")
     if fingerprint.topology != topology:
         raise Refused("the mesh has changed since")
     try:
-        saved = zlib.decompressobj().decompress(memoryview(data)[HEADER.size:], size)
+        inflate = zlib.decompressobj()
+        saved = inflate.decompress(memoryview(data)[start:], size)
+        # Only the end of the stream brings zlib's own check.
+        if len(saved) != size or inflate.decompress(inflate.unconsumed_tail, 1) or not inflate.eof or inflate.unused_data:
+            raise Refused("it is damaged")
         hierarchy = Hierarchy.load(saved)
     except (zlib.error, PartwheelError) as error:
         raise Refused("it is damaged, or of another version") from error
-    if len(saved) != size or len(hierarchy.order) != face_count:
+    if len(hierarchy.order) != face_count:
         raise Refused("it is damaged")
     return fingerprint, hierarchy
 
 
 def _hash(data):
-    return hashlib.blake2b(data, digest_size=16).digest()
+    return hashlib.blake2b(data, digest_size=HASH_SIZE).digest()

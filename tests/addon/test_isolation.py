@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whatever befalls the worker process, Blender's session and selection are as before, and the error is shown."""
 
+import contextlib
 import os
 import signal
 import sys
@@ -91,18 +92,19 @@ class Isolation(MeshTest):
         for number in (signal.SIGKILL, signal.SIGTERM):
             killed = []
 
-            def kill():
-                while session.running():
-                    if session._running.job.process_id not in killed:
-                        killed.append(session._running.job.process_id)
-                        os.kill(killed[-1], number)
+            def kill(job):
+                while job.poll():
+                    if job.process_id not in killed:
+                        killed.append(job.process_id)
+                        with contextlib.suppress(ProcessLookupError):  # it may just have ended
+                            os.kill(killed[-1], number)
 
             build, original = session.Build, session.Build.__init__
 
             def begin(self, *arguments, **options):
                 original(self, *arguments, **options)
                 until(lambda: self.job.process_id)
-                threading.Thread(target=kill).start()
+                threading.Thread(target=kill, args=[self.job]).start()
 
             build.__init__ = begin
             try:

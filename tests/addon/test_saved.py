@@ -183,7 +183,7 @@ class Saved(MeshTest):
         obj = self.built("cross_quad")
         stored, session = part("stored"), part("session")
         packed = stored.pack(part("mesh_arrays").fingerprint(obj.data), self.kept(obj))
-        self.assertEqual(len(stored.unpack(packed, packed[28:44], len(obj.data.polygons))[1].order),
+        self.assertEqual(len(stored.unpack(packed, packed[12:28], len(obj.data.polygons))[1].order),
                          len(obj.data.polygons))
         session._entries.clear()
         obj.data[stored.PROPERTY] = change(packed)
@@ -209,12 +209,12 @@ class Saved(MeshTest):
             return packed[:place] + bytes([packed[place] ^ 1 << draw.randrange(8)]) + packed[place + 1:]
 
         def forged(packed, topology=None, size=None, saved=None):
-            """With a right hash over wrong contents."""
+            """With a right hash over a wrong header, or a sound stream of other bytes."""
+            start = stored.HEADER.size + stored.HASH_SIZE
             head = list(stored.HEADER.unpack_from(packed))
-            saved = zlib.decompress(packed[stored.HEADER.size:]) if saved is None else saved
-            rest = stored.HEADER.pack(b"", 0, b"", topology or head[3], head[4], size or len(saved))[
-                stored.HASHED_FROM:] + zlib.compress(saved, 1)
-            return packed[:12] + stored._hash(rest) + rest
+            saved = zlib.decompress(packed[start:]) if saved is None else saved
+            header = stored.HEADER.pack(*head[:2], topology or head[2], head[3], size or len(saved))
+            return header + stored._hash(header) + zlib.compress(saved, 1)
 
         box = part("core").Hierarchy.build(BOX[0], [t for a, b, c, d in BOX[1] for t in ((a, b, c), (a, c, d))])
         self.assertIsNotNone(self.after_tampering(forged))  # forging alone changes nothing

@@ -17,6 +17,16 @@ def read_off(path):
     return vertices, numpy.ascontiguousarray(faces[:, 1:])
 
 
+def subdivided(vertices, triangles):
+    """Each triangle cut into four at the middles of its sides."""
+    sides = numpy.sort(numpy.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]))
+    sides, middle = numpy.unique(sides, axis=0, return_inverse=True)
+    (a, b, c), (ab, bc, ca) = triangles.T, len(vertices) + middle.reshape(3, -1)
+    corners = [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
+    return (numpy.vstack([vertices, vertices[sides].mean(axis=1)]),
+            numpy.vstack([numpy.column_stack(three) for three in corners]).astype(numpy.int32))
+
+
 class Wheels:
     """The wheel stops of every face, from the file that run.py wrote (see prepare_models there)."""
 

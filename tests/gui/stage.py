@@ -1,10 +1,12 @@
 """The stage that scenarios play on: opens models in Blender's window, sends events, waits, checks, takes pictures.
 
-A scenario is a generator, play(stage), advanced by a Blender timer. It yields (what, predicate) to let Blender run
-until predicate() holds, mostly through the methods below: `yield from stage.selected(faces, "after the click")`.
+A scenario is a generator, play(stage), advanced by a Blender timer. It yields (what, predicate, seconds) to let Blender
+run until predicate() holds, for so many seconds at most, mostly through the methods below:
+`yield from stage.selected(faces, "after the click")`.
 """
 import json
 import subprocess
+import sys
 import time
 import traceback
 
@@ -21,7 +23,7 @@ WAIT = 40  # seconds until something that should happen counts as not happening
 TICK = 0.01
 FILL = 0.8  # share of the viewport's height or width that an opened model takes
 # How each model is looked at, in its own space: the rotation that the view has (w, x, y, z).
-VIEWS = {"hand": (0.7071, 0.7071, 0, 0), "homer": (1, 0, 0, 0)}
+VIEWS = {"hand": (0.7071, 0.7071, 0, 0), "homer": (1, 0, 0, 0), "bear": (1, 0, 0, 0), "large": (0, 0, 1, 0)}
 
 
 class Failure(Exception):
@@ -51,10 +53,10 @@ class Stage:
                     what, predicate, deadline = waiting
                     if not predicate():
                         if time.monotonic() > deadline:
-                            raise Failure(f"{_text(what)}: not seen within {WAIT} s")
+                            raise Failure(f"{_text(what)}: not seen in time")
                         return TICK
-                what, predicate = next(steps)
-                waiting = what, predicate, time.monotonic() + WAIT
+                what, predicate, seconds = next(steps)
+                waiting = what, predicate, time.monotonic() + seconds
                 return TICK
             except StopIteration:
                 self._end("")
@@ -66,15 +68,20 @@ class Stage:
                 self._end(f"{type(error).__name__}: {error}")
             return None
 
-        bpy.app.timers.register(tick)
+        bpy.app.timers.register(tick, persistent=True)  # over the opening of files
 
     def _all(self, scenario):
-        yield "a first draw of the 3D viewport", lambda: self._draws > 0
+        yield "a first draw of the 3D viewport", lambda: self._draws > 0, WAIT
         self.mouse = DRIVERS[self._driver](self.window)
         yield from scenario(self)
 
     def _drawn(self):
         self._draws += 1
+
+    @property
+    def draws(self):
+        """How often the viewport has been drawn so far."""
+        return self._draws
 
     def _end(self, failure):
         self._result.write_text(json.dumps({"failure": failure, "checks": self.checks}))
@@ -156,10 +163,16 @@ class Stage:
         """What navigation changes: (view matrix, distance) as plain numbers."""
         return [tuple(row) for row in self.view_3d.view_matrix], self.view_3d.view_distance
 
+    @property
+    def session(self):
+        """The add-on's module that knows what is built, and what is being built."""
+        name = bpy.types.VIEW3D_PT_partwheel.__module__.rpartition(".ui.")[0]
+        return sys.modules[f"{name}.session"]
+
     # ---- Setting the scene ----------------------------------------------------------------------------------------
 
     def open(self, name, mode="FACE", build=True):
-        """Makes the model the only object: in Edit Mode, in this select mode, framed, with its hierarchy built."""
+        """Makes the model the only object: in Edit Mode, in this select mode, framed; with its hierarchy, if build."""
         self.wheels = Wheels(self._work / f"{name}.npz")
         for each in list(bpy.data.objects):
             bpy.data.objects.remove(each)
@@ -180,6 +193,8 @@ class Stage:
             self.window.scene.tool_settings.mesh_select_mode = [mode == each for each in ("VERT", "EDGE", "FACE")]
             if build:
                 bpy.ops.mesh.partwheel_build()
+            else:
+                self.session._after_loading()  # or the parts of the same model, opened before, would serve
         self.view_3d.view_rotation = model.matrix_world.to_quaternion() @ Quaternion(VIEWS[name])
         self.view_3d.view_perspective = "PERSP"
         self.view_3d.view_location = model.matrix_world @ Vector((low + high) / 2)
@@ -232,6 +247,16 @@ class Stage:
         self.check(view.face_around(x, y, 20) is None and view.face_at(x, y) is None, "the empty spot is empty")
         return x, y
 
+    def pick(self, x, y, above=0):
+        """Starts the tool by its key over spot(x, y, above) and waits for its part: (face, its wheel's stops, the index
+        of the first)."""
+        px, py, face = self.spot(x, y, above)
+        stops, start = self.wheels.stops(face)
+        self.mouse.move(px, py)
+        self.shortcut("mesh.partwheel_select")
+        yield from self.selected(stops[start], "after the start")
+        return face, stops, start
+
     # ---- Waiting and checking -------------------------------------------------------------------------------------
 
     def check(self, truth, what):
@@ -239,8 +264,8 @@ class Stage:
             raise Failure(f"{_text(what)}: does not hold")
         self.checks += 1
 
-    def until(self, what, predicate):
-        yield what, predicate
+    def until(self, what, predicate, seconds=WAIT):
+        yield what, predicate, seconds
         self.checks += 1
 
     def settle(self):
@@ -250,7 +275,7 @@ class Stage:
         should it come later still, such a check could pass wrongly, never fail wrongly.
         """
         target = self._ticks + (2 if self._driver == "simulate" else 10)
-        yield "events handled", lambda: self._ticks >= target
+        yield "events handled", lambda: self._ticks >= target, WAIT
 
     def drag(self, button, dx, dy, **modifiers):
         """Drags the mouse from where it is. Waits in between: Blender gives all events that it finds at once the same
@@ -269,9 +294,9 @@ class Stage:
         for _ in range(2):
             target = self._draws + 1
             self.area.tag_redraw()
-            yield "the viewport is drawn", lambda: self._draws >= target
+            yield "the viewport is drawn", lambda: self._draws >= target, WAIT
 
-    def selected(self, faces, when):
+    def selected(self, faces, when, seconds=WAIT):
         """Waits until exactly these faces are selected, then checks that they stay so. In the vertex and edge select
         modes: until exactly their vertices, or edges, are."""
         kind = self.kind()
@@ -282,7 +307,7 @@ class Stage:
             return (f"{when}, exactly {len(expected)} {kind} selected"
                     f" (now {len(now)}: {len(now - expected)} too many, {len(expected - now)} missing)")
 
-        yield difference, lambda: self.selection(kind) == expected
+        yield difference, lambda: self.selection(kind) == expected, seconds
         yield from self.settle()
         self.check(self.selection(kind) == expected, difference)
 
@@ -302,6 +327,10 @@ class Stage:
         """Saves the screen as build/gui/SCENARIO-NAME.png once all is drawn; returns its path."""
         yield from self.drawn()
         return self._picture(name)
+
+    def file(self, name):
+        """A path for a file that the scenario makes; it is gone after the run."""
+        return self._work / name
 
     def _picture(self, name):
         path = self._pictures.with_name(f"{self._pictures.name}-{name}.png")

@@ -63,7 +63,8 @@ class MESH_OT_partwheel_select(bpy.types.Operator):
         except PartwheelError as error:
             self.report({"ERROR"}, f"Face {self.face_index} can't be picked: {error}")
             return {"CANCELLED"}
-        Selection(obj).select(obj, hierarchy.faces(picked.node), picked.face, self.extend)
+        # The hierarchy was asked for, so the mesh is up to date.
+        Selection(obj, obj.data).select(obj, hierarchy.faces(picked.node), picked.face, self.extend)
         return {"FINISHED"}
 
     # ---- With the mouse --------------------------------------------------------------------------------------------

@@ -5,11 +5,7 @@ import bpy
 def play(stage):
     yield from stage.open("hand")
     stage.select([3])
-    x, y, face = stage.spot(0.5, 0.9, above=2)
-    stops, start = stage.wheels.stops(face)
-    stage.mouse.move(x, y)
-    stage.shortcut("mesh.partwheel_select")
-    yield from stage.selected(stops[start], "after the start")
+    face, stops, start = yield from stage.pick(0.5, 0.9, above=2)
     stage.mouse.wheel(1)
     stage.mouse.key("RET")
     yield from stage.selected(stops[start + 1], "after a notch up and Enter")

@@ -5,11 +5,7 @@ def play(stage):
     yield from stage.open("hand", build=False)
     parts = [frozenset()]
     for key, place in (("RET", (0.5, 0.9)), ("NUMPAD_ENTER", (0.9, 0.6))):
-        x, y, face = stage.spot(*place, above=1)
-        stops, start = stage.wheels.stops(face)
-        stage.mouse.move(x, y)
-        stage.shortcut("mesh.partwheel_select")
-        yield from stage.selected(stops[start], "after the start")
+        _, stops, start = yield from stage.pick(*place, above=1)
         stage.mouse.wheel(1)
         yield from stage.selected(stops[start + 1], "after a notch up")
         stage.mouse.key(key)

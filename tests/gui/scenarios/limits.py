@@ -3,12 +3,8 @@
 
 def play(stage):
     yield from stage.open("hand")
-    x, y, face = stage.spot(0.5, 0.9)
-    stops, start = stage.wheels.stops(face)
+    _, stops, start = yield from stage.pick(0.5, 0.9)
     last = len(stops) - 1
-    stage.mouse.move(x, y)
-    stage.shortcut("mesh.partwheel_select")
-    yield from stage.selected(stops[start], "after the start")
     stage.mouse.wheel(last - start)
     yield from stage.selected(stops[last], "after as many notches as lead to the top")
     stage.check(stops[last] == frozenset(range(len(stage.wheels.triangles))), "the top is the whole object")

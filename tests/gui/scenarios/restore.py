@@ -17,11 +17,7 @@ def once(stage, mode, way):
     former = stage.whole_selection()
     stage.check(former != earlier and former["active"] is not None, "there is a selection with an active element")
 
-    x, y, face = stage.spot(0.5, 0.9, above=2)
-    stops, start = stage.wheels.stops(face)
-    stage.mouse.move(x, y)
-    stage.shortcut("mesh.partwheel_select")
-    yield from stage.selected(stops[start], "after the start")
+    _, stops, start = yield from stage.pick(0.5, 0.9, above=2)
     stage.mouse.wheel(2)
     yield from stage.selected(stops[start + 2], "after two notches up")
     if way == "ESC":

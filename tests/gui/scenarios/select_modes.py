@@ -4,11 +4,7 @@
 def play(stage):
     for mode in ("VERT", "EDGE"):
         yield from stage.open("hand", mode)
-        x, y, face = stage.spot(0.5, 0.9, above=2)
-        stops, start = stage.wheels.stops(face)
-        stage.mouse.move(x, y)
-        stage.shortcut("mesh.partwheel_select")
-        yield from stage.selected(stops[start], "after the start")
+        _, stops, start = yield from stage.pick(0.5, 0.9, above=2)
         stage.mouse.wheel(2)
         yield from stage.selected(stops[start + 2], "after two notches up")
         stage.mouse.wheel(-1)

@@ -3,11 +3,7 @@
 
 def play(stage):
     yield from stage.open("homer")
-    x, y, face = stage.spot(0.97, 0.62)
-    stops, start = stage.wheels.stops(face)
-    stage.mouse.move(x, y)
-    stage.shortcut("mesh.partwheel_select")
-    yield from stage.selected(stops[start], "after the start")
+    _, stops, start = yield from stage.pick(0.97, 0.62)
     finger = next(index for index, part in enumerate(stops) if len(part) >= 0.004 * len(stage.wheels.triangles))
     stage.mouse.wheel(finger - start)
     for index in range(finger, len(stops)):
