@@ -75,7 +75,7 @@ class Isolation(MeshTest):
                     self.unharmed(obj, before)
 
     def test_memory_at_each_stage(self):
-        obj, before = self.edited()
+        obj, before = self.edited("hand")
         available = part("session").available_memory
         self.addCleanup(setattr, part("session"), "available_memory", available)
         part("session").available_memory = lambda: 500 * 2**20  # of which preferences allow 80 %

@@ -18,10 +18,10 @@ STATES = {
 }
 BUILD = {State.FITS: "Recompute", State.MOVED: "Recompute", State.CHANGED: "Recompute"}
 RUNGS = {
-    "exact": "From the mesh exactly as it is", "repaired": "From a repaired copy of the mesh",
-    "wrapped": "From a wrap around the mesh",
+    "exact": "From the mesh as it is", "repaired": "From a repaired copy", "wrapped": "From a wrap around it",
 }
-PIXELS_A_LETTER = 6.5  # of Blender's interface font, on average, at a scale of 1
+# Of Blender's interface font, on average, at a scale of 1; and what frames and tabs take of the sidebar's width.
+PIXELS_A_LETTER, PIXELS_BESIDE = 7, 40
 
 
 class VIEW3D_PT_partwheel(bpy.types.Panel):
@@ -61,8 +61,8 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
         column.label(text=f"Built in {seconds:.1f} s" if seconds else "Came with the file")
         column.label(text=RUNGS[hierarchy.summary.rung])
         if hierarchy.account:
-            width = context.region.width / context.preferences.system.ui_scale / PIXELS_A_LETTER
-            for line in textwrap.wrap(hierarchy.account, max(int(width), 20)):
+            width = context.region.width / context.preferences.system.ui_scale - PIXELS_BESIDE
+            for line in textwrap.wrap(hierarchy.account, max(int(width / PIXELS_A_LETTER), 20)):
                 column.label(text=line)
 
 

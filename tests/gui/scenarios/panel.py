@@ -1,7 +1,8 @@
-"""The panel in the sidebar is drawn in Edit Mode and in Object Mode; its button starts the operator, a click picks."""
+"""The panel in the sidebar is drawn in both modes and in every state; its button starts the operator, a click picks."""
+import bmesh
 import bpy
 
-BUTTON = 123  # pixels from the sidebar's top to the middle of the button "Select Part by Wheel"
+BUTTON = 45  # pixels from the sidebar's top to the middle of the button "Select Part by Wheel"
 
 
 def play(stage):
@@ -42,3 +43,32 @@ def play(stage):
     stage.mouse.key("TAB")
     yield from stage.until("the panel is drawn in Object Mode", lambda: "OBJECT" in drawn)
     yield from stage.screenshot("object")
+
+    session = stage.session
+
+    def shown(state, name):
+        yield from stage.until(f"the state is {state.name}", lambda: session.state(stage.object.data)[0] == state)
+        drawn.clear()
+        sidebar.tag_redraw()
+        yield from stage.until("the panel is drawn", lambda: drawn)
+        yield from stage.screenshot(name)
+
+    mesh = stage.object.data
+    mesh.vertices[0].co.x += 0.001
+    mesh.update()
+    sidebar = next(region for region in stage.area.regions if region.type == "UI")
+    yield from shown(session.State.MOVED, "moved")
+    bm = bmesh.new()
+    bm.from_mesh(mesh)
+    bm.faces.ensure_lookup_table()
+    bmesh.ops.delete(bm, geom=[bm.faces[0]], context="FACES_ONLY")
+    bm.to_mesh(mesh)
+    bm.free()
+    yield from shown(session.State.CHANGED, "changed")
+    with stage.override():
+        bpy.ops.mesh.partwheel_build()
+    stage.check(session.hierarchy(stage.object).account != "", "the panel has something to tell")
+    yield from shown(session.State.FITS, "mended")
+    with stage.override():
+        bpy.ops.mesh.partwheel_clear()
+    yield from shown(session.State.NONE, "cleared")
