@@ -49,7 +49,8 @@ def unpack(data, topology, face_count):
         inflate = zlib.decompressobj()
         saved = inflate.decompress(memoryview(data)[start:], size)
         # Only the end of the stream brings zlib's own check.
-        if len(saved) != size or inflate.decompress(inflate.unconsumed_tail, 1) or not inflate.eof or inflate.unused_data:
+        more = inflate.decompress(inflate.unconsumed_tail, 1)
+        if len(saved) != size or more or not inflate.eof or inflate.unused_data:
             raise Refused("it is damaged")
         hierarchy = Hierarchy.load(saved)
     except (zlib.error, PartwheelError) as error:

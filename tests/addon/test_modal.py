@@ -320,7 +320,7 @@ class WhileBuilding(ToolTest):
         self.assertFalse(alive(self.job.process_id))
 
     def test_then_the_clicked_face_is_picked(self):
-        self.begin()
+        self.begin("homer")
         _, _, _, region_view = view()
         shown = []
         while self.job.poll():

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A library that goes wrong on purpose: the real one, save that pw_build() comes to harm in the stage that is asked for.
+// A library that goes wrong on purpose: the real one, save that pw_build() comes to harm in the stage asked for.
 //
 // Linked with the real library, which provides all other functions. PARTWHEEL_FAULT is "FAULT:STAGE", the number of a
 // pw_stage; PARTWHEEL_FAULT_RUNG, if set, spares builds that may not use this rung. The fault happens inside the real
@@ -43,8 +43,11 @@ static void harm(int number) {
     while (!strcmp(fault, "loop")) __asm__ volatile("");
     if (!strcmp(fault, "fill"))
         for (size_t size = 1 << 24; size >= 1 << 12; size >>= 2)
-            for (void *p; (p = mmap(0, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)) != MAP_FAILED;)
-                memset(p, 1, size);
+            for (;;) {
+                void *page = mmap(0, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+                if (page == MAP_FAILED) break;
+                memset(page, 1, size);
+            }
 }
 
 static void *watch(void *unused) {

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The worker process: one surface in by standard input, progress and a saved hierarchy out by standard output.
 
-worker.py starts it by its path, with a bare Python: no numpy, no site-packages, nothing of Blender. Messages are a kind,
-a length and so many bytes. In: B {options, face_count, memory_limit, sizes}, then the arrays' bytes. Out: P [fraction,
-stage] some times a second; in the end S {stage: seconds}, and H saved hierarchy or E {status, message}.
+worker.py starts it by its path, with a bare Python: no numpy, no site-packages, nothing of Blender. Messages are a
+kind, a length and so many bytes. In: B {options, face_count, memory_limit, sizes}, then the arrays' bytes. Out: P
+[fraction, stage] some times a second; in the end S {stage: seconds}, and H saved hierarchy or E {status, message}.
 """
 
 import ctypes
@@ -41,7 +41,7 @@ def main():
 
 
 def end_with_parent():
-    """On Linux even a stopped worker dies with its parent; elsewhere, and always, wait_for_end_of_input() sees to it."""
+    """On Linux even a stopped worker dies with its parent; everywhere else wait_for_end_of_input() sees to it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in a terminal goes to parent and worker: the parent decides
     if sys.platform == "linux":
         set_parent_death_signal = 1
@@ -49,8 +49,8 @@ def end_with_parent():
 
 
 def wait_for_end_of_input():
-    """The parent writes nothing after the arrays: when the pipe ends, the parent has. The build lets go of Python's lock
-    while it is in the library, so this thread runs whatever the library does."""
+    """The parent writes nothing after the arrays: when the pipe ends, the parent has. The build lets go of Python's
+    lock while it is in the library, so this thread runs whatever the library does."""
     while os.read(0, 4096):
         pass
     os._exit(1)

@@ -14,7 +14,8 @@ def play(stage):
     stage.shortcut("mesh.partwheel_select")
     yield from stage.until("a part of several faces is selected", lambda: len(stage.selection()) > 1)
     stage.mouse.wheel(40)
-    yield from stage.until("the wheel reaches the whole", lambda: len(stage.selection()) == len(stage.wheels.triangles) - 1)
+    whole = len(stage.wheels.triangles) - 1
+    yield from stage.until("the wheel reaches the whole", lambda: len(stage.selection()) == whole)
     yield from stage.screenshot("mended")
     stage.mouse.key("ESC")
     yield from stage.ended()

@@ -1,4 +1,5 @@
-"""While the parts are being built Blender goes on: the view turns, undo works, Edit Mode is left; then the pick goes on."""
+"""While the parts are being built Blender goes on: the view turns, undo works, Edit Mode is left; then comes the pick.
+"""
 import bmesh
 
 
