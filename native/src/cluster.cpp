@@ -2,6 +2,7 @@
 #include "cluster.h"
 
 #include "hull.h"
+#include "pair_of_threads.h"
 
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/box.hpp>
@@ -10,7 +11,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
+#include <optional>
 #include <span>
+#include <system_error>
 #include <utility>
 
 namespace partwheel {
@@ -30,12 +34,18 @@ constexpr double bound_slack = 1e-11;
 
 constexpr size_t nearest_components = 16;
 
+// An edge that costs more than so many times what the next merges cost is not priced exactly yet.
+constexpr double dear = 2;
+
+// A second thread is asked for help from so many tests of a point against a facet on: some microseconds.
+constexpr size_t worth_sharing = 1500;
+
 struct Link {
     int32_t cluster;  // the neighbour
     int32_t edge;
 };
 
-struct Cluster {
+struct alignas(64) Cluster {
     Hull hull;               // none while it is one tetrahedron
     double hull_volume = 0;
     double volume = 0;
@@ -102,11 +112,16 @@ public:
     bool empty() const { return heap_.empty(); }
     int32_t top() const { return heap_[0].edge; }
 
+    // The top one and some that come soon after it.
+    std::span<const Item> top_items() const { return {heap_.data(), std::min(children + 1, heap_.size())}; }
+
     // What comes after the top one; null if there is nothing.
     const Item* runner_up() const {
-        const auto first = heap_.begin() + 1, end = heap_.begin() + static_cast<ptrdiff_t>(std::min(children + 1, heap_.size()));
-        return heap_.size() < 2 ? nullptr : &*std::min_element(first, end);
+        const std::span<const Item> items = top_items();
+        return items.size() < 2 ? nullptr : &*std::min_element(items.begin() + 1, items.end());
     }
+
+    void prefetch(int32_t edge) const { __builtin_prefetch(&place_[static_cast<size_t>(edge)]); }
 
     void update(const Cost& cost, int32_t edge) { settle(place_[static_cast<size_t>(edge)], {cost, edge}); }
 
@@ -154,7 +169,7 @@ private:
 
 class Clustering {
 public:
-    Clustering(const TetMesh& mesh, Progress& progress);
+    Clustering(const TetMesh& mesh, Progress& progress, int threads);
     BinaryTree run();
 
 private:
@@ -169,8 +184,9 @@ private:
     std::span<const int32_t> corners(int32_t c) const;
     std::pair<int32_t, int32_t> by_size(const Edge& edge) const;
     double union_of_neighbours(int32_t a, int32_t b) const;
-    double enough(const Edge& edge) const;
-    void evaluate(int32_t edge);
+    double enough(const Edge& edge, double concavity) const;
+    void evaluate(std::span<const int32_t> edges, double concavity);
+    std::span<const int32_t> first_unpriced();
     void contract_all();
     void contract(int32_t edge);
     Hull unite(const Edge& edge);
@@ -179,16 +195,34 @@ private:
     const TetMesh& mesh_;
     Progress& progress_;
     HullKernel kernel_;
+    std::optional<HullKernel> second_kernel_;
+    std::optional<PairOfThreads> threads_;
     std::vector<Cluster> clusters_;
     std::vector<Edge> edges_;
     EdgeQueue queue_;
-    std::vector<int32_t> link_of_;  // scratch of contract(): cluster -> position in the merged links, or -1
+    struct Pricing {
+        const Hull* hull;
+        std::span<const int32_t> points;
+        double enough;
+        HullKernel::Measure measure;
+    };
+    std::vector<Pricing> pricings_;  // scratch of evaluate()
+    std::vector<int32_t> unpriced_;  // scratch of contract() and first_unpriced()
+    std::vector<int32_t> link_of_;   // scratch of contract(): cluster -> position in the merged links, or -1
     BinaryTree tree_;
 };
 
-Clustering::Clustering(const TetMesh& mesh, Progress& progress)
+Clustering::Clustering(const TetMesh& mesh, Progress& progress, int threads)
     : mesh_(mesh), progress_(progress), kernel_(mesh.vertices), clusters_(mesh.tetrahedra.size()),
       link_of_(mesh.tetrahedra.size(), -1) {
+    if (threads > 1) {
+        try {
+            threads_.emplace();
+            second_kernel_.emplace(mesh.vertices);
+        } catch (const std::system_error&) {
+            // The system gives no second thread: one does as well.
+        }
+    }
     const auto count = static_cast<int32_t>(mesh.tetrahedra.size());
     for (int32_t t = 0; t < count; ++t) {
         const Tetrahedron& tet = mesh.tetrahedra[static_cast<size_t>(t)];
@@ -243,7 +277,7 @@ std::pair<int32_t, int32_t> Clustering::by_size(const Edge& e) const {
     return ordered ? std::pair(e.a, e.b) : std::pair(e.b, e.a);
 }
 
-// The volume of the union of two tetrahedra with a common facet: theirs, and what the far corner of b sees of a's others.
+// The volume of the union of two tetrahedra with a common facet: theirs, and what the far corner of b sees of a.
 double Clustering::union_of_neighbours(int32_t a, int32_t b) const {
     constexpr size_t facets[4][3] = {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}};  // opposite each corner, outward
     const Tetrahedron& s = mesh_.tetrahedra[static_cast<size_t>(a)];
@@ -259,34 +293,61 @@ double Clustering::union_of_neighbours(int32_t a, int32_t b) const {
     return at(a).volume + at(b).volume + seen / 6;
 }
 
-// A volume with which this edge, now the queue's first, would come after its second.
-double Clustering::enough(const Edge& e) const {
-    const EdgeQueue::Item* second = queue_.runner_up();
-    if (!second || e.tried) return std::numeric_limits<double>::infinity();
+// A volume of this edge's union with which it costs more than this concavity.
+double Clustering::enough(const Edge& e, double concavity) const {
+    if (e.tried) return std::numeric_limits<double>::infinity();
     const double volume = at(e.a).volume + at(e.b).volume;
     // Rather more than that, for the roundings and the slack.
-    if (second->concavity() == 0) return volume / (1 - convex_tolerance) * (1 + 1e-9);
-    return (volume + second->concavity() * (1 + 1e-8)) * (1 + 1e-10);
+    if (concavity == 0) return volume / (1 - convex_tolerance) * (1 + 1e-9);
+    return (volume + concavity * (1 + 1e-8)) * (1 + 1e-10);
 }
 
-// Finds the exact volume of an edge's hull; or, at the first try, only that it is more than enough.
-void Clustering::evaluate(int32_t edge) {
-    Edge& e = edge_at(edge);
-    const auto [large, small] = by_size(e);
-    if (!at(large).hull) at(large).hull = kernel_.build(corners(large));
-    const HullKernel::Measure measure = kernel_.united_volume(at(large).hull, corners(small), enough(e));
-    e.hull_volume = measure.exact ? measure.volume : std::max(e.hull_volume, measure.volume);
-    e.exact = measure.exact;
-    e.tried = true;
-    queue_.update(cost(e), edge);
+// Finds the exact volumes of the edges' hulls; or, at the first try, only that they cost more than this concavity.
+void Clustering::evaluate(std::span<const int32_t> edges, double concavity) {
+    pricings_.clear();
+    size_t tests = 0;
+    for (const int32_t edge : edges) {
+        const Edge& e = edge_at(edge);
+        const auto [large, small] = by_size(e);
+        if (!at(large).hull) at(large).hull = kernel_.build(corners(large));
+        pricings_.push_back({&at(large).hull, corners(small), enough(e, concavity), {}});
+        tests += at(large).hull.facet_count() * pricings_.back().points.size();
+    }
+    const auto price = [&](size_t i, HullKernel& kernel) {
+        Pricing& p = pricings_[i];
+        p.measure = kernel.united_volume(*p.hull, p.points, p.enough);
+    };
+    if (threads_ && edges.size() > 1 && tests >= worth_sharing)
+        threads_->share(edges.size(),
+                        [&](size_t i, size_t thread) { price(i, thread == 0 ? kernel_ : *second_kernel_); });
+    else
+        for (size_t i = 0; i < edges.size(); ++i) price(i, kernel_);
+    for (size_t i = 0; i < edges.size(); ++i) {
+        Edge& e = edge_at(edges[i]);
+        const auto [volume, exact] = pricings_[i].measure;
+        e.hull_volume = exact ? volume : std::max(e.hull_volume, volume);
+        e.exact = exact;
+        e.tried = true;
+        queue_.update(cost(e), edges[i]);
+    }
+}
+
+// The queue's first edge if it is not exact; for two threads also the others near the top that are not.
+std::span<const int32_t> Clustering::first_unpriced() {
+    unpriced_.clear();
+    const auto items = queue_.top_items();
+    for (const EdgeQueue::Item& item : items.first(threads_ ? items.size() : 1))
+        if (!edge_at(item.edge).exact) unpriced_.push_back(item.edge);
+    return unpriced_;
 }
 
 void Clustering::contract_all() {
     while (!queue_.empty()) {
         const int32_t top = queue_.top();
         if (!edge_at(top).exact) {
-            evaluate(top);
-            if (queue_.top() != top) continue;
+            const EdgeQueue::Item* second = queue_.runner_up();
+            evaluate(first_unpriced(), second ? dear * second->concavity() : std::numeric_limits<double>::infinity());
+            continue;
         }
         contract(top);
         if (tree_.merges.size() % 256 == 0)
@@ -304,12 +365,20 @@ Hull Clustering::unite(const Edge& e) {
 }
 
 void Clustering::contract(int32_t contracted) {
+    const EdgeQueue::Item price(cost(edge_at(contracted)), contracted);
     queue_.remove(contracted);
     const Edge& edge = edge_at(contracted);
     // The cluster with more links stays and takes in the other.
     const bool stay_a = at(edge.a).links.size() >= at(edge.b).links.size();
     const int32_t stay = stay_a ? edge.a : edge.b, go = stay_a ? edge.b : edge.a;
     Cluster &m = at(stay), &g = at(go);
+    // The neighbours are anywhere in memory: let it begin.
+    for (const Cluster* c : {&m, &g})
+        for (const Link& link : c->links) {
+            __builtin_prefetch(&at(link.cluster));
+            __builtin_prefetch(&edge_at(link.edge));
+            queue_.prefetch(link.edge);
+        }
 
     const bool ordered = m.low < g.low;
     const Cluster &first = ordered ? m : g, &second = ordered ? g : m;
@@ -346,13 +415,21 @@ void Clustering::contract(int32_t contracted) {
     g = Cluster{};
     g.size = 0;
 
+    for (const Link& link : m.links) at(link.cluster).hull.prefetch();
+    // Those that may be cheaper than the merge just made are the next that the queue would ask for.
+    unpriced_.clear();
     for (const Link& link : m.links) {
         link_of_[static_cast<size_t>(link.cluster)] = -1;
         Edge& e = edge_at(link.edge);
         e.hull_volume = std::max({e.hull_volume, m.hull_volume, at(link.cluster).hull_volume});
         e.exact = e.tried = false;
-        queue_.update(cost(e), link.edge);
+        const Cost bound = cost(e);
+        if (EdgeQueue::Item(bound, link.edge) < price)
+            unpriced_.push_back(link.edge);
+        else
+            queue_.update(bound, link.edge);
     }
+    evaluate(unpriced_, dear * price.concavity());
 }
 
 // Called when no edge is left: makes candidates of the clusters that remain.
@@ -366,7 +443,7 @@ void Clustering::join_components() {
     const auto join = [&](int32_t a, int32_t b) {
         const int32_t edge = add_edge(a, b);
         queue_.append(cost(edge_at(edge)), edge);
-        evaluate(edge);
+        evaluate({&edge, 1}, std::numeric_limits<double>::infinity());
     };
     const auto count = static_cast<int32_t>(rest.size());
     if (count <= all_pairs_components) {
@@ -405,6 +482,8 @@ BinaryTree Clustering::run() {
 
 }  // namespace
 
-BinaryTree cluster(const TetMesh& mesh, Progress& progress, int /*threads: not yet*/) { return Clustering(mesh, progress).run(); }
+BinaryTree cluster(const TetMesh& mesh, Progress& progress, int threads) {
+    return Clustering(mesh, progress, threads).run();
+}
 
 }  // namespace partwheel

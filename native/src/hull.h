@@ -24,6 +24,10 @@ public:
     std::span<const int32_t> vertices() const;  // in rising order
     std::span<const HullFacet> facets() const;
     size_t facet_count() const { return block_ ? block_->facet_count : 0; }
+    void prefetch() const {
+        const char* p = reinterpret_cast<const char*>(block_.get());
+        for (size_t i = 0; i < 512; i += 64) __builtin_prefetch(p + i);
+    }
     double volume() const { return block_ ? block_->volume : 0; }
 
 private:

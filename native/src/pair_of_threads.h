@@ -1,0 +1,38 @@
+// A second thread that takes its share of many small tasks.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <thread>
+
+namespace partwheel {
+
+class PairOfThreads {
+public:
+    PairOfThreads();  // throws std::system_error if the system gives no thread
+    ~PairOfThreads();
+    PairOfThreads(const PairOfThreads&) = delete;
+    PairOfThreads& operator=(const PairOfThreads&) = delete;
+
+    // Calls task(i, thread) once for each i < count, thread being 0 (the caller's) or 1, and returns when all are done. A
+    // second thread that is slow to begin is not waited for. If a task throws, some others may not be called.
+    void share(size_t count, const std::function<void(size_t, size_t)>& task);
+
+private:
+    enum State : uint32_t { idle, offered, taken, ended };
+
+    void work(size_t thread) noexcept;
+    void serve();
+
+    std::atomic<uint32_t> state_{idle};
+    std::atomic<size_t> next_{0};
+    size_t count_ = 0;
+    const std::function<void(size_t, size_t)>* task_ = nullptr;
+    std::exception_ptr errors_[2];
+    std::thread second_;  // last, so that all else is there when it begins
+};
+
+}  // namespace partwheel
