@@ -98,9 +98,9 @@ def subdivided(mesh, faces):
         one, two = one[longest], two[longest]
         a, b = triangles[one, corner[one]], triangles[one, (corner[one] + 1) % 3]
         along = vertices[b] - vertices[a]
-        bow = ((along * normals[a]).sum(1)[:, None] * normals[a] - (along * normals[b]).sum(1)[:, None] * normals[b]) / 8
+        rise, fall = ((along * normals[end]).sum(1)[:, None] * normals[end] for end in (a, b))
         middle = len(vertices) + np.arange(len(one))
-        vertices = np.vstack([vertices, (vertices[a] + vertices[b]) / 2 - bow])
+        vertices = np.vstack([vertices, (vertices[a] + vertices[b]) / 2 - (rise - fall) / 8])
         added = []
         for t in (one, two):
             k = corner[t]

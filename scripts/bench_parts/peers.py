@@ -35,7 +35,8 @@ def measure(quick):
         rows.append(row)
         print(f"   {file.stem}, {row['faces']} faces: " + ", ".join(
             f"{name} {row[name]['error']}" if "error" in row[name] else
-            f"{name} {row[name]['seconds'][0]:.1f} s {row[name]['peak'] / 1e6:.0f} MB" for name in ("Partwheel", *PEERS)))
+            f"{name} {row[name]['seconds'][0]:.1f} s {row[name]['peak'] / 1e6:.0f} MB"
+            for name in ("Partwheel", *PEERS)))
     return {"source": source, "models": rows, "medians": {name: medians(rows, name) for name in ("Partwheel", *PEERS)}}
 
 
@@ -52,5 +53,5 @@ def medians(rows, name):
     done = [row[name] for row in rows if "error" not in row[name]]
     if not done:
         return {"done": 0}
-    return {"done": len(done), "wall": median(r["seconds"][0] for r in done), "cpu": median(r["seconds"][1] for r in done),
-            "peak": median(r["peak"] for r in done), "parts": median(r.get("parts", 0) for r in done)}
+    return {"done": len(done), "wall": median(r["seconds"][0] for r in done),
+            "cpu": median(r["seconds"][1] for r in done), "peak": median(r["peak"] for r in done), "parts": median(r.get("parts", 0) for r in done)}

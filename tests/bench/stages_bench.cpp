@@ -2,9 +2,10 @@
 //
 //   stages_bench MODEL.off REPETITIONS [QUALITY]
 //
-// Each repetition runs every stage of pw_build from the model's arrays to the saved bytes in one thread, `solid` being the
-// checks of the surface and its filling by TetGen; then it clusters the same tetrahedra again with two threads. `seconds` are [wall, cpu]; `peak` is the most memory in bytes that the process held during
-// each stage of the first repetition, `start` what it held before.
+// Each repetition runs every stage of pw_build from the model's arrays to the saved bytes in one thread, `solid` being
+// the checks of the surface and its filling by TetGen; then it clusters the same tetrahedra again with two threads.
+// `seconds` are [wall, cpu]; `peak` is the most memory in bytes that the process held during each stage of the first
+// repetition, `start` what it held before.
 #include "cluster.h"
 #include "dendrogram.h"
 #include "hierarchy.h"
@@ -85,8 +86,8 @@ int main(int argc, char** argv) {
         const double quality = argc > 3 ? std::stod(argv[3]) : 0;
         const size_t start = peak_memory();
         const Repetition first = run(model, quality);
-        std::printf("{\"faces\": %zu, \"tets\": %zu, \"saved\": %zu, \"tetgen_calls\": %zu,\n \"peak\": {\"start\": %zu, "
-                    "\"tetgen\": %zu", model.triangle_count(), first.tets, first.bytes, first.tetgen.calls, start,
+        std::printf("{\"faces\": %zu, \"tets\": %zu, \"saved\": %zu, \"tetgen_calls\": %zu,\n "
+                    "\"peak\": {\"start\": %zu, \"tetgen\": %zu", model.triangle_count(), first.tets, first.bytes, first.tetgen.calls, start,
                     first.tetgen.peak_memory);
         for (const Stage& stage : first.stages) std::printf(", \"%s\": %zu", stage.name, stage.peak);
         std::printf("},\n \"seconds\": [");

@@ -1,4 +1,4 @@
-// TetGen's own time and memory: the linker sends the library's call of TetGen here (--wrap, see cmake/benchmarks.cmake).
+// TetGen's own time and memory: the linker sends the library's call of TetGen here (--wrap in cmake/benchmarks.cmake).
 #include "measured.h"
 
 #include <tetgen.h>

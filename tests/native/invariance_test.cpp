@@ -1,5 +1,5 @@
-// Real models scaled, moved and shuffled: the same tetrahedra, tree and nodes, compared as sets. Coordinates are rounded
-// first, so that scaling and moving are exact: then nothing at all may change but the unit.
+// Real models scaled, moved and shuffled: the same tetrahedra, tree and nodes, compared as sets. Coordinates are
+// rounded first, so that scaling and moving are exact: then nothing at all may change but the unit.
 #include "support/built.h"
 #include "support/real_meshes.h"
 #include "support/sizes.h"
@@ -44,8 +44,8 @@ double longest_side(const TriMesh& mesh) {
     return longest;
 }
 
-// The mesh with its coordinates rounded to some 2^-21 of its size, to multiples of 10^4 times a power of two: they can be
-// divided or multiplied by 10^4, or a million be added to them, without any rounding.
+// The mesh with its coordinates rounded to some 2^-21 of its size, to multiples of 10^4 times a power of two: they can
+// be divided or multiplied by 10^4, or a million be added to them, without any rounding.
 TriMesh rounded(const TriMesh& mesh) {
     return snapped(mesh, 1e4 * std::ldexp(1.0, std::ilogb(longest_side(mesh) / 1e4) - 20));
 }
@@ -91,7 +91,8 @@ Tree tree_of(const Handle& handle, const std::vector<int32_t>& original_vertex =
     std::vector<Signature> sums{{0, 0}};  // of the first so many leaves
     for (const Signature& leaf : tree.leaves) sums.push_back(sums.back() + leaf);
     for (size_t n = 0; n < a.node_count; ++n) {
-        const Signature &low = sums[static_cast<size_t>(a.tet_first[n])], &high = sums[static_cast<size_t>(a.tet_last[n])];
+        const Signature& low = sums[static_cast<size_t>(a.tet_first[n])];
+        const Signature& high = sums[static_cast<size_t>(a.tet_last[n])];
         tree.nodes[{high.first - low.first, high.second - low.second}] = {a.height[n], a.volume[n]};
     }
     std::vector<Signature> clusters = tree.leaves;
@@ -160,8 +161,8 @@ TEST(Invariance, Scaled) {
     }
 }
 
-// Where TetGen must add points, it searches places for them in floating-point numbers: these differ with any rounding, so
-// that only powers of two, which round nothing, leave them where they are.
+// Where TetGen must add points, it searches places for them in floating-point numbers: these differ with any rounding,
+// so that only powers of two, which round nothing, leave them where they are.
 TEST(Invariance, ScaledWithAddedPoints) {
     for (const TriMesh& mesh : with_added_points()) {
         SCOPED_TRACE(mesh.name);
