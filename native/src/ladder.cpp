@@ -4,7 +4,7 @@
 #include "repair.h"
 #include "wrap.h"
 
-#include <CGAL/assertions.h>
+#include <stdexcept>
 
 namespace partwheel {
 
@@ -34,7 +34,7 @@ Solid step(const Surface& source, pw_rung rung, const LadderOptions& options, Pr
         if (rung == PW_RUNG_EXACT) solid.surface = source;
         if (rung == PW_RUNG_REPAIRED) solid.surface = repair(source, progress);
         if (rung == PW_RUNG_WRAPPED) solid.surface = wrap(source, options.open_surfaces, progress);
-    } catch (const CGAL::Failure_exception&) {  // an assertion of CGAL's
+    } catch (const std::logic_error&) {  // an assertion of CGAL's, or of what it uses
         throw Error(PW_ERROR_SELF_INTERSECTION,
                     "The mesh is too broken to be repaired or wrapped. Remesh it and try again.");
     }

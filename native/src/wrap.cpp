@@ -15,6 +15,17 @@ namespace partwheel {
 
 namespace {
 
+using Corners = std::array<size_t, 3>;
+
+struct Soup {
+    std::vector<CgalKernel::Point_3> points;
+    std::vector<Corners> triangles;
+};
+
+// A wrap with more vertices than this is given up, and begun again half as fine: it would take minutes.
+constexpr size_t most_vertices = 80000;
+class TooFine {};
+
 // Told of every step; CGAL offers no other way to stop a wrap.
 class Watcher : public CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
 public:
@@ -23,10 +34,14 @@ public:
     void before_facet_treatment(const Wrapper&, const Gate&) {
         if (++steps_ % 256 == 0) progress_.advance(0.2 + 0.6 * (1 - std::exp(-static_cast<double>(steps_) / 3e5)));
     }
+    template <class Wrapper, class Place>
+    void before_Steiner_point_insertion(const Wrapper&, const Place&) {
+        if (++vertices_ > most_vertices) throw TooFine();
+    }
 
 private:
     Progress& progress_;
-    size_t steps_ = 0;
+    size_t steps_ = 0, vertices_ = 0;
 };
 
 // How closely to wrap. A wrap has about 3 faces for each alpha^2 of area: some 30,000 are aimed at, so that thin limbs
@@ -35,6 +50,34 @@ private:
 double choose_alpha(double area, double diagonal) {
     const double usual = std::clamp(std::sqrt(3 * area / 30000), diagonal / 400, diagonal / 100);
     return std::max(usual, std::sqrt(3 * area / 90000));
+}
+
+// A sheet is covered on both sides, and the closer they are, the more faces that takes.
+constexpr double sheet_alpha = 1.0 / 40;
+
+Soup to_soup(const CgalMesh& mesh) {
+    Soup soup;
+    soup.points.assign(mesh.points().begin(), mesh.points().end());
+    for (const auto f : mesh.faces()) {
+        Corners& corners = soup.triangles.emplace_back();
+        size_t k = 0;
+        for (const auto v : CGAL::vertices_around_face(mesh.halfedge(f), mesh)) corners[k++] = v;
+    }
+    return soup;
+}
+
+CgalMesh wrap_soup(const Soup& soup, double alpha, double offset_share, Progress& progress) {
+    for (;; alpha *= 2) {
+        try {
+            Watcher watcher(progress);
+            CgalMesh wrapped;
+            CGAL::alpha_wrap_3(soup.points, soup.triangles, alpha, alpha * offset_share, wrapped,
+                               CGAL::parameters::default_values(), CGAL::parameters::visitor(watcher));
+            return wrapped;
+        } catch (const TooFine&) {
+            progress.advance(0);
+        }
+    }
 }
 
 }  // namespace
@@ -46,27 +89,21 @@ Surface wrap(const Surface& source, bool open_surfaces, Progress& progress) {
                     "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as "
                     "there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then taken "
                     "as thin solids.");
-    std::vector<CgalKernel::Point_3> points(mended.mesh.points().begin(), mended.mesh.points().end());
-    std::vector<std::array<size_t, 3>> faces;
-    for (const auto f : mended.mesh.faces()) {
-        auto& corners = faces.emplace_back();
-        size_t k = 0;
-        for (const auto v : CGAL::vertices_around_face(mended.mesh.halfedge(f), mended.mesh)) corners[k++] = v;
-    }
-    const CGAL::Bbox_3 box = CGAL::bbox_3(points.begin(), points.end());
+    const Soup soup = to_soup(mended.mesh);
+    if (soup.triangles.empty()) throw Error(PW_ERROR_NOT_SOLID, "The mesh has no area at all: only edges and points.");
+    const CGAL::Bbox_3 box = CGAL::bbox_3(soup.points.begin(), soup.points.end());
     const double diagonal = std::hypot(box.x_span(), box.y_span(), box.z_span());
-    const double alpha = choose_alpha(CGAL::Polygon_mesh_processing::area(mended.mesh), diagonal), offset = alpha / 30;
-    Watcher watcher(progress);
-    CgalMesh wrapped;
-    CGAL::alpha_wrap_3(points, faces, alpha, offset, wrapped, CGAL::parameters::default_values(),
-                       CGAL::parameters::visitor(watcher));
+    const double area = CGAL::Polygon_mesh_processing::area(mended.mesh);
+    const bool sheet = mended.solids == 0;
+    const double alpha = sheet ? diagonal * sheet_alpha : choose_alpha(area, diagonal);
+    const CgalMesh wrapped = wrap_soup(soup, alpha, sheet ? 0.1 : 1.0 / 30, progress);
 
     Surface surface = to_surface(source, wrapped);
     attach(source, surface, progress);
     surface.rung = PW_RUNG_WRAPPED;
     Account account;
     mended.done.tell(account);
-    surface.account = std::string(mended.solids == 0 ? "Wrapped as a thin solid, for the mesh is a sheet" : "Wrapped") +
+    surface.account = std::string(sheet ? "Wrapped as a thin solid, for the mesh is a sheet" : "Wrapped") +
                       (account.text().empty() ? "" : ", after this: " + account.text()) +
                       ". The surface used is at most " + percent(surface.deviation) + " of the model's size away.";
     return surface;

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every model, at default settings, each in a worker of its own: it is built, or it is a sheet and gets that error.
+
+A table of the rung, the seconds and the deviation of each is printed at the end, and left in build/test. With
+PARTWHEEL_RELIABILITY=all the whole tuning half of the Princeton benchmark is built, else one model of each category;
+it lies outside the project, and is left out where it is absent.
+"""
+
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import models
+import numpy as np
+import pytest
+import solids
+import trimesh
+from conftest import ROOT
+from partwheel.core import Hierarchy, PartwheelError
+from partwheel.core.meshes import MeshFileError
+from partwheel.core.worker import Job
+
+PROCESSES = 2
+NAMES = [*models.demo(), *models.primitives(), *models.benchmark()]
+
+
+class Outcome:
+    """hierarchy or error (a name); seconds; crashes of workers that came before."""
+
+    def __init__(self, name):
+        began = time.monotonic()
+        self.name, self.hierarchy, self.error, self.crashes = name, None, None, []
+        try:
+            job = Job(*models.read(name))
+            try:
+                self.hierarchy = job.result()
+            finally:
+                self.crashes = [failure.name for failure in job.failures]
+        except (PartwheelError, MeshFileError) as error:
+            self.error = error.name
+        self.seconds = time.monotonic() - began
+
+    def row(self):
+        summary = self.hierarchy and self.hierarchy.summary
+        result = summary.rung if summary else self.error
+        deviation = f"{summary.deviation:9.2%}" if summary else " " * 9
+        note = self.hierarchy.account if summary else models.NOT_SOLID.get(self.name, "")
+        crashes = f"[{', '.join(self.crashes)}] " if self.crashes else ""
+        return f"{self.name:34}{result:12}{self.seconds:7.1f} s {deviation}  {crashes}{note}".rstrip()
+
+
+@pytest.fixture(scope="session")
+def outcomes(request):
+    """Name -> a future of an Outcome, for the tests that were asked for; prints the table when all are done."""
+    asked = [item.callspec.params["name"] for item in request.session.items if "outcomes" in item.fixturenames]
+    with ThreadPoolExecutor(PROCESSES) as pool:
+        futures = {name: pool.submit(Outcome, name) for name in dict.fromkeys(asked)}
+        yield futures
+    rows = [future.result() for future in futures.values()]
+    counts = {}
+    for row in rows:
+        result = row.hierarchy.summary.rung if row.hierarchy else row.error
+        counts[result] = counts.get(result, 0) + 1
+    crashes = sum(len(row.crashes) for row in rows)
+    lines = [*(row.row() for row in rows),
+             f"{len(rows)} models: {', '.join(f'{n} {name}' for name, n in sorted(counts.items()))}; "
+             f"{crashes} workers crashed or met a limit"]
+    if not models.BENCHMARK.exists():
+        lines.append(f"left out, for it is not there: {models.BENCHMARK.name}")
+    (ROOT / "build" / "test").mkdir(exist_ok=True)
+    (ROOT / "build" / "test" / "reliability-table.txt").write_text("\n".join(lines) + "\n")
+    with request.config.pluginmanager.getplugin("capturemanager").global_and_fixture_disabled():
+        print("", *lines, sep="\n")
+
+
+def test_there_are_models():
+    assert len(models.demo()) >= 130 and len(models.primitives()) == 20
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_built_or_a_sheet(name, outcomes):
+    outcome = outcomes[name].result()
+    if name in models.NO_TRIANGLES:
+        assert outcome.error == "mesh file"
+    elif name in models.NOT_SOLID:
+        assert outcome.error == "not solid"
+    else:
+        assert outcome.error is None
+        solids.check(outcome.hierarchy, *models.read(name))
+
+
+@pytest.mark.parametrize("name", sorted(models.NOT_SOLID))
+def test_sheets_are_thin_solids_if_asked_for(name):
+    mesh = models.read(name)
+    h = Job(*mesh, open_surfaces=True).result()
+    assert h.summary.rung == "wrapped" and "thin solid" in h.account
+    assert h.summary.deviation < 0.02
+    solids.check(h, *mesh)
+
+
+@pytest.mark.parametrize("name", ["cow.off", "man.off", "monkey.npz", "bones.off", "camel.off"])
+def test_the_deviation_is_what_another_program_measures(name, outcomes):
+    """From the source's vertices, by trimesh: never more than was said; and every part lies near the surface used."""
+    vertices, triangles, *_ = models.read(name)
+    h = outcomes[name].result().hierarchy
+    used = trimesh.Trimesh(h.vertices, solids.boundary(h), process=False)
+    some = np.unique(triangles)[:: max(1, len(vertices) // 50)]
+    _, distance, _ = trimesh.proximity.closest_point_naive(used, vertices[some])
+    corners = vertices[np.unique(triangles)]
+    diagonal = np.linalg.norm(corners.max(axis=0) - corners.min(axis=0))
+    assert distance.max() / diagonal <= h.summary.deviation + 1e-9
+    assert np.median(distance) / diagonal < 0.001
+
+
+@pytest.mark.parametrize("name", ["hand.off", "elephant.off", "cow.off", "monkey.npz"])
+def test_a_wrap_keeps_what_there_is(name):
+    """Forced, also on clean models: all of the source is within the wrap."""
+    mesh = models.read(name)
+    h = Hierarchy.build(*mesh, rungs=4)
+    solids.check(h, *mesh)
+    used = trimesh.Trimesh(h.vertices, solids.boundary(h), process=False)
+    assert used.is_watertight and used.body_count == h.summary.components
+    some = mesh[0][np.unique(mesh[1])]
+    assert np.allclose(solids.winding_numbers(h.vertices, used.faces, some[:: max(1, len(some) // 50)]), 1, atol=1e-6)
