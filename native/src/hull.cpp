@@ -291,13 +291,17 @@ size_t HullKernel::Impl::find_seen(const View& h, const Point& p, int32_t vertex
     if (h.count >= large_hull)
         if (const size_t f = walk(h, p, start); f != none) return f;
     const double factor = h.error_factor(p);
+    bool doubtful = false;
     for (size_t f = 0; f < h.count; f += 2) {
         const Pair side = h.sides(f, p), error = factor * vector_at<Pair>(h.size + f);
         const auto negative = std::bit_cast<PairBits>(side + error);
         if ((negative[0] & negative[1]) < 0) continue;
-        for (size_t k = 0; k < 2; ++k)
-            if (side[k] > error[k] || (side[k] >= -error[k] && exact_side(h, f + k, vertex) > 0)) return f + k;
+        if (side[0] > error[0]) return f;
+        if (side[1] > error[1]) return f + 1;
+        doubtful = true;
     }
+    for (size_t f = 0; doubtful && f < h.count; ++f)
+        if (h.side(f, p) >= -factor * h.size[f] && exact_side(h, f, vertex) > 0) return f;
     return none;
 }
 

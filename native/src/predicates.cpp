@@ -1,4 +1,4 @@
-// The exact side-of-plane test: a floating-point filter, then expansions.
+// The exact side-of-plane test: a floating-point filter, then expansions of the rounded differences, then of all.
 //
 // An expansion is a sum of doubles that don't overlap, smallest first; sums and products of expansions are exact.
 // The build must not fuse multiplications and additions (-ffp-contract=off).
@@ -98,6 +98,43 @@ Expansion<N> negated(Expansion<N> e) {
     return e;
 }
 
+// The product of two numbers.
+inline Expansion<2> product(double a, double b) {
+    double high, low;
+    two_product(a, b, high, low);
+    Expansion<2> e;
+    e.push(low);
+    e.push(high);
+    return e;
+}
+
+// The determinant of three rounded differences, exactly: most close cases are settled by it, and it is the whole answer
+// where the differences are exact. 2 if it doesn't tell (Shewchuk 1997, the second stage of his adaptive predicate).
+int rounded_orientation(const Point& u, const Point& v, const Point& w, double permanent, bool exact) {
+    const auto term = [](double p, double q, double r, double s, double t) {
+        return scaled(sum(product(p, q), negated(product(r, s))), t);
+    };
+    const auto det = sum(sum(term(u[1], v[2], u[2], v[1], w[0]), term(u[2], v[0], u[0], v[2], w[1])),
+                         term(u[0], v[1], u[1], v[0], w[2]));
+    double estimate = 0;
+    for (int i = 0; i < det.size; ++i) estimate += det.part[i];
+    constexpr double bound = (3 + 28 * 0x1p-53) * 0x1p-53;
+    if (!exact && std::fabs(estimate) < bound * permanent) return 2;
+    if (exact) estimate = det.size == 0 ? 0 : det.part[det.size - 1];
+    return estimate > 0 ? 1 : estimate < 0 ? -1 : exact ? 0 : 2;
+}
+
+// Whether p - a has not been rounded.
+bool exact_difference(const Point& p, const Point& a) {
+    double lost = 0;
+    for (size_t k = 0; k < 3; ++k) {
+        double difference, error;
+        two_sum(p[k], -a[k], difference, error);
+        lost += std::fabs(error);
+    }
+    return lost == 0;
+}
+
 int exact_orientation(const Point& a, const Point& b, const Point& c, const Point& d) {
     const Expansion<2> bx = difference(b[0], a[0]), by = difference(b[1], a[1]), bz = difference(b[2], a[2]);
     const Expansion<2> cx = difference(c[0], a[0]), cy = difference(c[1], a[1]), cz = difference(c[2], a[2]);
@@ -127,7 +164,10 @@ int orientation(const Point& a, const Point& b, const Point& c, const Point& d) 
     constexpr double bound = 8.0 * 0x1p-53;  // (7 + 56 eps) eps in Shewchuk's analysis, rounded up
     if (det > bound * permanent) return 1;
     if (det < -bound * permanent) return -1;
-    return exact_orientation(a, b, c, d);
+    if (permanent == 0) return 0;  // as in a plane across an axis
+    const bool exact = exact_difference(b, a) && exact_difference(c, a) && exact_difference(d, a);
+    const int sign = rounded_orientation(u, v, w, permanent, exact);
+    return sign < 2 ? sign : exact_orientation(a, b, c, d);
 }
 
 bool collinear(const Point& a, const Point& b, const Point& c) {
