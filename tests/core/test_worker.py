@@ -19,9 +19,9 @@ import numpy as np
 import pytest
 import shapes
 from conftest import ROOT
-from partwheel.core import Hierarchy, PartwheelError, Stage, Status
+from partwheel.core import Hierarchy, PartwheelError, Stage, Status, worker
 from partwheel.core.library import load
-from partwheel.core.worker import Job, WorkerError
+from partwheel.core.worker import MESSAGE, Job, WorkerError
 
 HERE = Path(__file__).parent
 LINUX = sys.platform == "linux"
@@ -198,6 +198,21 @@ if LINUX and PLAIN:
         harm("scribble", len(Stage))
         with pytest.raises(WorkerError, match="damaged"):
             Job(*shapes.off("hand"), rungs=EXACT).result()
+
+    @pytest.mark.parametrize("written", [
+        MESSAGE.pack(b"X", 0), MESSAGE.pack(b"P", 2) + b"[]", MESSAGE.pack(b"P", 3) + b"abc",
+        MESSAGE.pack(b"E", 2) + b"{}", MESSAGE.pack(b"E", 25) + b'{"status":99,"message":1}',
+        MESSAGE.pack(b"S", 2) + b"[]", MESSAGE.pack(b"H", 4) + b"none", MESSAGE.pack(b"H", 0),
+    ])
+    def test_a_worker_gone_mad_is_refused(monkeypatch, tmp_path, written):
+        """It writes what is no sound message, and lives on."""
+        entry = tmp_path / "mad.py"
+        entry.write_text(f"import os, time\nos.write(1, {written!r})\ntime.sleep(60)")
+        monkeypatch.setattr(worker, "ENTRY", entry)
+        job = Job(*shapes.cube(), time_limit=20)
+        with pytest.raises(WorkerError, match="damaged answer"):
+            job.result()
+        assert [failure.name for failure in job.failures] == ["crash"] * 3
 
     def test_what_a_library_prints_is_no_answer(harm, build_shape, capfd):
         harm("chatter", len(Stage))

@@ -182,11 +182,13 @@ class Job:
         seconds = {}
         while True:
             head = _read(pipe, MESSAGE.size)
-            kind, length = MESSAGE.unpack(head) if len(head) == MESSAGE.size else (b"", 0)
+            if len(head) < MESSAGE.size:
+                return None
+            kind, length = MESSAGE.unpack(head)
             payload = _read(pipe, length)
+            if len(payload) < length:
+                return None
             try:
-                if len(payload) < length or kind not in (b"P", b"S", b"E", b"H"):
-                    return None
                 if kind == b"H":
                     return self._loaded(payload, seconds)
                 values = json.loads(payload)
@@ -197,8 +199,8 @@ class Job:
                 else:
                     fraction, stage = values
                     self._progress = max(self._progress[0], float(fraction)), str(stage)
-            except (ValueError, TypeError, AttributeError, LookupError):
-                return None  # not what a sound worker writes
+            except (ValueError, TypeError, AttributeError, LookupError):  # not what a sound worker writes
+                return _raising(WorkerError("crash", f"The worker process gave a damaged answer. {HARMLESS}"))
 
     def _loaded(self, data, seconds):
         def answer():
@@ -218,10 +220,7 @@ class Job:
             limit = f" It may use {self._memory_limit / 2**30:.1f} GiB." if self._memory_limit else ""
             error = WorkerError("memory", f"The worker process ran out of memory.{limit} {HARMLESS} A mesh with fewer "
                                           "faces (Decimate, or a voxel remesh) needs less.")
-
-        def answer():
-            raise error
-        return answer
+        return _raising(error)
 
 
 def available_memory():
@@ -231,6 +230,13 @@ def available_memory():
             return next(int(line.split()[1]) * 1024 for line in lines if line.startswith("MemAvailable:"))
     except (OSError, StopIteration):
         return 0
+
+
+def _raising(error):
+    """An answer that is this error."""
+    def answer():
+        raise error
+    return answer
 
 
 def _read(pipe, length):
