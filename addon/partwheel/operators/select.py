@@ -104,11 +104,12 @@ class MESH_OT_partwheel_select(bpy.types.Operator):
         self.hierarchy = session.hierarchy(obj)
         if self.hierarchy:
             return self._click(context, event, missed="Click a face of the mesh")
+        # Which face was meant is found now: the user may turn the view while the parts are being built.
+        face, _ = self._face_under(context, event)
         self.building = start(self, context)
         if not self.building:
             return {"CANCELLED"}
-        # Which face was meant is found now: the user may turn the view while the parts are being built.
-        self.state = wheel.Building(self._face_under(context, event)[0])
+        self.state = wheel.Building(face)
         self.building.watch(context)
         return {"RUNNING_MODAL"}
 
