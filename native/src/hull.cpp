@@ -74,7 +74,7 @@ constexpr size_t plane_numbers = 5;
 
 }  // namespace
 
-// ---- Hulls at rest: one block of memory each, from the kernel's pool --------------------------------------------------
+// ---- Hulls at rest: one block of memory each, from the kernel's pool -----------------------------------------------
 
 size_t Hull::Block::bytes(size_t vertices, size_t facets) {
     return sizeof(Block) + facets * (plane_numbers * sizeof(double) + sizeof(HullFacet)) +
@@ -142,11 +142,12 @@ std::span<const HullFacet> Hull::facets() const {
     return {block_->facets(), block_->facet_count};
 }
 
-// ---- The kernel -------------------------------------------------------------------------------------------------------
+// ---- The kernel ----------------------------------------------------------------------------------------------------
 
 class HullKernel::Impl {
 public:
-    explicit Impl(std::span<const Point> points) : points_(points), mark_(points.size(), 0), facet_from_(points.size(), -1) {
+    explicit Impl(std::span<const Point> points)
+        : points_(points), mark_(points.size(), 0), facet_from_(points.size(), -1) {
         reserve(64);
     }
 
@@ -256,12 +257,12 @@ int HullKernel::Impl::exact_side(const View& h, size_t f, int32_t vertex) const 
     return orientation(at(t[0]), at(t[1]), at(t[2]), at(vertex));
 }
 
-// Looks for a facet that surely sees p by going to better and better neighbours. None if it finds none: p may be outside
-// all the same.
+// Looks for a facet that surely sees p by going to better and better neighbours. None if it finds none: p may be
+// outside all the same.
 //
 // Better is what the ray from the origin to p meets later, relative to its length: that is a linear function of the
-// facets' polar points, and these are the corners of a convex polytope, so that with exact numbers no facet but the best
-// would be without a better neighbour. (Nearly) equally good ones, as in coplanar facets, are tried once each.
+// facets' polar points, and these are the corners of a convex polytope, so that with exact numbers no facet but the
+// best would be without a better neighbour. (Nearly) equally good ones, as in coplanar facets, are tried once each.
 size_t HullKernel::Impl::walk(const View& h, const Point& p, size_t start) {
     constexpr double equal = 1e-9;
     const double factor = h.error_factor(p);
@@ -454,7 +455,8 @@ bool HullKernel::Impl::insert(int32_t vertex) {
         set_plane(f, plane({from, to, vertex}));
         facets[f].neighbours[0] = beyond;
         HullFacet& across = facets[beyond];
-        across.neighbours[size_t{across.corners[1] == to} + 2 * size_t{across.corners[2] == to}] = static_cast<int32_t>(f);
+        const size_t k = size_t{across.corners[1] == to} + 2 * size_t{across.corners[2] == to};
+        across.neighbours[k] = static_cast<int32_t>(f);
         facet_from[from] = static_cast<int32_t>(f);
     }
     for (size_t i = 0; i < rim.size(); ++i) {

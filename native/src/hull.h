@@ -24,6 +24,7 @@ public:
     std::span<const int32_t> vertices() const;  // in rising order
     std::span<const HullFacet> facets() const;
     size_t facet_count() const { return block_ ? block_->facet_count : 0; }
+    // Asks memory for its first part, ahead of use.
     void prefetch() const {
         const char* p = reinterpret_cast<const char*>(block_.get());
         for (size_t i = 0; i < 512; i += 64) __builtin_prefetch(p + i);
@@ -68,7 +69,7 @@ public:
     // conv of these vertices; repetitions are allowed.
     Hull build(std::span<const int32_t> vertices);
 
-    // conv(hull u points), points being numbers of vertices. For two hulls: conv(A u B) = conv(A u vertices of conv(B)).
+    // conv(hull u points), points being numbers of vertices. For hulls: conv(A u B) = conv(A u vertices of conv(B)).
     Hull unite(const Hull& hull, std::span<const int32_t> points);
 
     struct Measure {

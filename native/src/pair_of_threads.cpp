@@ -37,8 +37,9 @@ void PairOfThreads::share(size_t count, const std::function<void(size_t, size_t)
     uint32_t state = offered;
     if (!state_.compare_exchange_strong(state, idle, std::memory_order_acq_rel))
         while (state_.load(std::memory_order_acquire) != idle) pause();  // its last task is under way
-    for (std::exception_ptr& error : errors_)
-        if (error) std::rethrow_exception(std::exchange(error, nullptr));
+    const auto errors = std::exchange(errors_, {});
+    for (const std::exception_ptr& error : errors)
+        if (error) std::rethrow_exception(error);
 }
 
 void PairOfThreads::work(size_t thread) noexcept {

@@ -1,6 +1,7 @@
 // A second thread that takes its share of many small tasks.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -17,8 +18,8 @@ public:
     PairOfThreads(const PairOfThreads&) = delete;
     PairOfThreads& operator=(const PairOfThreads&) = delete;
 
-    // Calls task(i, thread) once for each i < count, thread being 0 (the caller's) or 1, and returns when all are done. A
-    // second thread that is slow to begin is not waited for. If a task throws, some others may not be called.
+    // Calls task(i, thread) once for each i < count, thread being 0 (the caller's) or 1, and returns when all are done.
+    // A second thread that is slow to begin is not waited for. If a task throws, some others may not be called.
     void share(size_t count, const std::function<void(size_t, size_t)>& task);
 
 private:
@@ -31,7 +32,7 @@ private:
     std::atomic<size_t> next_{0};
     size_t count_ = 0;
     const std::function<void(size_t, size_t)>* task_ = nullptr;
-    std::exception_ptr errors_[2];
+    std::array<std::exception_ptr, 2> errors_;
     std::thread second_;  // last, so that all else is there when it begins
 };
 

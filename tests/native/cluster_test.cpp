@@ -172,6 +172,25 @@ TEST(Cluster, RealModels) {
     expect_same_as_reference(meshes, meshes.size() * 3 / 4);
 }
 
+TEST(Cluster, ASecondThreadChangesNoBit) {
+    std::vector<std::string> files{"hand.off", "elephant.off"};
+    if (!light()) files.push_back("fandisk.off");
+    for (const std::string& file : files) {
+        SCOPED_TRACE(file);
+        const TetMesh mesh = filled(real_mesh(file));
+        Progress progress;
+        progress.begin();
+        const BinaryTree one = cluster(mesh, progress, 1), two = cluster(mesh, progress, 2);
+        ASSERT_EQ(one.merges.size(), two.merges.size());
+        for (size_t m = 0; m < one.merges.size(); ++m) {
+            ASSERT_EQ(one.merges[m].left, two.merges[m].left) << m;
+            ASSERT_EQ(one.merges[m].right, two.merges[m].right) << m;
+            ASSERT_EQ(one.merges[m].concavity, two.merges[m].concavity) << m;
+            ASSERT_EQ(one.merges[m].hull_volume, two.merges[m].hull_volume) << m;
+        }
+    }
+}
+
 TEST(Cluster, RankedConcavity) {
     EXPECT_EQ(ranked_concavity(1, 1), 0);
     EXPECT_EQ(ranked_concavity(1, 1 - 0.99e-6), 0);
