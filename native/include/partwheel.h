@@ -54,7 +54,7 @@ typedef enum pw_status {
     PW_ERROR_MEMORY = 13,           /* out of memory */
     PW_ERROR_DATA = 14,             /* bytes that are not a saved hierarchy, or a damaged or newer one */
     PW_ERROR_INTERNAL = 15,         /* a bug of ours, please report it */
-    PW_ERROR_NOT_SOLID = 16         /* a sheet, not a solid: plane, cloth, car door; see pw_build_options.open_surfaces */
+    PW_ERROR_NOT_SOLID = 16         /* a sheet, not a solid: plane, cloth, car door; see open_surfaces below */
 } pw_status;
 
 /* The stages of a build, in their order; each is a source file of the library. */
@@ -107,7 +107,7 @@ PW_API pw_status pw_context_seconds(const pw_context *context, double *seconds);
 /* The ways to a surface that can be filled, from the best one down. A build takes the first that works. */
 typedef enum pw_rung {
     PW_RUNG_EXACT = 1,    /* the caller's surface as it is: closed, manifold, oriented, free of self-intersection */
-    PW_RUNG_REPAIRED = 2, /* stitched, oriented, holes filled, overlapping parts united; most vertices are the caller's */
+    PW_RUNG_REPAIRED = 2, /* stitched, oriented, holes filled, overlaps united; most vertices are the caller's */
     PW_RUNG_WRAPPED = 4   /* a new, closed surface close around it */
 } pw_rung;
 
@@ -205,8 +205,8 @@ typedef struct pw_summary {
     double volume;         /* of the solid */
     double hull_volume;    /* of its convex hull */
     pw_rung rung;          /* how the surface used came from the caller's */
-    double deviation;      /* the largest distance from the caller's surface to the one used, relative to the diagonal of
-                              the caller's bounding box: 0 on the exact rung, else measured at points of every triangle
+    double deviation;      /* the largest distance from the caller's surface to the one used, relative to the diagonal
+                              of the caller's bounding box: 0 on the exact rung, else measured at points of every triangle
                               about 1/100 of the diagonal apart. Parts of the caller's surface that lie inside the
                               solid, such as the back of an eye, count as well */
 } pw_summary;

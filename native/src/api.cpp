@@ -202,8 +202,8 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
         Progress& progress = context ? context->progress : unwatched;
         const Watch watch(progress);
         const MeshView mesh{vertices, vertex_count, triangles, triangle_count, faces, face_count};
-        *hierarchy = new pw_hierarchy{
-            build(mesh, {given.quality, given.rungs, given.open_surfaces == 1}, threads_to_use(given.threads), progress)};
+        const LadderOptions ladder{given.quality, given.rungs, given.open_surfaces == 1};
+        *hierarchy = new pw_hierarchy{build(mesh, ladder, threads_to_use(given.threads), progress)};
     });
 }
 

@@ -68,9 +68,10 @@ double attach(const Surface& source, Surface& surface, Progress& progress) {
         return static_cast<int32_t>(nearest.second - triangles.begin());
     };
 
+    const auto count = static_cast<double>(source.pieces.size());
     surface.pieces.clear();
     for (size_t s = 0; s < source.pieces.size(); ++s) {
-        if (s % 256 == 0) progress.advance(0.9 + 0.1 * static_cast<double>(s) / static_cast<double>(source.pieces.size()));
+        if (s % 256 == 0) progress.advance(0.9 + 0.1 * static_cast<double>(s) / count);
         const Triangle& t = source.triangles[s];
         const auto at = [&](size_t k) { return source.vertices[static_cast<size_t>(t[k])]; };
         const Point u = at(1) - at(0), v = at(2) - at(0);

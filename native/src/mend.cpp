@@ -107,7 +107,8 @@ std::vector<Face> fill(CgalMesh& mesh, Halfedge rim) {
         if (!patch.empty()) return patch;
     }
     CgalKernel::Vector_3 sum(0, 0, 0);
-    for (const Halfedge h : CGAL::halfedges_around_face(rim, mesh)) sum = sum + (mesh.point(mesh.target(h)) - CGAL::ORIGIN);
+    for (const Halfedge h : CGAL::halfedges_around_face(rim, mesh))
+        sum = sum + (mesh.point(mesh.target(h)) - CGAL::ORIGIN);
     CGAL::Euler::fill_hole(rim, mesh);
     const Halfedge centre = CGAL::Euler::add_center_vertex(rim, mesh);
     mesh.point(mesh.target(centre)) = CGAL::ORIGIN + sum / static_cast<double>(length);

@@ -36,8 +36,8 @@ constexpr double nudge = 1e-3;
 
 [[noreturn]] void throw_tangled() {
     throw Error(PW_ERROR_SELF_INTERSECTION,
-                "The surface passes through itself in ways that can't be repaired. Remesh it, or unite its parts with a "
-                "Boolean.");
+                "The surface passes through itself in ways that can't be repaired. Remesh it, or unite its parts with "
+                "a Boolean.");
 }
 
 // Sheets have no inside: their faces go with whatever solid part is near.

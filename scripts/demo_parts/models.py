@@ -17,7 +17,7 @@ class Model(NamedTuple):
     """source: MONKEY or a file in build/deps/meshes.  voxel: the size for Blender's voxel remesh, which makes a closed
     surface of any, in the file's unit; 0 leaves the surface as it is.  up: the axis that points up in the file.
     azimuth, elevation: where the camera stands, degrees; 0, 0 is Blender's front view.  parts: the numbers of convex
-    parts to cut the dendrogram into, growing.  A model without clicks is there to be refused."""
+    parts to cut the dendrogram into, growing.  A model without clicks is a sheet, there to be refused."""
 
     name: str
     source: str
@@ -30,7 +30,8 @@ class Model(NamedTuple):
 
 
 MODELS = (
-    Model("man", "man.off", 0, "Z", 20, 6, ()),
+    Model("man", "man.off", 0, "Z", 20, 6,
+          (Click("finger tip", (0.05, 0.554)), Click("toe", (0.929, 0.982)))),
     Model("man-remeshed", "man.off", 0.004, "Z", 20, 6,
           (Click("finger tip", (0.05, 0.554)), Click("toe", (0.929, 0.982)))),
     Model("armadillo", "armadillo.off", 0, "Y", 165, 6,
@@ -41,9 +42,9 @@ MODELS = (
           (Click("nose", (0.024, 0.071)), Click("toe", (0.369, 0.911)))),
     Model("elephant", "elephant.off", 0, "Y", 18, 6,
           (Click("trunk", (0.679, 0.053)), Click("foot", (0.94, 0.786)))),
-    Model("suzanne", MONKEY, 0, "Z", 25, 6, ()),
-    Model("suzanne-remeshed", MONKEY, 0.035, "Z", 25, 6,
+    Model("suzanne", MONKEY, 0, "Z", 25, 6,
           (Click("ear", (0.952, 0.321)),)),
+    Model("landscape", "horizons.off", 0, "Y", 25, 30, ()),
 )
 
 if __name__ == "__main__":

@@ -173,6 +173,7 @@ def build(thing, report):
     report["tetrahedra"] = len(hierarchy.tetrahedra)
     report["nodes"] = len(hierarchy.parent)
     report["components"] = hierarchy.summary.components
+    report["rung"], report["account"] = hierarchy.summary.rung, hierarchy.account
     report["saved_bytes"] = len(hierarchy.save())
     return hierarchy
 

@@ -9,7 +9,7 @@ import json
 import sys
 from pathlib import Path
 
-STAGES = ("surface", "tetrahedra", "cluster", "dendrogram", "hierarchy")
+STAGES = ("surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy")
 COLUMNS = ("model", "from", "faces", "tets", "nodes", "saved kB", *(f"{stage} s" for stage in STAGES), "build s",
            "stops", "notch ms", "result")
 
@@ -24,7 +24,7 @@ def row(report):
     return [report["model"], report["source"], report["faces"], report["tetrahedra"], report["nodes"],
             round(report["saved_bytes"] / 1000), *(f"{seconds[stage]:.3f}" for stage in STAGES),
             f"{seconds['whole']:.2f}", ", ".join(str(len(click["stops"])) for click in clicks),
-            ", ".join(f"{1000 * click['seconds_per_stop']:.0f}" for click in clicks), "built"]
+            ", ".join(f"{1000 * click['seconds_per_stop']:.0f}" for click in clicks), report["rung"]]
 
 
 def markdown(rows):
@@ -39,16 +39,17 @@ def main():
     folder = Path(sys.argv[1])
     reports = [json.loads((folder / "layers" / name / "report.json").read_text("utf-8")) for name in sys.argv[2:]]
     rows = [COLUMNS, *map(row, reports)]
+    accounts = [f"{report['model']}: {report['account']}" for report in reports if report.get("account")]
     refusals = [f"{report['model']}: {report['refused']['sentence']}" for report in reports if "refused" in report]
-    text = "\n".join([markdown(rows), "", *refusals])
+    text = "\n".join([markdown(rows), "", *accounts, *refusals])
     (folder / "table.md").write_text(text + "\n", "utf-8")
     with open(folder / "table.csv", "w", newline="", encoding="utf-8") as file:
         csv.writer(file).writerows(rows)
     print(text)
     built = len(reports) - len(refusals)
     stops = sum(len(click["stops"]) for report in reports for click in report.get("clicks", ()))
-    print(f"{built} models built, {len(refusals)} broken ones refused by name, {stops} wheel stops selected and "
-          f"checked, {2 * built} pictures")
+    print(f"{built} models built, {len(accounts)} of them repaired or wrapped, {len(refusals)} refused as a sheet, "
+          f"{stops} wheel stops selected and checked, {2 * built} pictures")
 
 
 if __name__ == "__main__":

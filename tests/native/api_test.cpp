@@ -180,7 +180,8 @@ TEST(Api, BuildChecksItsOptionsAndSizes) {
         expect_argument_error(status({sizeof(pw_build_options), quality, 0, 0, 0}));
     for (const size_t size : {size_t{0}, sizeof(pw_build_options) - 1, sizeof(pw_build_options) + 1, huge})
         expect_argument_error(status({size, 0, 0, 0, 0}));
-    for (const uint32_t rungs : {8U, 15U, ~0U}) expect_argument_error(status({sizeof(pw_build_options), 0, rungs, 0, 0}));
+    for (const uint32_t rungs : {8U, 15U, ~0U})
+        expect_argument_error(status({sizeof(pw_build_options), 0, rungs, 0, 0}));
     for (const int32_t open : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, open, 0}));
     expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, -1}));
     const auto sized_build = [&](size_t vertices, size_t triangles, const int32_t* faces, size_t face_count) {

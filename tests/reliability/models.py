@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The models of this tier: every mesh of libcgal-demo, Blender's primitives, the tuning half of the Princeton benchmark."""
+"""The models of this tier: every mesh of libcgal-demo, Blender's primitives, the Princeton benchmark's tuning half."""
 
 import os
 import re

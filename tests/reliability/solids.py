@@ -21,7 +21,7 @@ def enclosed(vertices, triangles):
 
 
 def winding_numbers(vertices, triangles, points):
-    """(n,) how often a closed surface goes round each point: the sum of the solid angles of its triangles, over 4 pi."""
+    """(n,) how often a closed surface goes round each point: the sum of its triangles' solid angles, over 4 pi."""
     result = []
     for point in points:
         a, b, c = (vertices[triangles[:, k]] - point for k in range(3))

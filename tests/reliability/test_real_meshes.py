@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""All real meshes of build/deps/meshes on the exact rung alone, through the command line, a process each: what is closed,
-manifold, oriented and free of self-intersection is built; every other one gets the named error it deserves.
+"""All real meshes of build/deps/meshes on the exact rung alone, through the command line, a process each: what is
+closed, manifold, oriented and free of self-intersection is built; every other one gets the named error it deserves.
 
 What each mesh deserves is found here without the library (surfaces.py). A refusal for self-intersection must be right,
 too: the two faces it names must truly meet, in exact arithmetic.
@@ -28,8 +28,8 @@ NO_TRIANGLES = {"b9.ply"}  # a cloud of points
 def build(name):
     """(exit code, report, what was written beside it)"""
     run = subprocess.run(
-        [sys.executable, "-m", "partwheel.core", "build", str(MESHES / name), "--json", "--rungs", "exact"], capture_output=True, text=True,
-        timeout=SECONDS, env={**os.environ, "PYTHONPATH": str(ROOT / "addon")},
+        [sys.executable, "-m", "partwheel.core", "build", str(MESHES / name), "--json", "--rungs", "exact"],
+        capture_output=True, text=True, timeout=SECONDS, env={**os.environ, "PYTHONPATH": str(ROOT / "addon")},
     )
     return run.returncode, json.loads(run.stdout) if run.stdout else None, run.stderr
 

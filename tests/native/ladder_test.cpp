@@ -1,0 +1,198 @@
+// The ladder: which rung a mesh comes to rest on, and that what is used there is sound, against independent checks.
+#include "ladder.h"
+
+#include "support/built.h"
+#include "support/real_meshes.h"
+#include "support/reference_surface.h"
+#include "support/shapes.h"
+#include "support/sizes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+namespace partwheel::test {
+namespace {
+
+Solid climbed(const TriMesh& mesh, uint32_t rungs = 0, bool open_surfaces = false) {
+    Progress progress;
+    progress.begin();
+    return climb(mesh.view(), {0, rungs, open_surfaces}, progress);
+}
+
+// The surface used as a mesh of its own.
+TriMesh used(const Solid& solid) {
+    TriMesh mesh;
+    mesh.name = "used";
+    mesh.vertices = solid.surface.vertices;
+    mesh.triangles = solid.surface.triangles;
+    return without_faces(mesh);
+}
+
+// What must hold on every rung: a surface that is closed, manifold, oriented and free of self-intersection, each source
+// face on it, source vertices where they were.
+void expect_sound(const Solid& solid, const TriMesh& mesh, pw_rung rung) {
+    SCOPED_TRACE(mesh.name);
+    const Surface& surface = solid.surface;
+    EXPECT_EQ(surface.rung, rung) << surface.account;
+    EXPECT_EQ(surface.account.empty(), rung == PW_RUNG_EXACT);
+    EXPECT_EQ(expected_status(used(solid)), PW_OK);
+    std::vector<double> area(mesh.face_count, 0), expected(mesh.face_count, 0);
+    for (const Piece& piece : surface.pieces) {
+        ASSERT_LT(static_cast<size_t>(piece.triangle), surface.triangles.size());
+        area[static_cast<size_t>(piece.face)] += piece.area;
+    }
+    for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto at = [&](size_t k) { return mesh.vertices[static_cast<size_t>(mesh.triangles[t][k])]; };
+        expected[static_cast<size_t>(mesh.face_of(t))] += partwheel::area(at(0), at(1), at(2));
+    }
+    for (size_t f = 0; f < area.size(); ++f)
+        EXPECT_NEAR(surface.frame.area_to_caller(area[f]), expected[f], 1e-9 * (1 + expected[f]));
+    for (size_t v = 0; v < surface.vertices.size(); ++v) {
+        const int32_t s = surface.source_vertex[v];
+        if (s < 0) continue;
+        EXPECT_EQ(surface.vertices[v], surface.frame.to_working(mesh.vertices[static_cast<size_t>(s)]));
+    }
+}
+
+double used_volume(const Solid& solid) {
+    return solid.surface.frame.volume_to_caller(std::fabs(enclosed_volume(used(solid))));
+}
+
+TriMesh without(TriMesh mesh, size_t triangle) {
+    mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(triangle));
+    return without_faces(std::move(mesh));
+}
+
+TEST(Ladder, CleanSurfacesStayExact) {
+    for (const TriMesh& mesh : {cube(), torus(9, 6, 2, 0.5), real_mesh("joint.off")}) {
+        const Solid solid = climbed(mesh);
+        expect_sound(solid, mesh, PW_RUNG_EXACT);
+        EXPECT_EQ(solid.surface.deviation, 0);
+        for (const int32_t s : solid.surface.source_vertex) EXPECT_GE(s, 0);
+    }
+}
+
+TEST(Ladder, AHoleIsFilled) {
+    const TriMesh mesh = without(without_faces(cube()), 3);
+    const Solid solid = climbed(mesh);
+    expect_sound(solid, mesh, PW_RUNG_REPAIRED);
+    EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(cube())), 1e-12);
+    EXPECT_EQ(solid.surface.deviation, 0);
+    EXPECT_NE(solid.surface.account.find("1 hole filled"), std::string::npos) << solid.surface.account;
+}
+
+TEST(Ladder, TurnedTrianglesAreTurnedBack) {
+    TriMesh mesh = torus(9, 6, 2, 0.5);
+    for (size_t t = 0; t < mesh.triangles.size(); t += 7) std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
+    const Solid solid = climbed(mesh);
+    expect_sound(solid, mesh, PW_RUNG_REPAIRED);
+    EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(torus(9, 6, 2, 0.5))), 1e-9);
+}
+
+TEST(Ladder, TriangleSoupIsStitched) {
+    const TriMesh whole = without_faces(real_mesh("joint.off"));
+    TriMesh soup = whole;
+    soup.vertices.clear();
+    soup.triangles.clear();
+    for (const Triangle& t : whole.triangles) {
+        const auto n = static_cast<int32_t>(soup.vertices.size());
+        for (const int32_t v : t) soup.vertices.push_back(whole.vertices[static_cast<size_t>(v)]);
+        soup.triangles.push_back({n, n + 1, n + 2});
+    }
+    const Solid solid = climbed(soup);
+    expect_sound(solid, soup, PW_RUNG_REPAIRED);
+    EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(whole)), 1e-9 * std::fabs(enclosed_volume(whole)));
+}
+
+TEST(Ladder, OverlappingPartsAreUnited) {
+    const TriMesh both = together("both", cube(), moved(cube(), {0.5, 0.25, 0.125}));
+    const Solid solid = climbed(both);
+    expect_sound(solid, both, PW_RUNG_REPAIRED);
+    const double side = std::cbrt(std::fabs(enclosed_volume(cube())));
+    const double overlap = (side - 0.5) * (side - 0.25) * (side - 0.125);
+    EXPECT_NEAR(used_volume(solid), 2 * side * side * side - overlap, 1e-9);
+}
+
+TEST(Ladder, PartsThatOnlyTouchAreSetApart) {
+    for (const Cells& cells : {Cells{{0, 0, 0}, {1, 1, 1}}, Cells{{0, 0, 0}, {1, 1, 0}}}) {
+        const TriMesh mesh = without_faces(surface_of("touching", cells));
+        const Solid solid = climbed(mesh, PW_RUNG_EXACT | PW_RUNG_REPAIRED);
+        expect_sound(solid, mesh, PW_RUNG_REPAIRED);
+        EXPECT_NEAR(used_volume(solid), 2, 0.01);
+        EXPECT_LT(solid.surface.deviation, 1e-3);
+    }
+}
+
+TEST(Ladder, AWrapHoldsAllOfTheSource) {
+    std::vector<TriMesh> meshes{cube()};
+    if (!light()) meshes.push_back(together("apart", cube(), moved(cube(), {3, 0, 0})));
+    for (const TriMesh& mesh : meshes) {
+        const Solid solid = climbed(mesh, PW_RUNG_WRAPPED);
+        expect_sound(solid, mesh, PW_RUNG_WRAPPED);
+        const double volume = std::fabs(enclosed_volume(mesh));
+        EXPECT_GT(used_volume(solid), volume);
+        EXPECT_LT(used_volume(solid), 1.2 * volume);
+        EXPECT_LT(solid.surface.deviation, 0.02);
+        for (const int32_t s : solid.surface.source_vertex) EXPECT_EQ(s, -1);
+    }
+}
+
+TEST(Ladder, HolesAreFilledBeforeAWrap) {
+    TriMesh mesh = without(without_faces(cube()), 3);  // far larger than the wrap's resolution
+    const Solid solid = climbed(mesh, PW_RUNG_WRAPPED);
+    expect_sound(solid, mesh, PW_RUNG_WRAPPED);
+    EXPECT_GT(used_volume(solid), std::fabs(enclosed_volume(cube())));
+}
+
+TriMesh sheet() {
+    TriMesh mesh;
+    mesh.name = "sheet";
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return without_faces(mesh);
+}
+
+TEST(Ladder, ASheetIsRefusedOrThickened) {
+    try {
+        (void)climbed(sheet());
+        ADD_FAILURE() << "built";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.status(), PW_ERROR_NOT_SOLID);
+    }
+    const Solid solid = climbed(sheet(), 0, true);
+    expect_sound(solid, sheet(), PW_RUNG_WRAPPED);
+    EXPECT_LT(used_volume(solid), 0.02);
+}
+
+TEST(Ladder, OnlyTheRungsAllowedAreTried) {
+    const TriMesh mesh = without(without_faces(cube()), 3);
+    EXPECT_EQ(try_build(mesh, 0, nullptr, PW_RUNG_EXACT).status, PW_ERROR_OPEN);
+    for (const uint32_t rungs : {2U, 3U, 6U, 7U, 0U})
+        EXPECT_EQ(summary(try_build(mesh, 0, nullptr, rungs).handle).rung, PW_RUNG_REPAIRED);
+    EXPECT_EQ(summary(try_build(mesh, 0, nullptr, 5).handle).rung, PW_RUNG_WRAPPED);
+}
+
+TEST(Ladder, RungDeviationAndAccountAreSaved) {
+    const TriMesh mesh = without(without_faces(cube()), 3);
+    const Handle built = try_build(mesh, 0, nullptr, PW_RUNG_WRAPPED).handle;
+    const Handle loaded = try_load(save(built)).handle;
+    ASSERT_NE(loaded, nullptr);
+    EXPECT_EQ(summary(loaded).rung, PW_RUNG_WRAPPED);
+    EXPECT_EQ(summary(loaded).deviation, summary(built).deviation);
+    EXPECT_GT(summary(loaded).deviation, 0);
+    EXPECT_STREQ(pw_hierarchy_account(loaded.get()), pw_hierarchy_account(built.get()));
+    EXPECT_STREQ(pw_hierarchy_account(nullptr), "");
+}
+
+TEST(Ladder, AWrapCanBeCancelled) {
+    pw_context* context = nullptr;
+    ASSERT_EQ(pw_context_create(&context), PW_OK);
+    (void)pw_context_cancel(context);
+    EXPECT_EQ(try_build(cube(), 0, context, PW_RUNG_WRAPPED).status, PW_ERROR_CANCELLED);
+    pw_context_free(context);
+}
+
+}  // namespace
+}  // namespace partwheel::test
