@@ -413,6 +413,8 @@ Hierarchy Hierarchy::load(std::span<const uint8_t> bytes) {
     h.summary_.components = header.components;
     h.summary_.cavities = header.cavities;
     h.summary_.added_vertices = header.added_vertices;
+    if (header.rung != PW_RUNG_EXACT && header.rung != PW_RUNG_REPAIRED && header.rung != PW_RUNG_WRAPPED)
+        refuse("its rung is unknown");
     h.summary_.rung = static_cast<pw_rung>(header.rung);
     h.summary_.deviation = header.deviation;
     const auto account = in.get_vector<char>(header.account);
@@ -447,7 +449,6 @@ void Hierarchy::check_stored() const {
 
     const auto strangers = static_cast<size_t>(std::count(source_.begin(), source_.end(), -1));
     const bool exact = summary_.rung == PW_RUNG_EXACT;
-    if (!exact && summary_.rung != PW_RUNG_REPAIRED && summary_.rung != PW_RUNG_WRAPPED) refuse("its rung is unknown");
     if (exact ? summary_.added_vertices != strangers : summary_.added_vertices > strangers)
         refuse("its counts are impossible");
     if (!measure(summary_.deviation) || (exact && summary_.deviation != 0)) refuse("its deviation is impossible");
