@@ -278,8 +278,10 @@ if LINUX and PLAIN:
     # ---- The end of the parent
 
     PARENT = textwrap.dedent("""
-        import sys, time, shapes
+        import signal, shapes
         from partwheel.core.worker import Job
+        # Processes started in the background of a shell ignore it.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         job = Job(*shapes.off("hand"))
         while not job.process_id:
             job.wait(0.01)
