@@ -105,3 +105,21 @@ def _kind_of(element):
 
 def _redraw(obj):
     bmesh.update_edit_mesh(obj.data, loop_triangles=False, destructive=False)
+
+
+def select_outside_edit_mode(mesh, faces, extend=False):
+    """The same for a mesh that is not in Edit Mode: its faces, and their edges and vertices, are selected."""
+    chosen = np.zeros(len(mesh.polygons), bool)
+    chosen[faces] = True
+    chosen &= ~mesh_arrays.read(mesh.polygons, "hide", bool)
+    corners = chosen[np.repeat(np.arange(len(mesh.polygons)), mesh_arrays.read(mesh.polygons, "loop_total", np.int32))]
+    selected = {"polygons": chosen}
+    for elements, index in (("edges", "edge_index"), ("vertices", "vertex_index")):
+        selected[elements] = np.zeros(len(getattr(mesh, elements)), bool)
+        selected[elements][mesh_arrays.read(mesh.loops, index, np.int32)[corners]] = True
+    for elements, values in selected.items():
+        if extend:
+            values |= mesh_arrays.read(getattr(mesh, elements), "select", bool)
+        getattr(mesh, elements).foreach_set("select", values)
+    mesh.polygons.active = int(faces[0]) if len(faces) else mesh.polygons.active
+    mesh.update()

@@ -8,6 +8,7 @@ Blender's data is kept: undo and file loading would make it dangle.
 
 import dataclasses
 from enum import Enum, auto
+from typing import NamedTuple
 
 import bmesh
 import bpy
@@ -34,6 +35,14 @@ class Entry:
         self.seen, self.sure = fingerprint, True
 
 
+class Picked(NamedTuple):
+    """A part of a mesh that the user chose: a node of its hierarchy, and the face that was clicked."""
+
+    node: int
+    face: int
+    hierarchy: Hierarchy
+
+
 class State(Enum):
     """How a mesh stands to its hierarchy."""
 
@@ -51,6 +60,7 @@ class Outdated(Exception):
 _entries = {}
 _unopened = {}  # what came with the file, packed
 _running = None  # the Build that has not ended
+_picks = {}  # the part that was confirmed last in each mesh
 
 
 def _key(mesh):
@@ -103,6 +113,30 @@ def _counts(mesh):
     return len(mesh.vertices), len(mesh.polygons)
 
 
+# ---- The part that was picked last
+
+
+def remember_pick(obj, face, node):
+    """The user has chosen this part of the object's mesh, which has a hierarchy."""
+    _picks[_key(obj.data)] = Picked(int(node), int(face), _entries[_key(obj.data)].hierarchy)
+
+
+def picked(obj):
+    """The Picked that was chosen last in the object's mesh; None if there is none, or its hierarchy is not the mesh's
+    any more."""
+    pick = _picks.get(_key(obj.data))
+    return pick if pick and hierarchy(obj) is pick.hierarchy else None
+
+
+def has_pick(obj):
+    """For poll(), which Blender calls often: picked(obj) is not None, as far as state() tells."""
+    pick = _picks.get(_key(obj.data))
+    if not pick:
+        return False
+    fits, entry = state(obj.data)
+    return fits in {State.FITS, State.MOVED} and entry.hierarchy is pick.hierarchy
+
+
 # ---- Building
 
 
@@ -145,7 +179,7 @@ class Build:
             raise Outdated(f"{mesh.name} was edited while its parts were being built, so they were left aside. Build "
                            "them again when the mesh is as you want it.")
         alive = {_key(other) for other in bpy.data.meshes}
-        for known in (_entries, _unopened):
+        for known in (_entries, _unopened, _picks):
             for gone in known.keys() - alive:
                 del known[gone]
         _unopened.pop(self._key, None)
@@ -163,6 +197,7 @@ def forget(obj):
     """Lets the hierarchy of the object's mesh go, also the one that came with the file."""
     _entries.pop(_key(obj.data), None)
     _unopened.pop(_key(obj.data), None)
+    _picks.pop(_key(obj.data), None)
     _carried(obj.data)
 
 
@@ -232,8 +267,8 @@ def _after_saving(*_):
 def _after_loading(*_):
     """Another file was opened: its meshes are others."""
     _stop()
-    _entries.clear()
-    _unopened.clear()
+    for known in (_entries, _unopened, _picks):
+        known.clear()
     for mesh in bpy.data.meshes:
         if stored.PROPERTY in mesh and not mesh.library:
             _unopened[_key(mesh)] = _carried(mesh)
@@ -262,5 +297,5 @@ def unregister():
         if hasattr(bpy.app.handlers, name):
             getattr(bpy.app.handlers, name).remove(function)
     _stop()
-    _entries.clear()
-    _unopened.clear()
+    for known in (_entries, _unopened, _picks):
+        known.clear()

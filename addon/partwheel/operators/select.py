@@ -2,6 +2,7 @@
 """mesh.partwheel_select: a click picks a face, the wheel grows and shrinks the part around it."""
 
 import traceback
+from typing import Callable, NamedTuple
 
 import bpy
 
@@ -22,9 +23,27 @@ PASS = {
     "NUMPAD_9", "NUMPAD_PERIOD", "TIMER", "TIMER_REPORT", "WINDOW_DEACTIVATE",
 }
 
+
+
+class HandOff(NamedTuple):
+    """A key that confirms the part that is held and starts another operator with it."""
+
+    key: str  # Blender's name of the event type
+    shift: bool
+    label: str  # what it does, for the status bar, after "Confirm and"
+    start: Callable  # start(context): called once the pick is confirmed, remembered and an undo step of its own
+
+
+HANDOFFS = [
+    HandOff("G", False, "Move Proportionally", lambda context: bpy.ops.transform.translate(
+        "INVOKE_DEFAULT", use_proportional_edit=True, use_proportional_connected=True)),
+    HandOff("D", True, "Duplicate", lambda context: bpy.ops.mesh.duplicate_move("INVOKE_DEFAULT")),
+]
+
 WAITING_KEYS = "Partwheel   LMB: Pick a Part   MMB: Navigate   Esc/RMB: Cancel"
 PICKED_KEYS = ("Partwheel   Wheel, Page Up/Down, Numpad +/-: Larger or Smaller Part   LMB, Enter: Confirm   "
-               "G: Confirm and Move Proportionally   Shift D: Confirm and Duplicate   MMB: Navigate   Esc/RMB: Cancel")
+               + "   ".join(f"{'Shift ' if each.shift else ''}{each.key}: Confirm and {each.label}" for each in HANDOFFS)
+               + "   MMB: Navigate   Esc/RMB: Cancel")
 
 
 class MESH_OT_partwheel_select(bpy.types.Operator):
@@ -65,6 +84,7 @@ class MESH_OT_partwheel_select(bpy.types.Operator):
             return {"CANCELLED"}
         # The hierarchy was asked for, so the mesh is up to date.
         Selection(obj, obj.data).select(obj, hierarchy.faces(picked.node), picked.face, self.extend)
+        session.remember_pick(obj, picked.face, picked.node)
         return {"FINISHED"}
 
     # ---- With the mouse --------------------------------------------------------------------------------------------
@@ -154,11 +174,9 @@ class MESH_OT_partwheel_select(bpy.types.Operator):
         if event.type in CONFIRM or (event.type == "LEFTMOUSE" and view_under(context.window, event.mouse_x,
                                                                               event.mouse_y)):
             return self._confirmed(context)
-        if event.type == "G" and not event.shift:
-            return self._handed_on(context, bpy.ops.transform.translate, use_proportional_edit=True,
-                                   use_proportional_connected=True)
-        if event.type == "D" and event.shift:
-            return self._handed_on(context, bpy.ops.mesh.duplicate_move)
+        for each in HANDOFFS:
+            if (event.type, bool(event.shift)) == (each.key, each.shift):
+                return self._handed_on(context, each)
         return {"RUNNING_MODAL"}
 
     def _click(self, context, event, missed):
@@ -198,15 +216,17 @@ class MESH_OT_partwheel_select(bpy.types.Operator):
     def _confirmed(self, context):
         # What the panel of the last operation, and Repeat Last, do again.
         self.face_index, self.level = self.state.face, self.state.level
+        session.remember_pick(context.edit_object, self.state.face, self.state.node)
         self._end(context)
         return {"FINISHED"}
 
-    def _handed_on(self, context, tool, **options):
-        """Confirms and starts another tool at once. Blender's own undo step for a finished operator would come after
-        that tool has begun to change the mesh, so the step is made here, and the answer that makes none is given."""
-        self._end(context)
+    def _handed_on(self, context, hand_off):
+        """Confirms and starts another operator at once. Blender's own undo step for a finished operator would come
+        after that one has begun to change the mesh, so the step is made here, and the answer that makes none is given.
+        """
+        self._confirmed(context)
         bpy.ops.ed.undo_push(message=self.bl_label)
-        tool("INVOKE_DEFAULT", **options)
+        hand_off.start(context)
         return {"CANCELLED"}
 
     def _cancelled(self, context):

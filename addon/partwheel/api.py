@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""For scripts: what the operators do, as functions of a mesh object, in any mode, with or without a window.
+
+    import bpy
+    from partwheel import api          # Blender 4.2 and later: from bl_ext.user_default.partwheel import api
+
+    obj = bpy.context.active_object
+    api.build(obj)
+    nodes = api.path(obj, face=42)     # from the face's own small part up to the whole
+    api.select(obj, face=42, level=2)  # a click on face 42 and two notches up
+    labels = api.cut(obj, parts=8)     # (F,) the part of each face, 0 to 7
+
+Nodes are numbers of the object's hierarchy, a core.Hierarchy, which build() returns and hierarchy() finds. The other
+functions build it if there is none. All raise core.PartwheelError, whose text says what is wrong, or ValueError for an
+object that holds no mesh; build() also RuntimeError while another build is under way.
+"""
+
+from . import selection, session, wheel
+
+
+def build(obj, quality=0.0, open_surfaces=False):
+    """Builds the hierarchy of the object's mesh and keeps it; waits until it is done. The Hierarchy.
+
+    quality: 0 adds no points inside the mesh; from 1.1 on it bounds how stretched the tetrahedra may be. open_surfaces:
+    take a sheet for a thin solid, instead of refusing it.
+    """
+    _check(obj)
+    if session.running():
+        raise RuntimeError("Parts are being built already. One build runs at a time: wait for its end, or cancel it.")
+    return session.Build(obj, quality, open_surfaces).finish()
+
+
+def hierarchy(obj):
+    """The Hierarchy of the object's mesh as it is now, built if there is none."""
+    _check(obj)
+    return session.hierarchy(obj) or build(obj)
+
+
+def path(obj, face):
+    """(n,) the nodes that hold a face, growing: from its leaf to the root. All of them; the wheel stops at some."""
+    return hierarchy(obj).path(face)
+
+
+def faces(obj, node):
+    """(n,) the faces of a node: indices of the mesh's polygons, read-only."""
+    return hierarchy(obj).faces(node)
+
+
+def select(obj, face, level=0, extend=False):
+    """Selects the part that a click on this face takes, after level notches of the wheel (negative: down), and makes it
+    the part picked last. With extend the selection before stays too. In Edit Mode as the select mode has it. Hidden
+    faces stay as they are. The node."""
+    picked = wheel.pick(hierarchy(obj), face, level)
+    chosen = faces(obj, picked.node)
+    if obj.mode == "EDIT":
+        selection.Selection(obj, obj.data).select(obj, chosen, picked.face, extend)
+    else:
+        selection.select_outside_edit_mode(obj.data, chosen, extend)
+    session.remember_pick(obj, picked.face, picked.node)
+    return picked.node
+
+
+def cut(obj, parts=None, height=None):
+    """(F,) the part of each face, counted from 0, when the whole is cut into so many parts, those with the least total
+    concavity, or at a height of the dendrogram: give one of the two. A part inside the solid has no face."""
+    if (parts is None) == (height is None):
+        raise ValueError("Say into how many parts to cut, or at which height: one of the two.")
+    built = hierarchy(obj)
+    return built.face_labels(built.cut_height(height) if parts is None else built.cut_parts(parts))
+
+
+def _check(obj):
+    if obj is None or obj.type != "MESH":
+        raise ValueError(f"{obj.name if obj else 'None'} is not a mesh object.")
