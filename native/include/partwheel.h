@@ -262,6 +262,37 @@ PW_API void pw_mesh_free(pw_mesh *mesh);
 PW_API pw_status pw_mesh_arrays(const pw_mesh *mesh, const double **vertices, size_t *vertex_count,
                                 const int32_t **triangles, size_t *triangle_count);
 
+/* ---- Solids --------------------------------------------------------------------------------------------------- */
+
+/* The closed surface around tetrahedra[tet_first : tet_last], for a node or a part of a cut (the paper, section 4.2):
+ * triangles of the source, and caps, the facets inside the solid that divide the part from the rest. Closed, manifold
+ * and outward; it may have several components and cavities. Free it with pw_mesh_free.
+ *
+ * Polygons: where a tetrahedron has nothing on the surface but triangles of one polygon, it goes with that polygon,
+ * as pw_hierarchy_faces does; so polygons stay whole, and the solids of a cut have each tetrahedron exactly once. Where
+ * two polygons of different parts have one tetrahedron behind them, one of them is cut: each part has the triangles of
+ * its own tetrahedra. Where all polygons are triangles, the volume is that of the slice's tetrahedra.
+ *
+ * Manifold: where tetrahedra of the part only touch, at a vertex or an edge, the surface is cut apart there, so that
+ * several of its vertices stand at one place. Where they touch along an edge and are joined about both of its ends,
+ * no such cut is possible: two edges run beside each other, and one of them has a vertex in its middle.
+ *
+ * On the rungs below the exact one this is the solid that was made from the caller's surface, and caps have no face.
+ *
+ * PW_ERROR_EMPTY: no tetrahedron is left, which happens to a part that has no faces. */
+PW_API pw_status pw_hierarchy_solid(const pw_hierarchy *hierarchy, size_t tet_first, size_t tet_last, pw_mesh **mesh);
+
+/* Where a solid's vertices and triangles come from; all owned by the mesh.
+ *
+ * ends    vertex_count x 2: the vertex of the hierarchy (pw_arrays.vertices) that each vertex is, twice; or, for one in
+ *         the middle of an edge, the ends of the edge.
+ * faces   triangle_count: the source face that the triangle is a triangle of, or on the rungs below the exact one that
+ *         is nearest to it; -1: none.
+ * beyond  triangle_count: for a cap the tetrahedron on its other side; -1: a triangle of the surface. The solids on
+ *         both sides of a cap have it with the same coordinates, turned. */
+PW_API pw_status pw_mesh_origins(const pw_mesh *mesh, const int32_t **ends, const int32_t **faces,
+                                 const int32_t **beyond);
+
 /* ---- Saving --------------------------------------------------------------------------------------------------- */
 
 /* The hierarchy as bytes, the same on every machine. The same rule for capacity and *count (bytes here) as above. */

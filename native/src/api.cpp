@@ -289,6 +289,27 @@ pw_status pw_hierarchy_hull(const pw_hierarchy* hierarchy, size_t tet_first, siz
     });
 }
 
+pw_status pw_hierarchy_solid(const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last, pw_mesh** mesh) {
+    return guarded([&] {
+        require(hierarchy != nullptr && mesh != nullptr, "hierarchy and mesh must not be null.");
+        require(tet_first < tet_last && tet_last <= hierarchy->hierarchy.tetrahedron_count(),
+                "The tetrahedra must be a slice that is not empty: tet_first < tet_last <= their number.");
+        *mesh = new pw_mesh{hierarchy->hierarchy.solid(tet_first, tet_last)};
+    });
+}
+
+pw_status pw_mesh_origins(const pw_mesh* mesh, const int32_t** ends, const int32_t** faces, const int32_t** beyond) {
+    return guarded([&] {
+        require(mesh != nullptr && ends != nullptr && faces != nullptr && beyond != nullptr,
+                "mesh, ends, faces and beyond must not be null.");
+        require(mesh->mesh.faces.size() == mesh->mesh.triangles.size(),
+                "Only the mesh of a solid has origins, not a hull.");
+        *ends = mesh->mesh.ends.data()->data();
+        *faces = mesh->mesh.faces.data();
+        *beyond = mesh->mesh.beyond.data();
+    });
+}
+
 void pw_mesh_free(pw_mesh* mesh) { delete mesh; }
 
 pw_status pw_mesh_arrays(const pw_mesh* mesh, const double** vertices, size_t* vertex_count, const int32_t** triangles,

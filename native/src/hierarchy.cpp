@@ -60,6 +60,49 @@ void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const i
     }
 }
 
+// The source face that each outer facet of the tetrahedra is of, or nearest to; -1: none. Sorted by leaf, then corner.
+std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh& mesh,
+                                           std::span<const int32_t> leaf_of_tet) {
+    std::vector<Piece> pieces = surface.pieces;
+    std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
+        return std::tie(a.triangle, a.face, a.area) < std::tie(b.triangle, b.face, b.area);
+    });
+    std::vector<int32_t> face(surface.triangles.size(), -1);
+    for (size_t i = 0; i < pieces.size();) {
+        const int32_t t = pieces[i].triangle;
+        double most = -1;
+        while (i < pieces.size() && pieces[i].triangle == t) {
+            const int32_t f = pieces[i].face;
+            double shared = 0;
+            for (; i < pieces.size() && pieces[i].triangle == t && pieces[i].face == f; ++i) shared += pieces[i].area;
+            if (shared > most) {
+                most = shared;
+                face[static_cast<size_t>(t)] = f;
+            }
+        }
+    }
+    struct Outer {
+        int32_t leaf, corner, face;
+    };
+    std::vector<Outer> outer;
+    for (size_t t = 0; t < surface.triangles.size(); ++t) {
+        const auto tet = static_cast<size_t>(mesh.tet_of_triangle[t]);
+        const Triangle& triangle = surface.triangles[t];
+        int32_t corner = 0;
+        for (int32_t k = 0; k < 4; ++k)
+            if (std::find(triangle.begin(), triangle.end(), mesh.tetrahedra[tet][static_cast<size_t>(k)]) ==
+                triangle.end())
+                corner = k;
+        outer.push_back({leaf_of_tet[tet], corner, face[t]});
+    }
+    std::sort(outer.begin(), outer.end(), [](const Outer& a, const Outer& b) {
+        return std::tie(a.leaf, a.corner) < std::tie(b.leaf, b.corner);
+    });
+    std::vector<int32_t> faces;
+    for (const Outer& o : outer) faces.push_back(o.face);
+    return faces;
+}
+
 }  // namespace
 
 Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const BinaryTree& tree,
@@ -98,6 +141,7 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const BinaryTr
 
     assign_faces(surface, mesh, leaf_of_tet, leaf_, face_area_);
     for (double& a : face_area_) a = frame.area_to_caller(a);
+    outer_faces_ = faces_of_outer_facets(surface, mesh, leaf_of_tet);
 
     summary_.components = tree.components;
     summary_.cavities = mesh.cavities;
@@ -281,6 +325,14 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last) const {
     return mesh;
 }
 
+TriangleMesh Hierarchy::solid(size_t tet_first, size_t tet_last) const {
+    std::call_once(facing_->once, [&] {
+        facing_->facets =
+            std::make_unique<Facets>(tetrahedra_, outer_faces_, leaf_, summary_.rung == PW_RUNG_EXACT);
+    });
+    return facing_->facets->solid(tetrahedra_, vertices_, tet_first, tet_last);
+}
+
 // ---- Saved form: magic, version, counts, the stored arrays, a hash of all that came before. Little-endian. ----
 
 namespace {
@@ -288,7 +340,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the saved form is written as memory holds it");
 
 constexpr std::array<char, 8> magic = {'P', 'W', 'H', 'I', 'E', 'R', '\r', '\n'};
-constexpr uint32_t format_version = 2;
+constexpr uint32_t format_version = 3;
 
 // FNV-1a, by words of 8 bytes where they last: any single changed byte changes the hash.
 uint64_t hash(std::span<const uint8_t> bytes) {
@@ -348,10 +400,11 @@ struct Header {
     uint32_t version = format_version;
     uint32_t rung = 0;
     uint64_t faces = 0, tetrahedra = 0, vertices = 0, components = 0, cavities = 0, added_vertices = 0, account = 0;
+    uint64_t outer = 0;
     double deviation = 0;
 };
 
-static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Merge) == 24 && sizeof(Header) == 80);
+static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Merge) == 24 && sizeof(Header) == 88);
 
 }  // namespace
 
@@ -359,7 +412,7 @@ size_t Hierarchy::saved_size() const {
     const size_t vertex = sizeof(Point) + sizeof(int32_t), face = sizeof(int32_t) + sizeof(double);
     const size_t tetrahedron = sizeof(Tetrahedron) + sizeof(double);
     return sizeof(Header) + vertices_.size() * vertex + tetrahedra_.size() * tetrahedron + leaf_.size() * face +
-           merges_.size() * sizeof(Merge) + account_.size() + sizeof(uint64_t);
+           outer_faces_.size() * sizeof(int32_t) + merges_.size() * sizeof(Merge) + account_.size() + sizeof(uint64_t);
 }
 
 std::vector<uint8_t> Hierarchy::save() const {
@@ -371,6 +424,7 @@ std::vector<uint8_t> Hierarchy::save() const {
     header.cavities = summary_.cavities;
     header.added_vertices = summary_.added_vertices;
     header.account = account_.size();
+    header.outer = outer_faces_.size();
     header.rung = summary_.rung;
     header.deviation = summary_.deviation;
     Writer out;
@@ -382,6 +436,7 @@ std::vector<uint8_t> Hierarchy::save() const {
     out.put(tet_volume_.data(), tet_volume_.size());
     out.put(leaf_.data(), leaf_.size());
     out.put(face_area_.data(), face_area_.size());
+    out.put(outer_faces_.data(), outer_faces_.size());
     out.put(merges_.data(), merges_.size());
     out.put(account_.data(), account_.size());
     const uint64_t h = hash(out.bytes);
@@ -409,6 +464,7 @@ Hierarchy Hierarchy::load(std::span<const uint8_t> bytes) {
     h.tet_volume_ = in.get_vector<double>(header.tetrahedra);
     h.leaf_ = in.get_vector<int32_t>(header.faces);
     h.face_area_ = in.get_vector<double>(header.faces);
+    h.outer_faces_ = in.get_vector<int32_t>(header.outer);
     h.merges_ = in.get_vector<Merge>(header.tetrahedra - 1);
     h.summary_.components = header.components;
     h.summary_.cavities = header.cavities;
@@ -445,6 +501,8 @@ void Hierarchy::check_stored() const {
         if (!below(l, leaves)) refuse("a face names a missing tetrahedron");
     for (double a : face_area_)
         if (!measure(a)) refuse("an area is impossible");
+    for (int32_t f : outer_faces_)  // how many there must be shows when a solid is asked for
+        if (f != -1 && !below(f, leaf_.size())) refuse("a facet names a missing face");
     if (summary_.components == 0 || summary_.components > leaves) refuse("its counts are impossible");
 
     const auto strangers = static_cast<size_t>(std::count(source_.begin(), source_.end(), -1));

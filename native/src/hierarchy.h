@@ -2,19 +2,17 @@
 #pragma once
 
 #include "dendrogram.h"
+#include "solid.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace partwheel {
-
-struct TriangleMesh {
-    std::vector<Point> vertices;
-    std::vector<Triangle> triangles;
-};
 
 // pw_arrays documents the arrays, pw_hierarchy_* the questions; arguments are checked by api.
 class Hierarchy {
@@ -41,6 +39,7 @@ public:
     std::vector<int32_t> cut_height(double height) const;   // bounds, as the C API documents
     std::vector<int32_t> cut_parts(size_t parts) const;     // likewise
     TriangleMesh hull(size_t tet_first, size_t tet_last) const;
+    TriangleMesh solid(size_t tet_first, size_t tet_last) const;
 
 private:
     Hierarchy() = default;
@@ -55,6 +54,7 @@ private:
     std::vector<double> tet_volume_;
     std::vector<int32_t> leaf_;      // of each face
     std::vector<double> face_area_;
+    std::vector<int32_t> outer_faces_;  // see Facets
     std::vector<Merge> merges_;
     pw_summary summary_{};
     std::string account_;
@@ -66,6 +66,13 @@ private:
     std::vector<int32_t> order_, parent_, first_, last_, tet_first_, tet_last_;
     std::vector<uint8_t> cost_class_;
     std::vector<double> cost_, height_, volume_, area_;
+
+    // Made when a solid is first asked for, whichever thread asks.
+    struct Facing {
+        std::once_flag once;
+        std::unique_ptr<Facets> facets;
+    };
+    std::unique_ptr<Facing> facing_ = std::make_unique<Facing>();
 };
 
 }  // namespace partwheel

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The native library for Python: numpy arrays in, a Hierarchy out. Nothing here knows Blender."""
 
-from .hierarchy import Hierarchy, Summary
+from .hierarchy import Hierarchy, Solid, Summary
 from .library import LibraryError, PartwheelError, Rung, Stage, Status, version
 
-__all__ = ["Hierarchy", "LibraryError", "PartwheelError", "Rung", "Stage", "Status", "Summary", "version"]
+__all__ = ["Hierarchy", "LibraryError", "PartwheelError", "Rung", "Solid", "Stage", "Status", "Summary",
+           "version"]

@@ -30,6 +30,22 @@ class Summary(NamedTuple):
     deviation: float
 
 
+class Solid(NamedTuple):
+    """The closed surface around a part, outward. n vertices, m triangles:
+
+    vertices (n,3), triangles (m,3)
+    ends (n,2)      the vertex of the hierarchy that each is, twice; for one in the middle of an edge, the edge's ends
+    faces (m,)      the source face that each triangle is of (on the rungs below the exact one: is nearest to), or -1
+    beyond (m,)     the tetrahedron on the other side of a cap; -1 for a triangle of the surface
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    ends: np.ndarray
+    faces: np.ndarray
+    beyond: np.ndarray
+
+
 class _Handle:
     """A native object, freed with the last reference to this."""
 
@@ -263,20 +279,42 @@ class Hierarchy:
 
     def hull(self, node):
         """A node's convex hull: (vertices (n,3), triangles (m,3)), closed, outward."""
-        node = _number(node)
-        if node >= len(self.parent):
-            raise PartwheelError(Status.ARGUMENT, f"There is no node {node}: the hierarchy has {len(self.parent)}.")
-        return self.hull_of_slice(self.tet_first[node], self.tet_last[node])
+        return self.hull_of_slice(*self._slice(node))
 
     def hull_of_slice(self, tet_first, tet_last):
         """The convex hull of tetrahedra[tet_first:tet_last], for a part of a cut: (vertices, triangles)."""
+        return self._mesh(load().pw_hierarchy_hull, tet_first, tet_last)[1:]
+
+    def solid(self, node):
+        """The closed, manifold surface around a node's tetrahedra: a Solid. Where polygons are not triangles,
+        tetrahedra behind a polygon that is in two parts go with the polygon. Raises PartwheelError (EMPTY) for a node
+        without faces that has no tetrahedron left then."""
+        return self.solid_of_slice(*self._slice(node))
+
+    def solid_of_slice(self, tet_first, tet_last):
+        """The same around tetrahedra[tet_first:tet_last], for a part of a cut."""
+        mesh, vertices, triangles = self._mesh(load().pw_hierarchy_solid, tet_first, tet_last)
+        ends, faces, beyond = c_void_p(), c_void_p(), c_void_p()
+        check(load().pw_mesh_origins(mesh.address, byref(ends), byref(faces), byref(beyond)))
+        return Solid(vertices, triangles, _view(mesh, ends.value, (len(vertices), 2), np.int32),
+                     _view(mesh, faces.value, (len(triangles),), np.int32),
+                     _view(mesh, beyond.value, (len(triangles),), np.int32))
+
+    def _slice(self, node):
+        node = _number(node)
+        if node >= len(self.parent):
+            raise PartwheelError(Status.ARGUMENT, f"There is no node {node}: the hierarchy has {len(self.parent)}.")
+        return self.tet_first[node], self.tet_last[node]
+
+    def _mesh(self, function, tet_first, tet_last):
+        """What a function makes of a slice of the tetrahedra: (its handle, vertices, triangles)."""
         address = c_void_p()
-        check(load().pw_hierarchy_hull(self._handle.address, _number(tet_first), _number(tet_last), byref(address)))
+        check(function(self._handle.address, _number(tet_first), _number(tet_last), byref(address)))
         mesh = _Handle(address.value, load().pw_mesh_free)
         vertices, triangles, vertex_count, triangle_count = c_void_p(), c_void_p(), c_size_t(), c_size_t()
         check(load().pw_mesh_arrays(mesh.address, byref(vertices), byref(vertex_count), byref(triangles),
                                     byref(triangle_count)))
-        return (_view(mesh, vertices.value, (vertex_count.value, 3), np.float64),
+        return (mesh, _view(mesh, vertices.value, (vertex_count.value, 3), np.float64),
                 _view(mesh, triangles.value, (triangle_count.value, 3), np.int32))
 
     def _ask(self, function, dtype, *arguments, after=()):

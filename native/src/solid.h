@@ -1,0 +1,55 @@
+// Tetrahedra -> the closed, manifold surface around them: the source's own triangles, and caps where the rest was.
+#pragma once
+
+#include "geometry.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace partwheel {
+
+struct TriangleMesh {
+    std::vector<Point> vertices;
+    std::vector<Triangle> triangles;
+
+    // Of solids alone, see pw_mesh_origins; empty for hulls.
+    std::vector<std::array<int32_t, 2>> ends;
+    std::vector<int32_t> faces, beyond;
+};
+
+// How the tetrahedra of a hierarchy meet. Made once, for all of its solids.
+class Facets {
+public:
+    // outer_faces: the source face, or -1, of each facet that has nothing on its other side, by tetrahedron and then
+    // corner. leaf: of each source face. Throws Error(PW_ERROR_DATA) for tetrahedra that don't fit together.
+    Facets(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> outer_faces,
+           std::span<const int32_t> leaf, bool whole_faces);
+
+    // The tetrahedra whose home is in [first, last).
+    std::vector<int32_t> at_home(size_t first, size_t last) const;
+
+    // The surface around at_home(first, last). Where tetrahedra only touch, at an edge or a vertex, it is cut apart.
+    TriangleMesh solid(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices, size_t first,
+                       size_t last) const;
+
+private:
+    struct Facet {
+        int32_t tet, corner;  // the facet opposite this corner
+    };
+    Facet next_around(std::span<const Tetrahedron> tetrahedra, const std::vector<bool>& inside, Facet facet,
+                      int32_t edge) const;
+
+    std::vector<std::array<int32_t, 4>> neighbours_;  // across the facet opposite each corner; -1: none
+    std::vector<std::array<int32_t, 4>> faces_;       // the source face there; -1: none
+
+    // A polygon is in one part, but its triangles may have different tetrahedra. A tetrahedron that has nothing on the
+    // surface but one polygon goes with it: its home is the polygon's leaf. Each other one is its own. So polygons stay
+    // whole where they can, and whatever the cut, its solids have each tetrahedron once.
+    std::vector<int32_t> home_;
+    std::vector<std::pair<int32_t, int32_t>> moved_;  // (home, tetrahedron) where they differ, sorted
+};
+
+}  // namespace partwheel

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Solids of nodes and of cuts: closed, manifold, outward, of the volume of their tetrahedra, with their faces.
+
+PARTWHEEL_SOLIDS=all: ten random nodes of every clean model of libcgal-demo, and of the directory of models that
+PARTWHEEL_MODELS names.
+"""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapes
+from partwheel.core import Hierarchy, PartwheelError, meshes
+from solid_checks import TOLERANCE, check_solid, tetrahedra_volume, volume
+
+EVERYTHING = os.environ.get("PARTWHEEL_SOLIDS") == "all"
+SOME = ["anchor_dense.off", "bones.off", "elk.off", "hand.off"]
+NODES = 10
+
+
+def some_nodes(hierarchy, count, seed=0):
+    """Random nodes that have faces: half of them anywhere, half of them among the larger ones."""
+    rng = np.random.default_rng(seed)
+    filled = np.flatnonzero(hierarchy.last > hierarchy.first)
+    inner = filled[filled >= len(hierarchy.tetrahedra)]
+    pools = [filled, inner if len(inner) else filled]
+    return [int(rng.choice(pools[i % 2])) for i in range(count)]
+
+
+def faces_of(solid):
+    return np.unique(solid.faces[solid.faces >= 0])
+
+
+def check_node(hierarchy, shape, node):
+    solid = hierarchy.solid(node)
+    check_solid(solid)
+    assert np.allclose(solid.vertices, hierarchy.vertices[solid.ends].mean(axis=1), rtol=1e-15, atol=0)
+    own = volume(solid.vertices, solid.triangles)
+    whole = tetrahedra_volume(hierarchy)
+    if len(shape.triangles) == shape.face_count:
+        tets = slice(hierarchy.tet_first[node], hierarchy.tet_last[node])
+        assert abs(own - tetrahedra_volume(hierarchy, tets)) <= TOLERANCE * whole
+        assert np.array_equal(faces_of(solid), np.sort(hierarchy.faces(node)))
+    # The triangles of a face are the source's own, wound as there; edges may have got a middle.
+    plain = (solid.ends[:, 0] == solid.ends[:, 1])[solid.triangles].all(axis=1) & (solid.faces >= 0)
+    corners = hierarchy.source[solid.ends[solid.triangles[plain], 0]]
+    known = {(face, *turn) for face, triangle in zip(shape.faces.tolist(), shape.triangles.tolist())
+             for turn in (triangle, triangle[1:] + triangle[:1], triangle[2:] + triangle[:2])}
+    turned = volume(shape.vertices, shape.triangles) < 0
+    for face, triangle in zip(solid.faces[plain].tolist(), corners.tolist()):
+        assert (face, *(triangle[::-1] if turned else triangle)) in known
+    return own
+
+
+def check_cut(hierarchy, bounds):
+    """Every cap is there twice, from both sides, and the volumes add up."""
+    total, caps = 0.0, set()
+    for first, last in zip(bounds, bounds[1:]):
+        try:
+            solid = hierarchy.solid_of_slice(first, last)
+        except PartwheelError as error:
+            assert error.name == "empty"  # a part without faces whose tetrahedra went with their polygons
+            continue
+        check_solid(solid)
+        total += volume(solid.vertices, solid.triangles)
+        for corners in solid.vertices[solid.triangles[solid.beyond >= 0]]:
+            points = [tuple(point) for point in corners]
+            least = points.index(min(points))
+            caps.add(tuple(points[least:] + points[:least]))
+    assert abs(total - tetrahedra_volume(hierarchy)) <= TOLERANCE * tetrahedra_volume(hierarchy)
+    return caps
+
+
+def check_caps_meet(caps):
+    assert all((a, c, b) in caps for a, b, c in caps)
+
+
+def test_every_node(case):
+    shape, hierarchy = case
+    for node in np.flatnonzero(hierarchy.last > hierarchy.first)[-200:]:
+        check_node(hierarchy, shape, node)
+
+
+def test_whole_is_the_source(case):
+    shape, hierarchy = case
+    solid = hierarchy.solid(len(hierarchy.parent) - 1)
+    assert len(solid.triangles) == len(shape.triangles) and (solid.beyond == -1).all()
+    assert np.array_equal(np.bincount(solid.faces), np.bincount(shape.faces))
+    check_node(hierarchy, shape, len(hierarchy.parent) - 1)
+
+
+@pytest.mark.parametrize("parts", [2, 3, 7, 20])
+def test_solids_of_a_cut_fill_the_whole(case, parts):
+    _, hierarchy = case
+    caps = check_cut(hierarchy, hierarchy.cut_parts(min(parts, len(hierarchy.tetrahedra))))
+    check_caps_meet(caps)
+
+
+def test_copy_and_rest_make_the_whole(case):
+    """The part and what is left of the rest, both sides of its slice, as a cut."""
+    _, hierarchy = case
+    count = len(hierarchy.tetrahedra)
+    for node in some_nodes(hierarchy, 6):
+        check_cut(hierarchy, sorted({0, hierarchy.tet_first[node], hierarchy.tet_last[node], count}))
+
+
+def test_polygons_stay_whole_but_where_two_parts_share_a_tetrahedron():
+    shape, hierarchy = build("torus")
+    triangles = np.bincount(shape.faces)
+    outer = {}
+    for face, triangle in zip(shape.faces.tolist(), shape.triangles.tolist()):
+        outer[frozenset(triangle)] = face
+    shared = set()  # faces of tetrahedra that have triangles of several
+    for tet in hierarchy.source[hierarchy.tetrahedra].tolist():
+        at = {outer[key] for skip in range(4) if (key := frozenset(tet[:skip] + tet[skip + 1:])) in outer}
+        if len(at) > 1:
+            shared |= at
+    whole = 0
+    for node in some_nodes(hierarchy, 60):
+        solid = hierarchy.solid(node)
+        counts = np.bincount(solid.faces[solid.faces >= 0], minlength=shape.face_count)
+        for face in hierarchy.faces(node).tolist():
+            if face not in shared:
+                assert counts[face] == triangles[face]
+                whole += 1
+        others = np.setdiff1d(np.flatnonzero(counts), hierarchy.faces(node))
+        assert set(others.tolist()) <= shared
+    assert whole > 100
+
+
+def build(name):
+    shape = shapes.SHAPES[name]()
+    return shape, Hierarchy.build(*shape)
+
+
+def test_where_tetrahedra_touch_the_surface_is_cut_apart():
+    """Random slices of the tetrahedra, which are no nodes, touch at vertices and edges."""
+    _, hierarchy = build("3torus.off")
+    rng = np.random.default_rng(1)
+    copies = 0
+    for _ in range(40):
+        first = rng.integers(0, len(hierarchy.tetrahedra) - 1)
+        solid = hierarchy.solid_of_slice(first, rng.integers(first + 1, len(hierarchy.tetrahedra) + 1))
+        check_solid(solid)
+        plain = solid.ends[:, 0] == solid.ends[:, 1]
+        copies += plain.sum() - len(np.unique(solid.ends[plain, 0]))
+    assert copies > 0
+
+
+def test_wrapped_and_repaired_sources_give_closed_solids():
+    box = shapes.cube()
+    for keep, rungs in ((np.arange(len(box.triangles)) != 0, 2), (np.arange(len(box.triangles)) != 0, 4)):
+        shape = shapes.Shape(box.vertices, box.triangles[keep], np.arange(keep.sum(), dtype=np.int32), int(keep.sum()))
+        hierarchy = Hierarchy.build(*shape, rungs=rungs)
+        for node in some_nodes(hierarchy, 20):
+            solid = hierarchy.solid(node)
+            check_solid(solid)
+            assert volume(solid.vertices, solid.triangles) > 0
+        whole = hierarchy.solid(len(hierarchy.parent) - 1)
+        assert set(faces_of(whole)) == set(range(shape.face_count))
+
+
+def test_saved_hierarchies_give_the_same_solids(case):
+    _, hierarchy = case
+    again = Hierarchy.load(hierarchy.save())
+    for node in some_nodes(hierarchy, 5):
+        for one, other in zip(hierarchy.solid(node), again.solid(node)):
+            assert np.array_equal(one, other)
+
+
+def test_bad_slices_are_refused(case):
+    _, hierarchy = case
+    for first, last in ((0, 0), (1, 0), (0, len(hierarchy.tetrahedra) + 1)):
+        with pytest.raises(PartwheelError, match="slice"):
+            hierarchy.solid_of_slice(first, last)
+    with pytest.raises(PartwheelError, match="no node"):
+        hierarchy.solid(len(hierarchy.parent))
+
+
+def models():
+    names = sorted(path.name for path in shapes.MESHES.iterdir()) if EVERYTHING else SOME
+    paths = [shapes.MESHES / name for name in names]
+    if EVERYTHING and "PARTWHEEL_MODELS" in os.environ:
+        paths += sorted(Path(os.environ["PARTWHEEL_MODELS"]).rglob("*.off"))
+    return paths
+
+
+@pytest.mark.parametrize("path", models(), ids=lambda path: path.name)
+def test_real_models(path):
+    try:
+        mesh = meshes.read(path)
+        shape = shapes.Shape(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count)
+        hierarchy = Hierarchy.build(*shape, rungs=1)
+    except (PartwheelError, ValueError) as error:
+        pytest.skip(f"not clean: {error}")
+    for node in some_nodes(hierarchy, NODES):
+        check_node(hierarchy, shape, node)
+        count = len(hierarchy.tetrahedra)
+        check_cut(hierarchy, sorted({0, hierarchy.tet_first[node], hierarchy.tet_last[node], count}))

@@ -1,0 +1,174 @@
+// Surfaces around any subset of tetrahedra: closed, manifold, outward, of the right volume; broken input refused.
+#include "error.h"
+#include "solid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <random>
+#include <set>
+
+namespace partwheel::test {
+namespace {
+
+struct Tets {
+    std::vector<Point> vertices;
+    std::vector<Tetrahedron> tetrahedra;
+};
+
+// A block of n^3 unit cells, each cut into six tetrahedra along its diagonal from its lowest to its highest corner.
+Tets kuhn_block(int n) {
+    Tets block;
+    const auto number = [&](const std::array<int, 3>& p) { return (p[0] * (n + 1) + p[1]) * (n + 1) + p[2]; };
+    for (int i = 0; i <= n; ++i)
+        for (int j = 0; j <= n; ++j)
+            for (int k = 0; k <= n; ++k) block.vertices.push_back({double(i), double(j), double(k)});
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+            for (int k = 0; k < n; ++k) {
+                std::array<size_t, 3> axes = {0, 1, 2};
+                do {
+                    std::array<int, 3> p = {i, j, k};
+                    Tetrahedron tet{number(p)};
+                    for (size_t step = 0; step < 3; ++step) {
+                        ++p[axes[step]];
+                        tet[step + 1] = number(p);
+                    }
+                    const auto at = [&](size_t c) { return block.vertices[static_cast<size_t>(tet[c])]; };
+                    if (six_volumes(at(0), at(1), at(2), at(3)) < 0) std::swap(tet[2], tet[3]);
+                    block.tetrahedra.push_back(tet);
+                } while (std::next_permutation(axes.begin(), axes.end()));
+            }
+    return block;
+}
+
+size_t outer_facets(const Tets& tets) {
+    std::map<std::set<int32_t>, int> count;
+    for (const Tetrahedron& t : tets.tetrahedra)
+        for (size_t skip = 0; skip < 4; ++skip) {
+            std::set<int32_t> facet(t.begin(), t.end());
+            facet.erase(t[skip]);
+            ++count[facet];
+        }
+    return static_cast<size_t>(std::count_if(count.begin(), count.end(), [](const auto& c) { return c.second == 1; }));
+}
+
+// Each directed edge once, and its opposite; one umbrella at each vertex.
+void expect_closed_and_manifold(const TriangleMesh& mesh) {
+    std::map<std::pair<int32_t, int32_t>, int32_t> third;
+    std::map<int32_t, size_t> triangles_at;
+    for (const Triangle& t : mesh.triangles)
+        for (size_t k = 0; k < 3; ++k) {
+            ASSERT_TRUE(third.emplace(std::pair(t[k], t[(k + 1) % 3]), t[(k + 2) % 3]).second);
+            ++triangles_at[t[k]];
+        }
+    ASSERT_EQ(triangles_at.size(), mesh.vertices.size());
+    for (const auto& [edge, unused] : third) ASSERT_TRUE(third.contains({edge.second, edge.first}));
+    std::set<int32_t> seen;
+    for (const auto& [edge, unused] : third) {
+        if (!seen.insert(edge.first).second) continue;
+        size_t steps = 0;
+        int32_t v = edge.second;
+        do {
+            v = third.at({edge.first, v});
+            ++steps;
+        } while (v != edge.second);
+        ASSERT_EQ(steps, triangles_at[edge.first]);
+    }
+}
+
+double volume(const TriangleMesh& mesh) {
+    double six = 0;
+    for (const Triangle& t : mesh.triangles)
+        six += six_volumes({0, 0, 0}, mesh.vertices[static_cast<size_t>(t[0])],
+                           mesh.vertices[static_cast<size_t>(t[1])], mesh.vertices[static_cast<size_t>(t[2])]);
+    return six / 6;
+}
+
+TEST(Solid, AnySubsetOfTetrahedraHasAClosedManifoldSurface) {
+    std::mt19937 random(7);
+    size_t copies = 0, middles = 0;
+    for (int round = 0; round < 60; ++round) {
+        Tets block = kuhn_block(1 + round % 4);
+        std::shuffle(block.tetrahedra.begin(), block.tetrahedra.end(), random);
+        const std::vector<int32_t> outer(outer_facets(block), -1);
+        const Facets facets(block.tetrahedra, outer, {}, false);
+        const size_t count = 1 + random() % block.tetrahedra.size();
+        const TriangleMesh mesh = facets.solid(block.tetrahedra, block.vertices, 0, count);
+        expect_closed_and_manifold(mesh);
+        EXPECT_NEAR(volume(mesh), static_cast<double>(count) / 6, 1e-12 * static_cast<double>(count));
+        std::set<std::array<int32_t, 2>> distinct(mesh.ends.begin(), mesh.ends.end());
+        copies += mesh.vertices.size() - distinct.size();
+        for (const auto& [a, b] : mesh.ends) middles += a != b;
+    }
+    // Both ways of cutting apart were needed.
+    EXPECT_GT(copies, 100U);
+    EXPECT_GT(middles, 20U);
+}
+
+TEST(Solid, APolygonTakesTheTetrahedraThatHaveNothingElse) {
+    const Tets block = kuhn_block(1);  // six tetrahedra, each with two outer facets, of different sides of the cube
+    std::vector<int32_t> outer(12);
+    std::iota(outer.begin(), outer.end(), 0);
+    const std::vector<int32_t> own = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5};
+    const Facets triangles(block.tetrahedra, outer, own, true);
+    // Tetrahedron 1's two triangles and one of tetrahedron 0's are face 0, whose leaf is 0.
+    const std::vector<int32_t> faces = {0, 1, 0, 0, 2, 3, 4, 5, 6, 7, 8, 9};
+    const std::vector<int32_t> leaf = {0, 0, 2, 2, 3, 3, 4, 4, 5, 5};
+    const Facets polygons(block.tetrahedra, faces, leaf, true), cut(block.tetrahedra, faces, leaf, false);
+    for (size_t t = 0; t < 6; ++t) {
+        EXPECT_EQ(triangles.at_home(t, t + 1), std::vector<int32_t>{static_cast<int32_t>(t)});
+        EXPECT_EQ(cut.at_home(t, t + 1), std::vector<int32_t>{static_cast<int32_t>(t)});
+    }
+    EXPECT_EQ(polygons.at_home(0, 1), (std::vector<int32_t>{0, 1}));
+    EXPECT_TRUE(polygons.at_home(1, 2).empty());
+    EXPECT_EQ(polygons.at_home(1, 6).size(), 4U);
+    EXPECT_EQ(polygons.at_home(0, 6).size(), 6U);
+    EXPECT_THROW(polygons.solid(block.tetrahedra, block.vertices, 1, 2), Error);
+}
+
+TEST(Solid, CapsNameTheOtherSide) {
+    const Tets block = kuhn_block(2);
+    const Facets facets(block.tetrahedra, std::vector<int32_t>(outer_facets(block), 0), std::vector<int32_t>{0}, false);
+    const TriangleMesh low = facets.solid(block.tetrahedra, block.vertices, 0, 20);
+    size_t caps = 0;
+    for (size_t i = 0; i < low.triangles.size(); ++i) {
+        const int32_t beyond = low.beyond[i];
+        EXPECT_EQ(low.faces[i], beyond < 0 ? 0 : -1);
+        if (beyond < 0) continue;
+        ++caps;
+        EXPECT_GE(beyond, 20);
+        const Tetrahedron& tet = block.tetrahedra[static_cast<size_t>(beyond)];
+        for (int32_t v : low.triangles[i])
+            for (int32_t end : low.ends[static_cast<size_t>(v)])
+                EXPECT_NE(std::find(tet.begin(), tet.end(), end), tet.end());
+    }
+    EXPECT_GT(caps, 0U);
+}
+
+// A hash can be forged: saved tetrahedra may be anything.
+TEST(Solid, TetrahedraThatDoNotFitTogetherAreRefused) {
+    const auto refused = [](const std::vector<Tetrahedron>& tets, size_t outer) {
+        try {
+            const Facets facets(tets, std::vector<int32_t>(outer, -1), {}, false);
+            const std::vector<Point> vertices(6, Point{});
+            for (size_t t = 0; t < tets.size(); ++t) facets.solid(tets, vertices, 0, t + 1);
+        } catch (const Error& error) {
+            return error.status() == PW_ERROR_DATA;
+        }
+        return false;
+    };
+    EXPECT_FALSE(refused({{0, 1, 2, 3}}, 4));
+    EXPECT_FALSE(refused({{0, 1, 2, 3}, {1, 0, 2, 4}}, 6));
+    EXPECT_TRUE(refused({{0, 1, 2, 3}}, 3));
+    EXPECT_TRUE(refused({{0, 1, 2, 3}}, 5));
+    EXPECT_TRUE(refused({{0, 0, 2, 3}}, 4));
+    EXPECT_TRUE(refused({{0, 1, 2, 3}, {1, 0, 2, 4}, {0, 1, 2, 5}}, 9));  // three at one facet
+    EXPECT_FALSE(refused({{0, 1, 2, 3}, {0, 1, 2, 3}}, 0));               // twice the same: nonsense, but closed
+    EXPECT_TRUE(refused({{0, 1, 2, 3}, {0, 1, 2, 4}}, 6));                // wound against each other
+}
+
+}  // namespace
+}  // namespace partwheel::test
