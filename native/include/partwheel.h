@@ -278,7 +278,7 @@ PW_API pw_status pw_mesh_arrays(const pw_mesh *mesh, const double **vertices, si
  * no such cut is possible: two edges run beside each other, and one of them has a vertex in its middle.
  *
  * On the rungs below the exact one this is the solid that was made from the caller's surface, and caps have no face.
- *
+ * The rest without tetrahedra[a : b] is the slice that goes on at the start: tet_first = b, tet_last = a.
  * PW_ERROR_EMPTY: no tetrahedron is left, which happens to a part that has no faces. */
 PW_API pw_status pw_hierarchy_solid(const pw_hierarchy *hierarchy, size_t tet_first, size_t tet_last, pw_mesh **mesh);
 

@@ -292,8 +292,10 @@ pw_status pw_hierarchy_hull(const pw_hierarchy* hierarchy, size_t tet_first, siz
 pw_status pw_hierarchy_solid(const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last, pw_mesh** mesh) {
     return guarded([&] {
         require(hierarchy != nullptr && mesh != nullptr, "hierarchy and mesh must not be null.");
-        require(tet_first < tet_last && tet_last <= hierarchy->hierarchy.tetrahedron_count(),
-                "The tetrahedra must be a slice that is not empty: tet_first < tet_last <= their number.");
+        const size_t count = hierarchy->hierarchy.tetrahedron_count();
+        require(tet_first != tet_last && tet_first <= count && tet_last <= count,
+                "The tetrahedra must be a slice that is not empty: tet_first and tet_last differ and are at most their "
+                "number.");
         *mesh = new pw_mesh{hierarchy->hierarchy.solid(tet_first, tet_last)};
     });
 }

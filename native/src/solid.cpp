@@ -114,6 +114,11 @@ Facets::Facets(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t>
 
 std::vector<int32_t> Facets::at_home(size_t first, size_t last) const {
     std::vector<int32_t> tets;
+    if (first > last) {
+        for (size_t t = 0; t < home_.size(); ++t)
+            if (at(home_[t]) < last || at(home_[t]) >= first) tets.push_back(static_cast<int32_t>(t));
+        return tets;
+    }
     for (size_t t = first; t < last; ++t)
         if (at(home_[t]) >= first && at(home_[t]) < last) tets.push_back(static_cast<int32_t>(t));
     const auto from = std::lower_bound(moved_.begin(), moved_.end(), std::pair(static_cast<int32_t>(first), -1));

@@ -28,7 +28,7 @@ public:
     Facets(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> outer_faces,
            std::span<const int32_t> leaf, bool whole_faces);
 
-    // The tetrahedra whose home is in [first, last).
+    // The tetrahedra whose home is in [first, last); if first is the larger, outside [last, first).
     std::vector<int32_t> at_home(size_t first, size_t last) const;
 
     // The surface around at_home(first, last). Where tetrahedra only touch, at an edge or a vertex, it is cut apart.

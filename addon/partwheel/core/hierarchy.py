@@ -292,13 +292,19 @@ class Hierarchy:
         return self.solid_of_slice(*self._slice(node))
 
     def solid_of_slice(self, tet_first, tet_last):
-        """The same around tetrahedra[tet_first:tet_last], for a part of a cut."""
+        """The same around tetrahedra[tet_first:tet_last], for a part of a cut. With the two exchanged, around the rest:
+        tetrahedra[tet_first:] and tetrahedra[:tet_last]."""
         mesh, vertices, triangles = self._mesh(load().pw_hierarchy_solid, tet_first, tet_last)
         ends, faces, beyond = c_void_p(), c_void_p(), c_void_p()
         check(load().pw_mesh_origins(mesh.address, byref(ends), byref(faces), byref(beyond)))
         return Solid(vertices, triangles, _view(mesh, ends.value, (len(vertices), 2), np.int32),
                      _view(mesh, faces.value, (len(triangles),), np.int32),
                      _view(mesh, beyond.value, (len(triangles),), np.int32))
+
+    def rest(self, node):
+        """The Solid around all tetrahedra but a node's. Raises PartwheelError (EMPTY) where nothing is left."""
+        first, last = self._slice(node)
+        return self.solid_of_slice(last, first)
 
     def _slice(self, node):
         node = _number(node)
