@@ -178,15 +178,11 @@ Mended mend(const Surface& source, Progress& progress) {
 Surface to_surface(const Surface& source, const CgalMesh& mesh) {
     std::map<Point, int32_t> source_of;
     for (size_t v = source.vertices.size(); v-- > 0;) source_of[source.vertices[v]] = source.source_vertex[v];
-    std::vector<std::pair<Point, CgalMesh::Vertex_index>> order;
-    for (const auto v : mesh.vertices()) {
-        const CgalPoint& p = mesh.point(v);
-        if (!mesh.is_isolated(v)) order.push_back({{p.x(), p.y(), p.z()}, v});
-    }
-    std::sort(order.begin(), order.end());
     std::vector<Point> vertices;
     std::vector<int32_t> source_vertex, number(mesh.number_of_vertices(), -1);
-    for (const auto& [p, v] : order) {
+    for (const auto v : mesh.vertices()) {
+        if (mesh.is_isolated(v)) continue;
+        const Point p = {mesh.point(v).x(), mesh.point(v).y(), mesh.point(v).z()};
         const auto known = source_of.find(p);
         source_vertex.push_back(known == source_of.end() ? -1 : known->second);
         number[v] = static_cast<int32_t>(vertices.size());
@@ -198,7 +194,7 @@ Surface to_surface(const Surface& source, const CgalMesh& mesh) {
         size_t k = 0;
         for (const auto v : CGAL::vertices_around_face(mesh.halfedge(f), mesh)) t[k++] = number[v];
     }
-    return canonical(source.frame, std::move(vertices), std::move(source_vertex), triangles);
+    return canonical(source.frame, vertices, source_vertex, triangles);
 }
 
 }  // namespace partwheel

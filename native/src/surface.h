@@ -46,8 +46,9 @@ struct Piece {
     auto operator<=>(const Piece&) const = default;
 };
 
-// Vertices are sorted by x, y, z; each triangle starts with its lowest vertex, and triangles are sorted: so nothing
-// downstream depends on the order of the caller's arrays. A surface that encloses a negative volume has been turned.
+// Vertices are sorted along a space-filling curve, those at the same point as the caller had them; each triangle starts
+// with its lowest vertex, and triangles are sorted: so nothing downstream depends on the order of the caller's arrays,
+// and what is near in space is mostly near in memory. A surface that encloses a negative volume has been turned.
 struct Surface {
     Frame frame;
     std::vector<Point> vertices;         // working coordinates of the vertices in use
@@ -65,8 +66,9 @@ struct Surface {
 // The caller's arrays in canonical order, good or bad. Throws an Error where they aren't a mesh with an extent.
 Surface read_mesh(const MeshView& mesh);
 
-// Triangles in canonical order; the vertices are in it, and in use. Triangle t of those given is the piece of face t.
-Surface canonical(const Frame& frame, std::vector<Point> vertices, std::vector<int32_t> source_vertex,
+// A surface in canonical order from working coordinates of vertices, all in use, the caller's index of each (or -1) and
+// triangles of them. Triangle t of those given is the piece of face t.
+Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span<const int32_t> source_vertex,
                   std::span<const Triangle> triangles);
 
 // Checks what pw_build documents of the exact rung, in the order of pw_status; throws an Error that names the first

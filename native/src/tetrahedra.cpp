@@ -13,6 +13,7 @@
 #include <mutex>
 #include <numeric>
 #include <random>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -133,7 +134,25 @@ void run_tetgen(const Surface& surface, const InputOrder& order, double quality,
     if (out.numberoftetrahedra <= 0 || !out.tetrahedronlist || !out.neighborlist) throw_failure(2);
 }
 
-// All of TetGen's tetrahedra, those of cavities included, positively oriented.
+// Keys sorted by counting: their order, equal ones as they come, and where each value's begin in it.
+struct Counted {
+    std::vector<int32_t> order, begin;  // begin: one per value below the number of values, and the end
+
+    template <class Key>
+    Counted(size_t count, size_t values, const Key& key) : order(count), begin(values + 1, 0) {
+        for (size_t i = 0; i < count; ++i) ++begin[static_cast<size_t>(key(i)) + 1];
+        std::partial_sum(begin.begin(), begin.end(), begin.begin());
+        std::vector<int32_t> next(begin.begin(), begin.end() - 1);
+        for (size_t i = 0; i < count; ++i)
+            order[static_cast<size_t>(next[static_cast<size_t>(key(i))]++)] = static_cast<int32_t>(i);
+    }
+    std::span<const int32_t> with(int32_t value) const {
+        const auto v = static_cast<size_t>(value);
+        return std::span(order).subspan(static_cast<size_t>(begin[v]), static_cast<size_t>(begin[v + 1] - begin[v]));
+    }
+};
+
+// All of TetGen's tetrahedra, those of cavities included, sorted by their corners, positively oriented.
 TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& out) {
     TetMesh mesh;
     const auto points = static_cast<size_t>(out.numberofpoints), tets = static_cast<size_t>(out.numberoftetrahedra);
@@ -151,20 +170,38 @@ TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& ou
     if (!kept)
         throw Error(PW_ERROR_TETRAHEDRA, "The mesher moved or merged vertices of the surface, for some are too close "
                                          "together. Merge vertices by distance.");
+
+    struct Corner {
+        int32_t vertex, beyond;  // the neighbour opposite
+    };
+    std::vector<std::array<Corner, 4>> read(tets);
     for (size_t i = 0; i < tets; ++i) {
-        Tetrahedron t;
-        std::array<int32_t, 4> n;
-        std::copy_n(out.tetrahedronlist + i * static_cast<size_t>(out.numberofcorners), 4, t.begin());
-        std::copy_n(out.neighborlist + 4 * i, 4, n.begin());
-        for (int32_t& v : t)
-            if (static_cast<size_t>(v) < given) v = order.vertices[static_cast<size_t>(v)];
-        const auto at = [&](size_t k) { return mesh.vertices[static_cast<size_t>(t[k])]; };
-        if (orientation(at(0), at(1), at(2), at(3)) < 0) {
-            std::swap(t[0], t[1]);
-            std::swap(n[0], n[1]);
+        const int* corners = out.tetrahedronlist + i * static_cast<size_t>(out.numberofcorners);
+        const int* beyond = out.neighborlist + 4 * i;
+        for (size_t k = 0; k < 4; ++k) {
+            const bool added = static_cast<size_t>(corners[k]) >= given;
+            read[i][k] = {added ? corners[k] : order.vertices[static_cast<size_t>(corners[k])], beyond[k]};
         }
-        mesh.tetrahedra.push_back(t);
-        mesh.neighbours.push_back(n);
+        std::sort(read[i].begin(), read[i].end(),
+                  [](const Corner& a, const Corner& b) { return a.vertex < b.vertex; });
+    }
+    const Counted by_lowest(tets, points, [&](size_t i) { return read[i][0].vertex; });
+    std::vector<int32_t> sorted = by_lowest.order, number(tets);
+    const auto rest = [&](int32_t t) {
+        const auto& c = read[static_cast<size_t>(t)];
+        return std::array{c[1].vertex, c[2].vertex, c[3].vertex};
+    };
+    for (size_t v = 0; v < points; ++v)
+        std::sort(sorted.begin() + by_lowest.begin[v], sorted.begin() + by_lowest.begin[v + 1],
+                  [&](int32_t a, int32_t b) { return rest(a) < rest(b); });
+    for (size_t i = 0; i < tets; ++i) number[static_cast<size_t>(sorted[i])] = static_cast<int32_t>(i);
+    for (const int32_t i : sorted) {
+        std::array<Corner, 4> c = read[static_cast<size_t>(i)];
+        const auto at = [&](size_t k) { return mesh.vertices[static_cast<size_t>(c[k].vertex)]; };
+        if (orientation(at(0), at(1), at(2), at(3)) < 0) std::swap(c[2], c[3]);
+        mesh.tetrahedra.push_back({c[0].vertex, c[1].vertex, c[2].vertex, c[3].vertex});
+        const auto across = [&](size_t k) { return c[k].beyond < 0 ? -1 : number[static_cast<size_t>(c[k].beyond)]; };
+        mesh.neighbours.push_back({across(0), across(1), across(2), across(3)});
     }
     return mesh;
 }
@@ -182,23 +219,24 @@ struct Wall {
 
 class Walls {
 public:
-    Walls(const Surface& surface, const TetMesh& mesh) : surface_(surface), mesh_(mesh) {}
+    Walls(const Surface& surface, const TetMesh& mesh)
+        : triangles_(surface.triangles), mesh_(mesh),
+          by_lowest_(triangles_.size(), mesh.vertices.size(), [&](size_t t) { return triangles_[t][0]; }) {}
 
     Wall at(size_t tet, size_t opposite) const {
         const Triangle f = facet(mesh_.tetrahedra[tet], opposite);
-        if (int32_t t = find(f); t >= 0) return {t, true};
-        if (int32_t t = find({f[0], f[2], f[1]}); t >= 0) return {t, false};
+        for (const int32_t t : by_lowest_.with(f[0])) {
+            const Triangle& wall = triangles_[static_cast<size_t>(t)];
+            if (wall[1] == f[1] && wall[2] == f[2]) return {t, true};
+            if (wall[1] == f[2] && wall[2] == f[1]) return {t, false};
+        }
         return {};
     }
 
 private:
-    int32_t find(const Triangle& t) const {
-        const auto i = std::lower_bound(surface_.triangles.begin(), surface_.triangles.end(), t);
-        if (i == surface_.triangles.end() || *i != t) return -1;
-        return static_cast<int32_t>(i - surface_.triangles.begin());
-    }
-    const Surface& surface_;
+    std::span<const Triangle> triangles_;
     const TetMesh& mesh_;
+    Counted by_lowest_;
 };
 
 // The winding number of the surface about each tetrahedron: 0 outside, one more behind each triangle.

@@ -7,7 +7,7 @@ namespace partwheel {
 
 struct TetMesh {
     std::vector<Point> vertices;  // the surface's, in its order, then points that TetGen added inside
-    std::vector<Tetrahedron> tetrahedra;
+    std::vector<Tetrahedron> tetrahedra;  // sorted by their corners, of which the lowest comes first
     std::vector<std::array<int32_t, 4>> neighbours;  // across the facet opposite each corner; -1: none
     std::vector<int32_t> tet_of_triangle;            // behind each triangle of the surface
     size_t cavities = 0;
