@@ -9,13 +9,14 @@
     nodes = api.path(obj, face=42)     # from the face's own small part up to the whole
     api.select(obj, face=42, level=2)  # a click on face 42 and two notches up
     labels = api.cut(obj, parts=8)     # (F,) the part of each face, 0 to 7
+    copy = api.copy_part(obj, node)    # the part as a closed solid, a new object
 
 Nodes are numbers of the object's hierarchy, a core.Hierarchy, which build() returns and hierarchy() finds. The other
 functions build it if there is none. All raise core.PartwheelError, whose text says what is wrong, or ValueError for an
 object that holds no mesh; build() also RuntimeError while another build is under way.
 """
 
-from . import selection, session, wheel
+from . import composition, selection, session, solids, wheel
 
 
 def build(obj, quality=0.0, open_surfaces=False):
@@ -63,10 +64,37 @@ def select(obj, face, level=0, extend=False):
 def cut(obj, parts=None, height=None):
     """(F,) the part of each face, counted from 0, when the whole is cut into so many parts, those with the least total
     concavity, or at a height of the dendrogram: give one of the two. A part inside the solid has no face."""
+    built = hierarchy(obj)
+    return built.face_labels(_bounds(built, parts, height))
+
+
+def copy_part(obj, node, smooth=False, material=False):
+    """A new object in the part's place: the node as a closed solid. Its polygons keep all their attributes; the caps
+    that close it are marked by the face attribute "partwheel_cap". smooth: caps that go on as the surface does, not the
+    flat facets inside the solid. material: caps get a material of their own. solids.NotClosed: it can't be closed."""
+    return composition.copied(obj, hierarchy(obj), node, solids.Options(smooth, material))
+
+
+def remove(obj, node, smooth=False, material=False):
+    """Takes the node out of the object's mesh, which must not be in Edit Mode, and closes the hole; options as for
+    copy_part(). What it removes and what copy_part() gives make the whole."""
+    _check(obj)
+    if obj.mode == "EDIT":
+        raise ValueError(f"{obj.name} is in Edit Mode. Leave it before a part is removed by a script.")
+    composition.removed(obj, hierarchy(obj), node, solids.Options(smooth, material))
+
+
+def split(obj, parts=None, height=None, explode=0.0, smooth=False, material=False):
+    """New objects in a new collection, one for each part of a cut as cut() makes it: closed solids whose caps match
+    exactly (unless smooth). Each is moved out by explode times its distance from the middle."""
+    built = hierarchy(obj)
+    return composition.split(obj, built, _bounds(built, parts, height), solids.Options(smooth, material), explode)
+
+
+def _bounds(built, parts, height):
     if (parts is None) == (height is None):
         raise ValueError("Say into how many parts to cut, or at which height: one of the two.")
-    built = hierarchy(obj)
-    return built.face_labels(built.cut_height(height) if parts is None else built.cut_parts(parts))
+    return built.cut_height(height) if parts is None else built.cut_parts(parts)
 
 
 def _check(obj):

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators: build, clear, select by wheel."""
+"""The operators: build, clear, select by wheel; copy, remove, split."""
 
 import bpy
 
 from .build import MESH_OT_partwheel_build, MESH_OT_partwheel_clear
+from .copy_part import MESH_OT_partwheel_copy, MESH_OT_partwheel_remove, MESH_OT_partwheel_split
 from .select import MESH_OT_partwheel_select
 
-CLASSES = (MESH_OT_partwheel_build, MESH_OT_partwheel_clear, MESH_OT_partwheel_select)
+CLASSES = (MESH_OT_partwheel_build, MESH_OT_partwheel_clear, MESH_OT_partwheel_select, MESH_OT_partwheel_copy,
+           MESH_OT_partwheel_remove, MESH_OT_partwheel_split)
 
 
 def register():

@@ -37,6 +37,8 @@ class HandOff(NamedTuple):
 HANDOFFS = [
     HandOff("G", False, "Move Proportionally", lambda context: bpy.ops.transform.translate(
         "INVOKE_DEFAULT", use_proportional_edit=True, use_proportional_connected=True)),
+    HandOff("C", False, "Copy as Solid", lambda context: bpy.ops.mesh.partwheel_copy("INVOKE_DEFAULT", True)),
+    HandOff("X", False, "Remove", lambda context: bpy.ops.mesh.partwheel_remove("INVOKE_DEFAULT", True)),
     HandOff("D", True, "Duplicate", lambda context: bpy.ops.mesh.duplicate_move("INVOKE_DEFAULT")),
 ]
 

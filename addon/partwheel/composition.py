@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects made of parts (the paper, section 4.2): copied and split off. In Object Mode; the caller looks after undo."""
+
+import bpy
+import numpy as np
+from mathutils import Vector
+
+from . import solids
+from .core import PartwheelError
+from .mesh_arrays import read
+
+
+def copied(obj, hierarchy, node, options=solids.Options()):
+    """A new object with the part as a closed mesh, in the place of the part."""
+    mesh = solids.part(obj, hierarchy, *_slice(hierarchy, node), options)
+    return _beside(obj, mesh, f"{obj.name} part")
+
+
+def removed(obj, hierarchy, node, options=solids.Options()):
+    """Takes the part out of the object's mesh and closes the hole."""
+    solids.remove(obj, hierarchy, *_slice(hierarchy, node), options)
+
+
+def split(obj, hierarchy, bounds, options=solids.Options(), explode=0.0):
+    """New objects in a new collection: the parts of a cut as closed meshes, those without faces left out. Each is moved
+    away from the middle of the object's bounding box by explode times its distance to it."""
+    collection = bpy.data.collections.new(f"{obj.name} parts")
+    home(obj).children.link(collection)
+    middle = sum((Vector(corner) for corner in obj.bound_box), Vector()) / 8
+    made = []
+    for first, last in zip(bounds, bounds[1:]):
+        try:
+            mesh = solids.part(obj, hierarchy, first, last, options)
+        except PartwheelError as error:
+            if error.name != "empty":
+                raise
+            continue
+        part = _beside(obj, mesh, f"{obj.name} part", collection)
+        corners = read(mesh.vertices, "co", np.float32, 3)
+        away = Vector((corners.min(axis=0) + corners.max(axis=0)) / 2) - middle
+        part.matrix_world.translation += obj.matrix_world.to_3x3() @ away * explode
+        made.append(part)
+    return made
+
+
+def home(obj):
+    """The collection that new objects beside this one go to."""
+    return obj.users_collection[0] if obj.users_collection else bpy.context.scene.collection
+
+
+def _slice(hierarchy, node):
+    return int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])
+
+
+def _beside(obj, mesh, name, collection=None):
+    new = bpy.data.objects.new(name, mesh)
+    (collection or home(obj)).objects.link(new)
+    new.matrix_world = obj.matrix_world
+    return new

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""mesh.partwheel_copy, mesh.partwheel_remove, mesh.partwheel_split: parts as solids."""
+
+import bpy
+
+from .. import composition, session, solids
+from ..core import PartwheelError
+
+
+class _AsSolid:
+    """What the three share: caps, Edit Mode, errors."""
+
+    bl_options = {"REGISTER", "UNDO"}
+    edits = False  # whether it changes the mesh itself: then Edit Mode goes on afterwards
+
+    smooth: bpy.props.BoolProperty(
+        name="Smooth Caps", description="Close the part with a smooth surface, instead of the flat facets inside the "
+        "solid that divide it from the rest", default=False,
+    )
+    material: bpy.props.BoolProperty(
+        name="Cap Material", description="Give the caps a material of their own", default=False,
+    )
+
+    @classmethod
+    def poll(cls, context):
+        obj = context.active_object
+        if obj is None or obj.type != "MESH" or obj.mode not in {"EDIT", "OBJECT"}:
+            cls.poll_message_set("Needs an active mesh object, in Edit Mode or Object Mode.")
+            return False
+        return True
+
+    def execute(self, context):
+        obj = context.active_object
+        was_edited = obj.mode == "EDIT"
+        try:
+            hierarchy = self.hierarchy(context, obj)
+            if was_edited:
+                bpy.ops.object.mode_set(mode="OBJECT")
+            self.work(context, obj, hierarchy)
+            if was_edited and self.edits:
+                bpy.ops.object.mode_set(mode="EDIT")
+        except (PartwheelError, solids.NotClosed) as error:
+            if was_edited and obj.mode != "EDIT":
+                bpy.ops.object.mode_set(mode="EDIT")
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+    def hierarchy(self, context, obj):
+        found = session.hierarchy(obj)
+        if not found:
+            raise solids.NotClosed(f"{obj.name} has no parts for its mesh as it is now. Build them first.")
+        return found
+
+    def caps(self):
+        return solids.Options(self.smooth, self.material)
+
+
+class _OnPart(_AsSolid):
+    """Acts on a node, or on the part that was picked last."""
+
+    node: bpy.props.IntProperty(
+        name="Node", description="The part, as a number of the hierarchy; -1: the part that was picked last",
+        default=-1, min=-1, options={"SKIP_SAVE"},
+    )
+
+    def hierarchy(self, context, obj):
+        found = super().hierarchy(context, obj)
+        if self.node >= len(found.parent):
+            raise solids.NotClosed(f"There is no part {self.node}: the hierarchy has {len(found.parent)}.")
+        if self.node < 0:
+            picked = session.picked(obj)
+            if not picked:
+                raise solids.NotClosed("No part is picked. Pick one with Select Part by Wheel, and confirm it.")
+            self.node = picked.node
+        return found
+
+
+class MESH_OT_partwheel_copy(_OnPart, bpy.types.Operator):
+    """Copy the picked part as a solid: a new object, closed where the part was cut off. Ctrl C and Ctrl V then take it \
+to another file"""
+
+    bl_idname = "mesh.partwheel_copy"
+    bl_label = "Copy Part as Solid"
+
+    def work(self, context, obj, hierarchy):
+        only(context, [composition.copied(obj, hierarchy, self.node, self.caps())])
+
+
+class MESH_OT_partwheel_remove(_OnPart, bpy.types.Operator):
+    """Take the picked part out of the mesh and close the hole"""
+
+    bl_idname = "mesh.partwheel_remove"
+    bl_label = "Remove Part"
+    edits = True
+
+    @classmethod
+    def poll(cls, context):
+        if not super().poll(context):
+            return False
+        if context.active_object.data.library:
+            cls.poll_message_set("The mesh is linked from another file. Make it local first.")
+            return False
+        return True
+
+    def work(self, context, obj, hierarchy):
+        composition.removed(obj, hierarchy, self.node, self.caps())
+
+
+class MESH_OT_partwheel_split(_AsSolid, bpy.types.Operator):
+    """Make each part of a cut an object of its own: closed solids that fit each other exactly"""
+
+    bl_idname = "mesh.partwheel_split"
+    bl_label = "Split into Solids"
+
+    by: bpy.props.EnumProperty(
+        name="By", description="What decides where to cut",
+        items=[("PARTS", "Parts", "Into so many parts, those that are nearest to convex"),
+               ("HEIGHT", "Height", "Into the largest parts of at most this concavity")],
+    )
+    parts: bpy.props.IntProperty(name="Parts", description="How many parts", default=6, min=1, soft_max=64, max=4096)
+    height: bpy.props.FloatProperty(
+        name="Height", description="Largest concavity of a part: the volume between it and its convex hull", default=0,
+        min=0,
+    )
+    explode: bpy.props.FloatProperty(
+        name="Explode", description="How far the parts are moved apart, by their distance from the middle", default=0,
+        min=0, soft_max=2,
+    )
+    hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was split", default=True)
+
+    def draw(self, _context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "by")
+        layout.prop(self, "parts" if self.by == "PARTS" else "height")
+        for name in ("explode", "hide", "smooth", "material"):
+            layout.prop(self, name)
+
+    def work(self, context, obj, hierarchy):
+        count = min(self.parts, len(hierarchy.tetrahedra))
+        bounds = hierarchy.cut_parts(count) if self.by == "PARTS" else hierarchy.cut_height(self.height)
+        made = composition.split(obj, hierarchy, bounds, self.caps(), self.explode)
+        only(context, made)
+        if self.hide:
+            obj.hide_set(True)
+
+
+def only(context, objects):
+    """Selects these objects and no other; the first becomes active."""
+    for other in context.selected_objects:
+        other.select_set(False)
+    for new in objects:
+        new.select_set(True)
+    context.view_layer.objects.active = objects[0]

@@ -1,0 +1,309 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Parts as solids: closed, with all layers of the source's polygons; removed, split; the user's mesh left alone."""
+
+import bpy
+import numpy
+from common import MeshTest, part, read_off
+
+
+def arrays(mesh):
+    """(vertices, polygons as tuples) of a mesh."""
+    return (numpy.array([vertex.co[:] for vertex in mesh.vertices], float),
+            [tuple(polygon.vertices) for polygon in mesh.polygons])
+
+
+def volume(mesh):
+    """By Blender's own triangles, about the mesh's middle."""
+    mesh.calc_loop_triangles()
+    vertices = numpy.array([vertex.co[:] for vertex in mesh.vertices], float)
+    vertices -= vertices.mean(axis=0)
+    corners = vertices[numpy.array([triangle.vertices[:] for triangle in mesh.loop_triangles])]
+    return numpy.einsum("ij,ij->i", corners[:, 0], numpy.cross(corners[:, 1], corners[:, 2])).sum() / 6
+
+
+def caps(mesh):
+    """(F,) which faces are caps."""
+    marks = numpy.empty(len(mesh.polygons), bool)
+    mesh.attributes["partwheel_cap"].data.foreach_get("value", marks)
+    return marks
+
+
+class SolidTest(MeshTest):
+    def assertSolid(self, mesh):
+        """Every directed edge once and its opposite once; no vertex or edge without a face; valid for Blender."""
+        directed = [pair for polygon in mesh.polygons
+                    for pair in zip(polygon.vertices, [*polygon.vertices[1:], polygon.vertices[0]])]
+        self.assertEqual(len(directed), len(set(directed)))
+        self.assertEqual(set(directed), {(b, a) for a, b in directed})
+        self.assertEqual(len(mesh.edges), len(directed) // 2)
+        self.assertEqual({vertex for pair in directed for vertex in pair}, set(range(len(mesh.vertices))))
+        self.assertFalse(mesh.validate())
+
+    def built(self, name="dragknob"):
+        if name == "torus":  # of quads that are not flat
+            bpy.ops.mesh.primitive_torus_add(major_segments=24, minor_segments=10)
+            obj = bpy.context.active_object
+        else:
+            obj = self.add(*read_off(name))
+        hierarchy = part("api").build(obj)
+        self.assertEqual(hierarchy.summary.rung, "exact")
+        return obj, hierarchy
+
+    def nodes(self, hierarchy, count=6):
+        """Some parts, from small to large."""
+        filled = numpy.flatnonzero(hierarchy.last - hierarchy.first >= 4)[:-1]
+        return [int(node) for node in filled[numpy.linspace(0, len(filled) - 1, count).astype(int)]]
+
+    def run_on(self, obj, operator, **options):
+        bpy.context.view_layer.objects.active = obj
+        self.assertEqual(operator(**options), {"FINISHED"})
+        return bpy.context.view_layer.objects.active
+
+
+class Copy(SolidTest):
+    def test_is_closed_and_of_the_parts_volume(self):
+        for name in ("dragknob", "hand", "torus"):
+            obj, hierarchy = self.built(name)
+            before = arrays(obj.data)
+            whole = volume(obj.data)
+            for node in self.nodes(hierarchy):
+                copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node)
+                self.assertIsNot(copy.data, obj.data)
+                self.assertSolid(copy.data)
+                solid = hierarchy.solid(node)
+                corners = solid.vertices[solid.triangles] - hierarchy.vertices.mean(axis=0)
+                expected = numpy.einsum("ij,ij->i", corners[:, 0], numpy.cross(corners[:, 1], corners[:, 2])).sum() / 6
+                self.assertLess(abs(volume(copy.data) - expected), 1e-5 * abs(whole))
+                self.assertEqual(caps(copy.data).sum(), (solid.beyond >= 0).sum())
+                for axis in zip(copy.matrix_world, obj.matrix_world):
+                    self.assertEqual(*map(tuple, axis))
+            after = arrays(obj.data)
+            self.assertTrue((before[0] == after[0]).all() and before[1] == after[1])
+
+    def test_polygons_of_the_part_stay_whole(self):
+        obj, hierarchy = self.built("torus")
+        vertices, polygons = arrays(obj.data)
+        whole = 0
+        for node in self.nodes(hierarchy, 12):
+            copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node)
+            places, found = arrays(copy.data)
+            found = {frozenset(map(tuple, places[list(polygon)])) for polygon in found}
+            kept = [frozenset(map(tuple, vertices[list(polygons[face])])) in found for face in hierarchy.faces(node)]
+            whole += sum(kept)
+            self.assertGreater(sum(kept), 0.5 * len(kept) - 2)
+        self.assertGreater(whole, 200)
+
+    def test_layers_come_along(self):
+        obj, hierarchy = self.built("hand")
+        mesh = obj.data
+        rng = numpy.random.default_rng(5)
+        count = {"POINT": len(mesh.vertices), "FACE": len(mesh.polygons), "CORNER": len(mesh.loops),
+                 "EDGE": len(mesh.edges)}
+        for name in ("first uv", "second uv"):
+            mesh.uv_layers.new(name=name).data.foreach_set("uv", rng.random(2 * count["CORNER"]))
+        for name, kind, domain, field, width in (
+            ("float", "FLOAT", "POINT", "value", 1), ("vector", "FLOAT_VECTOR", "POINT", "vector", 3),
+            ("number", "INT", "FACE", "value", 1), ("color", "FLOAT_COLOR", "POINT", "color", 4),
+            ("corner color", "BYTE_COLOR", "CORNER", "color", 4), ("along", "FLOAT", "EDGE", "value", 1),
+        ):
+            values = rng.random(width * count[domain]) * (100 if kind == "INT" else 1)
+            mesh.attributes.new(name, kind, domain).data.foreach_set(
+                field, values.astype(numpy.int32) if kind == "INT" else values.astype(numpy.float32))
+        for name in ("red", "blue"):
+            mesh.materials.append(bpy.data.materials.new(name))
+        mesh.polygons.foreach_set("material_index", rng.integers(0, 2, count["FACE"]).astype(numpy.int32))
+        mesh.polygons.foreach_set("use_smooth", rng.random(count["FACE"]) < 0.5)
+        group = obj.vertex_groups.new(name="group")
+        for vertex in range(count["POINT"]):
+            group.add([vertex], (vertex % 97) / 97, "REPLACE")
+        for node in self.nodes(hierarchy, 4):
+            copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node)
+            new = copy.data
+            self.assertEqual([m.name for m in new.materials], [m.name for m in mesh.materials])
+            self.assertEqual([g.name for g in copy.vertex_groups], ["group"])
+            place = {tuple(vertex.co): vertex.index for vertex in mesh.vertices}
+            polygon_at = {frozenset(polygon.vertices): polygon for polygon in mesh.polygons}
+            edge_at = {frozenset(edge.vertices): edge.index for edge in mesh.edges}
+            vertex_of = [place.get(tuple(vertex.co)) for vertex in new.vertices]
+            is_cap = caps(new)
+            compared = 0
+            own_edges = set()
+            for polygon in new.polygons:
+                if is_cap[polygon.index]:
+                    continue
+                old = polygon_at[frozenset(vertex_of[v] for v in polygon.vertices)]
+                compared += 1
+                self.assertEqual((polygon.material_index, polygon.use_smooth), (old.material_index, old.use_smooth))
+                self.assertEqual(new.attributes["number"].data[polygon.index].value,
+                                 mesh.attributes["number"].data[old.index].value)
+                old_loop = {mesh.loops[i].vertex_index: i for i in old.loop_indices}
+                own_edges.update(map(frozenset, polygon.edge_keys))
+                for loop in polygon.loop_indices:
+                    vertex = vertex_of[new.loops[loop].vertex_index]
+                    for name in ("first uv", "second uv"):
+                        self.assertEqual(tuple(new.uv_layers[name].data[loop].uv),
+                                         tuple(mesh.uv_layers[name].data[old_loop[vertex]].uv))
+                    self.assertEqual(tuple(new.attributes["corner color"].data[loop].color),
+                                     tuple(mesh.attributes["corner color"].data[old_loop[vertex]].color))
+            self.assertEqual(compared, len(hierarchy.faces(node)))
+            for vertex, old in enumerate(vertex_of):
+                if old is None:  # a point inside
+                    continue
+                self.assertEqual(new.attributes["float"].data[vertex].value, mesh.attributes["float"].data[old].value)
+                self.assertEqual(tuple(new.attributes["color"].data[vertex].color),
+                                 tuple(mesh.attributes["color"].data[old].color))
+                self.assertAlmostEqual(copy.vertex_groups["group"].weight(vertex), (old % 97) / 97, places=6)
+            for edge in new.edges:
+                if frozenset(edge.vertices) in own_edges:
+                    old = edge_at[frozenset(vertex_of[v] for v in edge.vertices)]
+                    self.assertEqual(new.attributes["along"].data[edge.index].value,
+                                     mesh.attributes["along"].data[old].value)
+
+    def test_custom_normals_come_along(self):
+        obj, hierarchy = self.built("hand")
+        mesh = obj.data
+        rng = numpy.random.default_rng(6)
+        if hasattr(mesh, "use_auto_smooth"):
+            mesh.use_auto_smooth = True
+        mesh.polygons.foreach_set("use_smooth", numpy.ones(len(mesh.polygons), bool))
+        wanted = rng.normal(size=(len(mesh.vertices), 3)) + [0, 0, 4]
+        wanted /= numpy.linalg.norm(wanted, axis=1, keepdims=True)
+        mesh.normals_split_custom_set_from_vertices(wanted)
+        place = {tuple(vertex.co): vertex.index for vertex in mesh.vertices}
+        copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=self.nodes(hierarchy)[-2]).data
+        self.assertTrue(copy.has_custom_normals)
+        if hasattr(copy, "calc_normals_split"):
+            copy.calc_normals_split()
+            normals = [tuple(loop.normal) for loop in copy.loops]
+        else:
+            normals = [tuple(normal.vector) for normal in copy.corner_normals]
+        worst = 0
+        for polygon, is_cap in zip(copy.polygons, caps(copy)):
+            for loop in () if is_cap else polygon.loop_indices:
+                old = place[tuple(copy.vertices[copy.loops[loop].vertex_index].co)]
+                worst = max(worst, numpy.abs(wanted[old] - normals[loop]).max())
+        self.assertLess(worst, 5e-3)  # Blender keeps them in 2 x 16 bits
+
+    def test_smooth_caps(self):
+        obj, hierarchy = self.built("hand")
+        for node in self.nodes(hierarchy):
+            flat = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node).data
+            smooth = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node, smooth=True).data
+            self.assertSolid(smooth)
+            self.assertEqual((~caps(smooth)).sum(), (~caps(flat)).sum())
+
+    def test_cap_material(self):
+        obj, hierarchy = self.built("hand")
+        copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=self.nodes(hierarchy)[-2], material=True).data
+        slots = numpy.array([polygon.material_index for polygon in copy.polygons])
+        self.assertTrue((slots[caps(copy)] == slots.max()).all() and (slots[~caps(copy)] == 0).all())
+        self.assertEqual(copy.materials[slots.max()].name, "Partwheel Cap")
+        self.assertEqual(len(obj.data.materials), 0)
+
+    def test_broken_sources_give_their_own_faces_closed(self):
+        vertices, polygons = read_off("dragknob")
+        for rung, broken in (("repaired", polygons[5:]),
+                             ("wrapped", [polygon for i, polygon in enumerate(polygons) if i % 7])):
+            obj = self.add(vertices, broken)
+            hierarchy = part("api").build(obj)
+            self.assertEqual(hierarchy.summary.rung, rung)
+            for node in self.nodes(hierarchy):
+                copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node).data
+                self.assertSolid(copy)
+                self.assertEqual((~caps(copy)).sum(), len(hierarchy.faces(node)))
+
+    def test_from_edit_mode_and_of_the_picked_part(self):
+        obj, hierarchy = self.built()
+        self.edit(obj)
+        self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=10, level=2), {"FINISHED"})
+        node = part("session").picked(obj).node
+        copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy)
+        self.assertEqual((bpy.context.mode, bpy.context.selected_objects), ("OBJECT", [copy]))
+        self.assertEqual((~caps(copy.data)).sum(), len(hierarchy.faces(node)))
+
+    def test_what_is_missing_is_said(self):
+        obj = self.add(*read_off("dragknob"))
+        with self.assertRaisesRegex(RuntimeError, "no parts"):
+            bpy.ops.mesh.partwheel_copy()
+        hierarchy = part("api").build(obj)
+        with self.assertRaisesRegex(RuntimeError, "No part is picked"):
+            bpy.ops.mesh.partwheel_copy()
+        with self.assertRaisesRegex(RuntimeError, "There is no part"):
+            bpy.ops.mesh.partwheel_copy(node=len(hierarchy.parent))
+        self.assertEqual(len(bpy.data.objects), 1)
+        self.assertEqual(len(bpy.data.meshes), 1)
+
+
+class Remove(SolidTest):
+    def test_part_and_rest_make_the_whole(self):
+        for name in ("dragknob", "hand", "torus"):
+            obj, hierarchy = self.built(name)
+            whole = volume(obj.data)
+            for node in self.nodes(hierarchy):
+                rest = obj.copy()
+                rest.data = obj.data.copy()
+                self.link(rest)
+                copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node)
+                self.run_on(rest, bpy.ops.mesh.partwheel_remove, node=node)
+                self.assertSolid(rest.data)
+                self.assertLess(abs(volume(rest.data) + volume(copy.data) - whole), 1e-5 * abs(whole))
+
+    def test_edit_mode_and_loose_vertices_stay(self):
+        vertices, polygons = read_off("dragknob")
+        obj = self.add([*vertices, (9, 9, 9)], polygons)
+        hierarchy = part("api").build(obj)
+        node = self.nodes(hierarchy)[-2]
+        self.edit(obj)
+        self.run_on(obj, bpy.ops.mesh.partwheel_remove, node=node)
+        self.assertEqual(bpy.context.mode, "EDIT_MESH")
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertIn((9, 9, 9), [tuple(vertex.co) for vertex in obj.data.vertices])
+        self.assertEqual((~caps(obj.data)).sum(), len(polygons) - len(hierarchy.faces(node)))
+
+    def test_nothing_is_left_of_the_whole(self):
+        obj, hierarchy = self.built()
+        before = arrays(obj.data)
+        with self.assertRaises(RuntimeError):
+            bpy.ops.mesh.partwheel_remove(node=len(hierarchy.parent) - 1)
+        self.assertEqual(before[1], arrays(obj.data)[1])
+
+    def test_shape_keys_stay(self):
+        obj, hierarchy = self.built()
+        obj.shape_key_add(name="Basis")
+        key = obj.shape_key_add(name="up")
+        for point in key.data:
+            point.co.z += 100
+        self.run_on(obj, bpy.ops.mesh.partwheel_remove, node=self.nodes(hierarchy)[-2])
+        keys = obj.data.shape_keys.key_blocks
+        self.assertEqual([key.name for key in keys], ["Basis", "up"])
+        moved = numpy.array([b.co[2] - a.co[2] for a, b in zip(keys[0].data, keys[1].data)])
+        self.assertTrue(numpy.allclose(moved, 100, atol=1e-3))
+
+
+class Split(SolidTest):
+    def test_solids_fill_the_whole_and_their_caps_meet(self):
+        for name in ("dragknob", "hand", "torus"):
+            obj, hierarchy = self.built(name)
+            self.run_on(obj, bpy.ops.mesh.partwheel_split, parts=5)
+            made = bpy.context.selected_objects
+            self.assertEqual(len(made), 5)
+            self.assertTrue(obj.hide_get())
+            total, sides = 0.0, []
+            for new in made:
+                self.assertSolid(new.data)
+                total += volume(new.data)
+                places = arrays(new.data)[0]
+                for polygon, is_cap in zip(new.data.polygons, caps(new.data)):
+                    if is_cap:
+                        sides.append(frozenset(map(tuple, places[list(polygon.vertices)])))
+            self.assertLess(abs(total - volume(obj.data)), 1e-5 * abs(total))
+            self.assertEqual(len(sides), 2 * len(set(sides)))
+
+    def test_by_height_and_exploded(self):
+        obj, hierarchy = self.built("hand")
+        height = float(numpy.sort(hierarchy.height)[-3])
+        self.run_on(obj, bpy.ops.mesh.partwheel_split, by="HEIGHT", height=height, explode=1.0)
+        made = bpy.context.selected_objects
+        self.assertEqual(len(made), len(hierarchy.cut_height(height)) - 1)
+        away = [new.matrix_world.translation.length for new in made]
+        self.assertGreater(min(away), 0)
