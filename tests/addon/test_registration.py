@@ -60,7 +60,8 @@ class Registration(unittest.TestCase):
         for _ in range(3):
             bpy.ops.preferences.addon_enable(module=common.MODULE)
             on = everything()
-            self.assertEqual(on[1], ["partwheel_build", "partwheel_clear", "partwheel_select"])
+            self.assertEqual(on[1], ["partwheel_build", "partwheel_clear", "partwheel_copy", "partwheel_remove",
+                                 "partwheel_select", "partwheel_split"])
             self.assertEqual(list(on[4]), ["VIEW3D_MT_select_edit_mesh"])
             self.assertEqual(len(on[3]["load_post"]), len(off[3]["load_post"]) + 1)
             bpy.ops.preferences.addon_disable(module=common.MODULE)
