@@ -302,6 +302,74 @@ PW_API pw_status pw_hierarchy_save(const pw_hierarchy *hierarchy, uint8_t *bytes
  * PW_ERROR_DATA. */
 PW_API pw_status pw_hierarchy_load(const uint8_t *bytes, size_t count, pw_hierarchy **hierarchy);
 
+/* ---- Deformation ---------------------------------------------------------------------------------------------- */
+
+/* What a vertex does in a deformation, if it does not follow a handle (0, 1, 2 ...). */
+#define PW_VERTEX_FREE (-1)  /* goes where the deformation takes it */
+#define PW_VERTEX_FIXED (-2) /* stays */
+
+/* A surface whose free vertices follow handles as rigidly as possible: Sorkine, Alexa, "As-Rigid-As-Possible Surface
+ * Modeling" (2007), which the paper uses in its section 4.1, with the energy called "spokes and rims" (Chao, Pinkall,
+ * Sanan, Schroeder, "A Simple Geometric Model for Elastic Deformations", 2010):
+ *
+ *   E = sum over vertices i, triangles t at i, edges e of t:  cot(t, e) |e' - R_i e|^2
+ *
+ * cot(t, e): cotangent of t's angle opposite e; e, e': the edge at rest and now; R_i: the rotation that fits best.
+ *
+ * One thread at a time may use a deformation; several deformations are independent of each other. The same calls give
+ * the same bits on every machine. */
+typedef struct pw_deformation pw_deformation;
+
+/* Prepares a deformation and factorizes its system, once for all moves.
+ *
+ * vertices        vertex_count x 3 coordinates at rest, at most 1e100 in size.
+ * triangles       triangle_count x 3 indices into vertices. Any surface: open, non-manifold, with triangles of no area
+ *                 (they count as thicker than they are). Only what is near free vertices matters, so the part that
+ *                 deforms and a ring of triangles around it will do; that ring makes the join smooth.
+ * roles           vertex_count numbers: PW_VERTEX_FREE, PW_VERTEX_FIXED or the number of the handle that the vertex
+ *                 follows. Handles are numbered from 0 without a gap. Free vertices that no triangles connect with a
+ *                 fixed vertex or a handle stay.
+ * deformation     receives a new handle, to be freed with pw_deformation_free.
+ *
+ * PW_ERROR_EMPTY: no vertices or triangles. PW_ERROR_INDEX, PW_ERROR_NOT_FINITE: as in pw_build. PW_ERROR_ARGUMENT:
+ * a role that is none, a gap between handles, or no vertex left that is free and not on its own. PW_ERROR_DEGENERATE:
+ * triangles so thin that the system can't be solved. Takes about a second for 100,000 vertices. */
+PW_API pw_status pw_deformation_create(const double *vertices, size_t vertex_count, const int32_t *triangles,
+                                       size_t triangle_count, const int32_t *roles, pw_deformation **deformation);
+
+PW_API void pw_deformation_free(pw_deformation *deformation);
+
+/* Takes a handle to a new place: each of its vertices to matrix times its place at rest. Free vertices go some of the
+ * way, as a first guess; pw_deformation_iterate does the rest.
+ *
+ * matrix          12 doubles, the rows of a 3 x 4 matrix: x goes to its first three columns times x, plus the fourth.
+ *                 Turn, move, scale, mirror: any.
+ *
+ * PW_ERROR_ARGUMENT: no such handle. PW_ERROR_NOT_FINITE: an entry is infinite, too large, or not a number. */
+PW_API pw_status pw_deformation_move(pw_deformation *deformation, size_t handle, const double *matrix);
+
+/* Improves the free vertices' places: each iteration lowers E, or leaves it where it is least. Allocates nothing. */
+PW_API pw_status pw_deformation_iterate(pw_deformation *deformation, size_t iterations);
+
+/* E for the present places, in the unit of the coordinates squared. */
+PW_API pw_status pw_deformation_energy(pw_deformation *deformation, double *energy);
+
+/* The present places of all vertices, in the order given. positions: vertex_count x 3; vertex_count must be the
+ * deformation's. */
+PW_API pw_status pw_deformation_positions(const pw_deformation *deformation, double *positions, size_t vertex_count);
+
+/* Everything back to rest. */
+PW_API pw_status pw_deformation_reset(pw_deformation *deformation);
+
+/* How far each vertex is from the nearest start along the surface: infinity where no way leads. The ways go along edges
+ * and straight over an edge to the corner beyond, so they are a few percent too long.
+ *
+ * vertices, triangles  as in pw_deformation_create, with the same errors.
+ * start                vertex_count bytes: not 0 at the vertices from which is measured.
+ * distance             receives vertex_count doubles, in the unit of the coordinates. */
+PW_API pw_status pw_surface_distances(const double *vertices, size_t vertex_count, const int32_t *triangles,
+                                      size_t triangle_count, const uint8_t *start, double *distance);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,6 +1,7 @@
 // The C functions: argument checks and calls into the rooms, nothing else.
 #include "partwheel.h"
 
+#include "deform.h"
 #include "hierarchy.h"
 #include "ladder.h"
 
@@ -25,6 +26,10 @@ struct pw_hierarchy {
 
 struct pw_mesh {
     TriangleMesh mesh;
+};
+
+struct pw_deformation {
+    Deformation deformation;
 };
 
 namespace {
@@ -107,6 +112,16 @@ Hierarchy build(const MeshView& mesh, const LadderOptions& options, int threads,
     Hierarchy hierarchy(solid.surface, solid.mesh, tree, kept, mesh.vertices);
     progress.advance(1);
     return hierarchy;
+}
+
+std::span<const Point> as_points(const double* vertices, size_t count) {
+    require(vertices != nullptr || count == 0, "vertices is null, but vertex_count is not 0.");
+    return {reinterpret_cast<const Point*>(vertices), count};
+}
+
+std::span<const Triangle> as_triangles(const int32_t* triangles, size_t count) {
+    require(triangles != nullptr || count == 0, "triangles is null, but triangle_count is not 0.");
+    return {reinterpret_cast<const Triangle*>(triangles), count};
 }
 
 }  // namespace
@@ -339,5 +354,66 @@ pw_status pw_hierarchy_load(const uint8_t* bytes, size_t count, pw_hierarchy** h
         require(hierarchy != nullptr, "hierarchy must not be null.");
         require(bytes != nullptr || count == 0, "bytes is null, but count is not 0.");
         *hierarchy = new pw_hierarchy{Hierarchy::load({bytes, count})};
+    });
+}
+
+pw_status pw_deformation_create(const double* vertices, size_t vertex_count, const int32_t* triangles,
+                                size_t triangle_count, const int32_t* roles, pw_deformation** deformation) {
+    return guarded([&] {
+        require(deformation != nullptr, "deformation must not be null.");
+        require(roles != nullptr || vertex_count == 0, "roles is null, but vertex_count is not 0.");
+        *deformation = new pw_deformation{Deformation(as_points(vertices, vertex_count),
+                                                      as_triangles(triangles, triangle_count), {roles, vertex_count})};
+    });
+}
+
+void pw_deformation_free(pw_deformation* deformation) { delete deformation; }
+
+pw_status pw_deformation_move(pw_deformation* deformation, size_t handle, const double* matrix) {
+    return guarded([&] {
+        require(deformation != nullptr && matrix != nullptr, "deformation and matrix must not be null.");
+        require(handle < deformation->deformation.handle_count(), "There is no handle of this number.");
+        Affine rows;
+        std::copy_n(matrix, rows.size(), rows.begin());
+        deformation->deformation.move(handle, rows);
+    });
+}
+
+pw_status pw_deformation_iterate(pw_deformation* deformation, size_t iterations) {
+    return guarded([&] {
+        require(deformation != nullptr, "deformation must not be null.");
+        deformation->deformation.iterate(iterations);
+    });
+}
+
+pw_status pw_deformation_energy(pw_deformation* deformation, double* energy) {
+    return guarded([&] {
+        require(deformation != nullptr && energy != nullptr, "deformation and energy must not be null.");
+        *energy = deformation->deformation.energy();
+    });
+}
+
+pw_status pw_deformation_positions(const pw_deformation* deformation, double* positions, size_t vertex_count) {
+    return guarded([&] {
+        require(deformation != nullptr && positions != nullptr, "deformation and positions must not be null.");
+        require(vertex_count == deformation->deformation.vertex_count(),
+                "vertex_count is not the deformation's number of vertices.");
+        deformation->deformation.positions({reinterpret_cast<Point*>(positions), vertex_count});
+    });
+}
+
+pw_status pw_deformation_reset(pw_deformation* deformation) {
+    return guarded([&] {
+        require(deformation != nullptr, "deformation must not be null.");
+        deformation->deformation.reset();
+    });
+}
+
+pw_status pw_surface_distances(const double* vertices, size_t vertex_count, const int32_t* triangles,
+                               size_t triangle_count, const uint8_t* start, double* distance) {
+    return guarded([&] {
+        require((start != nullptr && distance != nullptr) || vertex_count == 0, "start and distance must not be null.");
+        surface_distances(as_points(vertices, vertex_count), as_triangles(triangles, triangle_count),
+                          {start, vertex_count}, {distance, vertex_count});
     });
 }

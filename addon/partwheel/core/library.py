@@ -114,6 +114,14 @@ FUNCTIONS = {
     "pw_mesh_arrays": (c_int, [c_void_p, POINTER(c_void_p), POINTER(c_size_t), POINTER(c_void_p), POINTER(c_size_t)]),
     "pw_hierarchy_save": (c_int, [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_load": (c_int, [c_void_p, c_size_t, POINTER(c_void_p)]),
+    "pw_deformation_create": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, POINTER(c_void_p)]),
+    "pw_deformation_free": (None, [c_void_p]),
+    "pw_deformation_move": (c_int, [c_void_p, c_size_t, c_void_p]),
+    "pw_deformation_iterate": (c_int, [c_void_p, c_size_t]),
+    "pw_deformation_energy": (c_int, [c_void_p, POINTER(c_double)]),
+    "pw_deformation_positions": (c_int, [c_void_p, c_void_p, c_size_t]),
+    "pw_deformation_reset": (c_int, [c_void_p]),
+    "pw_surface_distances": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_void_p]),
 }
 
 

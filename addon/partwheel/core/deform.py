@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Deformation: a surface follows handles as rigidly as possible; and distances along a surface. Native, with numpy."""
+
+import ctypes
+import math
+from ctypes import byref, c_double, c_void_p
+
+import numpy as np
+
+from .hierarchy import _Handle, checked_surface
+from .library import PartwheelError, Status, check, load
+
+FREE, FIXED = -1, -2  # PW_VERTEX_FREE, PW_VERTEX_FIXED
+# Deforming at once, without a mouse: the handle turns by at most so much a step.
+STEP_ANGLE = math.radians(10)
+STEP_ITERATIONS = 3
+# Settled: an iteration lowers the energy by less than this share; or so many iterations are over.
+SETTLED = 1e-3
+MOST_ITERATIONS = 200
+
+
+class Deformation:
+    """A surface at rest, and where it is now: see pw_deformation in partwheel.h for the energy and its source.
+
+    vertices (V,3) at rest; triangles (T,3) indices into them; roles (V,) FREE, FIXED or the number of the handle that a
+    vertex follows, counted from 0. Not for several threads at a time. Raises PartwheelError.
+    """
+
+    def __init__(self, vertices, triangles, roles):
+        (vertices, triangles), _ = checked_surface(vertices, triangles, None, None)
+        roles = np.asarray(roles)
+        if roles.shape != (len(vertices),):
+            raise ValueError(f"roles must have the shape ({len(vertices)},), not {roles.shape}.")
+        if roles.dtype.kind not in "iu":
+            raise TypeError(f"roles must be whole numbers, not {roles.dtype}.")
+        if roles.size and (roles.min() < FIXED or roles.max() >= len(vertices)):
+            raise PartwheelError(Status.ARGUMENT, "A role is neither FREE, nor FIXED, nor the number of a handle.")
+        roles = np.ascontiguousarray(roles, np.int32)
+        address = c_void_p()
+        check(load().pw_deformation_create(vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles),
+                                           roles.ctypes.data, byref(address)))
+        self._handle = _Handle(address.value, load().pw_deformation_free)
+        self._count = len(vertices)
+
+    def move(self, handle, matrix):
+        """Takes a handle's vertices to matrix times their place at rest. matrix: (4,4), or its upper (3,4)."""
+        matrix = np.asarray(matrix, np.float64)
+        if matrix.shape not in {(3, 4), (4, 4)}:
+            raise ValueError(f"matrix must have the shape (4, 4) or (3, 4), not {matrix.shape}.")
+        rows = np.ascontiguousarray(matrix[:3])
+        handle = int(handle)
+        if handle < 0:
+            raise PartwheelError(Status.ARGUMENT, f"There is no handle {handle}.")
+        check(load().pw_deformation_move(self._handle.address, handle, rows.ctypes.data))
+
+    def iterate(self, iterations=1):
+        """Improves the free vertices' places; the energy falls, or stays where it is least."""
+        check(load().pw_deformation_iterate(self._handle.address, max(int(iterations), 0)))
+
+    def energy(self):
+        """In the unit of the coordinates squared."""
+        energy = c_double()
+        check(load().pw_deformation_energy(self._handle.address, byref(energy)))
+        return energy.value
+
+    def positions(self):
+        """(V,3) where all vertices are now."""
+        positions = np.empty((self._count, 3))
+        check(load().pw_deformation_positions(self._handle.address, positions.ctypes.data, self._count))
+        return positions
+
+    def reset(self):
+        """Everything back to rest."""
+        check(load().pw_deformation_reset(self._handle.address))
+
+    def settle(self, settled=SETTLED, most=MOST_ITERATIONS):
+        """Iterates until little changes. The number of iterations."""
+        before = self.energy()
+        for done in range(1, most + 1):
+            self.iterate()
+            now = self.energy()
+            if before - now <= settled * before:
+                return done
+            before = now
+        return most
+
+    def move_at_once(self, matrices):
+        """Takes every handle all the way to its matrix, (4,4) each, in steps that the surface can follow; then
+        settles."""
+        matrices = [np.asarray(matrix, np.float64) for matrix in matrices]
+        count = max([1, *(math.ceil(rotation_angle(matrix[:3, :3]) / STEP_ANGLE - 1e-9) for matrix in matrices)])
+        for step in range(1, count + 1):
+            for handle, matrix in enumerate(matrices):
+                self.move(handle, part_of_the_way(matrix, step / count))
+            if step < count:
+                self.iterate(STEP_ITERATIONS)
+        self.settle()
+
+
+def rotation_angle(linear):
+    """The angle, in radians, of the rotation nearest to a (3,3) matrix."""
+    return np.linalg.norm(_turn(_rotation(linear)))
+
+
+def part_of_the_way(matrix, share):
+    """An affine matrix (4,4) between the identity (share 0) and this one (share 1): what it turns is turned by that
+    share of the angle, all else is in proportion."""
+    if share == 1:
+        return matrix
+    rotation = _rotation(matrix[:3, :3])
+    stretch = rotation.T @ matrix[:3, :3]
+    turn = share * _turn(rotation)
+    result = np.eye(4)
+    result[:3, :3] = _rotation_by(turn) @ (np.eye(3) + share * (stretch - np.eye(3)))
+    # The point that a pure rotation keeps in place is kept all the way: it moves on a circle, not on a chord.
+    offset = matrix[:3, 3]
+    center, *_ = np.linalg.lstsq(np.eye(3) - matrix[:3, :3], offset, rcond=1e-6)
+    along = offset - (center - matrix[:3, :3] @ center)
+    result[:3, 3] = center - result[:3, :3] @ center + share * along
+    return result
+
+
+def _rotation(linear):
+    u, _, vt = np.linalg.svd(linear)
+    return u @ np.diag([1, 1, np.sign(np.linalg.det(u @ vt))]) @ vt
+
+
+def _turn(rotation):
+    """(3,) axis times angle of a rotation."""
+    cosine = np.clip((np.trace(rotation) - 1) / 2, -1, 1)
+    angle = math.acos(cosine)
+    axis = np.array([rotation[2, 1] - rotation[1, 2], rotation[0, 2] - rotation[2, 0], rotation[1, 0] - rotation[0, 1]])
+    if angle < 1e-9:
+        return axis / 2
+    if np.linalg.norm(axis) < 1e-6:  # half a turn: the axis is what stays
+        axis = np.linalg.eigh(rotation + rotation.T)[1][:, 2]
+    return angle * axis / np.linalg.norm(axis)
+
+
+def _rotation_by(turn):
+    angle = np.linalg.norm(turn)
+    if angle == 0:
+        return np.eye(3)
+    x, y, z = turn / angle
+    k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + math.sin(angle) * k + (1 - math.cos(angle)) * (k @ k)
+
+
+def surface_distances(vertices, triangles, start):
+    """(V,) how far each vertex is from the nearest start along the surface, a few percent too long; infinity where no
+    way leads. start: (V,) bool, or an array of vertex indices."""
+    (vertices, triangles), _ = checked_surface(vertices, triangles, None, None)
+    mask = np.zeros(len(vertices), np.uint8)
+    mask[start] = 1
+    distance = np.empty(len(vertices))
+    check(load().pw_surface_distances(vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles),
+                                      mask.ctypes.data, distance.ctypes.data))
+    return distance

@@ -1,0 +1,452 @@
+// As-rigid-as-possible deformation of a triangle surface by handles, and distances along a surface.
+#include "deform.h"
+
+#include "error.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <queue>
+
+namespace partwheel {
+
+namespace {
+
+// A triangle whose doubled area is less than this part of its longest side squared counts as that much thicker, and its
+// edges are held by weights of at least least_weight: cotangents stay finite and every corner connected.
+constexpr double thin = 1e-5;
+constexpr double least_weight = 0.1;
+
+// Rotations: Newton's method ends when a step turns by less than this (its error is then about the square), or after so
+// many steps.
+constexpr double small_turn = 1e-5;
+constexpr int most_turns = 12;
+
+using Matrix = std::array<double, 9>;      // by rows
+using Quaternion = std::array<double, 4>;  // w, x, y, z
+
+Point operator+(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Point operator*(double s, const Point& a) { return {s * a[0], s * a[1], s * a[2]}; }
+
+Point operator*(const Matrix& m, const Point& p) {
+    return {m[0] * p[0] + m[1] * p[1] + m[2] * p[2], m[3] * p[0] + m[4] * p[1] + m[5] * p[2],
+            m[6] * p[0] + m[7] * p[1] + m[8] * p[2]};
+}
+
+Point moved_by(const Affine& m, const Point& p) {
+    return {m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3], m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
+            m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
+}
+
+constexpr Affine identity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+bool finite(const Affine& m) {
+    return std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); });
+}
+
+// b after the inverse of a; not finite where a has none.
+Affine after_inverse(const Affine& b, const Affine& a) {
+    const Point r0{a[0], a[1], a[2]}, r1{a[4], a[5], a[6]}, r2{a[8], a[9], a[10]};
+    const Point columns[3] = {cross(r1, r2), cross(r2, r0), cross(r0, r1)};  // of the adjugate
+    const double det = dot(r0, columns[0]);
+    Affine d{};
+    for (size_t row = 0; row < 12; row += 4) {
+        for (size_t k = 0; k < 3; ++k) d[row + k] = dot({b[row], b[row + 1], b[row + 2]}, columns[k]) / det;
+        d[row + 3] = b[row + 3] - dot({d[row], d[row + 1], d[row + 2]}, {a[3], a[7], a[11]});
+    }
+    return d;
+}
+
+Matrix to_matrix(const Quaternion& q) {
+    const auto [w, x, y, z] = q;
+    return {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+            2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+            2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
+}
+
+// Solves h x = g for a symmetric h (xx, yy, zz, xy, xz, yz). False if h is not safely positive definite.
+bool solve_positive(const std::array<double, 6>& h, const Point& g, Point& x) {
+    const auto [xx, yy, zz, xy, xz, yz] = h;
+    const double scale = xx + yy + zz;
+    const double c00 = yy * zz - yz * yz, c01 = xz * yz - xy * zz, c02 = xy * yz - xz * yy;
+    const double c11 = xx * zz - xz * xz, c12 = xy * xz - xx * yz, c22 = xx * yy - xy * xy;
+    const double det = xx * c00 + xy * c01 + xz * c02;
+    constexpr double margin = 1e-10;
+    if (!(xx > 0 && c22 > margin * scale * scale && det > margin * scale * scale * scale)) return false;
+    const double one_by_det = 1 / det;
+    x = {one_by_det * (c00 * g[0] + c01 * g[1] + c02 * g[2]), one_by_det * (c01 * g[0] + c11 * g[1] + c12 * g[2]),
+         one_by_det * (c02 * g[0] + c12 * g[1] + c22 * g[2])};
+    return true;
+}
+
+// The rotation R with the largest trace(R^T s), by singular values.
+Quaternion rotation_by_svd(const Matrix& s) {
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> m(s.data());
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Matrix3d u = svd.matrixU();
+    if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
+    const Eigen::Quaterniond q(Eigen::Matrix3d(u * svd.matrixV().transpose()));
+    return {q.w(), q.x(), q.y(), q.z()};
+}
+
+// The same by Newton's method, from the rotation q. trace(R^T s) has one maximum, all else where its gradient vanishes
+// are saddles and the minimum; so where the Hessian stays negative definite this ends at the maximum.
+Quaternion best_rotation(const Matrix& s, Quaternion q) {
+    for (int turn = 0; turn < most_turns; ++turn) {
+        const Matrix r = to_matrix(q);
+        Matrix m;  // r^T s
+        for (size_t i = 0; i < 3; ++i)
+            for (size_t j = 0; j < 3; ++j) m[3 * i + j] = r[i] * s[j] + r[3 + i] * s[3 + j] + r[6 + i] * s[6 + j];
+        const Point gradient{m[7] - m[5], m[2] - m[6], m[3] - m[1]};
+        const std::array<double, 6> hessian{m[4] + m[8],           m[0] + m[8],           m[0] + m[4],
+                                            -(m[1] + m[3]) * 0.5, -(m[2] + m[6]) * 0.5, -(m[5] + m[7]) * 0.5};
+        Point step;
+        if (!solve_positive(hessian, gradient, step)) break;
+        const Point half = 0.5 * step;
+        const double size = 1 / std::sqrt(1 + dot(half, half));
+        const double w = size, x = size * half[0], y = size * half[1], z = size * half[2];
+        q = {q[0] * w - q[1] * x - q[2] * y - q[3] * z, q[0] * x + q[1] * w + q[2] * z - q[3] * y,
+             q[0] * y - q[1] * z + q[2] * w + q[3] * x, q[0] * z + q[1] * y - q[2] * x + q[3] * w};
+        if (dot(step, step) < small_turn * small_turn) {
+            const double length = 1 / std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+            return {q[0] * length, q[1] * length, q[2] * length, q[3] * length};
+        }
+    }
+    return rotation_by_svd(s);
+}
+
+// Cotangents of a triangle's angles, opposite corner 0, 1, 2; of a thin triangle: see above.
+std::array<double, 3> cotangents(const Point& a, const Point& b, const Point& c) {
+    const Point ab = b - a, bc = c - b, ca = a - c, normal = cross(ab, ca);
+    const double doubled_area = std::sqrt(dot(normal, normal));
+    const double least = thin * std::max({dot(ab, ab), dot(bc, bc), dot(ca, ca)});
+    if (!(least > 0)) return {1, 1, 1};  // a point
+    const double more = doubled_area < least ? least_weight : 0, divisor = std::max(doubled_area, least);
+    return {more - dot(ab, ca) / divisor, more - dot(bc, ab) / divisor, more - dot(ca, bc) / divisor};
+}
+
+void check(std::span<const Point> vertices, std::span<const Triangle> triangles) {
+    if (vertices.empty() || triangles.empty())
+        throw Error(PW_ERROR_EMPTY, "There are no triangles: select a part with faces.");
+    if (vertices.size() > PW_MAX_COUNT || triangles.size() > PW_MAX_COUNT)
+        throw Error(PW_ERROR_ARGUMENT, "The mesh has more vertices or triangles than can be numbered.");
+    for (const Triangle& triangle : triangles)
+        for (const int32_t v : triangle)
+            if (v < 0 || static_cast<size_t>(v) >= vertices.size())
+                throw Error(PW_ERROR_INDEX, "A triangle names a vertex that does not exist.");
+    for (const Point& p : vertices)
+        for (const double x : p)
+            if (!(std::abs(x) <= 1e100))
+                throw Error(PW_ERROR_NOT_FINITE, "A coordinate is infinite, too large, or not a number.");
+}
+
+// The root of each vertex's component, all with paths of length 1.
+std::vector<int32_t> components(size_t vertex_count, std::span<const Triangle> triangles) {
+    std::vector<int32_t> root(vertex_count);
+    std::iota(root.begin(), root.end(), 0);
+    const auto find = [&](int32_t v) {
+        while (root[v] != v) v = root[v] = root[root[v]];
+        return v;
+    };
+    for (const auto& [a, b, c] : triangles) {
+        root[find(a)] = find(b);
+        root[find(b)] = find(c);
+    }
+    for (size_t v = 0; v < vertex_count; ++v) root[v] = find(static_cast<int32_t>(v));
+    return root;
+}
+
+}  // namespace
+
+Deformation::Deformation(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                         std::span<const int32_t> roles)
+    : given_(vertices.begin(), vertices.end()), role_(roles.begin(), roles.end()) {
+    check(vertices, triangles);
+    Point low = vertices[0], high = vertices[0];
+    for (const Point& p : vertices)
+        for (size_t k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+    origin_ = 0.5 * (low + high);
+    for (const Point& p : vertices) rest_.push_back(p - origin_);
+    now_ = rest_;
+
+    // What nothing holds or moves stays.
+    std::vector<int32_t> root = components(vertices.size(), triangles);
+    std::vector<uint8_t> held(vertices.size(), 0), used(vertices.size(), 0);
+    for (const Triangle& triangle : triangles)
+        for (const int32_t v : triangle) used[v] = 1;
+    int32_t last_handle = -1;
+    for (size_t v = 0; v < vertices.size(); ++v) {
+        if (role_[v] < PW_VERTEX_FIXED || role_[v] >= PW_MAX_COUNT)
+            throw Error(PW_ERROR_ARGUMENT, "A vertex has a role that is neither free, nor fixed, nor a handle's number.");
+        if (role_[v] != PW_VERTEX_FREE) held[root[v]] = 1;
+        last_handle = std::max(last_handle, role_[v]);
+    }
+    for (size_t v = 0; v < vertices.size(); ++v)
+        if (role_[v] == PW_VERTEX_FREE && !(held[root[v]] && used[v])) role_[v] = PW_VERTEX_FIXED;
+
+    if (last_handle >= 0 && static_cast<size_t>(last_handle) >= vertices.size())
+        throw Error(PW_ERROR_ARGUMENT, "Handles must be numbered 0, 1, 2 without a gap.");
+    handles_.resize(static_cast<size_t>(last_handle + 1));
+    for (size_t v = 0; v < vertices.size(); ++v)
+        if (role_[v] >= 0) handles_[role_[v]].vertices.push_back(static_cast<int32_t>(v));
+    for (Handle& handle : handles_) {
+        if (handle.vertices.empty()) throw Error(PW_ERROR_ARGUMENT, "Handles must be numbered 0, 1, 2 without a gap.");
+        handle.matrix = identity;
+    }
+
+    build_elements(triangles);
+    factorize(triangles);
+    find_weights();
+    quaternion_.assign(vertices.size(), {1, 0, 0, 0});
+    rotation_.resize(vertices.size());
+    spread_.resize(vertices.size());
+}
+
+void Deformation::build_elements(std::span<const Triangle> triangles) {
+    cot_.reserve(triangles.size());
+    elements_.reserve(triangles.size());
+    for (const Triangle& t : triangles) {
+        const Point &a = rest_[t[0]], &b = rest_[t[1]], &c = rest_[t[2]];
+        const std::array<double, 3> cot = cotangents(a, b, c);
+        cot_.push_back(cot);
+        elements_.push_back({t, cot[2] * (a - b) + cot[1] * (a - c), cot[2] * (b - a) + cot[0] * (b - c)});
+    }
+}
+
+void Deformation::factorize(std::span<const Triangle> triangles) {
+    unknown_.assign(rest_.size(), -1);
+    int32_t count = 0;
+    for (size_t v = 0; v < rest_.size(); ++v)
+        if (role_[v] == PW_VERTEX_FREE) unknown_[v] = count++;
+    if (count == 0)
+        throw Error(PW_ERROR_ARGUMENT, "No vertex is free to deform: the handle must be smaller than the part, and "
+                                       "connected with it.");
+    std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(triangles.size() * 6);
+    for (size_t t = 0; t < triangles.size(); ++t)
+        for (size_t k = 0; k < 3; ++k) {
+            const int32_t i = triangles[t][(k + 1) % 3], j = triangles[t][(k + 2) % 3];
+            const double weight = cot_[t][k];
+            const int32_t a = unknown_[i], b = unknown_[j];
+            if (a >= 0) entries.emplace_back(a, a, weight);
+            if (b >= 0) entries.emplace_back(b, b, weight);
+            if (a >= 0 && b >= 0) entries.emplace_back(std::max(a, b), std::min(a, b), -weight);
+            if (a >= 0 && b < 0) couplings_.push_back({a, j, weight});
+            if (b >= 0 && a < 0) couplings_.push_back({b, i, weight});
+        }
+    Eigen::SparseMatrix<double> laplacian(count, count);
+    laplacian.setFromTriplets(entries.begin(), entries.end());
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
+    factor.analyzePattern(laplacian);
+    factor.factorize(laplacian);
+    const bool sound = factor.info() == Eigen::Success && factor.vectorD().allFinite() && factor.vectorD().minCoeff() > 0;
+    if (!sound)
+        throw Error(PW_ERROR_DEGENERATE, "The part's faces are too thin to be deformed. Dissolve degenerate faces or merge "
+                                         "vertices by distance first.");
+    const auto& lower = factor.matrixL().nestedExpression();
+    column_.assign(lower.outerIndexPtr(), lower.outerIndexPtr() + count + 1);
+    row_.assign(lower.innerIndexPtr(), lower.innerIndexPtr() + lower.nonZeros());
+    value_.assign(lower.valuePtr(), lower.valuePtr() + lower.nonZeros());
+    for (Eigen::Index i = 0; i < count; ++i) one_by_d_.push_back(1 / factor.vectorD()[i]);
+    const auto& place_of = factor.permutationP().indices();
+    vertex_of_.resize(count);
+    for (size_t v = 0; v < rest_.size(); ++v)
+        if (unknown_[v] >= 0) vertex_of_[unknown_[v] = place_of[unknown_[v]]] = static_cast<int32_t>(v);
+    for (Coupling& coupling : couplings_) coupling.unknown = place_of[coupling.unknown];
+    right_.resize(count);
+}
+
+void Deformation::solve(std::vector<Point>& x) const {
+    const size_t count = one_by_d_.size();
+    for (size_t j = 0; j < count; ++j) {
+        const Point xj = x[j];
+        for (int32_t p = column_[j]; p < column_[j + 1]; ++p) {
+            Point& to = x[row_[p]];
+            const double value = value_[p];
+            to[0] -= value * xj[0], to[1] -= value * xj[1], to[2] -= value * xj[2];
+        }
+    }
+    for (size_t j = count; j-- > 0;) {
+        Point sum = one_by_d_[j] * x[j];
+        for (int32_t p = column_[j]; p < column_[j + 1]; ++p) {
+            const Point& from = x[row_[p]];
+            const double value = value_[p];
+            sum[0] -= value * from[0], sum[1] -= value * from[1], sum[2] -= value * from[2];
+        }
+        x[j] = sum;
+    }
+}
+
+// A harmonic function for each handle: 1 at its vertices, 0 at all others that are not free. Three at a time.
+void Deformation::find_weights() {
+    for (size_t first = 0; first < handles_.size(); first += 3) {
+        std::fill(right_.begin(), right_.end(), Point{});
+        for (const Coupling& coupling : couplings_) {
+            const int32_t handle = role_[coupling.vertex] - static_cast<int32_t>(first);
+            if (handle >= 0 && handle < 3) right_[coupling.unknown][handle] += coupling.weight;
+        }
+        solve(right_);
+        for (size_t k = 0; k < 3 && first + k < handles_.size(); ++k)
+            for (const Point& weights : right_) handles_[first + k].weight.push_back(std::clamp(weights[k], 0.0, 1.0));
+    }
+}
+
+void Deformation::move(size_t handle, const Affine& matrix) {
+    Handle& moved = handles_[handle];
+    Affine about = matrix;  // the origin
+    for (size_t row = 0; row < 3; ++row)
+        about[4 * row + 3] += dot({matrix[4 * row], matrix[4 * row + 1], matrix[4 * row + 2]}, origin_) - origin_[row];
+    for (const double x : about)
+        if (!(std::abs(x) <= 1e100))
+            throw Error(PW_ERROR_NOT_FINITE, "A handle's matrix has an entry that is infinite, too large, or not a number.");
+    const Affine step = after_inverse(about, moved.matrix);
+    if (finite(step)) {
+        for (size_t u = 0; u < vertex_of_.size(); ++u) {
+            Point& p = now_[vertex_of_[u]];
+            p = p + moved.weight[u] * (moved_by(step, p) - p);
+        }
+    }
+    for (const int32_t v : moved.vertices) now_[v] = moved_by(about, rest_[v]);
+    moved.matrix = about;
+}
+
+void Deformation::fit_rotations() {
+    std::fill(spread_.begin(), spread_.end(), Matrix{});
+    for (const Element& e : elements_) {
+        const auto [a, b, c] = e.corners;
+        const Point u = now_[a] - now_[c], v = now_[b] - now_[c];
+        Matrix s;
+        for (size_t i = 0; i < 3; ++i)
+            for (size_t j = 0; j < 3; ++j) s[3 * i + j] = u[i] * e.d0[j] + v[i] * e.d1[j];
+        for (const int32_t corner : e.corners)
+            for (size_t k = 0; k < 9; ++k) spread_[corner][k] += s[k];
+    }
+    for (size_t v = 0; v < now_.size(); ++v) {
+        quaternion_[v] = best_rotation(spread_[v], quaternion_[v]);
+        rotation_[v] = to_matrix(quaternion_[v]);
+    }
+}
+
+void Deformation::place() {
+    std::fill(right_.begin(), right_.end(), Point{});
+    for (const Coupling& coupling : couplings_)
+        right_[coupling.unknown] = right_[coupling.unknown] + coupling.weight * now_[coupling.vertex];
+    for (const Element& e : elements_) {
+        const int32_t a = unknown_[e.corners[0]], b = unknown_[e.corners[1]], c = unknown_[e.corners[2]];
+        if (a < 0 && b < 0 && c < 0) continue;
+        Matrix mean;
+        const Matrix &ra = rotation_[e.corners[0]], &rb = rotation_[e.corners[1]], &rc = rotation_[e.corners[2]];
+        for (size_t k = 0; k < 9; ++k) mean[k] = (ra[k] + rb[k] + rc[k]) / 3;
+        const Point f0 = mean * e.d0, f1 = mean * e.d1;
+        if (a >= 0) right_[a] = right_[a] + f0;
+        if (b >= 0) right_[b] = right_[b] + f1;
+        if (c >= 0) right_[c] = right_[c] - (f0 + f1);
+    }
+    solve(right_);
+    for (size_t u = 0; u < right_.size(); ++u) now_[vertex_of_[u]] = right_[u];
+}
+
+void Deformation::iterate(size_t iterations) {
+    for (size_t i = 0; i < iterations; ++i) {
+        fit_rotations();
+        place();
+    }
+}
+
+double Deformation::energy() {
+    fit_rotations();
+    double sum = 0;
+    for (size_t t = 0; t < elements_.size(); ++t) {
+        const Triangle& corners = elements_[t].corners;
+        for (size_t k = 0; k < 3; ++k) {
+            const int32_t a = corners[(k + 1) % 3], b = corners[(k + 2) % 3];
+            for (const int32_t i : corners) {
+                const Point off = (now_[a] - now_[b]) - rotation_[i] * (rest_[a] - rest_[b]);
+                sum += cot_[t][k] * dot(off, off);
+            }
+        }
+    }
+    return sum;
+}
+
+void Deformation::reset() {
+    now_ = rest_;
+    quaternion_.assign(rest_.size(), {1, 0, 0, 0});
+    for (Handle& handle : handles_) handle.matrix = identity;
+}
+
+void Deformation::positions(std::span<Point> out) const {
+    for (size_t v = 0; v < now_.size(); ++v) out[v] = given_[v] + (now_[v] - rest_[v]);
+}
+
+void surface_distances(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                       std::span<const uint8_t> start, std::span<double> distance) {
+    check(vertices, triangles);
+    struct Side {
+        int32_t low, high, opposite;
+        auto operator<=>(const Side&) const = default;
+    };
+    struct Way {
+        int32_t to;
+        double length;
+    };
+    std::vector<Side> sides;
+    for (const Triangle& t : triangles)
+        for (size_t k = 0; k < 3; ++k) {
+            const auto [low, high] = std::minmax(t[(k + 1) % 3], t[(k + 2) % 3]);
+            sides.push_back({low, high, t[k]});
+        }
+    std::sort(sides.begin(), sides.end());
+
+    std::vector<std::pair<int32_t, Way>> ways;  // from, and where to
+    const auto add = [&](int32_t a, int32_t b, double length) {
+        ways.push_back({a, {b, length}});
+        ways.push_back({b, {a, length}});
+    };
+    for (size_t i = 0, end = 0; i < sides.size(); i = end) {
+        const auto [low, high, opposite] = sides[i];
+        for (end = i; end < sides.size() && sides[end].low == low && sides[end].high == high;) ++end;
+        const Point along = vertices[high] - vertices[low];
+        const double length = std::sqrt(dot(along, along));
+        add(low, high, length);
+        if (end != i + 2 || !(length > 0)) continue;
+        // Both opposite corners laid flat: along the edge from its low end, and away from it on either side.
+        const Point one = vertices[opposite] - vertices[low], other = vertices[sides[i + 1].opposite] - vertices[low];
+        const double x = dot(one, along) / length, u = dot(other, along) / length;
+        const double y = std::sqrt(std::max(dot(one, one) - x * x, 0.0));
+        const double v = std::sqrt(std::max(dot(other, other) - u * u, 0.0));
+        const double crossing = y + v > 0 ? (x * v + u * y) / (y + v) : -1;
+        if (crossing >= 0 && crossing <= length) add(opposite, sides[i + 1].opposite, std::hypot(x - u, y + v));
+    }
+    std::stable_sort(ways.begin(), ways.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<size_t> first(vertices.size() + 1, 0);
+    for (const auto& [from, way] : ways) ++first[from + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+
+    using Reached = std::pair<double, int32_t>;
+    std::priority_queue<Reached, std::vector<Reached>, std::greater<>> front;
+    for (size_t v = 0; v < vertices.size(); ++v) {
+        distance[v] = start[v] ? 0 : std::numeric_limits<double>::infinity();
+        if (start[v]) front.push({0, static_cast<int32_t>(v)});
+    }
+    while (!front.empty()) {
+        const auto [length, v] = front.top();
+        front.pop();
+        if (length > distance[v]) continue;
+        for (size_t i = first[v]; i < first[v + 1]; ++i) {
+            const Way& way = ways[i].second;
+            const double through = length + way.length;
+            if (through < distance[way.to]) {
+                distance[way.to] = through;
+                front.push({through, way.to});
+            }
+        }
+    }
+}
+
+}  // namespace partwheel

@@ -1,0 +1,379 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Deformation: beside libigl's on real meshes, what it keeps, what it refuses; distances beside a search of our own."""
+
+import heapq
+import math
+
+import igl
+import numpy as np
+import pytest
+import shapes
+from partwheel.core import Hierarchy, PartwheelError, Status
+from partwheel.core.deform import FIXED, FREE, Deformation, part_of_the_way, surface_distances
+
+# Model -> the direction that its limb points in, and the share of the model, along it, that deforms.
+LIMBS = {"hand": ((0, 0, 1), 0.3), "elephant": ((0, 1, 0), 0.4), "diplodocus": ((1, 0, 0), 0.3),
+         "armadillo": ((0, -1, 0), 0.3)}
+
+
+def turn(axis, degrees, center=(0, 0, 0)):
+    """(4,4) rotation about an axis through center."""
+    x, y, z = np.asarray(axis, float) / np.linalg.norm(axis)
+    k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    angle = math.radians(degrees)
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.eye(3) + math.sin(angle) * k + (1 - math.cos(angle)) * k @ k
+    matrix[:3, 3] = center - matrix[:3, :3] @ center
+    return matrix
+
+
+def moved(matrix, points):
+    return points @ np.asarray(matrix)[:3, :3].T + np.asarray(matrix)[:3, 3]
+
+
+def limb(name):
+    """(vertices, triangles, roles): the end of a model deforms, its outermost tenth is the handle."""
+    vertices, triangles, *_ = shapes.off(name)
+    direction, share = LIMBS[name]
+    place = vertices @ np.array(direction, float)
+    place = (place.max() - place) / np.ptp(place)
+    roles = np.where(place > share, FIXED, np.where(place > share / 6, FREE, 0))
+    return vertices, triangles, roles
+
+
+def cylinder(around=24, along=60, length=10.0):
+    """An open tube along z of radius 1."""
+    angle = np.arange(around) * 2 * np.pi / around
+    ring = np.stack([np.cos(angle), np.sin(angle)], -1)
+    vertices = np.vstack([np.column_stack([ring, np.full(around, z)]) for z in np.linspace(0, length, along + 1)])
+    triangles = []
+    for j in range(along):
+        for i in range(around):
+            a, b = j * around + i, j * around + (i + 1) % around
+            triangles += [(a, b, b + around), (a, b + around, a + around)]
+    return vertices, np.array(triangles)
+
+
+def energy(rest, now, triangles):
+    """The energy of partwheel.h, from its formula alone: rotations by numpy's singular values."""
+    corners = rest[triangles]
+    total, covariance, edges = 0.0, np.zeros((len(rest), 3, 3)), []
+    for k in range(3):
+        a, b, c = (corners[:, (k + j) % 3] for j in range(3))
+        cot = ((b - a) * (c - a)).sum(axis=1) / np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        i, j = triangles[:, (k + 1) % 3], triangles[:, (k + 2) % 3]
+        e, e_now = rest[i] - rest[j], now[i] - now[j]
+        edges.append((cot, e, e_now))
+        for corner in range(3):
+            np.add.at(covariance, triangles[:, corner], cot[:, None, None] * e_now[:, :, None] * e[:, None, :])
+    u, _, vt = np.linalg.svd(covariance)
+    u[:, :, 2] *= np.sign(np.linalg.det(u @ vt))[:, None]
+    rotation = u @ vt
+    for cot, e, e_now in edges:
+        for corner in range(3):
+            off = e_now - np.einsum("nij,nj->ni", rotation[triangles[:, corner]], e)
+            total += (cot * (off * off).sum(axis=1)).sum()
+    return total
+
+
+def lengths(vertices, edges):
+    return np.linalg.norm(vertices[edges[:, 0]] - vertices[edges[:, 1]], axis=1)
+
+
+def edges_of(triangles):
+    return np.unique(np.sort(np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])), axis=0)
+
+
+def normals(vertices, triangles):
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    return np.cross(b - a, c - a)
+
+
+@pytest.mark.parametrize("name", LIMBS)
+@pytest.mark.parametrize("iterations", [1, 10])
+def test_as_libigl(name, iterations):
+    """The same start, the same number of iterations, libigl's implementation of the same energy."""
+    vertices, triangles, roles = limb(name)
+    matrix = turn((1, 0.3, 0.2), 30, vertices[roles == 0].mean(axis=0))
+    matrix[:3, 3] += 0.02 * np.ptp(vertices, axis=0)
+    ours = Deformation(vertices, triangles, roles)
+    ours.move(0, matrix)
+    start = ours.positions()
+    np.testing.assert_allclose(start[roles == 0], moved(matrix, vertices[roles == 0]), atol=1e-9 * np.ptp(vertices))
+    assert (start[roles == FIXED] == ours.positions()[roles == FIXED]).all()
+    ours.iterate(iterations)
+
+    held = np.flatnonzero(roles != FREE).astype(np.int32)
+    data = igl.ARAPData()
+    data.energy = igl.ARAP_ENERGY_TYPE_SPOKES_AND_RIMS
+    data.max_iter = iterations
+    igl.arap_precomputation(vertices, triangles.astype(np.int64), 3, held, data)
+    theirs = igl.arap_solve(start[held], data, start)
+
+    mine = ours.positions()
+    reached, theirs_reached = (energy(vertices, points, triangles) for points in (mine, theirs))
+    assert reached == pytest.approx(ours.energy(), rel=1e-9)
+    assert reached == pytest.approx(theirs_reached, rel=1e-3)
+    assert np.abs(mine - theirs).max() < 1e-3 * np.ptp(vertices)
+
+
+@pytest.mark.parametrize("name", LIMBS)
+def test_energy_never_rises(name):
+    vertices, triangles, roles = limb(name)
+    deformation = Deformation(vertices, triangles, roles)
+    deformation.move(0, turn((0.2, 1, 0.4), 60, vertices[roles == 0].mean(axis=0)))
+    energies = [deformation.energy()]
+    for _ in range(20):
+        deformation.iterate()
+        energies.append(deformation.energy())
+    assert all(after <= before * (1 + 1e-12) for before, after in zip(energies, energies[1:]))
+    assert energies[-1] < 0.9 * energies[0]
+
+
+@pytest.mark.parametrize("name", LIMBS)
+def test_at_rest_nothing_moves(name):
+    vertices, triangles, roles = limb(name)
+    deformation = Deformation(vertices, triangles, roles)
+    deformation.move(0, np.eye(4))
+    deformation.iterate(5)
+    np.testing.assert_allclose(deformation.positions(), vertices, atol=1e-9 * np.ptp(vertices))
+    assert deformation.energy() < 1e-15 * np.ptp(vertices) ** 2
+
+
+def test_a_body_that_nothing_holds_moves_rigidly():
+    vertices, triangles, *_ = shapes.off("hand")
+    roles = np.full(len(vertices), FREE)
+    roles[:40] = 0
+    matrix = turn((1, 2, 3), 150, (0.1, 0.2, 0.3))
+    deformation = Deformation(vertices, triangles, roles)
+    deformation.move_at_once([matrix])
+    np.testing.assert_allclose(deformation.positions(), moved(matrix, vertices), atol=1e-6 * np.ptp(vertices))
+
+
+def test_a_limb_turned_by_90_degrees():
+    """Edges away from the joint keep their lengths within 5 %."""
+    vertices, triangles = cylinder()
+    z = vertices[:, 2]
+    roles = np.where(z < 1, FIXED, np.where(z > 9, 0, FREE))
+    deformation = Deformation(vertices, triangles, roles)
+    deformation.move_at_once([turn((1, 0, 0), 90, (0, 0, 5))])
+    edges = edges_of(triangles)
+    away = (np.abs(z[edges] - 5) > 2.5).all(axis=1)
+    change = lengths(deformation.positions(), edges) / lengths(vertices, edges) - 1
+    assert np.abs(change[away]).max() < 0.05
+
+
+@pytest.mark.parametrize("name", LIMBS)
+def test_no_face_turns_over_at_45_degrees(name):
+    """None folds back on its neighbours: the angle between two faces of an edge stays less than 150 degrees wherever
+    it was less than 90."""
+    vertices, triangles, roles = limb(name)
+    deformation = Deformation(vertices, triangles, roles)
+    joint = vertices[roles == FREE].mean(axis=0)
+    direction = np.array(LIMBS[name][0], float)
+    deformation.move_at_once([turn(np.cross(direction, (0.3, 0.5, 0.8)), 45, joint)])
+    before, after = (normals(points, triangles) for points in (vertices, deformation.positions()))
+    side = np.sort(np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]))
+    order = np.lexsort(side.T[::-1])
+    same = np.flatnonzero((side[order[1:]] == side[order[:-1]]).all(axis=1))
+    one, other = order[same] % len(triangles), order[same + 1] % len(triangles)
+
+    def cosine(n):
+        n = n / np.maximum(np.linalg.norm(n, axis=1), 1e-30)[:, None]
+        return (n[one] * n[other]).sum(axis=1)
+
+    smooth = cosine(before) > 0
+    assert smooth.sum() > 0.9 * len(one)
+    folded = cosine(after)[smooth] < math.cos(math.radians(150))
+    assert not folded.any(), f"{folded.sum()} of {smooth.sum()}"
+
+
+def test_several_handles_and_components():
+    vertices, triangles = cylinder(along=30)
+    count = len(vertices)
+    vertices = np.vstack([vertices, vertices + [5, 0, 0], vertices + [10, 0, 0]])
+    triangles = np.vstack([triangles, triangles + count, triangles + 2 * count])
+    z = vertices[:count, 2]
+    roles = np.full(3 * count, FREE)  # the second tube has neither border nor handle
+    roles[:count] = np.where(z < 1, FIXED, np.where(z > 9, 0, FREE))
+    roles[:count][np.abs(z - 5) < 0.2] = 1
+    roles[2 * count:][z > 9] = 2  # the third a handle alone
+    up, aside, far = np.eye(4), np.eye(4), turn((1, 0, 0), 40)
+    up[2, 3], aside[0, 3] = 1, 2
+    deformation = Deformation(vertices, triangles, roles)
+    deformation.move_at_once([up, aside, far])
+    now = deformation.positions()
+    for handle, matrix in enumerate((up, aside, far)):
+        np.testing.assert_allclose(now[roles == handle], moved(matrix, vertices[roles == handle]), atol=1e-12)
+    np.testing.assert_array_equal(now[count:2 * count], vertices[count:2 * count])
+    np.testing.assert_allclose(now[2 * count:], moved(far, vertices[2 * count:]), atol=1e-4)
+    deformation.reset()
+    np.testing.assert_array_equal(deformation.positions(), vertices)
+
+
+def test_same_bits_twice():
+    vertices, triangles, roles = limb("hand")
+    results = []
+    for _ in range(2):
+        deformation = Deformation(vertices, triangles, roles)
+        deformation.move_at_once([turn((1, 0, 0), 45)])
+        results.append(deformation.positions())
+    np.testing.assert_array_equal(*results)
+
+
+def test_faces_without_area():
+    """Doubled vertices, needles and points do no harm."""
+    vertices, triangles = cylinder(around=12, along=20)
+    z = vertices[:, 2]
+    roles = np.where(z < 1, FIXED, np.where(z > 9, 0, FREE))
+    middle = np.flatnonzero(roles == FREE)[50]
+    vertices = vertices.copy()
+    vertices[middle] = vertices[middle + 1]  # two corners at one place
+    vertices[middle + 40] = (vertices[middle + 39] + vertices[middle + 41]) / 2
+    vertices[middle + 64:middle + 66] = vertices[middle + 66]
+    triangles = np.vstack([triangles, [[middle + 70] * 3]])
+    deformation = Deformation(vertices, triangles, roles)
+    matrix = turn((1, 0, 0), 30)
+    deformation.move_at_once([matrix])
+    now = deformation.positions()
+    assert np.isfinite(now).all()
+    assert np.linalg.norm(now[middle] - now[middle + 1]) < 1e-3
+    assert np.abs(now - vertices).max() < 2 * np.abs(moved(matrix, vertices) - vertices).max()
+
+
+def test_the_unit_and_the_place_do_not_matter():
+    vertices, triangles, roles = limb("hand")
+    matrix = turn((1, 0, 0), 30)
+    one = Deformation(vertices, triangles, roles)
+    one.move_at_once([matrix])
+    scale, offset = 1e-3, np.array([40.0, 50.0, 60.0])
+    there, back = np.eye(4), np.eye(4)
+    there[:3, :3] *= scale
+    there[:3, 3] = offset
+    back[:3, :3] /= scale
+    back[:3, 3] = -offset / scale
+    other = Deformation(moved(there, vertices), triangles, roles)
+    other.move_at_once([there @ matrix @ back])
+    np.testing.assert_allclose(moved(back, other.positions()), one.positions(), atol=1e-4 * np.ptp(vertices))
+
+
+@pytest.mark.parametrize("share", [0, 0.25, 0.5, 1])
+def test_part_of_the_way(share):
+    np.testing.assert_allclose(part_of_the_way(turn((1, 2, 3), 100, (4, 5, 6)), share),
+                               turn((1, 2, 3), 100 * share, (4, 5, 6)), atol=1e-9)
+    shift = np.eye(4)
+    shift[:3, 3] = 1, 2, 3
+    expected = np.eye(4)
+    expected[:3, 3] = np.array([1, 2, 3]) * share
+    np.testing.assert_allclose(part_of_the_way(shift, share), expected, atol=1e-12)
+    scale = np.diag([2.0, 2, 2, 1])
+    np.testing.assert_allclose(part_of_the_way(scale, share), np.diag([1 + share] * 3 + [1]), atol=1e-12)
+
+
+def refused(status, *arguments):
+    with pytest.raises(PartwheelError) as error:
+        Deformation(*arguments)
+    assert error.value.status == status
+    assert len(str(error.value)) > 20
+
+
+def test_refusals():
+    vertices, triangles = cylinder(around=6, along=3)
+    roles = np.full(len(vertices), FREE)
+    roles[0] = 0
+    refused(Status.ARGUMENT, vertices, triangles, np.zeros(len(vertices), int))  # the handle is all there is
+    refused(Status.ARGUMENT, vertices, triangles, np.full(len(vertices), FREE))  # nothing holds or moves
+    refused(Status.ARGUMENT, vertices, triangles, np.full(len(vertices), -3))
+    refused(Status.ARGUMENT, vertices, triangles, np.where(roles == 0, 1, roles))  # no handle 0
+    refused(Status.INDEX, vertices, [[0, 1, len(vertices)]], roles)
+    refused(Status.INDEX, vertices, [[0, 1, -1]], roles)
+    refused(Status.EMPTY, vertices, np.empty((0, 3), int), roles)
+    bad = vertices.copy()
+    bad[3, 1] = math.nan
+    refused(Status.NOT_FINITE, bad, triangles, roles)
+    with pytest.raises(ValueError):
+        Deformation(vertices, triangles, roles[1:])
+    deformation = Deformation(vertices, triangles, roles)
+    for handle, matrix, status in ((1, np.eye(4), Status.ARGUMENT), (-1, np.eye(4), Status.ARGUMENT),
+                                   (0, np.full((4, 4), math.inf), Status.NOT_FINITE)):
+        with pytest.raises(PartwheelError) as error:
+            deformation.move(handle, matrix)
+        assert error.value.status == status
+    np.testing.assert_array_equal(deformation.positions(), vertices)
+
+
+def test_a_handle_scaled_to_a_point_comes_back():
+    vertices, triangles, roles = limb("hand")
+    deformation = Deformation(vertices, triangles, roles)
+    deformation.move(0, np.diag([0.0, 0, 0, 1]))
+    deformation.iterate(3)
+    assert np.isfinite(deformation.positions()).all()
+    deformation.move(0, np.eye(4))
+    deformation.settle(1e-6, 2000)
+    np.testing.assert_allclose(deformation.positions(), vertices, atol=0.02 * np.ptp(vertices))
+
+
+def test_distances_on_a_plane_and_apart():
+    """On a grid with diagonals the way over edges is up to 8 % too long; never too short."""
+    n = 40
+    x, y = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
+    vertices = np.stack([x, y, 0 * x], -1).reshape(-1, 3).astype(float)
+    quads = [(i * n + j, i * n + n + j, i * n + n + j + 1, i * n + j + 1) for i in range(n - 1) for j in range(n - 1)]
+    triangles = np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+    start = 17 * n + 11
+    distance = surface_distances(vertices, triangles, [start])
+    exact = np.linalg.norm(vertices - vertices[start], axis=1)
+    assert (distance >= exact - 1e-9).all()
+    assert (distance <= 1.09 * exact + 1e-9).all()
+    two = np.vstack([vertices, vertices + [0, 0, 1]])
+    distance = surface_distances(two, np.vstack([triangles, triangles + n * n]), [start])
+    assert np.isinf(distance[n * n:]).all()
+
+
+def test_distances_on_a_real_mesh():
+    """Between the straight line and the shortest way over edges."""
+    vertices, triangles, *_ = shapes.off("elephant")
+    distance = surface_distances(vertices, triangles, [5, 900])
+    neighbours = [[] for _ in vertices]
+    for a, b in edges_of(triangles):
+        length = float(np.linalg.norm(vertices[a] - vertices[b]))
+        neighbours[a].append((length, b))
+        neighbours[b].append((length, a))
+    reached, front = np.full(len(vertices), math.inf), [(0.0, 5), (0.0, 900)]
+    while front:
+        length, v = heapq.heappop(front)
+        if length < reached[v]:
+            reached[v] = length
+            for step, to in neighbours[v]:
+                heapq.heappush(front, (length + step, to))
+    straight = np.linalg.norm(vertices[:, None] - vertices[[5, 900]], axis=2).min(axis=1)
+    assert (distance <= reached + 1e-12).all() and (distance >= straight - 1e-12).all()
+    assert distance.mean() < 0.99 * reached.mean()
+
+
+def test_distances_refuse():
+    with pytest.raises(PartwheelError) as error:
+        surface_distances(np.zeros((3, 3)), [[0, 1, 3]], [0])
+    assert error.value.status == Status.INDEX
+
+
+def test_a_part_of_the_hierarchy():
+    """As the tool uses it: a node's faces deform, everything beyond them is fixed and stays where it was."""
+    shape = shapes.off("hand")
+    hierarchy = Hierarchy.build(*shape)
+    stops, start = hierarchy.wheel(700)
+    inside = np.zeros(shape.face_count, bool)
+    inside[hierarchy.faces(stops[start])] = True
+    roles = np.full(len(shape.vertices), FREE)
+    roles[shape.triangles[~inside[shape.faces]]] = FIXED
+    free = np.flatnonzero(roles == FREE)
+    assert len(free) > 30
+    tip = free[np.argmax(surface_distances(shape.vertices, shape.triangles, roles == FIXED)[free])]
+    roles[tip] = 0
+    matrix = np.eye(4)
+    matrix[:3, 3] = 0.1 * np.ptp(shape.vertices)
+    deformation = Deformation(shape.vertices, shape.triangles, roles)
+    deformation.move_at_once([matrix])
+    now = deformation.positions()
+    np.testing.assert_allclose(now[roles == FIXED], shape.vertices[roles == FIXED], atol=1e-15 * np.ptp(shape.vertices))
+    np.testing.assert_allclose(now[tip], moved(matrix, shape.vertices[tip]))

@@ -1,0 +1,259 @@
+// Deformation: rigid motions, energy, what stays, what is refused, memory; distances along a surface.
+#include "deform.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <new>
+
+namespace {
+std::atomic<size_t> allocations{0};
+}
+
+// Counted, to see that a mouse move allocates nothing. Not inlined: g++ would then see new meet free().
+[[gnu::noinline]] void* operator new(size_t size) {
+    ++allocations;
+    if (void* p = std::malloc(size ? size : 1)) return p;
+    throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, size_t) noexcept { std::free(p); }
+
+namespace partwheel::test {
+namespace {
+
+// A square grid of n x n vertices in the plane z = 0, side 1 a cell, bent a little.
+struct Sheet {
+    std::vector<Point> vertices;
+    std::vector<Triangle> triangles;
+    std::vector<int32_t> roles;
+};
+
+Sheet sheet(int n) {
+    Sheet s;
+    for (int x = 0; x < n; ++x)
+        for (int y = 0; y < n; ++y) {
+            s.vertices.push_back({double(x), double(y), 0.1 * std::sin(x + 0.5 * y)});
+            s.roles.push_back(x == 0 ? PW_VERTEX_FIXED : x == n - 1 ? 0 : PW_VERTEX_FREE);
+        }
+    for (int x = 0; x + 1 < n; ++x)
+        for (int y = 0; y + 1 < n; ++y) {
+            const int32_t a = x * n + y, b = a + n, c = b + 1, d = a + 1;
+            s.triangles.push_back({a, b, c});
+            s.triangles.push_back({a, c, d});
+        }
+    return s;
+}
+
+// A turn about z through the point (2, 3, 0), and a shift.
+Affine turn(double degrees) {
+    const double angle = degrees * std::acos(-1.0) / 180, c = std::cos(angle), s = std::sin(angle);
+    return {c, -s, 0, 2 - (c * 2 - s * 3), s, c, 0, 3 - (s * 2 + c * 3), 0, 0, 1, 0.5};
+}
+
+Point moved_by(const Affine& m, const Point& p) {
+    return {m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3], m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
+            m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
+}
+
+double distance(const Point& a, const Point& b) {
+    const Point d = a - b;
+    return std::sqrt(dot(d, d));
+}
+
+std::vector<Point> positions(const Deformation& deformation) {
+    std::vector<Point> out(deformation.vertex_count());
+    deformation.positions(out);
+    return out;
+}
+
+TEST(Deform, WhatNothingElseHoldsMovesRigidly) {
+    Sheet s = sheet(12);
+    for (int32_t& role : s.roles) role = role == 0 ? 0 : PW_VERTEX_FREE;
+    for (const double degrees : {0.0, 1.0, 90.0, 170.0}) {
+        Deformation deformation(s.vertices, s.triangles, s.roles);
+        deformation.move(0, turn(degrees));
+        deformation.iterate(200);
+        const std::vector<Point> now = positions(deformation);
+        for (size_t v = 0; v < now.size(); ++v)
+            EXPECT_LT(distance(now[v], moved_by(turn(degrees), s.vertices[v])), 1e-9) << degrees;
+        EXPECT_LT(deformation.energy(), 1e-18);
+    }
+}
+
+TEST(Deform, EnergyNeverRises) {
+    const Sheet s = sheet(15);
+    Deformation deformation(s.vertices, s.triangles, s.roles);
+    deformation.move(0, turn(120));
+    double before = deformation.energy();
+    EXPECT_GT(before, 1);
+    for (int i = 0; i < 50; ++i) {
+        deformation.iterate(1);
+        const double now = deformation.energy();
+        EXPECT_LE(now, before * (1 + 1e-12));
+        before = now;
+    }
+}
+
+TEST(Deform, FixedAndHandleAreWhereTheyBelong) {
+    const Sheet s = sheet(15);
+    Deformation deformation(s.vertices, s.triangles, s.roles);
+    for (const double degrees : {10.0, 25.0, -60.0}) {
+        deformation.move(0, turn(degrees));
+        deformation.iterate(2);
+        const std::vector<Point> now = positions(deformation);
+        for (size_t v = 0; v < now.size(); ++v) {
+            if (s.roles[v] == PW_VERTEX_FIXED) {
+                EXPECT_EQ(now[v], s.vertices[v]);
+            } else if (s.roles[v] == 0) {
+                EXPECT_LT(distance(now[v], moved_by(turn(degrees), s.vertices[v])), 1e-13);
+            }
+        }
+    }
+    deformation.reset();
+    EXPECT_EQ(positions(deformation), s.vertices);
+}
+
+TEST(Deform, WithoutHandlesAllStays) {
+    Sheet s = sheet(8);
+    for (int32_t& role : s.roles) role = role == 0 ? PW_VERTEX_FREE : role;
+    Deformation deformation(s.vertices, s.triangles, s.roles);
+    EXPECT_EQ(deformation.handle_count(), 0u);
+    deformation.iterate(10);
+    const std::vector<Point> now = positions(deformation);
+    for (size_t v = 0; v < now.size(); ++v) EXPECT_LT(distance(now[v], s.vertices[v]), 1e-12);
+}
+
+TEST(Deform, AMoveAllocatesNothing) {
+    const Sheet s = sheet(20);
+    Deformation deformation(s.vertices, s.triangles, s.roles);
+    std::vector<Point> out(s.vertices.size());
+    const size_t before = allocations;
+    deformation.move(0, turn(170));  // far enough for rotations by singular values
+    deformation.iterate(5);
+    deformation.positions(out);
+    EXPECT_GE(deformation.energy(), 0);
+    EXPECT_EQ(allocations, before);
+}
+
+TEST(Deform, TheHandleMayBeMirroredFlattenedOrGone) {
+    const Sheet s = sheet(10);
+    Deformation deformation(s.vertices, s.triangles, s.roles);
+    for (const Affine& m : {Affine{-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, Affine{1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0},
+                            Affine{}, Affine{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}}) {
+        deformation.move(0, m);
+        deformation.iterate(3);
+        for (const Point& p : positions(deformation))
+            for (const double x : p) EXPECT_LT(std::abs(x), 100);
+    }
+}
+
+TEST(Deform, ShapesWithoutAnyExtent) {
+    Sheet s = sheet(6);
+    for (const double flat : {0.0, 1e-12}) {
+        for (Point& p : s.vertices) p = {p[0], flat * p[1], 0};  // all triangles on one line
+        Deformation line(s.vertices, s.triangles, s.roles);
+        line.move(0, turn(40));
+        line.iterate(5);
+        for (const Point& p : positions(line))
+            for (const double x : p) EXPECT_LT(std::abs(x), 100);
+    }
+    for (Point& p : s.vertices) p = {3, 4, 5};
+    Deformation point(s.vertices, s.triangles, s.roles);
+    point.move(0, turn(40));
+    point.iterate(5);
+    for (const Point& p : positions(point)) EXPECT_LT(distance(p, {3, 4, 5}), 10);
+}
+
+// ---- The C functions
+
+using Handle = std::unique_ptr<pw_deformation, void (*)(pw_deformation*)>;
+
+pw_status create(const Sheet& s, pw_deformation** made) {
+    return pw_deformation_create(s.vertices[0].data(), s.vertices.size(), s.triangles[0].data(), s.triangles.size(),
+                                 s.roles.data(), made);
+}
+
+TEST(Deform, RefusalsOfTheApi) {
+    const Sheet s = sheet(5);
+    pw_deformation* made = nullptr;
+    const double* vertices = s.vertices[0].data();
+    const int32_t* triangles = s.triangles[0].data();
+    const size_t v = s.vertices.size(), t = s.triangles.size();
+    EXPECT_EQ(pw_deformation_create(nullptr, v, triangles, t, s.roles.data(), &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_deformation_create(vertices, v, nullptr, t, s.roles.data(), &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_deformation_create(vertices, v, triangles, t, nullptr, &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_deformation_create(vertices, v, triangles, t, s.roles.data(), nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_deformation_create(vertices, v, triangles, 0, s.roles.data(), &made), PW_ERROR_EMPTY);
+    EXPECT_EQ(pw_deformation_create(vertices, 0, triangles, t, s.roles.data(), &made), PW_ERROR_EMPTY);
+    EXPECT_EQ(pw_deformation_create(vertices, v - 1, triangles, t, s.roles.data(), &made), PW_ERROR_INDEX);
+    for (const int32_t role : {-3, 1, std::numeric_limits<int32_t>::max(), std::numeric_limits<int32_t>::min()}) {
+        Sheet bad = s;
+        for (int32_t& each : bad.roles) each = each == 0 ? role : each;
+        EXPECT_EQ(create(bad, &made), PW_ERROR_ARGUMENT) << role;
+        EXPECT_STRNE(pw_error_message(), "");
+    }
+    for (const double x : {std::nan(""), HUGE_VAL, 1e101}) {
+        Sheet bad = s;
+        bad.vertices[7][1] = x;
+        EXPECT_EQ(create(bad, &made), PW_ERROR_NOT_FINITE);
+    }
+    Sheet whole = s;
+    whole.roles.assign(v, 0);
+    EXPECT_EQ(create(whole, &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(made, nullptr);
+
+    ASSERT_EQ(create(s, &made), PW_OK);
+    const Handle handle(made, pw_deformation_free);
+    const Affine good = turn(20), bad{HUGE_VAL};
+    std::vector<double> out(3 * v);
+    double energy = 0;
+    EXPECT_EQ(pw_deformation_move(nullptr, 0, good.data()), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_deformation_move(made, 0, nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_deformation_move(made, 1, good.data()), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_deformation_move(made, 0, bad.data()), PW_ERROR_NOT_FINITE);
+    EXPECT_EQ(pw_deformation_iterate(nullptr, 1), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_deformation_energy(made, nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_deformation_energy(nullptr, &energy), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_deformation_positions(made, nullptr, v), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_deformation_positions(made, out.data(), v + 1), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_deformation_positions(nullptr, out.data(), v), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_deformation_reset(nullptr), PW_ERROR_ARGUMENT);
+    pw_deformation_free(nullptr);
+
+    EXPECT_EQ(pw_deformation_positions(made, out.data(), v), PW_OK);
+    EXPECT_TRUE(std::equal(out.begin(), out.end(), vertices));
+    EXPECT_EQ(pw_deformation_move(made, 0, good.data()), PW_OK);
+    EXPECT_EQ(pw_deformation_iterate(made, 3), PW_OK);
+    EXPECT_EQ(pw_deformation_energy(made, &energy), PW_OK);
+    EXPECT_GT(energy, 0);
+    EXPECT_EQ(pw_deformation_reset(made), PW_OK);
+    EXPECT_EQ(pw_deformation_positions(made, out.data(), v), PW_OK);
+    EXPECT_TRUE(std::equal(out.begin(), out.end(), vertices));
+}
+
+TEST(Deform, DistancesOfTheApi) {
+    const Sheet s = sheet(5);
+    const size_t v = s.vertices.size(), t = s.triangles.size();
+    std::vector<uint8_t> start(v, 0);
+    std::vector<double> distance(v);
+    const auto ask = [&](const uint8_t* from, double* out) {
+        return pw_surface_distances(s.vertices[0].data(), v, s.triangles[0].data(), t, from, out);
+    };
+    EXPECT_EQ(ask(nullptr, distance.data()), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(ask(start.data(), nullptr), PW_ERROR_ARGUMENT);
+    ASSERT_EQ(ask(start.data(), distance.data()), PW_OK);
+    for (const double d : distance) EXPECT_EQ(d, HUGE_VAL);
+    start[0] = 1;
+    ASSERT_EQ(ask(start.data(), distance.data()), PW_OK);
+    EXPECT_EQ(distance[0], 0);
+    EXPECT_NEAR(distance[1], 1, 0.1);
+    EXPECT_NEAR(distance[v - 1], std::sqrt(32.0), 0.2);
+}
+
+}  // namespace
+}  // namespace partwheel::test
