@@ -2,8 +2,8 @@
 //
 //   deform_bench MODEL.off SHARE MOVES ITERATIONS
 //
-// The part is what lies in the upper SHARE (0..1) of the model's longest side; its handle is the topmost tenth of it. The
-// handle turns and moves a little at each move, as under a mouse, and each move iterates as often as the tool does.
+// The part is what lies in the upper SHARE (0..1) of the model's longest side; its handle is the topmost tenth of it.
+// The handle turns a little at each move, as under a mouse, and each move iterates so often. `create`: seconds,
 // [wall, cpu]. `move`: the median and the longest, in seconds; `free`: how many vertices the system has.
 #include "measured.h"
 #include "partwheel.h"

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The native library for Python: numpy arrays in, a Hierarchy out. Nothing here knows Blender."""
 
+from .deform import Deformation, surface_distances
 from .hierarchy import Hierarchy, Solid, Summary
 from .library import LibraryError, PartwheelError, Rung, Stage, Status, version
 
-__all__ = ["Hierarchy", "LibraryError", "PartwheelError", "Rung", "Solid", "Stage", "Status", "Summary",
-           "version"]
+__all__ = ["Deformation", "Hierarchy", "LibraryError", "PartwheelError", "Rung", "Solid", "Stage", "Status", "Summary",
+           "surface_distances", "version"]
