@@ -150,7 +150,7 @@ setup_build() {
 
 setup_core() {
     start_setup && packages python3 python3-venv ca-certificates || return
-    venv core /usr/bin/python3 numpy scipy trimesh pytest libigl
+    venv core /usr/bin/python3 numpy scipy trimesh pytest libigl manifold3d
 }
 
 setup_bench() {

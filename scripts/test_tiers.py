@@ -89,7 +89,7 @@ def reliability():
 def addon():
     """The add-on as installed from the zip, without a window, in the distribution's Blender and in bpy from PyPI."""
     package = make_package("addon")
-    setup("addon", "setup_blender", "setup_bpy")
+    setup("addon", "setup_core", "setup_blender", "setup_bpy")
     versions = output_of("bash", "-c", ". scripts/setup.sh && echo $bpy_versions").split()
     interpreters = {"blender": ["blender", "-b", "-noaudio", "--factory-startup", "--python-exit-code", "9", "--python",
                                 "tests/addon/run.py", "--"]}

@@ -16,7 +16,7 @@ functions build it if there is none. All raise core.PartwheelError, whose text s
 object that holds no mesh; build() also RuntimeError while another build is under way.
 """
 
-from . import composition, selection, session, solids, wheel
+from . import composition, selection, session, solids, union, wheel
 
 
 def build(obj, quality=0.0, open_surfaces=False):
@@ -89,6 +89,17 @@ def split(obj, parts=None, height=None, explode=0.0, smooth=False, material=Fals
     exactly (unless smooth). Each is moved out by explode times its distance from the middle."""
     built = hierarchy(obj)
     return composition.split(obj, built, _bounds(built, parts, height), solids.Options(smooth, material), explode)
+
+
+def unite(target, others):
+    """Makes the target's mesh the union of it and the other objects, which stay, by Blender's Boolean: n-gons, layers
+    and materials kept, modifiers of the others applied. union.NotUnited, before anything has changed: one of them is not
+    closed, or no solver gave a closed mesh of a possible volume. Outside Edit Mode only."""
+    for obj in (target, *others):
+        _check(obj)
+    if any(obj.mode == "EDIT" for obj in (target, *others)):
+        raise ValueError("Leave Edit Mode before solids are united by a script.")
+    union.unite(target, others)
 
 
 def _bounds(built, parts, height):

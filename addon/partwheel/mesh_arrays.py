@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Blender mesh as numpy arrays: the cage as it is, without modifiers, in its object's own space. Only reads."""
+"""A Blender mesh as numpy arrays: the cage as it is, without modifiers, in its object's own space. Only reads, but for normals."""
 
 import hashlib
 from typing import NamedTuple
@@ -57,6 +57,25 @@ def surface(mesh):
 def _triangulated(polygon, vertices):
     corners = list(polygon.vertices)
     return triangulate(vertices[corners], corners)
+
+
+def custom_normals(mesh):
+    """(L,3) of each loop, if the mesh has normals set by hand; else None."""
+    if not mesh.has_custom_normals:
+        return None
+    if hasattr(mesh, "corner_normals"):
+        return read(mesh.corner_normals, "vector", np.float32, 3)
+    mesh.calc_normals_split()
+    normals = read(mesh.loops, "normal", np.float32, 3)
+    mesh.free_normals_split()
+    return normals
+
+
+def set_custom_normals(mesh, normals):
+    """normals (L,3): of each loop; 0, 0, 0: as Blender computes it."""
+    if hasattr(mesh, "use_auto_smooth"):  # before Blender 4.1
+        mesh.use_auto_smooth = True
+    mesh.normals_split_custom_set(normals)
 
 
 class Fingerprint(NamedTuple):

@@ -58,7 +58,7 @@ def _carve(mesh, target, hierarchy, tet_first, tet_last, options, alone):
     """Makes of target, which is the mesh or a copy, what is in the slice, closed. alone: loose elements go too."""
     exact = hierarchy.summary.rung == "exact"
     solid = hierarchy.solid_of_slice(tet_first, tet_last) if exact else None
-    normals = _custom_normals(mesh)
+    normals = mesh_arrays.custom_normals(mesh)
     bm = bmesh.new()
     try:
         bm.from_mesh(mesh)
@@ -87,7 +87,9 @@ def _carve(mesh, target, hierarchy, tet_first, tet_last, options, alone):
         bm.free()
     _mark(target, indices)
     if normals is not None:
-        _restore_normals(target, normals, loops)
+        chosen = normals[np.maximum(loops, 0)]
+        chosen[loops < 0] = 0  # as Blender computes them
+        mesh_arrays.set_custom_normals(target, chosen)
     target.update()
 
 
@@ -125,12 +127,14 @@ def _keep_solid(bm, mesh, hierarchy, solid, alone, facets):
         new_corner.setdefault(face, {})[int(source[corner])] = verts[corner]
     for face, replaced in new_corner.items():
         old = polygons[face]
-        _copy_face(bm, old, [(replaced[loop.vert.index], loop) for loop in old.loops])
+        copy_face(bm, old, [(replaced[loop.vert.index], loop) for loop in old.loops])
     cut = ~whole[faces]
     for face, triangle in zip(faces[cut].tolist(), corners[cut].tolist()):
         old = polygons[face]
         loops = {loop.vert.index: loop for loop in old.loops}
-        _copy_face(bm, old, [(verts[corner], loops.get(int(source[corner]))) for corner in triangle])
+        copy_face(bm, old, [(verts[corner], loops[int(source[corner])] if source[corner] >= 0 else
+                             tuple(loops[int(hierarchy.source[end])] for end in solid.ends[corner]))
+                            for corner in triangle])
     caps = []
     if facets:
         for triangle in solid.triangles[solid.beyond >= 0].tolist():
@@ -172,18 +176,21 @@ def _new_vert(bm, place):
     return vert
 
 
-def _copy_face(bm, old, corners):
-    """A new face with the attributes of an old one. corners: (its vertex, the loop of old that it copies, or None for a
-    place in between)."""
+def copy_face(bm, old, corners):
+    """A new face with the attributes of an old one. corners: (its vertex, the loop of old that it copies; or two, for a
+    vertex midway between them)."""
     # Never copy_from(): it also copies Blender's link from an element to its Python object, and crashes later.
     for (vert, source), (after, source_after) in zip(corners, corners[1:] + corners[:1]):
-        if source and source_after and source.link_loop_next == source_after and not bm.edges.get((vert, after)):
+        if isinstance(source, tuple):
+            source = source[0]
+        following = source_after[1] if isinstance(source_after, tuple) else source_after
+        if source.link_loop_next == following and not bm.edges.get((vert, after)):
             bm.edges.new((vert, after), source.edge)
     new = bm.faces.new([vert for vert, _ in corners], old)
     new.smooth, new.material_index = old.smooth, old.material_index
     for loop, (_, source) in zip(new.loops, corners):
-        if source is None:
-            loop.copy_from_face_interp(old)
+        if isinstance(source, tuple):
+            _mix_layers(bm.loops.layers, *source, loop)
         else:
             _copy_layers(bm.loops.layers, source, loop)
 
@@ -194,6 +201,15 @@ def _copy_layers(layers, old, new):
             new[layer] = old[layer]
     for layer in layers.uv.values():
         new[layer].uv, new[layer].pin_uv = old[layer].uv, old[layer].pin_uv
+
+
+def _mix_layers(layers, one, other, new):
+    _copy_layers(layers, one, new)
+    for kind in ("float", "float_vector", "color", "float_color"):
+        for layer in getattr(layers, kind).values() if hasattr(layers, kind) else ():
+            new[layer] = (one[layer] + other[layer]) / 2
+    for layer in layers.uv.values():
+        new[layer].uv = (one[layer].uv + other[layer].uv) / 2
 
 
 def _delete(bm, faces, alone):
@@ -336,7 +352,7 @@ def _fair(rows, top):
     top.co = peak
 
 
-# ---- Marks, materials, normals
+# ---- Marks and materials, and which loop was which
 
 
 def _cap_slot(mesh):
@@ -361,18 +377,6 @@ def _mark(mesh, caps):
     layer.data.foreach_set("value", marks)
 
 
-def _custom_normals(mesh):
-    """(L,3) of each loop, if the mesh has normals set by hand; else None."""
-    if not mesh.has_custom_normals:
-        return None
-    if hasattr(mesh, "corner_normals"):
-        return read(mesh.corner_normals, "vector", np.float32, 3)
-    mesh.calc_normals_split()
-    normals = read(mesh.loops, "normal", np.float32, 3)
-    mesh.free_normals_split()
-    return normals
-
-
 def _number_loops(bm):
     layer = bm.loops.layers.int.new(_LOOP)
     number = 1
@@ -388,11 +392,3 @@ def _take_loop_numbers(bm):
     numbers = np.fromiter((loop[layer] - 1 for face in bm.faces for loop in face.loops), np.int32)
     bm.loops.layers.int.remove(layer)
     return numbers
-
-
-def _restore_normals(mesh, normals, loops):
-    chosen = normals[np.maximum(loops, 0)]
-    chosen[loops < 0] = 0  # as Blender computes them
-    if hasattr(mesh, "use_auto_smooth"):
-        mesh.use_auto_smooth = True
-    mesh.normals_split_custom_set(chosen)

@@ -6,9 +6,10 @@ import bpy
 from .build import MESH_OT_partwheel_build, MESH_OT_partwheel_clear
 from .copy_part import MESH_OT_partwheel_copy, MESH_OT_partwheel_remove, MESH_OT_partwheel_split
 from .select import MESH_OT_partwheel_select
+from .unite import OBJECT_OT_partwheel_unite
 
 CLASSES = (MESH_OT_partwheel_build, MESH_OT_partwheel_clear, MESH_OT_partwheel_select, MESH_OT_partwheel_copy,
-           MESH_OT_partwheel_remove, MESH_OT_partwheel_split)
+           MESH_OT_partwheel_remove, MESH_OT_partwheel_split, OBJECT_OT_partwheel_unite)
 
 
 def register():

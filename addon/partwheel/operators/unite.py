@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""object.partwheel_unite: placed parts and the object they were placed on become one closed mesh."""
+
+import bpy
+
+from .. import union
+
+
+class OBJECT_OT_partwheel_unite(bpy.types.Operator):
+    """Unite the other selected solids with the active one into a single closed mesh"""
+
+    bl_idname = "object.partwheel_unite"
+    bl_label = "Unite Solids"
+    bl_options = {"REGISTER", "UNDO"}
+
+    keep: bpy.props.BoolProperty(name="Keep Parts", description="Leave the other objects as they are", default=False)
+
+    @classmethod
+    def poll(cls, context):
+        if context.mode != "OBJECT" or not cls.others(context):
+            cls.poll_message_set("In Object Mode, select the parts and then the mesh object that they are to become "
+                                 "part of.")
+            return False
+        if context.active_object.data.library:
+            cls.poll_message_set("The active object's mesh is linked from another file. Make it local first.")
+            return False
+        return True
+
+    @staticmethod
+    def others(context):
+        target = context.active_object
+        if target is None or target.type != "MESH":
+            return []
+        return [obj for obj in context.selected_objects if obj != target and obj.type == "MESH"]
+
+    def execute(self, context):
+        target, others = context.active_object, self.others(context)
+        try:
+            solver = union.unite(target, others)
+        except union.NotUnited as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        if not self.keep:
+            for other in others:
+                mesh = other.data
+                bpy.data.objects.remove(other)
+                if not mesh.users:
+                    bpy.data.meshes.remove(mesh)
+        self.report({"INFO"}, f"{target.name}: {len(target.data.polygons)} faces, closed (solver {solver.title()}).")
+        return {"FINISHED"}

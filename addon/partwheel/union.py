@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Closed meshes united into one by Blender's Boolean. What it gives is never trusted: it is checked, and the next solver
+is tried."""
+
+import bmesh
+import bpy
+import numpy as np
+from mathutils import Vector
+from mathutils.bvhtree import BVHTree
+
+from . import mesh_arrays, pinches
+from .mesh_arrays import read
+
+# (solver, whether it also unites what overlaps within one mesh), in the order tried. Blenders before 4.5 have no
+# MANIFOLD; some later ones have it and do nothing.
+WAYS = (("MANIFOLD", False), ("EXACT", False), ("EXACT", True))
+SAMPLES = 200  # vertices that are looked at to see whether a mesh lies inside another
+RAY = Vector((0.5377, 0.3141, 0.7823)).normalized()  # no model is likely to be built along it
+TOLERANCE = 1e-5  # of the sum of the volumes: coordinates are of 24 bits
+
+
+class NotUnited(Exception):
+    """Why meshes can't be united. str() is a sentence for the user."""
+
+
+def unite(target, others):
+    """Makes the target's mesh the union of it, as it is without modifiers, and of the other objects, with theirs. The
+    others stay. Returns the solver that did it. Raises NotUnited before anything has changed."""
+    slots = []
+    base = _input(target, target.data, slots)
+    solvers = []
+    try:
+        for other in others:
+            operand = _evaluated(other, slots)
+            try:
+                operand.transform(target.matrix_world.inverted() @ other.matrix_world)
+                if target.matrix_world.is_negative != other.matrix_world.is_negative:
+                    operand.flip_normals()
+                result, solver = _united(base, operand, target.name, other.name, slots)
+            finally:
+                bpy.data.meshes.remove(operand)
+            bpy.data.meshes.remove(base)
+            base = result
+            solvers.append(solver)
+        _replace(target, base, slots)
+    finally:
+        bpy.data.meshes.remove(base)
+    return solvers[-1]
+
+
+def problem(mesh):
+    """What keeps the mesh from being a closed, manifold, outward surface, in words; None if nothing does."""
+    bm = bmesh.new()
+    try:
+        bm.from_mesh(mesh)
+        return _problem(bm) or ("it is inside out" if volume(mesh) < 0 else None)
+    finally:
+        bm.free()
+
+
+def _problem(bm):
+    if not bm.faces:
+        return "it has no faces"
+    wrong = sum(not edge.is_manifold for edge in bm.edges)
+    if wrong:
+        return f"{wrong} edges have not just two faces"
+    wrong = sum(not edge.is_contiguous for edge in bm.edges)
+    if wrong:
+        return f"at {wrong} edges the faces wind against each other"
+    wrong = sum(not vert.is_manifold for vert in bm.verts)
+    return f"{wrong} vertices are loose or join parts that only touch there" if wrong else None
+
+
+def volume(mesh):
+    """That the mesh encloses, in its own unit cubed."""
+    mesh.calc_loop_triangles()
+    corners = read(mesh.vertices, "co", np.float32, 3).astype(float)
+    if not len(corners):
+        return 0.0
+    corners -= corners.mean(axis=0)
+    corners = corners[read(mesh.loop_triangles, "vertices", np.int32, 3)]
+    return float(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6)
+
+
+def _evaluated(obj, slots):
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    mesh = bpy.data.meshes.new_from_object(obj.evaluated_get(depsgraph), preserve_all_data_layers=True,
+                                           depsgraph=depsgraph)
+    try:
+        return _input(obj, mesh, slots)
+    finally:
+        bpy.data.meshes.remove(mesh)
+
+
+def _input(obj, mesh, slots):
+    """A copy of the mesh with its materials numbered by slots, a list of all materials, which grows."""
+    wrong = problem(mesh)
+    if wrong:
+        raise NotUnited(f"{obj.name} is no solid: {wrong}. Repair it, or copy its part anew.")
+    indices = read(mesh.polygons, "material_index", np.int32)
+    own = [slot.material for slot in obj.material_slots] or [None]
+    for material in own:
+        if material not in slots:
+            slots.append(material)
+    copy = mesh.copy()
+    copy.materials.clear()
+    numbers = np.array([slots.index(material) for material in own], np.int32)
+    copy.polygons.foreach_set("material_index", numbers[np.minimum(indices, len(own) - 1)])
+    if copy.shape_keys:  # they can't outlive a union
+        holder = bpy.data.objects.new(copy.name, copy)
+        holder.shape_key_clear()
+        bpy.data.objects.remove(holder)
+    return copy
+
+
+def _united(base, operand, base_name, operand_name, slots):
+    """(new mesh, solver)"""
+    known = {item.identifier for item in bpy.types.BooleanModifier.bl_rna.properties["solver"].enum_items}
+    reasons = []
+    for solver, within in WAYS:
+        if solver not in known:
+            continue
+        result = _boolean(base, operand, solver, within, slots)
+        _set_apart(result)
+        wrong = problem(result) or _implausible((base, operand), result)
+        if not wrong:
+            return result, solver
+        reasons.append(f"by {solver.title()}{' within' if within else ''}: {wrong}")
+        bpy.data.meshes.remove(result)
+    raise NotUnited(f"{base_name} and {operand_name} can't be united ({'; '.join(reasons)}). Move one of them a little: "
+                    "faces that lie in each other are the usual cause.")
+
+
+def _inside(inner, outer):
+    """Whether the vertices of one mesh lie in the other, by the parity of crossings along a ray."""
+    bm = bmesh.new()
+    try:
+        bm.from_mesh(outer)
+        tree = BVHTree.FromBMesh(bm)
+    finally:
+        bm.free()
+    step = max(len(inner.vertices) // SAMPLES, 1)
+    return all(_crossings(tree, inner.vertices[i].co) % 2 for i in range(0, len(inner.vertices), step))
+
+
+def _crossings(tree, place):
+    count, (found, _, _, _) = 0, tree.ray_cast(place, RAY)
+    while found:
+        count += 1
+        found, _, _, _ = tree.ray_cast(found + RAY * (1e-6 * max(found.length, 1e-6)), RAY)
+    return count
+
+
+def _set_apart(mesh):
+    """Where the solids only touch, and vertices of one place were joined into one."""
+    bm = bmesh.new()
+    try:
+        bm.from_mesh(mesh)
+        if all(edge.is_manifold for edge in bm.edges) and all(vert.is_manifold for vert in bm.verts):
+            return
+        bm.normal_update()
+        if pinches.set_apart(bm):
+            bm.to_mesh(mesh)
+    finally:
+        bm.free()
+
+
+def _implausible(meshes, result):
+    """What is wrong with a union's volume, by inclusion and exclusion: it is at least the larger volume and at most the
+    sum. The larger mesh as it was is the union only if the other lies within."""
+    volumes, united = [volume(mesh) for mesh in meshes], volume(result)
+    slack = TOLERANCE * sum(volumes)
+    if not max(volumes) - slack <= united <= sum(volumes) + slack:
+        return f"its volume would be {united:.6g}, of {volumes[0]:.6g} and {volumes[1]:.6g}"
+    larger, smaller = meshes if volumes[0] >= volumes[1] else meshes[::-1]
+    if (len(result.vertices), len(result.polygons)) == (len(larger.vertices), len(larger.polygons)) and (
+            united <= max(volumes) + min(slack, min(volumes) / 2)) and not _inside(smaller, larger):
+        return "one of them was left out"
+    return None
+
+
+def _boolean(base, operand, solver, within, slots):
+    """The result of Blender's modifier, on objects that are in the scene only for as long as this takes."""
+    collection = bpy.data.collections.new("partwheel union")
+    bpy.context.scene.collection.children.link(collection)
+    objects = [bpy.data.objects.new(mesh.name, mesh) for mesh in (base, operand)]
+    try:
+        for obj in objects:
+            collection.objects.link(obj)
+            indices = read(obj.data.polygons, "material_index", np.int32)
+            obj.data.materials.clear()
+            for material in slots:
+                obj.data.materials.append(material)
+            obj.data.polygons.foreach_set("material_index", indices)
+        modifier = objects[0].modifiers.new("union", "BOOLEAN")
+        modifier.operation, modifier.object, modifier.solver = "UNION", objects[1], solver
+        if within:
+            modifier.use_self = True
+        bpy.context.view_layer.update()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        return bpy.data.meshes.new_from_object(objects[0].evaluated_get(depsgraph), preserve_all_data_layers=True,
+                                               depsgraph=depsgraph)
+    finally:
+        for obj in objects:
+            bpy.data.objects.remove(obj)
+        bpy.data.collections.remove(collection)
+
+
+def _replace(target, result, slots):
+    """Puts the result into the target's own mesh: its name, properties and users stay."""
+    if target.data.users > 1:
+        target.data = target.data.copy()
+    if target.data.shape_keys:
+        target.shape_key_clear()
+    mesh = target.data
+    indices = read(result.polygons, "material_index", np.int32)
+    normals = mesh_arrays.custom_normals(result)
+    bm = bmesh.new()
+    try:
+        bm.from_mesh(result)
+        bm.to_mesh(mesh)
+    finally:
+        bm.free()
+    mesh.materials.clear()
+    for material in slots if slots != [None] else ():
+        mesh.materials.append(material)
+    mesh.polygons.foreach_set("material_index", indices)
+    if normals is not None:
+        mesh_arrays.set_custom_normals(mesh, normals)
+    mesh.update()
