@@ -16,7 +16,9 @@ functions build it if there is none. All raise core.PartwheelError, whose text s
 object that holds no mesh; build() also RuntimeError while another build is under way.
 """
 
-from . import composition, selection, session, solids, union, wheel
+from mathutils import Vector
+
+from . import composition, placement, selection, session, solids, union, wheel
 
 
 def build(obj, quality=0.0, open_surfaces=False):
@@ -89,6 +91,20 @@ def split(obj, parts=None, height=None, explode=0.0, smooth=False, material=Fals
     exactly (unless smooth). Each is moved out by explode times its distance from the middle."""
     built = hierarchy(obj)
     return composition.split(obj, built, _bounds(built, parts, height), solids.Options(smooth, material), explode)
+
+
+def place(part, location, normal=(0, 0, 1), scale=1.0, angle=0.0, depth=0.0, target=None, fit=False, mirror=False):
+    """Moves an object, one that copy_part() made for instance, so that its border, the largest group of its caps, comes
+    to location in the world, turned against the surface's normal there. scale: times its size. angle: about the normal,
+    in radians. depth: how far it is sunk in, times the border's radius, beyond the little that a union needs.
+
+    target: the mesh object it goes onto. fit: onto the target's border nearest to location, and of its size. mirror: the
+    mirror image across the target's own YZ plane as well; it is returned, else None. ValueError: no border to fit."""
+    _check(part)
+    if fit or mirror:
+        _check(target)
+    return placement.place(part, target, placement.Pose(Vector(location), Vector(normal), scale, angle, depth, fit),
+                           mirror)
 
 
 def unite(target, others):

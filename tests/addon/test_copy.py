@@ -3,61 +3,8 @@
 
 import bpy
 import numpy
-from common import MeshTest, part, read_off
-
-
-def arrays(mesh):
-    """(vertices, polygons as tuples) of a mesh."""
-    return (numpy.array([vertex.co[:] for vertex in mesh.vertices], float),
-            [tuple(polygon.vertices) for polygon in mesh.polygons])
-
-
-def volume(mesh):
-    """By Blender's own triangles, about the mesh's middle."""
-    mesh.calc_loop_triangles()
-    vertices = numpy.array([vertex.co[:] for vertex in mesh.vertices], float)
-    vertices -= vertices.mean(axis=0)
-    corners = vertices[numpy.array([triangle.vertices[:] for triangle in mesh.loop_triangles])]
-    return numpy.einsum("ij,ij->i", corners[:, 0], numpy.cross(corners[:, 1], corners[:, 2])).sum() / 6
-
-
-def caps(mesh):
-    """(F,) which faces are caps."""
-    marks = numpy.empty(len(mesh.polygons), bool)
-    mesh.attributes["partwheel_cap"].data.foreach_get("value", marks)
-    return marks
-
-
-class SolidTest(MeshTest):
-    def assertSolid(self, mesh):
-        """Every directed edge once and its opposite once; no vertex or edge without a face; valid for Blender."""
-        directed = [pair for polygon in mesh.polygons
-                    for pair in zip(polygon.vertices, [*polygon.vertices[1:], polygon.vertices[0]])]
-        self.assertEqual(len(directed), len(set(directed)))
-        self.assertEqual(set(directed), {(b, a) for a, b in directed})
-        self.assertEqual(len(mesh.edges), len(directed) // 2)
-        self.assertEqual({vertex for pair in directed for vertex in pair}, set(range(len(mesh.vertices))))
-        self.assertFalse(mesh.validate())
-
-    def built(self, name="dragknob"):
-        if name == "torus":  # of quads that are not flat
-            bpy.ops.mesh.primitive_torus_add(major_segments=24, minor_segments=10)
-            obj = bpy.context.active_object
-        else:
-            obj = self.add(*read_off(name))
-        hierarchy = part("api").build(obj)
-        self.assertEqual(hierarchy.summary.rung, "exact")
-        return obj, hierarchy
-
-    def nodes(self, hierarchy, count=6):
-        """Some parts, from small to large."""
-        filled = numpy.flatnonzero(hierarchy.last - hierarchy.first >= 4)[:-1]
-        return [int(node) for node in filled[numpy.linspace(0, len(filled) - 1, count).astype(int)]]
-
-    def run_on(self, obj, operator, **options):
-        bpy.context.view_layer.objects.active = obj
-        self.assertEqual(operator(**options), {"FINISHED"})
-        return bpy.context.view_layer.objects.active
+from common import part, read_off
+from solid_case import SolidTest, arrays, caps, volume
 
 
 class Copy(SolidTest):
@@ -202,13 +149,14 @@ class Copy(SolidTest):
 
     def test_broken_sources_give_their_own_faces_closed(self):
         vertices, polygons = read_off("dragknob")
-        for rung, broken in (("repaired", polygons[5:]),
-                             ("wrapped", [polygon for i, polygon in enumerate(polygons) if i % 7])):
+        for rungs, rung, broken in ((2, "repaired", polygons[5:]), (2, "repaired", polygons + polygons[:1]),
+                                    (4, "wrapped", [polygon for i, polygon in enumerate(polygons) if i % 7])):
             obj = self.add(vertices, broken)
-            hierarchy = part("api").build(obj)
+            hierarchy = part("core").Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=rungs)
             self.assertEqual(hierarchy.summary.rung, rung)
             for node in self.nodes(hierarchy):
-                copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node).data
+                copy = part("solids").part(obj, hierarchy, int(hierarchy.tet_first[node]),
+                                           int(hierarchy.tet_last[node]))
                 self.assertSolid(copy)
                 self.assertEqual((~caps(copy)).sum(), len(hierarchy.faces(node)))
 
@@ -301,7 +249,7 @@ class Split(SolidTest):
 
     def test_by_height_and_exploded(self):
         obj, hierarchy = self.built("hand")
-        height = float(numpy.sort(hierarchy.height)[-3])
+        height = float(numpy.sort(hierarchy.height)[-4:-2].mean())  # between two: Blender rounds it
         self.run_on(obj, bpy.ops.mesh.partwheel_split, by="HEIGHT", height=height, explode=1.0)
         made = bpy.context.selected_objects
         self.assertEqual(len(made), len(hierarchy.cut_height(height)) - 1)

@@ -13,7 +13,7 @@ import bpy
 import numpy
 from common import part, read_off
 from mathutils import Matrix, Quaternion, Vector
-from test_copy import SolidTest, arrays, volume
+from solid_case import SolidTest, arrays, volume
 
 COUNT = int(os.environ.get("PARTWHEEL_UNITES") or 20)
 PYTHON = Path(__file__).resolve().parents[2] / "build" / "venv" / "core" / "bin" / "python"
@@ -48,12 +48,6 @@ class Unite(SolidTest):
         other.matrix_world = matrix
         bpy.context.view_layer.update()
         return self.ready(target, other)
-
-    def ready(self, target, other):
-        for obj in bpy.context.view_layer.objects:
-            obj.select_set(obj in (target, other))
-        bpy.context.view_layer.objects.active = target
-        return other
 
     def parts(self):
         """Closed parts of real models, as meshes."""

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where the operators are found: panel, menu, shortcut."""
 
-from . import keymap, menu, panel
+from . import copy_panel, keymap, menu, panel
 
 
 def register():
     panel.register()
+    copy_panel.register()
     menu.register()
     keymap.register()
 
@@ -13,4 +14,5 @@ def register():
 def unregister():
     keymap.unregister()
     menu.unregister()
+    copy_panel.unregister()
     panel.unregister()

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""object.partwheel_place: the active part follows the mouse over the surfaces in the view, its border onto them."""
+
+import math
+
+import bpy
+from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
+from mathutils import Vector
+
+from .. import placement
+from ..picking import view_under
+
+KEYS = ("Partwheel   Move: Over a Surface   Wheel: Size   Shift Wheel: Turn   Page Up/Down: Depth   F: Fit Border   "
+        "M: Mirror Copy   LMB, Enter: Confirm   MMB: Navigate   Esc/RMB: Cancel")
+UP, DOWN = {"WHEELUPMOUSE", "NUMPAD_PLUS"}, {"WHEELDOWNMOUSE", "NUMPAD_MINUS"}
+CONFIRM, CANCEL = {"LEFTMOUSE", "RET", "NUMPAD_ENTER"}, {"RIGHTMOUSE", "ESC"}
+PASS = {
+    "MIDDLEMOUSE", "MOUSEPAN", "MOUSEZOOM", "MOUSEROTATE", "TRACKPADPAN", "TRACKPADZOOM", "NDOF_MOTION", "HOME",
+    "NUMPAD_0", "NUMPAD_1", "NUMPAD_2", "NUMPAD_3", "NUMPAD_4", "NUMPAD_5", "NUMPAD_6", "NUMPAD_7", "NUMPAD_8",
+    "NUMPAD_9", "NUMPAD_PERIOD", "TIMER", "TIMER_REPORT", "WINDOW_DEACTIVATE",
+}
+SIZE_STEP, TURN_STEP, DEPTH_STEP = 1.05, math.radians(5), 0.05
+
+
+class OBJECT_OT_partwheel_place(bpy.types.Operator):
+    """Place the active part on a surface: it follows the mouse, its border on the surface and turned to it"""
+
+    bl_idname = "object.partwheel_place"
+    bl_label = "Place Part"
+    bl_options = {"REGISTER", "UNDO"}
+
+    target: bpy.props.StringProperty(name="Onto", description="The object that the part is placed on")
+    location: bpy.props.FloatVectorProperty(name="Location", description="Where its border goes", subtype="TRANSLATION")
+    normal: bpy.props.FloatVectorProperty(
+        name="Normal", description="Of the surface there", subtype="DIRECTION", default=(0, 0, 1))
+    scale: bpy.props.FloatProperty(name="Size", description="Times the size that it had", default=1, min=1e-4)
+    angle: bpy.props.FloatProperty(
+        name="Turn", description="About the normal", subtype="ANGLE", default=0, options={"SKIP_SAVE"})
+    depth: bpy.props.FloatProperty(
+        name="Depth", description="How far it is sunk in, times the radius of its border", default=0,
+        options={"SKIP_SAVE"})
+    fit: bpy.props.BoolProperty(
+        name="Fit Border", description="Onto the target's nearest border, where a part was removed, and of its size",
+        default=False, options={"SKIP_SAVE"})
+    mirror: bpy.props.BoolProperty(
+        name="Mirror Copy", description="Add the mirror image across the target's own X axis", default=False,
+        options={"SKIP_SAVE"})
+
+    @classmethod
+    def poll(cls, context):
+        obj = context.active_object
+        if context.mode != "OBJECT" or obj is None or obj.type != "MESH":
+            cls.poll_message_set("In Object Mode, make the part to be placed the active object.")
+            return False
+        return True
+
+    def execute(self, context):
+        part = context.active_object
+        target = bpy.data.objects.get(self.target)
+        if (self.fit or self.mirror) and (target is None or target.type != "MESH"):
+            self.report({"ERROR"}, "Say which mesh object the part is placed on.")
+            return {"CANCELLED"}
+        try:
+            mirrored = placement.place(part, target, self._pose(), self.mirror)
+        except ValueError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        if mirrored:
+            mirrored.select_set(True)
+        return {"FINISHED"}
+
+    def _pose(self):
+        return placement.Pose(Vector(self.location), Vector(self.normal), self.scale, self.angle, self.depth, self.fit)
+
+    # ---- With the mouse --------------------------------------------------------------------------------------------
+
+    def invoke(self, context, event):
+        if context.window is None or context.area is None or context.area.type != "VIEW_3D":
+            self.report({"ERROR"}, "Parts are placed in a 3D view: start this with the mouse over one.")
+            return {"CANCELLED"}
+        part = context.active_object
+        self.part_name, self.start, self.own = part.name_full, part.matrix_world.copy(), placement.anchor(part)
+        self.target, self.scale = "", 1
+        self._tell(context, "Move the mouse over a surface")
+        self._follow(context, event)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        part = context.active_object
+        if part is None or part.name_full != self.part_name or context.mode != "OBJECT":
+            self.report({"WARNING"}, "Placing stopped: the part is no longer the active object.")
+            return self._end(context, {"CANCELLED"})
+        if event.type in PASS:
+            return {"PASS_THROUGH"}
+        if event.type == "MOUSEMOVE":
+            self._follow(context, event)
+            return {"RUNNING_MODAL"}
+        if event.value not in {"PRESS", "DOUBLE_CLICK"}:
+            return {"RUNNING_MODAL"}
+        if event.type in CANCEL:
+            part.matrix_world = self.start
+            return self._end(context, {"CANCELLED"})
+        if event.type in CONFIRM:
+            if not self.target:
+                self._tell(context, "There is no surface under the mouse yet")
+                return {"RUNNING_MODAL"}
+            if self.mirror:
+                context.view_layer.update()
+                placement.mirrored(part, bpy.data.objects[self.target]).select_set(True)
+            return self._end(context, {"FINISHED"})
+        sign = 1 if event.type in UP | {"PAGE_UP"} else -1
+        if event.type in UP | DOWN and event.shift:
+            self.angle += sign * TURN_STEP
+        elif event.type in UP | DOWN:
+            self.scale *= SIZE_STEP ** sign
+        elif event.type in {"PAGE_UP", "PAGE_DOWN"}:
+            self.depth -= sign * DEPTH_STEP
+        elif event.type == "F" and self.target:
+            self.fit, self.scale = not self.fit, 1
+        elif event.type == "M":
+            self.mirror = not self.mirror
+        else:
+            return {"RUNNING_MODAL"}
+        self._show(context)
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context):
+        """Blender itself ends the tool."""
+        part = bpy.data.objects.get(self.part_name)
+        if part:
+            part.matrix_world = self.start
+        self._end(context, {"CANCELLED"})
+
+    def _follow(self, context, event):
+        hit = self._surface_under(context, event)
+        if hit:
+            self.location, self.normal, self.target = hit
+            self._show(context)
+
+    def _surface_under(self, context, event):
+        """(location, normal towards the eye, object's name) of what is under the mouse behind the part itself."""
+        view = view_under(context.window, event.mouse_x, event.mouse_y)
+        if not view:
+            return None
+        _, region, region_view = view
+        point = event.mouse_x - region.x, event.mouse_y - region.y
+        origin = region_2d_to_origin_3d(region, region_view, point)
+        direction = region_2d_to_vector_3d(region, region_view, point)
+        depsgraph = context.evaluated_depsgraph_get()
+        while True:
+            found, location, normal, _, obj, _ = context.scene.ray_cast(depsgraph, origin, direction)
+            if not found:
+                return None
+            if obj.name_full != self.part_name and obj.type == "MESH":
+                return location, (-normal if normal.dot(direction) > 0 else normal), obj.name
+            origin = location + direction * 1e-5 * max((location - origin).length, self.own.radius)
+
+    def _show(self, context):
+        if not self.target:
+            return
+        target = bpy.data.objects[self.target]
+        try:
+            placement.put(context.active_object, self.start, self.own, target, self._pose())
+        except ValueError as error:
+            self.fit = False
+            placement.put(context.active_object, self.start, self.own, target, self._pose())
+            self._tell(context, str(error))
+            return
+        state = [f"Onto {target.name}", f"size {self.scale:.2f}", f"turn {math.degrees(self.angle):.0f}°",
+                 f"depth {self.depth:.2f}"]
+        self._tell(context, ", ".join(state + ["fitted"] * self.fit + ["with mirror copy"] * self.mirror))
+
+    def _tell(self, context, header):
+        context.workspace.status_text_set(KEYS)
+        context.area.header_text_set(f"Partwheel: {header}")
+
+    def _end(self, context, result):
+        if context.workspace:
+            context.workspace.status_text_set(None)
+        if context.area:
+            context.area.header_text_set(None)
+        return result

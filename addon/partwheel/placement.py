@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where a part goes: its border onto a point of a surface, turned to the surface's normal, or onto another border."""
+
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Quaternion, Vector
+
+from .mesh_arrays import read
+from .solids import CAP
+
+SINK = 0.05  # of its border's radius that a part is sunk in: solids that only touch don't unite
+
+
+class Border(NamedTuple):
+    """Where a part was cut off, or where one was removed, in the world: the largest group of caps that touch, or the
+    nearest to a point. normal: out of the solid. radius: of a disk of its area."""
+
+    middle: Vector
+    normal: Vector
+    radius: float
+
+
+def border(obj, near=None):
+    """The object's Border; None if its mesh has no caps."""
+    mesh = obj.data
+    layer = mesh.attributes.get(CAP)
+    if not layer or (layer.domain, layer.data_type) != ("FACE", "BOOLEAN"):
+        return None
+    caps = np.flatnonzero(read(layer.data, "value", bool))
+    if not len(caps):
+        return None
+    mesh.calc_loop_triangles()
+    chosen = np.isin(read(mesh.loop_triangles, "polygon_index", np.int32), caps)
+    triangles = read(mesh.loop_triangles, "vertices", np.int32, 3)[chosen]
+    matrix = np.array(obj.matrix_world)
+    corners = (read(mesh.vertices, "co", np.float32, 3) @ matrix[:3, :3].T + matrix[:3, 3])[triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+    if obj.matrix_world.is_negative:
+        normals = -normals
+    areas, middles = np.linalg.norm(normals, axis=1), corners.mean(axis=1)
+    found = []
+    for group in _groups(triangles, len(mesh.vertices)):
+        area = areas[group].sum()
+        if area > 0:
+            found.append(Border(Vector((areas[group, None] * middles[group]).sum(axis=0) / area),
+                                Vector(normals[group].sum(axis=0)).normalized(), float(np.sqrt(area / np.pi))))
+    if not found:
+        return None
+    if near is None:
+        return max(found, key=lambda each: each.radius)
+    return min(found, key=lambda each: (each.middle - near).length)
+
+
+def _groups(triangles, vertex_count):
+    """Indices of triangles in groups that share vertices: labels spread until nothing changes."""
+    label = np.arange(vertex_count)
+    while True:
+        least = label[triangles].min(axis=1)
+        spread = label.copy()
+        np.minimum.at(spread, triangles.ravel(), np.repeat(least, 3))
+        spread = spread[spread]
+        if np.array_equal(spread, label):
+            break
+        label = spread
+    of = label[triangles[:, 0]]
+    return [np.flatnonzero(of == group) for group in np.unique(of)]
+
+
+def anchor(obj):
+    """The Border that is placed: the object's own, or for one without caps its underside."""
+    found = border(obj)
+    if found:
+        return found
+    corners = [obj.matrix_world @ Vector(corner) for corner in obj.bound_box]
+    down = -obj.matrix_world.to_3x3().col[2].normalized()
+    lowest = max(corner.dot(down) for corner in corners)
+    middle = sum(corners, Vector()) / 8
+    radius = max((corner - middle).length for corner in corners) / 2
+    return Border(middle + down * (lowest - middle.dot(down)), down, radius)
+
+
+def matrix(start, own, location, normal, scale=1.0, angle=0.0, depth=0.0):
+    """The matrix_world that brings an object from the matrix start, at which its Border was own, onto a surface: the
+    border's middle to location, its normal against the surface's. scale: times the size it had. angle: about the
+    normal, in radians. depth: how far it is sunk in, times the border's radius, beyond what unites well."""
+    normal = normal.normalized()
+    turn = Quaternion(normal, angle) @ own.normal.rotation_difference(-normal)
+    sunk = location - normal * ((SINK + depth) * own.radius * scale)
+    return (Matrix.Translation(sunk) @ turn.to_matrix().to_4x4() @ Matrix.Scale(scale, 4)
+            @ Matrix.Translation(-own.middle) @ start)
+
+
+class Pose(NamedTuple):
+    """Where a part goes, as matrix() takes it; fit: onto the target's border nearest to location, and of its size."""
+
+    location: Vector
+    normal: Vector
+    scale: float = 1.0
+    angle: float = 0.0
+    depth: float = 0.0
+    fit: bool = False
+
+
+def put(part, start, own, target, pose):
+    """Moves the part, at whose matrix start its Border was own. Raises ValueError where there is no border to fit."""
+    location, normal, scale = pose.location, pose.normal, pose.scale
+    if pose.fit:
+        found = border(target, location)
+        if not found:
+            raise ValueError(f"{target.name} has no border to fit: no part was removed from it.")
+        location, normal, scale = found.middle, found.normal, scale * found.radius / own.radius
+    part.matrix_world = matrix(start, own, location, normal, scale, pose.angle, pose.depth)
+
+
+def place(part, target, pose, mirror=False):
+    """Moves the part. The mirror image, if that is wanted, else None."""
+    put(part, part.matrix_world.copy(), anchor(part), target, pose)
+    bpy.context.view_layer.update()
+    return mirrored(part, target) if mirror else None
+
+
+def mirrored(part, target):
+    """A new object: the part's mirror image across the target's own YZ plane. Its mesh is mirrored, not its matrix."""
+    mesh = part.data.copy()
+    flip = Matrix.Scale(-1, 4, (1, 0, 0))
+    new = bpy.data.objects.new(part.name, mesh)
+    (part.users_collection[0] if part.users_collection else bpy.context.scene.collection).objects.link(new)
+    across = target.matrix_world @ flip @ target.matrix_world.inverted()
+    # A mirror image of a mirror image is a turn: the matrix stays free of reflection.
+    mesh.transform(flip)
+    mesh.flip_normals()
+    new.matrix_world = across @ part.matrix_world @ flip
+    return new
