@@ -17,18 +17,23 @@ bl_info = {
 
 
 def register():
-    from . import operators, preferences, session, ui
+    from . import operators, preferences, prepared, session, tools, ui
 
     preferences.register()
     session.register()
+    prepared.register()
     operators.register()
     ui.register()
+    tools.register()
 
 
 def unregister():
-    from . import operators, preferences, session, ui
+    from . import operators, overlay, preferences, prepared, session, tools, ui
 
+    tools.unregister()
     ui.unregister()
     operators.unregister()
+    overlay.unregister()
+    prepared.unregister()
     session.unregister()
     preferences.unregister()

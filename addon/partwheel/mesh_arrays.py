@@ -92,3 +92,12 @@ def fingerprint(mesh):
     topology.update(read(mesh.loops, "vertex_index", np.int32))
     positions = hashlib.blake2b(read(mesh.vertices, "co", np.float32, 3), digest_size=16)
     return Fingerprint(topology.digest(), positions.digest())
+
+
+def shown_positions(obj):
+    """(V,3) float32: where the vertices are in Edit Mode, in the object's own space: of the shape key that is edited.
+    The mesh must be up to date."""
+    mesh = obj.data
+    if mesh.shape_keys and obj.mode == "EDIT":
+        return read(obj.active_shape_key.data, "co", np.float32, 3)
+    return read(mesh.vertices, "co", np.float32, 3)

@@ -1,50 +1,70 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The face of an edited mesh under the mouse: a ray against the cage, hidden faces left out."""
+"""The face of a mesh under the mouse: a ray against the cage; what is hidden or clipped from the view is left out."""
 
 import bmesh
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
+from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-
-class Picker:
-    """Finds faces of meshes in Edit Mode. Builds a search tree for each mesh at its first use and keeps it: make a new
-    Picker when geometry or hidden faces may have changed."""
-
-    def __init__(self):
-        self._trees = {}
-
-    def face_under(self, obj, region, view, point):
-        """(face index, distance along the ray in world units), or None. obj: in Edit Mode. view: a RegionView3D.
-        point: (x, y) in pixels of the region."""
-        tree, indices = self._tree(obj)
-        to_local = obj.matrix_world.inverted_safe()
-        origin = region_2d_to_origin_3d(region, view, point)
-        direction = region_2d_to_vector_3d(region, view, point)
-        hit, _, index, _ = tree.ray_cast(to_local @ origin, to_local.to_3x3() @ direction)
-        if index is None:
-            return None
-        return indices[index] if indices else index, (obj.matrix_world @ hit - origin).length
-
-    def _tree(self, obj):
-        """(BVH of the visible faces, their indices in the mesh or None when none is hidden)."""
-        if obj.name_full not in self._trees:
-            self._trees[obj.name_full] = _visible_tree(bmesh.from_edit_mesh(obj.data))
-        return self._trees[obj.name_full]
+STEP = 1e-5  # how far behind a clipped face the search goes on, as a share of the way there
 
 
-def _visible_tree(bm):
-    bm.faces.index_update()
-    hidden = [face.index for face in bm.faces if face.hide]
-    if not hidden:
-        return BVHTree.FromBMesh(bm), None
-    visible = bm.copy()
-    visible.faces.ensure_lookup_table()
-    indices = [face.index for face in bm.faces if not face.hide]
-    bmesh.ops.delete(visible, geom=[visible.faces[index] for index in hidden], context="FACES_ONLY")
-    visible.faces.index_update()
-    tree = BVHTree.FromBMesh(visible)
-    visible.free()
-    return tree, indices
+class FaceTree:
+    """The visible faces of an object's mesh as they are now, to be searched by rays."""
+
+    def __init__(self, obj):
+        if obj.mode == "EDIT":
+            self._fill(bmesh.from_edit_mesh(obj.data))
+        else:
+            bm = bmesh.new()
+            bm.from_mesh(obj.data)
+            self._fill(bm)
+            bm.free()
+
+    def _fill(self, bm):
+        bm.faces.index_update()
+        hidden = [face.index for face in bm.faces if face.hide]
+        self._indices = None  # of the faces in the mesh; none is needed where all are visible
+        if not hidden:
+            self._tree = BVHTree.FromBMesh(bm)
+            return
+        visible = bm.copy()
+        visible.faces.ensure_lookup_table()
+        self._indices = [face.index for face in bm.faces if not face.hide]
+        bmesh.ops.delete(visible, geom=[visible.faces[index] for index in hidden], context="FACES_ONLY")
+        visible.faces.index_update()
+        self._tree = BVHTree.FromBMesh(visible)
+        visible.free()
+
+    def under(self, matrix, region, view, point):
+        """(face index, distance along the ray in world units), or None. matrix: the object's to the world. view: a
+        RegionView3D. point: (x, y) in pixels of the region."""
+        to_local = matrix.inverted_safe()
+        eye = region_2d_to_origin_3d(region, view, point)
+        towards = to_local.to_3x3() @ region_2d_to_vector_3d(region, view, point)
+        origin = to_local @ eye
+        while True:
+            hit, _, index, distance = self._tree.ray_cast(origin, towards)
+            if index is None:
+                return None
+            if not clipped(view, matrix @ hit):
+                return self._indices[index] if self._indices else index, (matrix @ hit - eye).length
+            origin = hit + towards.normalized() * max(distance, hit.length) * STEP
+
+
+def clipped(view, point):
+    """Whether the view's clipping region (Alt B) leaves out a point of the world."""
+    return view.use_clip_planes and any(Vector(plane).dot((*point, 1.0)) < 0 for plane in list(view.clip_planes)[:4])
+
+
+def nearest(objects, tree_of, region, view, point):
+    """(object, face index) of the first face under a point of the region, or (None, None). tree_of(object): a FaceTree.
+    """
+    hits = [(*found, each) for each in objects if (found := tree_of(each).under(each.matrix_world, region, view, point))]
+    if not hits:
+        return None, None
+    face, _, obj = min(hits, key=lambda hit: hit[1])
+    return obj, face
 
 
 def view_under(window, x, y):

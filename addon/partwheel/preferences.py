@@ -21,12 +21,40 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
                                        "triangles, far more than builds take",
         default=0, min=0, soft_max=60,
     )
+    show_part: bpy.props.BoolProperty(
+        name="Part", description="Tint the part that is held",
+        default=True,
+    )
+    show_next: bpy.props.BoolProperty(
+        name="Next Part", description="Tint faintly what the next notch of the wheel adds",
+        default=True,
+    )
+    show_hull: bpy.props.BoolProperty(
+        name="Convex Hull", description="Show the convex hull of the part that is held as glass",
+        default=False,
+    )
+    show_cut: bpy.props.BoolProperty(
+        name="All Parts", description="Show the parts of the whole mesh at the size of the part that is held, each in a "
+                                      "colour of its own",
+        default=False,
+    )
 
     def draw(self, _context):
         column = self.layout.column()
         column.use_property_split = True
         for name in ("save_with_file", "memory_share", "time_limit"):
             column.prop(self, name)
+        draw_overlays(column)
+
+
+OVERLAYS = ("show_part", "show_next", "show_hull", "show_cut")
+
+
+def draw_overlays(layout):
+    """The settings of what is drawn over the model."""
+    column = layout.column(heading="Overlay")
+    for name in OVERLAYS:
+        column.prop(preferences(), name)
 
 
 def preferences():
@@ -37,6 +65,7 @@ def preferences():
 
 class Defaults:
     save_with_file, memory_share, time_limit = True, 80, 0
+    show_part, show_next, show_hull, show_cut = True, True, False, False
 
 
 def register():

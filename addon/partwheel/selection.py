@@ -2,6 +2,7 @@
 """The selection of a mesh in Edit Mode: sets of faces are selected by differences; the selection before comes back."""
 
 import bmesh
+import bpy
 import numpy as np
 
 from . import mesh_arrays
@@ -50,15 +51,18 @@ class Selection:
         counts = len(bm.verts), len(bm.edges), len(bm.faces)
         return counts == tuple(len(self.before[kind]) for kind in KINDS) and self.kind in bm.select_mode
 
-    def select(self, obj, faces, active=None, extend=False):
+    def select(self, obj, faces, active=None, extend=False, deselect=False):
         """Selects these faces (an array of indices), hidden ones left out, and nothing else; with extend also what was
-        selected before. active: the index of the face to make the active one."""
+        selected before; with deselect only what was selected before and is not in these faces. active: the index of
+        the face to make the active one."""
         chosen = np.zeros(len(self.visible), bool)
-        chosen[faces] = True
+        chosen[np.asarray(faces, np.int64)] = True
         chosen &= self.visible
         target = np.zeros_like(self.now)
         target[self.loop_element[chosen[self.loop_face]]] = True
-        if extend:
+        if deselect:
+            target = self.before[self.kind] & ~target
+        elif extend:
             target |= self.before[self.kind]
         bm = bmesh.from_edit_mesh(obj.data)
         elements = _sequence(bm, self.kind)
@@ -104,7 +108,45 @@ def _kind_of(element):
 
 
 def _redraw(obj):
-    bmesh.update_edit_mesh(obj.data, loop_triangles=False, destructive=False)
+    """Tells Blender that the selection of a mesh in Edit Mode has changed."""
+    if obj == bpy.context.view_layer.objects.active:
+        # The setting's update function says "selection" and no more; the call below says "geometry", upon which Blender
+        # evaluates modifiers and all that hangs on the mesh at every notch.
+        settings = bpy.context.tool_settings
+        settings.mesh_select_mode = settings.mesh_select_mode
+    else:
+        bmesh.update_edit_mesh(obj.data, loop_triangles=False, destructive=False)
+
+
+class Selections:
+    """The selections of all meshes that are in Edit Mode together, for a part of one of them."""
+
+    def __init__(self, objects):
+        self._each = {obj.name: Selection(obj) for obj in objects}
+
+    def _objects(self):
+        """(object or None, its Selection) of each."""
+        return [(bpy.data.objects.get(name), each) for name, each in self._each.items()]
+
+    def any(self):
+        """Whether anything is selected."""
+        return any(each.now.any() for each in self._each.values())
+
+    def fits(self):
+        return all(each.fits(obj) for obj, each in self._objects())
+
+    def select(self, obj, faces, active=None, extend=False, deselect=False):
+        """As Selection.select() for one of the objects; in the others nothing stays selected, unless extend or deselect
+        leaves what is."""
+        for other, each in self._objects():
+            if other == obj:
+                each.select(obj, faces, active, extend, deselect)
+            elif not (extend or deselect) and each.now.any():
+                each.select(other, [])
+
+    def restore(self):
+        for obj, each in self._objects():
+            each.restore(obj)
 
 
 def select_outside_edit_mode(mesh, faces, extend=False):

@@ -61,9 +61,11 @@ _entries = {}
 _unopened = {}  # what came with the file, packed
 _running = None  # the Build that has not ended
 _picks = {}  # the part that was confirmed last in each mesh
+_revisions = {}  # how often Blender has told that a mesh's geometry, or what is hidden of it, changed
+_undos = 0
 
 
-def _key(mesh):
+def key(mesh):
     """A mesh's identity that outlives undo. Before Blender 4.1 its full name: renaming it means building again."""
     return getattr(mesh, "session_uid", None) or mesh.name_full
 
@@ -72,12 +74,12 @@ def hierarchy(obj):
     """The hierarchy of the object's mesh, or None if there is none for its present topology."""
     mesh = mesh_arrays.up_to_date(obj)
     now = mesh_arrays.fingerprint(mesh)
-    entry = _entries.get(_key(mesh))
+    entry = _entries.get(key(mesh))
     if not entry or entry.built.topology != now.topology:
         entry = _twin(now) or _open(mesh, now) or entry
     if not entry:
         return None
-    _entries[_key(mesh)] = entry
+    _entries[key(mesh)] = entry
     entry.look(now)
     return entry.hierarchy if entry.built.topology == now.topology else None
 
@@ -90,7 +92,7 @@ def _twin(now):
 
 def _open(mesh, now):
     """A new entry with the hierarchy that came with the mesh from a file, or None."""
-    packed = _unopened.pop(_key(mesh), None) or _carried(mesh)
+    packed = _unopened.pop(key(mesh), None) or _carried(mesh)
     if packed is None:
         return None
     try:
@@ -118,19 +120,19 @@ def _counts(mesh):
 
 def remember_pick(obj, face, node):
     """The user has chosen this part of the object's mesh, which has a hierarchy."""
-    _picks[_key(obj.data)] = Picked(int(node), int(face), _entries[_key(obj.data)].hierarchy)
+    _picks[key(obj.data)] = Picked(int(node), int(face), _entries[key(obj.data)].hierarchy)
 
 
 def picked(obj):
     """The Picked that was chosen last in the object's mesh; None if there is none, or its hierarchy is not the mesh's
     any more."""
-    pick = _picks.get(_key(obj.data))
+    pick = _picks.get(key(obj.data))
     return pick if pick and hierarchy(obj) is pick.hierarchy else None
 
 
 def has_pick(obj):
     """For poll(), which Blender calls often: picked(obj) is not None, as far as state() tells."""
-    pick = _picks.get(_key(obj.data))
+    pick = _picks.get(key(obj.data))
     if not pick:
         return False
     fits, entry = state(obj.data)
@@ -152,7 +154,7 @@ class Build:
         global _running
         mesh = mesh_arrays.up_to_date(obj)
         self.name = mesh.name
-        self._key, self._counts, self._built = _key(mesh), _counts(mesh), mesh_arrays.fingerprint(mesh)
+        self._key, self._counts, self._built = key(mesh), _counts(mesh), mesh_arrays.fingerprint(mesh)
         share, seconds = preferences().memory_share / 100, 60 * preferences().time_limit
         self.job = Job(*mesh_arrays.surface(mesh), quality=quality, open_surfaces=open_surfaces,
                        memory_limit=int(share * available_memory()), time_limit=seconds or None)
@@ -178,26 +180,26 @@ class Build:
         if now.topology != self._built.topology:
             raise Outdated(f"{mesh.name} was edited while its parts were being built, so they were left aside. Build "
                            "them again when the mesh is as you want it.")
-        alive = {_key(other) for other in bpy.data.meshes}
-        for known in (_entries, _unopened, _picks):
-            for gone in known.keys() - alive:
-                del known[gone]
+        alive = {key(other) for other in bpy.data.meshes}
+        for kept in (_entries, _unopened, _picks, _revisions):
+            for gone in kept.keys() - alive:
+                del kept[gone]
         _unopened.pop(self._key, None)
         _entries[self._key] = Entry(self._built, self._counts, built, seen=now)
         return built
 
 
-def _user(key):
-    """An object with the mesh, in Edit Mode if there is one such, or None."""
-    users = [obj for obj in bpy.data.objects if obj.type == "MESH" and _key(obj.data) == key]
+def _user(wanted):
+    """An object with the mesh of this key, in Edit Mode if there is one such, or None."""
+    users = [obj for obj in bpy.data.objects if obj.type == "MESH" and key(obj.data) == wanted]
     return next((obj for obj in users if obj.mode == "EDIT"), users[0] if users else None)
 
 
 def forget(obj):
     """Lets the hierarchy of the object's mesh go, also the one that came with the file."""
-    _entries.pop(_key(obj.data), None)
-    _unopened.pop(_key(obj.data), None)
-    _picks.pop(_key(obj.data), None)
+    _entries.pop(key(obj.data), None)
+    _unopened.pop(key(obj.data), None)
+    _picks.pop(key(obj.data), None)
     _carried(obj.data)
 
 
@@ -206,9 +208,9 @@ def forget(obj):
 
 def state(mesh):
     """(State, Entry or None). In Edit Mode as far as the counts and the last use tell; else exactly."""
-    entry = _entries.get(_key(mesh))
+    entry = _entries.get(key(mesh))
     if not entry:
-        unopened = _key(mesh) in _unopened or stored.PROPERTY in mesh
+        unopened = key(mesh) in _unopened or stored.PROPERTY in mesh
         return (State.UNOPENED if unopened else State.NONE), None
     if mesh.is_editmode:
         bm = bmesh.from_edit_mesh(mesh)
@@ -221,18 +223,32 @@ def state(mesh):
     return (State.FITS if entry.seen == entry.built else State.MOVED), entry
 
 
+def known(mesh):
+    """The hierarchy that was built for the mesh, fitting or not, or None. At once."""
+    entry = _entries.get(key(mesh))
+    return entry and entry.hierarchy
+
+
+def revision(mesh):
+    """A number that is another one after each change of the mesh's geometry, or of what is hidden, that Blender told
+    of. Selecting is none."""
+    return _revisions.get(key(mesh), 0), _undos
+
+
 @bpy.app.handlers.persistent
 def _edited(_scene, depsgraph):
-    if _entries:
-        for update in depsgraph.updates:
-            if update.is_updated_geometry and isinstance(update.id, bpy.types.Mesh):
-                entry = _entries.get(_key(update.id.original))
-                if entry:
-                    entry.sure = False
+    for update in depsgraph.updates:
+        if update.is_updated_geometry and isinstance(update.id, bpy.types.Mesh):
+            mesh = key(update.id.original)
+            _revisions[mesh] = _revisions.get(mesh, 0) + 1
+            if mesh in _entries:
+                _entries[mesh].sure = False
 
 
 @bpy.app.handlers.persistent
 def _undone(*_):
+    global _undos
+    _undos += 1
     for entry in _entries.values():
         entry.sure = False
 
@@ -250,7 +266,7 @@ def _before_saving(*_):
         fits, entry = state(mesh)
         if fits in {State.FITS, State.MOVED} and not entry.packed:
             entry.packed = stored.pack(entry.built, entry.hierarchy)
-        packed = _unopened.get(_key(mesh)) if fits == State.UNOPENED else entry and entry.packed
+        packed = _unopened.get(key(mesh)) if fits == State.UNOPENED else entry and entry.packed
         if packed:
             _carried(mesh)  # Blender 4.2 to 5.0 cut bytes off at a 0 where they replace others
             mesh[stored.PROPERTY] = packed
@@ -267,11 +283,11 @@ def _after_saving(*_):
 def _after_loading(*_):
     """Another file was opened: its meshes are others."""
     _stop()
-    for known in (_entries, _unopened, _picks):
-        known.clear()
+    for kept in (_entries, _unopened, _picks, _revisions):
+        kept.clear()
     for mesh in bpy.data.meshes:
         if stored.PROPERTY in mesh and not mesh.library:
-            _unopened[_key(mesh)] = _carried(mesh)
+            _unopened[key(mesh)] = _carried(mesh)
 
 
 def _stop():
@@ -297,5 +313,5 @@ def unregister():
         if hasattr(bpy.app.handlers, name):
             getattr(bpy.app.handlers, name).remove(function)
     _stop()
-    for known in (_entries, _unopened, _picks):
-        known.clear()
+    for kept in (_entries, _unopened, _picks, _revisions):
+        kept.clear()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The states of the modal select tool, and how a click or a notch leads from one to the next. No bpy here."""
+"""The states of the modal select tool, and how a click, a notch or a digit leads from one to the next. No bpy here."""
 
 from dataclasses import dataclass, replace
 
@@ -24,6 +24,7 @@ class Picked:
     stops: tuple  # nodes of the hierarchy, growing; the last is the whole
     start: int  # index of the stop that the click alone takes
     index: int  # index of the stop now selected
+    typed: str = ""  # the digits of a part's number, as far as they have been typed
 
     @property
     def node(self):
@@ -34,9 +35,30 @@ class Picked:
         """Notches from the start; negative below it."""
         return self.index - self.start
 
+    @property
+    def next(self):
+        """The node that one more notch up takes; the same at the end of the path."""
+        return self.stops[min(self.index + 1, len(self.stops) - 1)]
+
+    def at(self, index, typed=""):
+        """The state at another stop, held at both ends of the path."""
+        return replace(self, index=min(max(index, 0), len(self.stops) - 1), typed=typed)
+
     def turned(self, notches):
-        """The state after this many notches up (negative: down), held at both ends of the path."""
-        return replace(self, index=min(max(self.index + notches, 0), len(self.stops) - 1))
+        """The state after this many notches up (negative: down)."""
+        return self.at(self.index + notches)
+
+    def with_digit(self, digit):
+        """The state after one more digit: part 1 is the smallest. A digit too many begins a new number."""
+        typed = self.typed + digit
+        if len(typed) > len(str(len(self.stops))):
+            typed = digit
+        return self.at(int(typed) - 1, typed)
+
+    def without_digit(self):
+        """The state after the last digit was taken back; the part stays when none is left."""
+        typed = self.typed[:-1]
+        return self.at(int(typed) - 1, typed) if typed else replace(self, typed="")
 
 
 def pick(hierarchy, face, level=0):

@@ -53,7 +53,7 @@ def camera(obj, perspective):
         projection = Matrix(((2 / size, 0, 0, 0), (0, 8 / 3 / size, 0, 0), (0, 0, -1 / far, 0), (0, 0, 0, 1)))
     return types.SimpleNamespace(width=800, height=600), types.SimpleNamespace(
         view_matrix=pose.inverted(), window_matrix=projection, perspective_matrix=projection @ pose.inverted(),
-        is_perspective=perspective, view_perspective="PERSP" if perspective else "ORTHO")
+        is_perspective=perspective, use_clip_planes=False, view_perspective="PERSP" if perspective else "ORTHO")
 
 
 class FakeContext:
@@ -73,8 +73,10 @@ class FakeContext:
         return getattr(bpy.context, name)
 
 
-def event(kind, point=(0, 0), value="PRESS", **modifiers):
+def event(kind, point=None, value="PRESS", **modifiers):
+    """point: in pixels of the 3D view; its middle by default."""
     _, _, region, _ = view()
+    point = point or (region.width // 2, region.height // 2)
     held = {name: modifiers.get(name, False) for name in ("ctrl", "alt", "shift", "oskey")}
     return types.SimpleNamespace(type=kind, value=value, mouse_x=int(point[0] + region.x),
                                  mouse_y=int(point[1] + region.y), **held)
@@ -86,12 +88,13 @@ class Tool:
     def __init__(self, operator="select", **properties):
         self.reports = []
         self.operator = operator
-        self.face_index, self.level, self.extend = 0, 0, False
+        self.face_index, self.level, self.extend, self.deselect, self.tool = 0, 0, False, False, False
         self.quality, self.open_surfaces = 0.0, False
         vars(self).update(properties)
 
     def __getattr__(self, name):
-        value = vars(getattr(part(f"operators.{self.operator}"), f"MESH_OT_partwheel_{self.operator}")).get(name)
+        cls = getattr(part(f"operators.{self.operator}"), f"MESH_OT_partwheel_{self.operator}")
+        value = next((vars(each)[name] for each in (cls, *cls.__bases__) if name in vars(each)), None)
         if value is None:
             raise AttributeError(name)
         return value.__get__(self) if isinstance(value, types.FunctionType) else value
@@ -120,7 +123,7 @@ class ToolTest(MeshTest):
         """A pixel with a face of the object under it, with so many stops above the start: (point, face index)."""
         obj = obj or self.obj
         _, _, region, region_view = view()
-        picker = part("picking").Picker()
+        tree = part("picking").FaceTree(obj)
         bm = bmesh.from_edit_mesh(obj.data)
         for face in bm.faces:
             if obj == self.obj:
@@ -128,7 +131,7 @@ class ToolTest(MeshTest):
                 if start + levels >= len(stops):
                     continue
             point = location_3d_to_region_2d(region, region_view, obj.matrix_world @ face.calc_center_median())
-            found = picker.face_under(obj, region, region_view, [int(value) for value in point])
+            found = tree.under(obj.matrix_world, region, region_view, [int(value) for value in point])
             if found and found[0] == face.index:
                 return [int(value) for value in point], face.index
         self.fail("no face of the object is in view")
@@ -226,8 +229,10 @@ class Modal(ToolTest):
         self.assertEqual(selected(self.obj), set())
         self.assertEqual(self.send("RET"), {"RUNNING_MODAL"})
 
-    def test_another_object_is_named(self):
+    def test_another_object_of_edit_mode_is_picked_from(self):
         other = self.add(*BOX, "other")
+        other_hierarchy = self.hierarchy(other)
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         self.start()
         bpy.ops.object.mode_set(mode="OBJECT")
         self.obj.matrix_world = Matrix.Translation((0, 0, -1000))
@@ -235,11 +240,24 @@ class Modal(ToolTest):
         show(other)
         bpy.ops.object.mode_set(mode="EDIT")
         self.assertEqual(bpy.context.edit_object, self.obj)
-        point, _ = self.centre(other)
-        self.tool, self.context = Tool(), FakeContext()
-        self.assertEqual(self.tool.invoke(self.context, event("W", point, ctrl=True)), {"RUNNING_MODAL"})
-        self.assertIn("other", self.context.header[-1])
+        bm = bmesh.from_edit_mesh(self.obj.data)
+        bm.faces.ensure_lookup_table()
+        bm.faces[3].select_set(True)
+        before = flags(self.obj), flags(other)
+        point, face = self.centre(other)
+        stops, start = other_hierarchy.wheel(face)
+        for end, answer in (("ESC", {"CANCELLED"}), ("RET", {"FINISHED"})):
+            self.tool, self.context = Tool(), FakeContext()
+            self.assertEqual(self.tool.invoke(self.context, event("W", point, ctrl=True)), {"RUNNING_MODAL"})
+            self.assertEqual(selected(other), set(other_hierarchy.faces(stops[start]).tolist()))
+            self.assertEqual(selected(self.obj), set())
+            self.assertEqual(self.send(end), answer)
+            self.is_over()
+            if end == "ESC":
+                self.assertEqual((flags(self.obj), flags(other)), before)
+        self.assertEqual(bpy.context.edit_object, other)
         self.assertEqual(selected(self.obj), set())
+        self.assertEqual(part("session").picked(other).node, stops[start])
 
     def test_an_error_inside_restores_reports_and_ends(self):
         self.start()
@@ -253,6 +271,94 @@ class Modal(ToolTest):
         self.assertEqual(self.tool.reports[-1][0], {"ERROR"})
         self.assertEqual(flags(self.obj), before)
         self.is_over()
+
+    def test_typed_numbers(self):
+        self.start()
+        point, face = self.centre()
+        self.send("LEFTMOUSE", point)
+        stops, start = self.h.wheel(face)
+        for keys_, number in ((("THREE",), 3), (("BACK_SPACE",), 3), (("ONE", "ZERO"), 10), (("BACK_SPACE",), 1),
+                              (("BACK_SPACE", "NINE", "NINE"), len(stops)), (("TWO",), 2)):
+            for key in keys_:
+                self.send(key, point)
+            self.assertEqual(self.tool.state.index, min(number, len(stops)) - 1)
+            self.expect(face, number - 1 - start)
+        self.assertIn("Part 2_ of", self.context.header[-1])
+        self.send("UP_ARROW", point)
+        self.assertIn(f"Part 3 of {len(stops)}, {len(selected(self.obj)):,} faces", self.context.header[-1])
+
+    def test_drag_and_trackpad(self):
+        self.start()
+        point, face = self.centre()
+        keys = part("keys")
+        self.send("LEFTMOUSE", point)
+        x, y = point
+        for offset, level in ((keys.DRAG_STEP - 1, 0), (keys.DRAG_STEP, 1), (3 * keys.DRAG_STEP, 3), (2, 0)):
+            self.assertEqual(self.send("MOUSEMOVE", (x, y + offset), "NOTHING"), {"RUNNING_MODAL"})
+            self.expect(face, level)
+        self.send("LEFTMOUSE", point, "RELEASE")
+        self.send("MOUSEMOVE", (x, y + 200), "NOTHING")
+        self.expect(face, 0)
+        for pixels, level in ((keys.SCROLL_STEP * 2 // 3, 0), (keys.SCROLL_STEP * 2 // 3, 1), (keys.SCROLL_STEP, 2),
+                              (-3 * keys.SCROLL_STEP, 0)):
+            scroll = event("TRACKPADPAN", point, "NOTHING")
+            scroll.mouse_prev_y = scroll.mouse_y - pixels
+            self.assertEqual(self.tool.modal(self.context, scroll), {"RUNNING_MODAL"})
+            self.expect(face, level)
+        self.assertEqual(self.send("TRACKPADPAN", point, "NOTHING", shift=True), {"PASS_THROUGH"})
+        self.assertEqual(self.send("TRACKPADPAN", point, "NOTHING", ctrl=True), {"PASS_THROUGH"})
+
+    def test_deselect_takes_away(self):
+        self.start()
+        point, face = self.centre()
+        self.send("ESC")
+        bpy.ops.mesh.select_all(action="SELECT")
+        stops, start = self.h.wheel(face)
+        self.tool, self.context = Tool(deselect=True), FakeContext()
+        self.tool.invoke(self.context, event("W", point, ctrl=True))
+        everything = set(range(2390))
+        self.assertEqual(selected(self.obj), everything - set(self.h.faces(stops[start]).tolist()))
+        self.send("WHEELUPMOUSE", point, ctrl=True)
+        self.assertEqual(selected(self.obj), everything - set(self.h.faces(stops[start + 1]).tolist()))
+        self.send("RET")
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.partwheel_select(face_index=face, level=1, deselect=True)
+        self.assertEqual(selected(self.obj), everything - set(self.h.faces(stops[start + 1]).tolist()))
+
+    def test_the_toolbars_tool_goes_on_with_the_next_part(self):
+        self.start()
+        point, face = self.centre()
+        self.send("ESC")
+        for kind in ("LEFTMOUSE", "TAB", "A", "E"):
+            self.tool, self.context = Tool(tool=True), FakeContext()
+            self.assertEqual(self.tool.invoke(self.context, event("LEFTMOUSE", point)), {"RUNNING_MODAL"})
+            self.assertEqual(self.send("LEFT_SHIFT", point), {"RUNNING_MODAL"})
+            self.assertEqual(self.send(kind, point), {"FINISHED", "PASS_THROUGH"})
+            self.expect(face, 0)
+            self.is_over()
+        self.tool, self.context = Tool(tool=True), FakeContext()
+        self.assertEqual(self.tool.invoke(self.context, event("LEFTMOUSE", (1, 1))), {"FINISHED"})
+        self.assertEqual(selected(self.obj), set())
+        self.assertEqual(self.tool.invoke(self.context, event("LEFTMOUSE", (1, 1))), {"CANCELLED"})
+
+    def test_the_status_bar_shows_the_keys_that_count(self):
+        self.start()
+        point, _ = self.centre()
+        drawn = []
+        layout = types.SimpleNamespace(label=lambda text, icon="NONE": drawn.append((text, icon)))
+        for step, wanted, absent in ((None, "Pick a Part", "Larger"), ("LEFTMOUSE", "Larger", "Pick a Part")):
+            if step:
+                self.send(step, point)
+            drawn.clear()
+            self.context.status[-1](types.SimpleNamespace(layout=layout), bpy.context)
+            text = " ".join(words for words, _ in drawn)
+            self.assertIn(wanted, text)
+            self.assertNotIn(absent, text)
+            self.assertIn("Cancel", text)
+            known = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys()
+            self.assertTrue({icon for _, icon in drawn} <= set(known))
+        for each in part("operators.select").HANDOFFS:
+            self.assertIn((each.label, f"EVENT_{each.key}"), drawn)
 
     def test_leaving_edit_mode_or_changing_the_mesh_ends_it(self):
         for change in (lambda: bpy.ops.object.mode_set(mode="OBJECT"), lambda: bpy.ops.mesh.delete(type="FACE"),
@@ -523,11 +629,11 @@ class Pick(MeshTest):
                 bm.faces.ensure_lookup_table()
                 hidden = set()
                 for _ in range(2):
-                    picker, hits = part("picking").Picker(), 0
+                    tree, hits = part("picking").FaceTree(obj), 0
                     for x in range(1, 8):
                         for y in range(1, 8):
                             point = region.width * x // 8, region.height * y // 8
-                            found = picker.face_under(obj, region, region_view, point)
+                            found = tree.under(obj.matrix_world, region, region_view, point)
                             ray = (region_2d_to_origin_3d(region, region_view, point),
                                    region_2d_to_vector_3d(region, region_view, point))
                             expected, close = (self.nearest(obj, *ray, hidden, margin) for margin in (1e-4, -1e-4))

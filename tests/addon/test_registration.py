@@ -44,9 +44,16 @@ def properties():
             for owner in ("Scene", "Object", "Mesh", "WindowManager", "Screen")}
 
 
+def tools():
+    import bl_ui.space_toolsystem_toolbar as toolbar
+
+    return {mode: [tool.idname for tool in toolbar.VIEW3D_PT_tools_active._tools_flatten(tools) if tool]
+            for mode, tools in toolbar.VIEW3D_PT_tools_active._tools.items() if mode}
+
+
 def everything():
     operators = [name for name in dir(bpy.ops.mesh) if name.startswith("partwheel")]
-    return dir(bpy.types), operators, keymap_items(), handlers(), menu_entries(), timers(), properties()
+    return dir(bpy.types), operators, keymap_items(), handlers(), menu_entries(), timers(), properties(), tools()
 
 
 class Registration(unittest.TestCase):
@@ -63,7 +70,8 @@ class Registration(unittest.TestCase):
             self.assertEqual(on[1], ["partwheel_build", "partwheel_clear", "partwheel_copy", "partwheel_remove",
                                  "partwheel_select", "partwheel_split"])
             self.assertEqual(list(on[4]), ["VIEW3D_MT_select_edit_mesh"])
-            self.assertEqual(len(on[3]["load_post"]), len(off[3]["load_post"]) + 1)
+            self.assertEqual(on[7]["EDIT_MESH"].count("partwheel.select"), 1)
+            self.assertEqual(len(on[3]["load_post"]), len(off[3]["load_post"]) + 2)
             bpy.ops.preferences.addon_disable(module=common.MODULE)
             self.assertEqual(everything(), off)
 

@@ -163,11 +163,29 @@ class Stage:
         """What navigation changes: (view matrix, distance) as plain numbers."""
         return [tuple(row) for row in self.view_3d.view_matrix], self.view_3d.view_distance
 
+    def part(self, name):
+        """A module of the add-on."""
+        package = bpy.types.VIEW3D_PT_partwheel.__module__.rpartition(".ui.")[0]
+        return sys.modules[f"{package}.{name}"]
+
     @property
     def session(self):
         """The add-on's module that knows what is built, and what is being built."""
-        name = bpy.types.VIEW3D_PT_partwheel.__module__.rpartition(".ui.")[0]
-        return sys.modules[f"{name}.session"]
+        return self.part("session")
+
+    def use_tool(self):
+        """Makes the add-on's tool the active one of the toolbar."""
+        with self.override():
+            bpy.ops.wm.tool_set_by_id(name="partwheel.select")
+
+    def hovered(self):
+        """The faces of the part that hover shows, or None."""
+        what = self.part("tools.hover").hover.what
+        return what and frozenset(what[1].faces(what[2]).tolist())
+
+    def drawn_things(self):
+        """How many handlers of the add-on draw in the 3D views."""
+        return int(self.part("overlay").shown.on)
 
     # ---- Setting the scene ----------------------------------------------------------------------------------------
 

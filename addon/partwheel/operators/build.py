@@ -17,15 +17,15 @@ BUSY = "Parts are being built already; Esc over the 3D view stops that."
 
 
 class Building:
-    """A build of the active mesh on an operator's behalf: what came of it is reported through the operator.
+    """A build of an object's mesh on an operator's behalf: what came of it is reported through the operator.
 
     hierarchy: None until it is done, and if it fails."""
 
-    def __init__(self, operator, context, quality=0.0, open_surfaces=False):
+    def __init__(self, operator, obj, quality=0.0, open_surfaces=False):
         """Raises LibraryError or PartwheelError when it can't even begin."""
         self.operator, self.hierarchy = operator, None
         self.began = time.perf_counter()
-        self.build = session.Build(context.active_object, quality, open_surfaces)
+        self.build = session.Build(obj, quality, open_surfaces)
         self.timer = None
         self.printed = 0
 
@@ -120,13 +120,13 @@ class Building:
                          f"{seconds:.1f} s. {self.hierarchy.account}".rstrip())
 
 
-def start(operator, context, **options):
+def start(operator, obj, **options):
     """A Building, or None and a report."""
     try:
-        return Building(operator, context, **options)
+        return Building(operator, obj, **options)
     except (PartwheelError, LibraryError) as error:
         name = getattr(error, "name", "library")
-        operator.report({"ERROR"}, f"No parts for {context.active_object.data.name} ({name}): {error}")
+        operator.report({"ERROR"}, f"No parts for {obj.data.name} ({name}): {error}")
         return None
 
 
@@ -186,7 +186,7 @@ class MESH_OT_partwheel_build(bpy.types.Operator):
         self.building.abandon(context)
 
     def _start(self, context):
-        return start(self, context, quality=self.quality, open_surfaces=self.open_surfaces)
+        return start(self, context.active_object, quality=self.quality, open_surfaces=self.open_surfaces)
 
 
 class MESH_OT_partwheel_clear(bpy.types.Operator):

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which event does what while a part is being picked, and how the status bar names it. No bpy here.
+
+A modal operator written in Python can't have a keymap that users edit, so this table is it: modal() looks events up
+here, and the status bar is drawn from the same rows.
+"""
+
+from typing import NamedTuple
+
+
+class Key(NamedTuple):
+    """An action, the event types that cause it, and how the status bar shows them: icons of Blender's, or a text."""
+
+    action: str
+    events: frozenset
+    label: str
+    icons: tuple = ()
+    names: str = ""
+
+
+LARGER = Key("LARGER", frozenset({"WHEELUPMOUSE", "PAGE_UP", "NUMPAD_PLUS", "UP_ARROW"}), "Larger", names="Wheel Up, ↑")
+SMALLER = Key("SMALLER", frozenset({"WHEELDOWNMOUSE", "PAGE_DOWN", "NUMPAD_MINUS", "DOWN_ARROW"}), "Smaller",
+              names="Wheel Down, ↓")
+CONFIRM = Key("CONFIRM", frozenset({"RET", "NUMPAD_ENTER"}), "Confirm", ("EVENT_RETURN",))
+CANCEL = Key("CANCEL", frozenset({"RIGHTMOUSE", "ESC"}), "Cancel", ("EVENT_ESC", "MOUSE_RMB"))
+CLICK = Key("CLICK", frozenset({"LEFTMOUSE"}), "Pick a Part", ("MOUSE_LMB",))
+ERASE = Key("ERASE", frozenset({"BACK_SPACE"}), "")
+DIGITS = dict(zip(("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE"), "0123456789"))
+NUMBER = Key("NUMBER", frozenset(DIGITS), "Part by Number", names="0-9")
+NAVIGATE = Key("NAVIGATE", frozenset({
+    "MIDDLEMOUSE", "MOUSEPAN", "MOUSEZOOM", "MOUSEROTATE", "TRACKPADPAN", "TRACKPADZOOM", "NDOF_MOTION", "HOME",
+    "NUMPAD_0", "NUMPAD_1", "NUMPAD_2", "NUMPAD_3", "NUMPAD_4", "NUMPAD_5", "NUMPAD_6", "NUMPAD_7", "NUMPAD_8",
+    "NUMPAD_9", "NUMPAD_PERIOD"}), "Navigate", ("MOUSE_MMB",))
+# Events that are no answer to anything on the screen and must reach Blender itself.
+SYSTEM = frozenset({"TIMER", "TIMER_REPORT", "WINDOW_DEACTIVATE"})
+MODIFIERS = frozenset({"LEFT_SHIFT", "RIGHT_SHIFT", "LEFT_CTRL", "RIGHT_CTRL", "LEFT_ALT", "RIGHT_ALT", "OSKEY",
+                       "HYPER"})
+MOVES = frozenset({"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"})
+
+TURNS = {**dict.fromkeys(LARGER.events, 1), **dict.fromkeys(SMALLER.events, -1)}
+
+WAITING = (CLICK, NAVIGATE, CANCEL)
+PICKED = (LARGER, SMALLER, NUMBER, CONFIRM, NAVIGATE, CANCEL)
+# With the toolbar's tool a click goes on to the next part.
+HELD = (LARGER, SMALLER, NUMBER, CLICK._replace(label="Next Part"), CONFIRM, NAVIGATE, CANCEL)
+
+SCROLL_STEP, DRAG_STEP = 30, 24  # pixels of a trackpad's scroll, and of a drag, that count as a notch
+
+
+class Scroll:
+    """Counts notches in a trackpad's scroll or a drag, both of which come as pixels."""
+
+    def __init__(self, step):
+        self.step, self.rest = step, 0.0
+
+    def notches(self, pixels):
+        self.rest += pixels
+        whole = int(self.rest / self.step)
+        self.rest -= whole * self.step
+        return whole

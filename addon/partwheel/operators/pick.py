@@ -1,0 +1,287 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Picking a part with mouse and keys: what the modal operators share. A click picks a face, the wheel grows and shrinks
+the part around it, until it is confirmed or cancelled.
+
+What happens to the part meanwhile, and once it is confirmed, is the business of a target (see PartPicker._aim).
+"""
+
+import traceback
+
+import bpy
+
+from .. import keys, overlay, picking, session, wheel
+from ..prepared import prepared
+from ..ui import status
+from .build import start
+
+
+class PartPicker:
+    """Mixed into an operator. level and face_index: what Repeat Last and the panel of the last operation use."""
+
+    face_index: bpy.props.IntProperty(name="Face", description="The face that was clicked", default=0, min=0)
+    level: bpy.props.IntProperty(
+        name="Level", description="Notches of the wheel from the part that the click alone takes: up is positive",
+        default=0,
+    )
+    extend: bpy.props.BoolProperty(
+        name="Extend", description="Add the part to what is selected, instead of replacing it",
+        default=False, options={"SKIP_SAVE"},
+    )
+    deselect: bpy.props.BoolProperty(
+        name="Deselect", description="Take the part away from what is selected",
+        default=False, options={"SKIP_SAVE"},
+    )
+    tool: bpy.props.BoolProperty(
+        name="From the Toolbar", description="The next click starts with the next part, and other keys go to Blender",
+        default=False, options={"SKIP_SAVE", "HIDDEN"},
+    )
+
+    # ---- What operators differ in
+
+    def _objects(self, context):
+        """The objects that can be picked from, the active one first."""
+        raise NotImplementedError
+
+    def _aim(self, context, obj):
+        """A new target for a pick from this object, with select(obj, faces, face, extend, deselect), restore() and
+        fits()."""
+        raise NotImplementedError
+
+    def _missed(self, context):
+        """The answer to a click of the tool beside every mesh."""
+        return {"CANCELLED"}
+
+    def _commit(self, context):
+        """The part is confirmed; the answer of the operator."""
+        return {"FINISHED"}
+
+    hand_offs = ()
+
+    # ---- Blender's side
+
+    def invoke(self, context, event):
+        if context.window is None or context.area is None or context.area.type != "VIEW_3D":
+            self.report({"ERROR"}, "Parts are picked in a 3D view: start this with the mouse over one.")
+            return {"CANCELLED"}
+        self.state, self.target, self.object_name = wheel.Waiting(), None, ""
+        self.scroll, self.drag = keys.Scroll(keys.SCROLL_STEP), None
+        result = self._guarded(context, lambda: self._begun(context, event))
+        if result == {"RUNNING_MODAL"}:
+            context.window_manager.modal_handler_add(self)
+        return result
+
+    def modal(self, context, event):
+        return self._guarded(context, lambda: self._handle(context, event))
+
+    def cancel(self, context):
+        """Blender itself ends the operator: the window closes or another file opens."""
+        if isinstance(self.state, wheel.Building):
+            self.building.abandon(context)
+        else:
+            self._end(context)
+
+    def _guarded(self, context, step):
+        """One step; whatever goes wrong in it, the selection is put back and the tool ends, with a report."""
+        try:
+            return step()
+        except Exception as error:  # any: a tool that dies in the middle leaves Blender with its keys and its selection
+            traceback.print_exc()
+            self.report({"ERROR"}, f"Partwheel stopped: {error}. The full report is in the system console.")
+            return self._cancelled(context)
+
+    # ---- From nothing to a part
+
+    def _begun(self, context, event):
+        obj, face = self._under(context, event)
+        if obj is not None:
+            return self._pick(context, event, obj, face)
+        if self.tool:
+            return self._missed(context)
+        obj = self._objects(context)[0]
+        if session.hierarchy(obj) is None:
+            return self._build(context, obj, None)
+        return self._wait(context, "Click a face of the mesh")
+
+    def _under(self, context, event):
+        """(object, face index) under the mouse, or (None, None)."""
+        view = picking.view_under(context.window, event.mouse_x, event.mouse_y)
+        if not view:
+            return None, None
+        area, region, region_view = view
+        point = event.mouse_x - region.x, event.mouse_y - region.y
+        shown = [each for each in self._objects(context) if each.visible_get(viewport=area.spaces.active)]
+        return picking.nearest(shown, lambda each: prepared(each).tree, region, region_view, point)
+
+    def _pick(self, context, event, obj, face):
+        self.hierarchy = session.hierarchy(obj)
+        if self.hierarchy is None:
+            # Which face was meant is known now: the user may turn the view while the parts are being built.
+            return self._build(context, obj, face)
+        picked = wheel.pick(self.hierarchy, face)
+        if event.type == "LEFTMOUSE":
+            self.drag = event.mouse_y, picked.index
+        return self._hold(context, obj, picked)
+
+    def _hold(self, context, obj, picked):
+        self.object_name, self.target = obj.name, self._aim(context, obj)
+        return self._show(context, picked)
+
+    def _build(self, context, obj, face):
+        self.building = start(self, obj)
+        if not self.building:
+            return {"CANCELLED"}
+        self.object_name, self.state = obj.name, wheel.Building(face)
+        self.building.watch(context)
+        return {"RUNNING_MODAL"}
+
+    def _built_on(self, context, event):
+        """While the parts are being built all but Esc goes to Blender itself; then the face is picked."""
+        if not self.building.step(context, event):
+            return {"PASS_THROUGH"}
+        face, self.state = self.state.face, wheel.Waiting()
+        self.hierarchy = self.building.hierarchy
+        if not self.hierarchy:
+            return {"CANCELLED"}
+        obj = self._object(context)
+        if obj is None or context.area is None:
+            self.report({"INFO"}, f"The parts are built. Start {self.bl_label} again to pick them.")
+            return {"CANCELLED"}
+        if face is not None:
+            return self._hold(context, obj, wheel.pick(self.hierarchy, face))
+        return self._wait(context, "Click a face of the mesh")
+
+    def _object(self, context):
+        """The object that the part belongs to, if it can still be picked from."""
+        return next((each for each in self._objects(context) if each.name == self.object_name), None)
+
+    def _wait(self, context, header):
+        self._tell(context, header, keys.WAITING)
+        return {"RUNNING_MODAL"}
+
+    # ---- With a part, or waiting for one
+
+    def _handle(self, context, event):
+        if isinstance(self.state, wheel.Building):
+            return self._built_on(context, event)
+        if not self._still_there(context):
+            self.report({"WARNING"}, "Partwheel stopped: the mesh is no longer being edited as it was.")
+            self._end(context)
+            return {"CANCELLED"}
+        if event.type in keys.SYSTEM:
+            return {"PASS_THROUGH"}
+        holding = isinstance(self.state, wheel.Picked)
+        if event.type in keys.MOVES:
+            return self._dragged(context, event)
+        over = picking.view_under(context.window, event.mouse_x, event.mouse_y) is not None
+        plain = not (event.alt or event.oskey or event.ctrl and not (self.deselect or event.type == "LEFTMOUSE"))
+        if event.type == "TRACKPADPAN" and holding and over and plain and not event.shift:
+            notches = self.scroll.notches(event.mouse_y - event.mouse_prev_y)
+            return self._show(context, self.state.turned(notches))
+        wheeled = event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE"}
+        if event.type in keys.NAVIGATE.events or (wheeled and not over) or (
+                not plain and (event.type in keys.TURNS or event.type == "LEFTMOUSE")):
+            return {"PASS_THROUGH"}
+        if event.type == "LEFTMOUSE" and event.value == "RELEASE":
+            self.drag = None
+        if event.value not in {"PRESS", "DOUBLE_CLICK"}:  # Blender may call a quick second press a double click
+            return {"RUNNING_MODAL"}
+        if event.type in keys.CANCEL.events:
+            return self._cancelled(context)
+        return self._key_while_holding(context, event, over) if holding else self._key_while_waiting(context, event)
+
+    def _key_while_waiting(self, context, event):
+        if event.type == "LEFTMOUSE":
+            obj, face = self._under(context, event)
+            if obj is None:
+                return self._wait(context, "There is no face there")
+            self.extend, self.deselect = self.extend or bool(event.shift), self.deselect or bool(event.ctrl)
+            return self._pick(context, event, obj, face)
+        return {"RUNNING_MODAL"}
+
+    def _key_while_holding(self, context, event, over):
+        if event.type in keys.TURNS:
+            return self._show(context, self.state.turned(keys.TURNS[event.type]))
+        if event.type in keys.DIGITS:
+            return self._show(context, self.state.with_digit(keys.DIGITS[event.type]))
+        if event.type in keys.ERASE.events:
+            return self._show(context, self.state.without_digit())
+        if event.type in keys.CONFIRM.events or (event.type == "LEFTMOUSE" and over and not self.tool):
+            return self._confirmed(context)
+        for each in self.hand_offs:
+            if (event.type, bool(event.shift)) == (each.key, each.shift) and not event.ctrl:
+                return self._handed_on(context, each)
+        if self.tool and event.type not in keys.MODIFIERS:
+            # A click starts with the next part, in the keymap of the tool; any other key means what it always means.
+            return self._confirmed(context) | {"PASS_THROUGH"}
+        return {"RUNNING_MODAL"}
+
+    def _dragged(self, context, event):
+        """Up or down with the button, or a pen, still down."""
+        if self.drag and isinstance(self.state, wheel.Picked):
+            begin, index = self.drag
+            index += int((event.mouse_y - begin) / keys.DRAG_STEP)
+            if index != self.state.index:
+                return self._show(context, self.state.at(index))
+        return {"RUNNING_MODAL"}
+
+    def _show(self, context, state):
+        """Goes to a state with a picked part and selects it."""
+        obj, same = self._object(context), isinstance(self.state, wheel.Picked) and state.node == self.state.node
+        self.state = state
+        if not same:
+            self.target.select(obj, self.hierarchy.faces(state.node), state.face, self.extend, self.deselect)
+            if not bpy.app.background:
+                overlay.shown.show(obj, prepared(obj).parts(obj), state.node, state.next)
+        share = self.hierarchy.area[state.node] / self.hierarchy.area[-1]
+        number = state.typed + "_" if state.typed else state.index + 1
+        self._tell(context, f"Part {number} of {len(state.stops)}, {len(self.hierarchy.faces(state.node)):,} faces, "
+                            f"{share:.1%} of the area", keys.HELD if self.tool else keys.PICKED)
+        return {"RUNNING_MODAL"}
+
+    # ---- Ends
+
+    def _confirmed(self, context):
+        obj = self._object(context)
+        # What the panel of the last operation, and Repeat Last, do again.
+        self.face_index, self.level = self.state.face, self.state.level
+        session.remember_pick(obj, self.state.face, self.state.node)
+        result = self._commit(context)
+        self._end(context)
+        return result
+
+    def _handed_on(self, context, hand_off):
+        """Confirms and starts another operator at once. Blender's own undo step for a finished operator would come
+        after that one has begun to change the mesh, so the step is made here, and the answer that makes none is given.
+        """
+        self._confirmed(context)
+        bpy.ops.ed.undo_push(message=self.bl_label)
+        hand_off.start(context)
+        return {"CANCELLED"}
+
+    def _cancelled(self, context):
+        if isinstance(self.state, wheel.Building):
+            self.building.abandon(context)
+            return {"CANCELLED"}
+        try:
+            if self.target and self._still_there(context):
+                self.target.restore()
+        finally:
+            self._end(context)
+        return {"CANCELLED"}
+
+    def _still_there(self, context):
+        if not self.target:
+            return bool(self._objects(context))
+        return self._object(context) is not None and self.target.fits()
+
+    def _tell(self, context, header, row):
+        context.workspace.status_text_set(status.drawer(row, self.hand_offs if row is not keys.WAITING else ()))
+        if context.area:
+            context.area.header_text_set(f"Partwheel: {header}")
+
+    def _end(self, context):
+        overlay.shown.hide()
+        if context.workspace:
+            context.workspace.status_text_set(None)
+        if context.area:
+            context.area.header_text_set(None)

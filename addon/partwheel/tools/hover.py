@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The part that a click would take, drawn while the mouse moves over the model and the tool is active.
+
+A gizmo, as in Blender's own tools that show what is under the mouse: Blender asks it at every move of the mouse and
+draws it in every 3D view, for as long as the tool is active and no longer. It never takes an event.
+"""
+
+import bpy
+
+from .. import overlay, picking, wheel
+from ..prepared import prepared
+
+
+class Hover:
+    """What the mouse is over: an object's name, its hierarchy and a node, or None."""
+
+    def __init__(self):
+        self.what = None
+
+    def move(self, context, point):
+        """The mouse is at a point of the context's region. Redraws if that changes what is shown."""
+        found = self._found(context, point)
+        if found != self.what:
+            self.what = found
+            overlay.redraw()
+
+    def _found(self, context, point):
+        shown = [each for each in context.objects_in_mode_unique_data
+                 if each.type == "MESH" and each.visible_get(viewport=context.space_data)]
+        obj, face = picking.nearest(shown, lambda each: prepared(each).tree, context.region, context.region_data, point)
+        hierarchy = prepared(obj).hierarchy(obj) if obj else None
+        return hierarchy and (obj.name, hierarchy, wheel.pick(hierarchy, face).node)
+
+    def draw(self, context):
+        if not self.what or overlay.shown.on:
+            return
+        name, hierarchy, node = self.what
+        obj = bpy.data.objects.get(name)
+        if obj and obj.mode == "EDIT" and overlay.visible(context, obj) and prepared(obj).hierarchy(obj) is hierarchy:
+            overlay.draw_hover(context, obj, prepared(obj).parts(obj), node)
+
+
+hover = Hover()
+
+
+class VIEW3D_GT_partwheel_hover(bpy.types.Gizmo):
+    bl_idname = "VIEW3D_GT_partwheel_hover"
+
+    def test_select(self, context, location):
+        hover.move(context, location)
+        return -1
+
+    def draw(self, context):
+        hover.draw(context)
+
+
+class VIEW3D_GGT_partwheel_hover(bpy.types.GizmoGroup):
+    bl_idname = "VIEW3D_GGT_partwheel_hover"
+    bl_label = "Part under the Mouse"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "WINDOW"
+    bl_options = {"3D"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.mode == "EDIT_MESH"
+
+    def setup(self, _context):
+        self.gizmos.new(VIEW3D_GT_partwheel_hover.bl_idname)
+
+
+CLASSES = (VIEW3D_GT_partwheel_hover, VIEW3D_GGT_partwheel_hover)
+
+
+def register():
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)
+    hover.what = None
