@@ -149,19 +149,19 @@ class Selections:
             each.restore(obj)
 
 
-def select_outside_edit_mode(mesh, faces, extend=False):
+def select_outside_edit_mode(mesh, faces, extend=False, deselect=False):
     """The same for a mesh that is not in Edit Mode: its faces, and their edges and vertices, are selected."""
     chosen = np.zeros(len(mesh.polygons), bool)
-    chosen[faces] = True
+    chosen[np.asarray(faces, np.int64)] = True
     chosen &= ~mesh_arrays.read(mesh.polygons, "hide", bool)
+    before = mesh_arrays.read(mesh.polygons, "select", bool)
+    chosen = before & ~chosen if deselect else before | chosen if extend else chosen
     corners = chosen[np.repeat(np.arange(len(mesh.polygons)), mesh_arrays.read(mesh.polygons, "loop_total", np.int32))]
-    selected = {"polygons": chosen}
-    for elements, index in (("edges", "edge_index"), ("vertices", "vertex_index")):
-        selected[elements] = np.zeros(len(getattr(mesh, elements)), bool)
-        selected[elements][mesh_arrays.read(mesh.loops, index, np.int32)[corners]] = True
-    for elements, values in selected.items():
-        if extend:
-            values |= mesh_arrays.read(getattr(mesh, elements), "select", bool)
-        getattr(mesh, elements).foreach_set("select", values)
-    mesh.polygons.active = int(faces[0]) if len(faces) else mesh.polygons.active
+    mesh.polygons.foreach_set("select", chosen)
+    for elements, index in ((mesh.edges, "edge_index"), (mesh.vertices, "vertex_index")):
+        values = np.zeros(len(elements), bool)
+        values[mesh_arrays.read(mesh.loops, index, np.int32)[corners]] = True
+        elements.foreach_set("select", values)
+    if len(faces):
+        mesh.polygons.active = int(faces[0])
     mesh.update()

@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators: build, clear, select by wheel; copy, remove, split, place, unite."""
+"""The operators: build, clear, select by wheel, the same outside Edit Mode; copy, remove, split, place, unite."""
 
 import bpy
 
 from .build import MESH_OT_partwheel_build, MESH_OT_partwheel_clear
 from .copy_part import MESH_OT_partwheel_copy, MESH_OT_partwheel_remove, MESH_OT_partwheel_split
+from .paint import MESH_OT_partwheel_paint, OBJECT_OT_partwheel_select
 from .place import OBJECT_OT_partwheel_place
 from .select import MESH_OT_partwheel_select
 from .unite import OBJECT_OT_partwheel_unite
 
-CLASSES = (MESH_OT_partwheel_build, MESH_OT_partwheel_clear, MESH_OT_partwheel_select, MESH_OT_partwheel_copy,
-           MESH_OT_partwheel_remove, MESH_OT_partwheel_split, OBJECT_OT_partwheel_place, OBJECT_OT_partwheel_unite)
+CLASSES = (
+    MESH_OT_partwheel_build, MESH_OT_partwheel_clear,
+    MESH_OT_partwheel_select, OBJECT_OT_partwheel_select, MESH_OT_partwheel_paint,
+    MESH_OT_partwheel_copy, MESH_OT_partwheel_remove, MESH_OT_partwheel_split,
+    OBJECT_OT_partwheel_place, OBJECT_OT_partwheel_unite,
+)
 
 
 def register():

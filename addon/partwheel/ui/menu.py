@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Entries in the Select menu of a mesh in Edit Mode, and the hand-off of a selected part to Blender's own tools."""
+"""Entries in menus of Edit, Object, Sculpt and the paint modes, and the hand-off of a part to Blender's own tools."""
 
 import bpy
 
@@ -17,9 +17,36 @@ def draw_select(self, _context):
     self.layout.operator("mesh.partwheel_select")
 
 
+def draw_select_object(self, _context):
+    self.layout.separator()
+    self.layout.operator_context = "INVOKE_REGION_WIN"
+    self.layout.operator("object.partwheel_select")
+
+
+def _entry(text, write):
+    """A function that draws an entry which makes a part this."""
+    def draw(self, _context):
+        self.layout.separator()
+        self.layout.operator_context = "INVOKE_REGION_WIN"
+        self.layout.operator("mesh.partwheel_paint", text=text).write = write
+    return draw
+
+
+ENTRIES = (
+    ("VIEW3D_MT_select_edit_mesh", draw_select),
+    ("VIEW3D_MT_select_object", draw_select_object),
+    ("VIEW3D_MT_face_sets", _entry("Face Set from Part by Wheel", "FACE_SET")),
+    ("VIEW3D_MT_mask", _entry("Mask from Part by Wheel", "MASK")),
+    ("VIEW3D_MT_paint_weight", _entry("Vertex Group from Part by Wheel", "VERTEX_GROUP")),
+    ("VIEW3D_MT_paint_vertex", _entry("Paint Mask from Part by Wheel", "PAINT_MASK")),
+)
+
+
 def register():
-    bpy.types.VIEW3D_MT_select_edit_mesh.append(draw_select)
+    for menu, draw in ENTRIES:
+        getattr(bpy.types, menu).append(draw)
 
 
 def unregister():
-    bpy.types.VIEW3D_MT_select_edit_mesh.remove(draw_select)
+    for menu, draw in ENTRIES:
+        getattr(bpy.types, menu).remove(draw)

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Parts outside Edit Mode: object.partwheel_select enters it with a part; mesh.partwheel_paint makes a part a face set,
+a mask, a vertex group or a paint mask, in the modes that have them."""
+
+import bmesh
+import bpy
+import numpy as np
+from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
+
+from .. import mesh_arrays, picking, session, wheel
+from ..core import PartwheelError
+from ..selection import select_outside_edit_mode
+from .build import idle, start
+from .pick import PartPicker
+
+FACE_SET = ".sculpt_face_set"
+MASK = ".sculpt_mask"  # an attribute from Blender 4.1 on
+# Mode of the context -> what a part can become there, the first by default.
+WAYS = {
+    "SCULPT": ("FACE_SET", "MASK"), "PAINT_WEIGHT": ("VERTEX_GROUP", "PAINT_MASK"), "PAINT_VERTEX": ("PAINT_MASK",),
+    "PAINT_TEXTURE": ("PAINT_MASK",),
+}
+
+
+def read_only(obj):
+    """A sentence why the object's mesh can't be changed, or None."""
+    if obj.data.library:
+        return (f"The mesh of {obj.name} is linked from another file and can't be changed here: make it local first "
+                "(Object > Relations > Make Local)")
+    if obj.data.override_library:
+        return (f"The mesh of {obj.name} is a library override, which Blender does not edit: make it local first "
+                "(Object > Relations > Make Local)")
+    return None
+
+
+class OBJECT_OT_partwheel_select(bpy.types.Operator):
+    """Enter Edit Mode of the mesh under the mouse and pick a part of it, then make it larger or smaller with the mouse wheel"""
+
+    bl_idname = "object.partwheel_select"
+    bl_label = "Select Part by Wheel"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context):
+        if context.mode != "OBJECT":
+            cls.poll_message_set("This is for Object Mode")
+            return False
+        return idle(cls)
+
+    def invoke(self, context, event):
+        view = context.window and picking.view_under(context.window, event.mouse_x, event.mouse_y)
+        if not view:
+            self.report({"ERROR"}, "Parts are picked in a 3D view: start this with the mouse over one")
+            return {"CANCELLED"}
+        _, region, region_view = view
+        point = event.mouse_x - region.x, event.mouse_y - region.y
+        hit, _, _, _, obj, _ = context.scene.ray_cast(
+            context.evaluated_depsgraph_get(), region_2d_to_origin_3d(region, region_view, point),
+            region_2d_to_vector_3d(region, region_view, point))
+        obj = self._target(context, obj.original if hit else context.active_object)
+        if not obj:
+            return {"CANCELLED"}
+        if not obj.select_get():
+            for other in context.selected_objects:
+                other.select_set(False)
+            obj.select_set(True)
+        context.view_layer.objects.active = obj
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.ed.undo_push(message="Toggle Edit Mode")  # or it would be one step with the pick
+        bpy.ops.mesh.partwheel_select("INVOKE_DEFAULT")
+        return {"CANCELLED"}
+
+    def _target(self, context, obj):
+        """The object, if it can be edited, or None and a report."""
+        if obj is None or obj.type != "MESH":
+            reason = "There is no mesh under the mouse"
+        elif obj.name not in context.view_layer.objects:
+            reason = f"{obj.name} is an instance, and its original is not in this view layer: edit it there"
+        else:
+            reason = read_only(obj)
+        if reason:
+            self.report({"WARNING"}, reason)
+        return None if reason else obj
+
+
+class Preview:
+    """A target that changes nothing before the part is confirmed: the overlay alone shows it."""
+
+    def __init__(self, obj):
+        self.name, self.mode, self.faces = obj.name, obj.mode, len(obj.data.polygons)
+
+    def select(self, *_):
+        """What is drawn says it all."""
+
+    def restore(self):
+        """Nothing was changed."""
+
+    def fits(self):
+        obj = bpy.data.objects.get(self.name)
+        return obj is not None and obj.mode == self.mode and len(obj.data.polygons) == self.faces
+
+
+class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
+    """Pick a part with a click and the mouse wheel, and make it a face set, a mask or a vertex group"""
+
+    bl_idname = "mesh.partwheel_paint"
+    bl_label = "Part by Wheel"
+    bl_options = {"REGISTER", "UNDO"}
+
+    write: bpy.props.EnumProperty(
+        name="Make It", default="AUTO", description="What the part becomes",
+        items=(("AUTO", "Usual", "A face set in Sculpt Mode, a vertex group in Weight Paint, else a paint mask"),
+               ("FACE_SET", "Face Set", "A new face set"),
+               ("MASK", "Mask", "Masked against sculpting"),
+               ("VERTEX_GROUP", "Vertex Group", "Weight 1 in the active vertex group, or in a new one"),
+               ("PAINT_MASK", "Paint Mask", "The only faces that can be painted on")),
+    )
+
+    @classmethod
+    def poll(cls, context):
+        obj = context.active_object
+        if context.mode not in WAYS or obj is None or obj.type != "MESH":
+            cls.poll_message_set("This is for Sculpt Mode and the paint modes of a mesh")
+            return False
+        if read_only(obj):
+            cls.poll_message_set(read_only(obj))
+            return False
+        if obj.use_dynamic_topology_sculpting:
+            cls.poll_message_set("Dynamic topology changes the faces all the time: switch it off first")
+            return False
+        return idle(cls)
+
+    def execute(self, context):
+        obj = context.active_object
+        hierarchy = session.hierarchy(obj)
+        if not hierarchy:
+            building = start(self, obj)
+            hierarchy = building and building.wait(context)
+        if not hierarchy:
+            return {"CANCELLED"}
+        try:
+            picked = wheel.pick(hierarchy, self.face_index, self.level)
+        except PartwheelError as error:
+            self.report({"ERROR"}, f"Face {self.face_index} can't be picked: {error}")
+            return {"CANCELLED"}
+        session.remember_pick(obj, picked.face, picked.node)
+        return self._write(context, obj, hierarchy.faces(picked.node))
+
+    def _objects(self, context):
+        return [context.active_object] if context.mode in WAYS else []
+
+    def _aim(self, context, obj):
+        return Preview(obj)
+
+    def _commit(self, context):
+        return self._write(context, self._object(context), self.hierarchy.faces(self.state.node))
+
+    def _write(self, context, obj, faces):
+        ways = WAYS[context.mode]
+        way = ways[0] if self.write == "AUTO" else self.write
+        if way not in ways:
+            self.report({"ERROR"}, f"There is no {way.replace('_', ' ').lower()} in this mode")
+            return {"CANCELLED"}
+        mode = obj.mode
+        # Sculpt Mode keeps data of its own beside the mesh's: it reads the mesh anew when it is entered.
+        bpy.ops.object.mode_set(mode="OBJECT")
+        try:
+            WRITERS[way](obj, faces, self.extend, self.deselect)
+        finally:
+            bpy.ops.object.mode_set(mode=mode)
+        return {"FINISHED"}
+
+
+def _part_vertices(mesh, faces):
+    """(V,) bool: the vertices of these faces."""
+    inside = np.zeros(len(mesh.polygons), bool)
+    inside[faces] = True
+    corners = np.repeat(inside, mesh_arrays.read(mesh.polygons, "loop_total", np.int32))
+    chosen = np.zeros(len(mesh.vertices), bool)
+    chosen[mesh_arrays.read(mesh.loops, "vertex_index", np.int32)[corners]] = True
+    return chosen
+
+
+def _write_face_set(obj, faces, _extend, deselect):
+    """A set of its own; with deselect the part goes back to the first one."""
+    mesh = obj.data
+    attribute = mesh.attributes.get(FACE_SET) or mesh.attributes.new(FACE_SET, "INT", "FACE")
+    values = mesh_arrays.read(attribute.data, "value", np.int32)
+    values[values == 0] = 1  # what Blender takes faces without a set for
+    values[faces] = 1 if deselect else values.max(initial=1) + 1
+    attribute.data.foreach_set("value", values)
+
+
+def _write_mask(obj, faces, extend, deselect):
+    part = _part_vertices(obj.data, faces)
+    if bpy.app.version >= (4, 1):
+        attribute = obj.data.attributes.get(MASK) or obj.data.attributes.new(MASK, "FLOAT", "POINT")
+        before = mesh_arrays.read(attribute.data, "value", np.float32)
+        attribute.data.foreach_set("value", _joined(before, part, extend, deselect))
+        return
+    bm = bmesh.new()
+    bm.from_mesh(obj.data)
+    layer = bm.verts.layers.paint_mask.verify()
+    before = np.array([vertex[layer] for vertex in bm.verts], np.float32)
+    for vertex, value in zip(bm.verts, _joined(before, part, extend, deselect).tolist()):
+        vertex[layer] = value
+    bm.to_mesh(obj.data)
+    bm.free()
+
+
+def _joined(before, part, extend, deselect):
+    """(V,) float32: the mask with the part in it, or taken out of it."""
+    if deselect:
+        return np.where(part, 0, before).astype(np.float32)
+    return np.where(part, 1, before if extend else 0).astype(np.float32)
+
+
+def _write_vertex_group(obj, faces, extend, deselect):
+    part = np.flatnonzero(_part_vertices(obj.data, faces)).tolist()
+    group = obj.vertex_groups.active or obj.vertex_groups.new(name="Part")
+    if not extend and not deselect:
+        group.remove(range(len(obj.data.vertices)))
+    if deselect:
+        group.remove(part)
+    else:
+        group.add(part, 1.0, "REPLACE")
+
+
+def _write_paint_mask(obj, faces, extend, deselect):
+    select_outside_edit_mode(obj.data, faces, extend, deselect)
+    obj.data.use_paint_mask = True
+
+
+WRITERS = {"FACE_SET": _write_face_set, "MASK": _write_mask, "VERTEX_GROUP": _write_vertex_group,
+           "PAINT_MASK": _write_paint_mask}

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""mesh.partwheel_paint without a window: face set, mask, vertex group, paint mask; and what is refused."""
+
+import os
+import tempfile
+
+import bmesh
+import bpy
+from common import BOX, MeshTest, part, read_off
+
+
+class Paint(MeshTest):
+    def begin(self, mode):
+        """A hand in this mode: its faces and vertices of two parts."""
+        self.obj = self.add(*read_off("hand"))
+        h = self.hierarchy(self.obj)
+        bpy.ops.object.mode_set(mode=mode)
+        self.faces, self.vertices = [], []
+        for face in (700, 100):
+            stops, start = h.wheel(face)
+            chosen = set(h.faces(stops[start]).tolist())
+            self.faces.append(chosen)
+            self.vertices.append({v for index in chosen for v in self.obj.data.polygons[index].vertices})
+
+    def paint(self, face=700, **more):
+        self.assertEqual(bpy.ops.mesh.partwheel_paint(face_index=face, **more), {"FINISHED"})
+
+    def sets(self):
+        return [value.value for value in self.obj.data.attributes[".sculpt_face_set"].data]
+
+    def masked(self):
+        if bpy.app.version >= (4, 1):
+            values = [value.value for value in self.obj.data.attributes[".sculpt_mask"].data]
+        else:
+            bm = bmesh.new()
+            bm.from_mesh(self.obj.data)
+            layer = bm.verts.layers.paint_mask.active
+            values = [vertex[layer] for vertex in bm.verts]
+            bm.free()
+        self.assertLessEqual(set(values), {0.0, 1.0})
+        return {index for index, value in enumerate(values) if value}
+
+    def test_face_sets(self):
+        self.begin("SCULPT")
+        self.paint()
+        self.paint(100)
+        self.assertEqual(self.obj.mode, "SCULPT")
+        found = self.sets()
+        first, second = self.faces
+        self.assertFalse(first & second)
+        self.assertEqual([len({found[index] for index in part_}) for part_ in self.faces], [1, 1])
+        rest = set(range(2390)) - first - second
+        self.assertEqual(len({found[index] for index in rest}), 1)
+        self.assertEqual(len(set(found)), 3)
+        self.assertEqual(part("session").picked(self.obj).face, 100)
+
+    def test_mask(self):
+        self.begin("SCULPT")
+        self.paint(write="MASK")
+        self.assertEqual(self.masked(), self.vertices[0])
+        self.paint(100, write="MASK", extend=True)
+        self.assertEqual(self.masked(), self.vertices[0] | self.vertices[1])
+        self.paint(write="MASK", deselect=True)
+        self.assertEqual(self.masked(), self.vertices[1] - self.vertices[0])
+
+    def test_vertex_group(self):
+        self.begin("WEIGHT_PAINT")
+
+        def group():
+            return {v.index for v in self.obj.data.vertices for each in v.groups if each.group == 0 and each.weight == 1}
+
+        self.paint()
+        self.assertEqual(group(), self.vertices[0])
+        self.paint(100)
+        self.assertEqual((group(), len(self.obj.vertex_groups)), (self.vertices[1], 1))
+        self.paint(extend=True)
+        self.assertEqual(group(), self.vertices[0] | self.vertices[1])
+        self.paint(100, deselect=True)
+        self.assertEqual(group(), self.vertices[0] - self.vertices[1])
+
+    def test_paint_mask(self):
+        for mode in ("VERTEX_PAINT", "WEIGHT_PAINT"):
+            self.begin(mode)
+            self.paint(write="PAINT_MASK")
+            self.assertTrue(self.obj.data.use_paint_mask)
+            self.assertEqual({p.index for p in self.obj.data.polygons if p.select}, self.faces[0])
+            bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_refusals(self):
+        self.begin("VERTEX_PAINT")
+        with self.assertRaisesRegex(RuntimeError, "no mask in this mode"):
+            bpy.ops.mesh.partwheel_paint(face_index=700, write="MASK")
+        with self.assertRaisesRegex(RuntimeError, "Face 5000"):
+            bpy.ops.mesh.partwheel_paint(face_index=5000)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertFalse(bpy.ops.mesh.partwheel_paint.poll())
+        self.assertTrue(bpy.ops.object.partwheel_select.poll())
+        bpy.ops.object.mode_set(mode="EDIT")
+        self.assertFalse(bpy.ops.object.partwheel_select.poll())
+
+    def test_linked_meshes_are_refused_by_name(self):
+        obj = self.add(*BOX, "boxed")
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "box.blend")
+            bpy.data.libraries.write(path, {obj})
+            bpy.data.objects.remove(obj)
+            with bpy.data.libraries.load(path, link=True) as (found, wanted):
+                wanted.objects = found.objects
+            linked = self.link(wanted.objects[0])
+            self.assertIn("linked", part("operators.paint").read_only(linked))
+            self.assertIsNone(part("operators.paint").read_only(self.add(*BOX)))
