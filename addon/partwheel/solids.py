@@ -111,19 +111,22 @@ def _keep_solid(bm, mesh, hierarchy, solid, alone, facets):
 
     totals = read(mesh.polygons, "loop_total", np.int32)
     triangles = np.bincount(faces, minlength=len(totals))
-    pairs = np.unique(np.stack([np.repeat(faces, 3), corners.ravel()], axis=1), axis=0)
-    met = np.bincount(pairs[:, 0], minlength=len(totals))
+    pairs = np.unique(np.repeat(faces, 3).astype(np.int64) * len(source) + corners.ravel())
+    of, at = np.divmod(pairs, len(source))  # a face, and a corner of the solid that it has
     strange = np.zeros(len(totals), bool)  # with a corner that is not the polygon's own
-    strange[pairs[source[pairs[:, 1]] < 0, 0]] = True
-    whole = (triangles == totals - 2) & (met == totals) & ~strange
+    strange[of[source[at] < 0]] = True
+    whole = (triangles == totals - 2) & (np.bincount(of, minlength=len(totals)) == totals) & ~strange
     parted = np.zeros(len(totals), bool)  # with a corner at which the surface is cut apart
-    parted[pairs[~is_first[pairs[:, 1]], 0]] = True
+    parted[of[~is_first[at]]] = True
     stays = whole & ~parted
 
+    # Those that are not only corners of polygons that stay.
+    rest = corners[~stays[faces]].ravel()
     verts = _vertices(bm, hierarchy, solid, source, is_first,
-                      None if facets else np.unique(corners))
+                      np.union1d(rest, solid.triangles[solid.beyond >= 0]) if facets else np.unique(rest))
     new_corner = {}
-    for face, corner in pairs[(whole & parted)[pairs[:, 0]]].tolist():
+    apart = (whole & parted)[of]
+    for face, corner in zip(of[apart].tolist(), at[apart].tolist()):
         new_corner.setdefault(face, {})[int(source[corner])] = verts[corner]
     for face, replaced in new_corner.items():
         old = polygons[face]
@@ -146,15 +149,13 @@ def _keep_solid(bm, mesh, hierarchy, solid, alone, facets):
 
 
 def _vertices(bm, hierarchy, solid, source, is_first, used):
-    """Solid vertex -> BMVert: Blender's own where there is one, a copy of it where the surface is cut apart, else new.
-    used: only these solid vertices (None: all)."""
+    """Solid vertex -> BMVert, of these: Blender's own where there is one, a copy of it where the surface is cut apart,
+    else new."""
     verts = {}
-    wanted = range(len(source)) if used is None else used.tolist()
     own = list(bm.verts)
-    sources, first = source.tolist(), is_first.tolist()
-    for corner in wanted:
-        vertex = sources[corner]
-        if first[corner]:
+    for corner in used.tolist():
+        vertex = int(source[corner])
+        if is_first[corner]:
             verts[corner] = own[vertex]
         elif vertex >= 0:
             verts[corner] = bm.verts.new(own[vertex].co, own[vertex])
@@ -213,9 +214,12 @@ def _mix_layers(layers, one, other, new):
 
 
 def _delete(bm, faces, alone):
-    bmesh.ops.delete(bm, geom=faces, context="FACES")
-    if alone:
-        bmesh.ops.delete(bm, geom=[edge for edge in bm.edges if edge.is_wire], context="EDGES")
+    wires = [edge for edge in bm.edges if edge.is_wire] if alone else []
+    dots = [vert for vert in bm.verts if not vert.link_edges] if alone else []
+    for geometry, context in ((faces, "FACES"), (wires, "EDGES"), (dots, "VERTS")):
+        if geometry:  # even of nothing it takes its time
+            bmesh.ops.delete(bm, geom=geometry, context=context)
+    if wires:
         bmesh.ops.delete(bm, geom=[vert for vert in bm.verts if not vert.link_edges], context="VERTS")
 
 

@@ -50,25 +50,35 @@ def unite(target, others):
 
 def problem(mesh):
     """What keeps the mesh from being a closed, manifold, outward surface, in words; None if nothing does."""
-    bm = bmesh.new()
-    try:
-        bm.from_mesh(mesh)
-        return _problem(bm) or ("it is inside out" if volume(mesh) < 0 else None)
-    finally:
-        bm.free()
-
-
-def _problem(bm):
-    if not bm.faces:
+    if not len(mesh.polygons):
         return "it has no faces"
-    wrong = sum(not edge.is_manifold for edge in bm.edges)
-    if wrong:
-        return f"{wrong} edges have not just two faces"
-    wrong = sum(not edge.is_contiguous for edge in bm.edges)
-    if wrong:
-        return f"at {wrong} edges the faces wind against each other"
-    wrong = sum(not vert.is_manifold for vert in bm.verts)
-    return f"{wrong} vertices are loose or join parts that only touch there" if wrong else None
+    begin, total = read(mesh.polygons, "loop_start", np.int32), read(mesh.polygons, "loop_total", np.int32)
+    vertex = read(mesh.loops, "vertex_index", np.int32).astype(np.int64)
+    following = np.arange(1, len(vertex) + 1)
+    following[begin + total - 1] = begin
+    count = len(mesh.vertices)
+    edge, back = vertex * count + vertex[following], vertex[following] * count + vertex
+    order = np.argsort(edge)
+    place = np.minimum(np.searchsorted(edge, back, sorter=order), len(edge) - 1)
+    twin = order[place]
+    if len(mesh.edges) * 2 != len(edge) or len(np.unique(edge)) != len(edge) or (edge[twin] != back).any():
+        uses = np.bincount(read(mesh.loops, "edge_index", np.int32), minlength=len(mesh.edges))
+        if (uses != 2).any():
+            return f"{(uses != 2).sum()} edges have not just two faces"
+        return f"at {(edge[twin] != back).sum() // 2 or 1} edges the faces wind against each other"
+    # From corner to corner about each vertex: one round must meet all of them.
+    step = np.empty(len(vertex), np.int64)
+    step[following] = twin
+    label = np.arange(len(vertex))
+    while True:
+        least = np.minimum(label, label[step])
+        if np.array_equal(least, label):
+            break
+        label, step = least, step[step]
+    rounds = len(np.unique(label))
+    if rounds != count or len(np.unique(vertex)) != count:
+        return f"{abs(rounds - count) or 1} vertices are loose or join parts that only touch there"
+    return "it is inside out" if volume(mesh) < 0 else None
 
 
 def volume(mesh):
@@ -121,8 +131,10 @@ def _united(base, operand, base_name, operand_name, slots):
         if solver not in known:
             continue
         result = _boolean(base, operand, solver, within, slots)
-        _set_apart(result)
-        wrong = problem(result) or _implausible((base, operand), result)
+        wrong = problem(result)
+        if wrong and _set_apart(result):
+            wrong = problem(result)
+        wrong = wrong or _implausible((base, operand), result)
         if not wrong:
             return result, solver
         reasons.append(f"by {solver.title()}{' within' if within else ''}: {wrong}")
@@ -152,15 +164,15 @@ def _crossings(tree, place):
 
 
 def _set_apart(mesh):
-    """Where the solids only touch, and vertices of one place were joined into one."""
+    """Where the solids only touch, and vertices of one place were joined into one. Whether it could."""
     bm = bmesh.new()
     try:
         bm.from_mesh(mesh)
-        if all(edge.is_manifold for edge in bm.edges) and all(vert.is_manifold for vert in bm.verts):
-            return
         bm.normal_update()
-        if pinches.set_apart(bm):
+        done = pinches.set_apart(bm)
+        if done:
             bm.to_mesh(mesh)
+        return done
     finally:
         bm.free()
 
