@@ -16,9 +16,10 @@ functions build it if there is none. All raise core.PartwheelError, whose text s
 object that holds no mesh; build() also RuntimeError while another build is under way.
 """
 
+import numpy
 from mathutils import Vector
 
-from . import composition, placement, selection, session, solids, union, wheel
+from . import composition, deforming, placement, selection, session, solids, union, wheel
 
 
 def build(obj, quality=0.0, open_surfaces=False):
@@ -122,6 +123,23 @@ def _bounds(built, parts, height):
     if (parts is None) == (height is None):
         raise ValueError("Say into how many parts to cut, or at which height: one of the two.")
     return built.cut_height(height) if parts is None else built.cut_parts(parts)
+
+
+def deform(obj, node, handle_vertices, matrix, rings=0):
+    """Deforms a node's part as rigidly as possible: these vertices of it (indices of the mesh's) go to matrix (4,4), in
+    the object's space, times their place; the part's border and all beyond stay. In the shape key that is active, if
+    any, and across the x axis too if the mesh has that on. rings: so many rings of faces around the part take part.
+    Raises ValueError if there is nothing to deform, or nothing to hold it."""
+    region = deforming.Region(obj, faces(obj, node), rings, obj.data.use_mirror_x)
+    inside = numpy.searchsorted(region.vertices, handle_vertices)
+    known = inside < len(region.vertices)
+    if not (known.all() and (region.vertices[inside] == handle_vertices).all() and region.free[inside].all()):
+        raise ValueError("The handle has vertices that are not inside the part: on its border, beyond it, or hidden.")
+    if not len(inside):
+        raise ValueError("The handle has no vertices.")
+    shape = deforming.AsRigidAsPossible(region, [inside])
+    shape.jump([numpy.asarray(matrix, float)])
+    deforming.write(obj, *region.changed(shape.points()))
 
 
 def _check(obj):

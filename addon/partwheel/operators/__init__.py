@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators: build, clear, select by wheel, the same outside Edit Mode; copy, remove, split, place, unite."""
+"""The operators: build, clear, select by wheel, the same outside Edit Mode; copy, remove, split, place, unite; deform.
+"""
 
 import bpy
 
 from .build import MESH_OT_partwheel_build, MESH_OT_partwheel_clear
 from .copy_part import MESH_OT_partwheel_copy, MESH_OT_partwheel_remove, MESH_OT_partwheel_split
+from .deform import PARTWHEEL_PG_handle, MESH_OT_partwheel_deform
 from .paint import MESH_OT_partwheel_paint, OBJECT_OT_partwheel_select
 from .place import OBJECT_OT_partwheel_place
 from .select import MESH_OT_partwheel_select
@@ -15,6 +17,7 @@ CLASSES = (
     MESH_OT_partwheel_select, OBJECT_OT_partwheel_select, MESH_OT_partwheel_paint,
     MESH_OT_partwheel_copy, MESH_OT_partwheel_remove, MESH_OT_partwheel_split,
     OBJECT_OT_partwheel_place, OBJECT_OT_partwheel_unite,
+    PARTWHEEL_PG_handle, MESH_OT_partwheel_deform,
 )
 
 

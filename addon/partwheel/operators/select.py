@@ -8,6 +8,7 @@ import bpy
 from .. import session, wheel
 from ..core import PartwheelError
 from ..selection import Selections
+from . import proportional
 from .build import idle, start
 from .pick import PartPicker
 
@@ -22,8 +23,11 @@ class HandOff(NamedTuple):
 
 
 HANDOFFS = [
-    HandOff("G", False, "Move Proportionally", lambda context: bpy.ops.transform.translate(
-        "INVOKE_DEFAULT", use_proportional_edit=True, use_proportional_connected=True)),
+    HandOff("D", False, "Drag a Handle", lambda context: bpy.ops.mesh.partwheel_deform("INVOKE_DEFAULT", True)),
+    *(HandOff(key, False, f"{label} Proportionally", proportional.around(key))
+      for key, (_, label) in proportional.TRANSFORMS.items()),
+    *(HandOff(key, True, f"{label} within the Part", proportional.within(key))
+      for key, (_, label) in proportional.TRANSFORMS.items()),
     HandOff("C", False, "Copy as Solid", lambda context: bpy.ops.mesh.partwheel_copy("INVOKE_DEFAULT", True)),
     HandOff("X", False, "Remove", lambda context: bpy.ops.mesh.partwheel_remove("INVOKE_DEFAULT", True)),
     HandOff("D", True, "Duplicate", lambda context: bpy.ops.mesh.duplicate_move("INVOKE_DEFAULT")),

@@ -1,0 +1,508 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""mesh.partwheel_deform: a picked part follows a handle that is dragged, turned and scaled; all beyond it stays."""
+
+import math
+import traceback
+from dataclasses import dataclass, field
+
+import bmesh
+import bpy
+import numpy as np
+from bpy_extras.view3d_utils import (
+    location_3d_to_region_2d, region_2d_to_location_3d, region_2d_to_origin_3d, region_2d_to_vector_3d,
+)
+from mathutils import Matrix, Vector
+
+from .. import handle_points, session
+from ..core import PartwheelError
+from ..deforming import HANDLE_SIZE, METHODS, Refused, Region, write
+from ..picking import Picker, view_under
+
+LIVE_ITERATIONS = 2  # a mouse move
+REST_ITERATIONS = 3  # a tick while the mouse rests
+TICK = 0.03  # seconds
+NOTCH = 1.25  # what a notch of the wheel makes of the handle's size
+STEP_DEGREES, STEP_SCALE = 5.0, 0.1  # what Ctrl snaps to
+CONFIRM = {"RET", "NUMPAD_ENTER"}
+PASS = {"MIDDLEMOUSE", "MOUSEPAN", "MOUSEZOOM", "MOUSEROTATE", "TRACKPADPAN", "TRACKPADZOOM", "NDOF_MOTION", "HOME",
+        "TIMER_REPORT", "WINDOW_DEACTIVATE"}
+DIGITS = {name: str(digit) for digit, word in enumerate(
+    ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE"))
+    for name in (word, f"NUMPAD_{digit}")} | {"PERIOD": ".", "NUMPAD_PERIOD": "."}
+IDLE_KEYS = ("Partwheel   Drag: Move the Handle   Click: Put It Elsewhere   Shift Drag: One More Handle   G, R, S: Move, "
+             "Rotate, Scale   Wheel: Handle Size   Enter: Confirm   MMB: Navigate   Esc/RMB: Cancel")
+STAGE_KEYS = ("Partwheel   X, Y, Z: Axis   0-9 . -: Type   Ctrl: Snap   G, R, S: Move, Rotate, Scale   LMB, Enter: Done   "
+              "Esc/RMB: Cancel")
+NO_PART = "Pick a part with Select Part by Wheel first."
+
+
+class PARTWHEEL_PG_handle(bpy.types.PropertyGroup):
+    """A handle: a vertex and how far around it the surface belongs to it; and where it went."""
+
+    vertex: bpy.props.IntProperty(name="Vertex", min=0)
+    radius: bpy.props.FloatProperty(name="Radius", min=0)
+    turn: bpy.props.IntProperty(name="Turn", min=0)  # handles of one turn act together, one turn after the other
+    matrix: bpy.props.FloatVectorProperty(name="Matrix", size=16, default=tuple(np.eye(4).ravel()))
+
+
+@dataclass
+class Handle:
+    vertex: int  # of the mesh
+    radius: float
+    matrix: np.ndarray = field(default_factory=lambda: np.eye(4))  # in the object's space
+
+
+@dataclass
+class Stage:
+    """One movement of the handle that is under way."""
+
+    kind: str  # G, R or S
+    start: tuple  # the mouse then, in pixels of the region
+    base: np.ndarray  # the handle's matrix then
+    pivot: Vector  # the handle's center then, in the world
+    dragging: bool  # ends when the button is released
+    axis: int = None
+    typed: str = ""
+    turned: float = 0.0  # so far, in radians: full turns count
+    angle: float = None  # of the mouse about the pivot, when last looked at
+
+
+class MESH_OT_partwheel_deform(bpy.types.Operator):
+    """Drag a handle of the part that was picked last: the part follows like a soft body, all beyond it stays"""
+
+    bl_idname = "mesh.partwheel_deform"
+    bl_label = "Deform Part"
+    bl_options = {"REGISTER", "UNDO"}
+
+    node: bpy.props.IntProperty(
+        name="Part", description="Node of the hierarchy; -1: the part that was picked last", default=-1, min=-1,
+        options={"SKIP_SAVE"},
+    )
+    method: bpy.props.EnumProperty(
+        name="Method",
+        items=[("RIGID", "As Rigid as Possible", "The part follows the handle and keeps its details"),
+               ("PROPORTIONAL", "Proportional", "The part moves as a whole, less and less towards its border")],
+        default="RIGID", options={"SKIP_SAVE"},
+    )
+    rings: bpy.props.IntProperty(
+        name="Rings", description="So many rings of faces around the part deform with it, for a softer join",
+        default=0, min=0, soft_max=10, options={"SKIP_SAVE"},
+    )
+    handles: bpy.props.CollectionProperty(type=PARTWHEEL_PG_handle, options={"HIDDEN", "SKIP_SAVE"})
+    start: bpy.props.EnumProperty(
+        name="Start", description="The movement to start with",
+        items=[("NONE", "None", ""), ("G", "Move", ""), ("R", "Rotate", ""), ("S", "Scale", "")],
+        default="NONE", options={"HIDDEN", "SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context):
+        obj = context.edit_object
+        if context.mode != "EDIT_MESH" or obj is None:
+            return False
+        if session.state(obj.data)[0] not in {session.State.FITS, session.State.MOVED}:
+            cls.poll_message_set(NO_PART)
+            return False
+        return True
+
+    def draw(self, _context):
+        self.layout.prop(self, "method")
+        self.layout.prop(self, "rings")
+
+    # ---- Without a window ------------------------------------------------------------------------------------------
+
+    def execute(self, context):
+        """The part goes where handles say, at once."""
+        obj = context.edit_object
+        first = None
+        try:
+            faces = self._faces(obj)
+            if not self.handles:
+                raise Refused("There is no handle: drag one in the 3D view.")
+            if max(each.vertex for each in self.handles) >= len(obj.data.vertices):
+                raise Refused("A handle is a vertex that the mesh doesn't have.")
+            for turn in sorted({each.turn for each in self.handles}):
+                region = Region(obj, faces, self.rings, obj.data.use_mirror_x)
+                first = first or region
+                handles = [each for each in self.handles if each.turn == turn]
+                shape = METHODS[self.method](region, [region.patch(region.nearest_free(each.vertex), each.radius)
+                                                      for each in handles])
+                shape.jump([np.array(each.matrix).reshape(4, 4) for each in handles])
+                write(obj, *region.changed(shape.points()))
+        except (Refused, PartwheelError) as error:
+            if first:
+                first.restore(obj)
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+    def _faces(self, obj):
+        """The part's faces. Raises Refused."""
+        if self.node < 0:
+            picked = session.picked(obj)
+            if not picked:
+                raise Refused(NO_PART)
+            self.node = picked.node
+        hierarchy = session.hierarchy(obj)
+        if not hierarchy or self.node >= len(hierarchy.parent):
+            raise Refused(f"There is no part {self.node}. {NO_PART}")
+        return hierarchy.faces(self.node)
+
+    # ---- With the mouse --------------------------------------------------------------------------------------------
+
+    def invoke(self, context, event):
+        if context.window is None or context.area is None or context.area.type != "VIEW_3D":
+            self.report({"ERROR"}, "Parts are deformed in a 3D view: start this with the mouse over one.")
+            return {"CANCELLED"}
+        obj = context.edit_object
+        try:
+            self.faces = self._faces(obj)
+            self.region = self.first = Region(obj, self.faces, self.rings, obj.data.use_mirror_x)
+            picked = session.picked(obj)
+            self.placed = [self._handle_of(obj, picked and picked.face)]
+            self._hold()
+        except (Refused, PartwheelError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.object_name, self.stage, self.turns = obj.name_full, None, []
+        self.counts = len(obj.data.vertices), len(obj.data.polygons)
+        self.settling, self.changed = False, False
+        self.timer = context.window_manager.event_timer_add(TICK, window=context.window)
+        self.drawing = bpy.types.SpaceView3D.draw_handler_add(self._draw, (), "WINDOW", "POST_VIEW")
+        if self.start != "NONE":
+            self._begin(context, event, self.start)
+        self._tell(context)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        """One step; whatever goes wrong in it, the mesh is put back and the tool ends, with a report."""
+        try:
+            return self._handle(context, event)
+        except Exception as error:  # any: a tool that dies in the middle leaves the mesh half deformed
+            traceback.print_exc()
+            self.report({"ERROR"}, f"Partwheel stopped: {error}. The full report is in the system console.")
+            return self._cancelled(context)
+
+    def cancel(self, context):
+        """Blender itself ends the tool: the window closes or another file opens."""
+        self._cancelled(context)
+
+    def _handle(self, context, event):
+        if not self._still_there(context):
+            self.report({"WARNING"}, "Partwheel stopped: the mesh is no longer being edited as it was.")
+            self._end(context)
+            return {"CANCELLED"}
+        if event.type == "TIMER":
+            self._tick(context)
+            return {"PASS_THROUGH"}
+        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
+            return self._cancelled(context)
+        if event.type in PASS:
+            return {"PASS_THROUGH"}
+        if self.stage:
+            return self._in_stage(context, event)
+        return self._between(context, event)
+
+    # ---- Between two movements
+
+    def _between(self, context, event):
+        if event.value not in {"PRESS", "DOUBLE_CLICK"}:
+            return {"RUNNING_MODAL"}
+        if event.type in CONFIRM:
+            return self._confirmed(context)
+        if event.type == "LEFTMOUSE":
+            if not view_under(context.window, event.mouse_x, event.mouse_y):
+                return {"PASS_THROUGH"}
+            vertex = self._vertex_under(context, event)
+            if vertex is None:
+                return self._confirmed(context)
+            if self.method == "RIGID":
+                self._place(context, vertex, event.shift)
+            self._begin(context, event, "G", dragging=True)
+        elif event.type in {"G", "R", "S"}:
+            self._begin(context, event, event.type)
+        elif event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE"}:
+            self._resize(context, event.type == "WHEELUPMOUSE")
+        self._tell(context)
+        return {"RUNNING_MODAL"}
+
+    def _vertex_under(self, context, event):
+        """The vertex of the part under the mouse, or None."""
+        _, region, view = view_under(context.window, event.mouse_x, event.mouse_y)
+        point = event.mouse_x - region.x, event.mouse_y - region.y
+        obj = context.edit_object
+        hit = Picker().face_under(obj, region, view, point)
+        if not hit or hit[0] not in self.faces:
+            return None
+        face, distance = hit
+        place = region_2d_to_origin_3d(region, view, point) + distance * region_2d_to_vector_3d(region, view, point)
+        local = np.array(obj.matrix_world.inverted_safe() @ place)
+        corners = list(obj.data.polygons[face].vertices)
+        inside = np.searchsorted(self.region.vertices, corners)
+        return corners[np.linalg.norm(self.shape.points()[inside] - local, axis=1).argmin()]
+
+    def _handle_of(self, obj, face):
+        """The handle to begin with: at the face that was clicked, or else the part's farthest point from its border."""
+        corners = obj.data.polygons[face].vertices if face is not None else ()
+        known = [vertex for vertex in corners if vertex in self.region.vertices]
+        if known:
+            vertex = self.region.vertices[self.region.nearest_free(known[0])]
+        else:
+            away = METHODS["PROPORTIONAL"](self.region).weight
+            vertex = self.region.vertices[np.where(self.region.free, away, -1).argmax()]
+        return Handle(int(vertex), HANDLE_SIZE * self.region.size)
+
+    def _place(self, context, vertex, one_more):
+        """Takes the handle to a vertex, unless it is in the handle already. The ones before stay where they were put if
+        there is to be one more; else the shape so far is the new rest."""
+        vertex = int(self.region.vertices[self.region.nearest_free(vertex)])
+        if vertex in self.region.vertices[self.patches[-1]] and not one_more:
+            return
+        radius, before = self.placed[-1].radius, (self.placed, self.region, self.turns)
+        if one_more:
+            self.placed = [*self.placed, Handle(vertex, radius)]
+        else:
+            if any((handle.matrix != np.eye(4)).any() for handle in self.placed):
+                self.turns = [*self.turns, self.placed]
+                self.region = Region(context.edit_object, self.faces, self.rings, context.edit_object.data.use_mirror_x)
+            self.placed = [Handle(vertex, radius)]
+        self._try(context, *before)
+
+    def _resize(self, context, larger):
+        before = self.placed, self.region, self.turns
+        last = self.placed[-1]
+        self.placed = [*self.placed[:-1], Handle(last.vertex, last.radius * (NOTCH if larger else 1 / NOTCH), last.matrix)]
+        self._try(context, *before)
+
+    def _try(self, context, placed, region, turns):
+        """Holds the part by the new handles; if that can't be, all is as it was before, and why is reported."""
+        try:
+            self._hold()
+        except Refused as reason:
+            self.placed, self.region, self.turns = placed, region, turns
+            self._hold()
+            self.report({"WARNING"}, str(reason))
+        if any((handle.matrix != np.eye(4)).any() for handle in self.placed):
+            self.shape.jump([handle.matrix for handle in self.placed])
+            self._show(context)
+
+    def _hold(self):
+        self.patches = [self.region.patch(self.region.nearest_free(handle.vertex), handle.radius)
+                        for handle in self.placed]
+        self.shape = METHODS[self.method](self.region, self.patches)
+
+    # ---- During a movement
+
+    def _begin(self, context, event, kind, dragging=False):
+        self.stage = None
+        _, region, view = self._view(context)
+        start = event.mouse_x - region.x, event.mouse_y - region.y
+        self.stage = Stage(kind, start, self.placed[-1].matrix, self._pivot(context), dragging)
+        self._turn(region, view, start)
+
+    def _view(self, context):
+        """(area, region, RegionView3D) that the tool was started in."""
+        region = context.region
+        if context.area.spaces.active.region_quadviews and region.type == "WINDOW":
+            windows = [each for each in context.area.regions if each.type == "WINDOW"]
+            return context.area, region, context.area.spaces.active.region_quadviews[windows.index(region)]
+        window = next(each for each in context.area.regions if each.type == "WINDOW")
+        return context.area, region if region.type == "WINDOW" else window, context.area.spaces.active.region_3d
+
+    def _pivot(self, context):
+        """The last handle's center, or the whole part's, in the world."""
+        points = self.shape.points()
+        chosen = points[self.patches[-1]] if self.method == "RIGID" else points[self.region.free]
+        return context.edit_object.matrix_world @ Vector(chosen.mean(axis=0))
+
+    def _in_stage(self, context, event):
+        stage = self.stage
+        if event.type in {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "LEFT_CTRL", "RIGHT_CTRL"}:
+            self._follow(context, event)
+            return {"RUNNING_MODAL"}
+        if stage.dragging and (event.type, event.value) == ("LEFTMOUSE", "RELEASE"):
+            self._follow(context, event)
+            self.stage = None
+            self._tell(context)
+            return {"RUNNING_MODAL"}
+        if event.value not in {"PRESS", "DOUBLE_CLICK"}:
+            return {"RUNNING_MODAL"}
+        if event.type in CONFIRM or event.type == "LEFTMOUSE":
+            self._follow(context, event)
+            self.stage = None
+            if self.start != "NONE":  # it was started for this movement
+                return self._confirmed(context)
+        elif event.type in {"G", "R", "S"}:
+            self._begin(context, event, event.type)
+        elif event.type in {"X", "Y", "Z"}:
+            axis = "XYZ".index(event.type)
+            stage.axis = None if stage.axis == axis else axis
+            self._follow(context, event)
+        elif event.type in DIGITS:
+            stage.typed += DIGITS[event.type]
+            self._follow(context, event)
+        elif event.type in {"MINUS", "NUMPAD_MINUS"}:
+            stage.typed = stage.typed[1:] if stage.typed.startswith("-") else "-" + stage.typed
+            self._follow(context, event)
+        elif event.type == "BACK_SPACE":
+            stage.typed = stage.typed[:-1]
+            self._follow(context, event)
+        self._tell(context)
+        return {"RUNNING_MODAL"}
+
+    def _follow(self, context, event):
+        """The handle goes where the mouse, or the number typed, says; the part follows."""
+        _, region, view = self._view(context)
+        mouse = event.mouse_x - region.x, event.mouse_y - region.y
+        self._turn(region, view, mouse)
+        world = {"G": self._moved, "R": self._rotated, "S": self._scaled}[self.stage.kind](region, view, mouse,
+                                                                                          event.ctrl)
+        to_world = context.edit_object.matrix_world
+        local = np.array(to_world.inverted_safe() @ world @ to_world)
+        matrix = local @ self.stage.base
+        if (matrix == self.placed[-1].matrix).all():
+            return
+        last = self.placed[-1]
+        self.placed = [*self.placed[:-1], Handle(last.vertex, last.radius, matrix)]
+        try:
+            self.shape.follow([handle.matrix for handle in self.placed], LIVE_ITERATIONS)
+        except PartwheelError as error:  # a number typed that leads nowhere
+            self.report({"WARNING"}, str(error))
+            return
+        self.settling = True
+        self._show(context)
+        self._tell(context)
+
+    def _typed(self):
+        try:
+            return float(self.stage.typed)
+        except ValueError:  # nothing yet, or only a sign
+            return None
+
+    def _moved(self, region, view, mouse, snap):
+        stage = self.stage
+        typed = self._typed()
+        if typed is not None:
+            shift = Vector(typed if k == (stage.axis or 0) else 0 for k in range(3))
+            return Matrix.Translation(shift)
+        shift = (region_2d_to_location_3d(region, view, mouse, stage.pivot)
+                 - region_2d_to_location_3d(region, view, stage.start, stage.pivot))
+        if stage.axis is not None:
+            shift = Vector(shift[k] if k == stage.axis else 0 for k in range(3))
+        if snap:
+            # A step that shows: the power of ten next to some 20 pixels.
+            pixels = (region_2d_to_location_3d(region, view, (stage.start[0] + 20, stage.start[1]), stage.pivot)
+                      - region_2d_to_location_3d(region, view, stage.start, stage.pivot)).length
+            step = 10 ** round(math.log10(max(pixels, 1e-12)))
+            shift = Vector(step * round(value / step) for value in shift)
+        return Matrix.Translation(shift)
+
+    def _turn(self, region, view, mouse):
+        """Keeps count of how far the mouse went about the pivot."""
+        center = location_3d_to_region_2d(region, view, self.stage.pivot) or Vector(self.stage.start)
+        x, y = mouse[0] - center[0], mouse[1] - center[1]
+        if math.hypot(x, y) < 1:
+            return
+        angle = math.atan2(y, x)
+        if self.stage.angle is not None:
+            self.stage.turned += (angle - self.stage.angle + math.pi) % (2 * math.pi) - math.pi
+        self.stage.angle = angle
+
+    def _rotated(self, _region, view, _mouse, snap):
+        stage, typed = self.stage, self._typed()
+        towards_user = view.view_matrix.inverted().to_3x3().col[2]
+        axis = towards_user if stage.axis is None else Vector(float(k == stage.axis) for k in range(3))
+        angle = stage.turned if axis.dot(towards_user) >= 0 else -stage.turned
+        if typed is not None:
+            angle = math.radians(typed)
+        elif snap:
+            angle = math.radians(STEP_DEGREES * round(math.degrees(angle) / STEP_DEGREES))
+        return _about(stage.pivot, Matrix.Rotation(angle, 4, axis))
+
+    def _scaled(self, region, view, mouse, snap):
+        stage, typed = self.stage, self._typed()
+        center = location_3d_to_region_2d(region, view, stage.pivot) or Vector(stage.start)
+        factor = ((Vector(mouse) - center).length / max((Vector(stage.start) - center).length, 1))
+        if typed is not None:
+            factor = typed
+        elif snap:
+            factor = STEP_SCALE * round(factor / STEP_SCALE)
+        factors = [factor if stage.axis in {None, k} else 1 for k in range(3)]
+        return _about(stage.pivot, Matrix.Diagonal((*factors, 1)))
+
+    # ---- What is seen
+
+    def _tick(self, context):
+        """While the mouse rests the part goes on towards its shape of rest."""
+        if self.settling:
+            self.settling = self.shape.settle(REST_ITERATIONS)
+            self._show(context)
+
+    def _show(self, context):
+        self.changed = True
+        write(context.edit_object, *self.region.changed(self.shape.points()))
+        context.area.tag_redraw()
+
+    def _draw(self):
+        obj = bpy.data.objects.get(self.object_name)
+        if obj is not None and self.method == "RIGID":
+            points = self.shape.points()
+            handle_points.draw(obj.matrix_world, [points[patch] for patch in self.patches])
+
+    def _tell(self, context):
+        stage = self.stage
+        what = f"Handle of {len(self.patches[-1])} vertices"
+        if stage:
+            axis = "" if stage.axis is None else f" along {'XYZ'[stage.axis]}"
+            what = {"G": "Move", "R": "Rotate", "S": "Scale"}[stage.kind] + axis
+            if stage.typed:
+                what += f": {stage.typed}"
+        context.workspace.status_text_set(STAGE_KEYS if stage else IDLE_KEYS)
+        context.area.header_text_set(f"Partwheel: {what}")
+        context.area.tag_redraw()
+
+    # ---- The end
+
+    def _confirmed(self, context):
+        if not self.changed:
+            self._end(context)
+            return {"CANCELLED"}
+        self.handles.clear()
+        for turn, placed in enumerate([*self.turns, self.placed]):
+            for handle in placed:
+                each = self.handles.add()
+                each.turn, each.vertex, each.radius = turn, handle.vertex, handle.radius
+                each.matrix = handle.matrix.ravel()
+        self._end(context)
+        return {"FINISHED"}
+
+    def _cancelled(self, context):
+        try:
+            if self.changed and self._still_there(context):
+                self.first.restore(context.edit_object)
+        finally:
+            self._end(context)
+        return {"CANCELLED"}
+
+    def _still_there(self, context):
+        obj = context.edit_object
+        if obj is None or obj.name_full != self.object_name:
+            return False
+        bm = bmesh.from_edit_mesh(obj.data)
+        return (len(bm.verts), len(bm.faces)) == self.counts
+
+    def _end(self, context):
+        if self.timer:
+            context.window_manager.event_timer_remove(self.timer)
+            bpy.types.SpaceView3D.draw_handler_remove(self.drawing, "WINDOW")
+            self.timer = None
+        if context.workspace:
+            context.workspace.status_text_set(None)
+        if context.area:
+            context.area.header_text_set(None)
+            context.area.tag_redraw()
+
+
+def _about(pivot, matrix):
+    return Matrix.Translation(pivot) @ matrix @ Matrix.Translation(-pivot)

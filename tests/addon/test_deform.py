@@ -1,0 +1,289 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""mesh.partwheel_deform and api.deform without a window: what moves, what stays, shape keys, mirror, refusals."""
+
+import bmesh
+import bpy
+import numpy
+from common import BOX, MeshTest, part, read_off
+
+FINGER = 700  # a face of hand.off on a finger
+
+
+def shift(x, y, z):
+    matrix = numpy.eye(4)
+    matrix[:3, 3] = x, y, z
+    return matrix
+
+
+def edited(obj):
+    """(V,3) what Edit Mode shows."""
+    return numpy.array([vertex.co[:] for vertex in bmesh.from_edit_mesh(obj.data).verts])
+
+
+def stored(collection):
+    return numpy.array([each.co[:] for each in collection])
+
+
+def handle(vertex, matrix, radius=0.0):
+    """One of the operator's handles."""
+    return {"name": "", "turn": 0, "vertex": vertex, "radius": radius, "matrix": matrix.ravel().tolist()}
+
+
+def inner(obj, faces):
+    """The vertices all of whose faces are among these."""
+    faces = set(faces)
+    inside, outside = set(), set()
+    for polygon in obj.data.polygons:
+        (inside if polygon.index in faces else outside).update(polygon.vertices)
+    return sorted(inside - outside)
+
+
+class Deform(MeshTest):
+    def hand(self, level=2):
+        """(object in Edit Mode, node of a finger, its faces, its inner vertices, the farthest of them from the rest)"""
+        obj = self.add(*read_off("hand"))
+        api = part("api")
+        node = api.select(obj, FINGER, level)
+        faces = api.faces(obj, node).tolist()
+        free = inner(obj, faces)
+        co = stored(obj.data.vertices)
+        rest = numpy.delete(co, free, axis=0).mean(axis=0)
+        tip = max(free, key=lambda vertex: numpy.linalg.norm(co[vertex] - rest))
+        self.edit(obj)
+        return obj, node, faces, free, tip
+
+    def run_operator(self, **arguments):
+        return bpy.ops.mesh.partwheel_deform("EXEC_DEFAULT", **arguments)
+
+    def refusal(self, **arguments):
+        with self.assertRaises(RuntimeError) as refused:
+            self.run_operator(**arguments)
+        return str(refused.exception)
+
+    def test_the_part_follows_and_nothing_else_moves(self):
+        obj, node, faces, free, tip = self.hand()
+        before = edited(obj)
+        size = numpy.ptp(before, axis=0).max()
+        move = shift(0.1 * size, 0.05 * size, 0)
+        self.assertEqual(self.run_operator(handles=[handle(tip, move, 0.01 * size)]), {"FINISHED"})  # of the part picked last
+        after = edited(obj)
+        moved = (after != before).any(axis=1)
+        self.assertFalse(moved[numpy.setdiff1d(numpy.arange(len(before)), free)].any())
+        self.assertGreater(moved[free].mean(), 0.9)
+        numpy.testing.assert_allclose(after[tip] - before[tip], move[:3, 3], atol=1e-5 * size)
+        self.assertIsNotNone(part("session").hierarchy(obj))
+        self.assertEqual(part("session").state(obj.data)[0], part("session").State.MOVED)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        numpy.testing.assert_array_equal(stored(obj.data.vertices), after.astype(numpy.float32))
+
+    def test_the_api_does_the_same_in_either_mode(self):
+        results = []
+        for mode in ("EDIT", "OBJECT"):
+            obj, node, faces, free, tip = self.hand()
+            bpy.ops.object.mode_set(mode=mode)
+            part("api").deform(obj, node, [tip], shift(0.1, 0, 0))
+            bpy.ops.object.mode_set(mode="OBJECT")
+            results.append(stored(obj.data.vertices))
+            self.setUp()
+        numpy.testing.assert_array_equal(*results)
+        self.assertTrue((results[0] != numpy.array(read_off("hand")[0], numpy.float32)).any())
+
+    def test_the_same_as_the_core(self):
+        """The mesh of a part: its inner vertices free, all others fixed, and the core's Deformation of the whole."""
+        obj, node, faces, free, tip = self.hand()
+        deform = part("core.deform")
+        rest = edited(obj)
+        triangles = numpy.array([polygon.vertices[:] for polygon in obj.data.polygons])
+        roles = numpy.full(len(rest), deform.FIXED)
+        roles[free] = deform.FREE
+        roles[tip] = 0
+        expected = deform.Deformation(rest, triangles, roles)
+        expected.move_at_once([shift(0, 0.1, 0.05)])
+        part("api").deform(obj, node, [tip], shift(0, 0.1, 0.05))
+        numpy.testing.assert_allclose(edited(obj), expected.positions(), atol=2e-5)
+
+    def test_rings_and_several_handles(self):
+        obj, node, faces, free, tip = self.hand()
+        before = edited(obj)
+        other = min(free, key=lambda vertex: abs(numpy.linalg.norm(before[vertex] - before[tip]) - 0.1))
+        handles = [handle(tip, shift(0.05, 0, 0)), handle(other, shift(0, 0.03, 0))]
+        self.run_operator(handles=handles, rings=2)
+        after = edited(obj)
+        numpy.testing.assert_allclose(after[tip] - before[tip], (0.05, 0, 0), atol=1e-6)
+        numpy.testing.assert_allclose(after[other] - before[other], (0, 0.03, 0), atol=1e-6)
+        moved = set(numpy.flatnonzero((after != before).any(axis=1)).tolist())
+        rings = set(faces)
+        for _ in range(2):
+            reached = {vertex for face in rings for vertex in obj.data.polygons[face].vertices}
+            rings = {polygon.index for polygon in obj.data.polygons if reached & set(polygon.vertices)}
+        self.assertTrue(moved <= set(inner(obj, rings)))
+        self.assertTrue(moved - set(free))
+
+    def test_proportional_stays_within_the_part(self):
+        obj, node, faces, free, tip = self.hand()
+        before = edited(obj)
+        self.run_operator(method="PROPORTIONAL", handles=[handle(tip, shift(0.1, 0, 0))])
+        share = (edited(obj) - before)[:, 0] / 0.1
+        self.assertEqual(share[numpy.setdiff1d(numpy.arange(len(before)), free)].max(), 0)
+        self.assertGreater(share[free].max(), 0.999)
+        self.assertTrue(((share[free] >= 0) & (share[free] <= 1.0001)).all())
+        self.assertGreater(((share[free] > 0.1) & (share[free] < 0.9)).sum(), 10)
+
+    def test_hidden_vertices_stay(self):
+        obj, node, faces, free, tip = self.hand()
+        bm = bmesh.from_edit_mesh(obj.data)
+        bm.verts.ensure_lookup_table()
+        hidden = [vertex for vertex in free if vertex != tip][::7]
+        for vertex in hidden:
+            bm.verts[vertex].hide_set(True)
+        before = edited(obj)
+        part("api").deform(obj, node, [tip], shift(0.05, 0, 0))
+        after = edited(obj)
+        self.assertTrue((after[hidden] == before[hidden]).all())
+        self.assertTrue((after[tip] != before[tip]).any())
+        bpy.ops.mesh.reveal(select=False)
+
+    def test_the_active_shape_key_alone_changes(self):
+        obj, node, faces, free, tip = self.hand()
+        bpy.ops.object.mode_set(mode="OBJECT")
+        for name in ("Basis", "smile", "frown"):
+            obj.shape_key_add(name=name)
+        keys = obj.data.shape_keys.key_blocks
+        for each in keys[1].data:
+            each.co.z += 0.01
+        obj.active_shape_key_index = 1
+        before = [stored(key.data) for key in keys]
+        for mode in ("EDIT", "OBJECT"):
+            bpy.ops.object.mode_set(mode=mode)
+            part("api").deform(obj, node, [tip], shift(0.05, 0, 0))
+            bpy.ops.object.mode_set(mode="OBJECT")
+            after = [stored(key.data) for key in keys]
+            self.assertTrue((after[0] == before[0]).all() and (after[2] == before[2]).all(), mode)
+            numpy.testing.assert_allclose((after[1] - before[1])[tip], (0.05, 0, 0), atol=1e-6)
+            before = after
+
+    def test_mirror(self):
+        """Two copies of a hand, one mirrored: what one finger does its image does mirrored."""
+        vertices, polygons = read_off("hand")
+        apart = max(abs(x) for x, _, _ in vertices) * 1.5
+        count = len(vertices)
+        both = [(x + apart, y, z) for x, y, z in vertices] + [(-x - apart, y, z) for x, y, z in vertices]
+        obj = self.add(both, polygons + [tuple(count + v for v in reversed(polygon)) for polygon in polygons])
+        obj.data.use_mirror_x = True
+        api = part("api")
+        node = next(node for node in api.path(obj, FINGER) if len(inner(obj, api.faces(obj, node).tolist())) > 20)
+        free = inner(obj, api.faces(obj, node).tolist())
+        self.assertLess(max(free), count)
+        before = stored(obj.data.vertices)
+        api.deform(obj, node, free[:1], shift(0.05, 0.02, 0))
+        after = stored(obj.data.vertices)
+        moved = numpy.flatnonzero((after != before).any(axis=1))
+        self.assertTrue((moved >= count).any() and (moved < count).any())
+        numpy.testing.assert_array_equal((after - before)[count:], (after - before)[:count] * (-1, 1, 1))
+
+    def test_mirror_in_the_middle(self):
+        """A part that is its own image stays symmetric, and a handle on one side has its image on the other."""
+        bpy.ops.mesh.primitive_cube_add(size=2)
+        obj = bpy.context.active_object
+        self.edit(obj)
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.subdivide(number_cuts=7)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        obj.data.use_mirror_x = True
+        top = [polygon.index for polygon in obj.data.polygons if polygon.center.z > 0.01]
+        co = stored(obj.data.vertices)
+        deforming = part("deforming")
+        region = deforming.Region(obj, top, 0, True)
+        patch = region.patch(region.nearest_free(int(numpy.abs(co - (0.5, 0, 1)).sum(axis=1).argmin())), 0.3)
+        shape = deforming.AsRigidAsPossible(region, [patch])
+        shape.jump([shift(0.2, 0, 0.5)])
+        deforming.write(obj, *region.changed(shape.points()))
+        after = stored(obj.data.vertices)
+        self.assertGreater(after[:, 2].max(), 1.4)
+        image = after * (-1, 1, 1)
+        nearest = numpy.linalg.norm(image[:, None] - after, axis=2).min(axis=1)
+        self.assertLess(nearest.max(), 1e-6)
+
+    def test_quads_and_ngons_and_their_layers(self):
+        bpy.ops.mesh.primitive_cylinder_add(vertices=16, depth=6)
+        obj = bpy.context.active_object
+        self.edit(obj)
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.subdivide(number_cuts=4)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        uvs = [tuple(each.uv) for each in obj.data.uv_layers.active.data]
+        faces = [polygon.index for polygon in obj.data.polygons if polygon.center.z > 0]
+        self.assertTrue(any(len(polygon.vertices) > 4 for polygon in obj.data.polygons))
+        top = [vertex.index for vertex in obj.data.vertices if vertex.co.z > 2.9]
+        deforming = part("deforming")
+        region = deforming.Region(obj, faces)
+        shape = deforming.AsRigidAsPossible(region, [numpy.searchsorted(region.vertices, top)])
+        shape.jump([shift(1, 0, 0)])
+        deforming.write(obj, *region.changed(shape.points()))
+        self.assertAlmostEqual(max(vertex.co.x for vertex in obj.data.vertices), 2, places=4)
+        self.assertEqual(uvs, [tuple(each.uv) for each in obj.data.uv_layers.active.data])
+
+    def test_restoring_is_exact(self):
+        obj, node, faces, free, tip = self.hand()
+        before = edited(obj)
+        deforming = part("deforming")
+        region = deforming.Region(obj, faces)
+        shape = deforming.AsRigidAsPossible(region, [[region.nearest_free(tip)]])
+        for step in range(5):
+            shape.follow([shift(0.02 * step, 0, 0)], 2)
+            deforming.write(obj, *region.changed(shape.points()))
+        self.assertTrue((edited(obj) != before).any())
+        region.restore(obj)
+        self.assertTrue((edited(obj) == before).all())
+
+    def test_turns_one_after_the_other(self):
+        """What was dragged twice is the same as two deformations."""
+        obj, node, faces, free, tip = self.hand()
+        before = edited(obj)
+        other = min(free, key=lambda vertex: abs(numpy.linalg.norm(before[vertex] - before[tip]) - 0.1))
+        one, two = handle(tip, shift(0.05, 0, 0)), handle(other, shift(0, 0.03, 0))
+        self.run_operator(handles=[one, {**two, "turn": 1}])
+        at_once = edited(obj)
+        part("deforming").write(obj, numpy.arange(len(before)), before.astype(numpy.float32))
+        self.run_operator(handles=[one])
+        self.run_operator(handles=[two])
+        numpy.testing.assert_array_equal(edited(obj), at_once)
+
+    def test_refusals_change_nothing(self):
+        obj, node, faces, free, tip = self.hand()
+        before = edited(obj)
+        hierarchy = part("session").hierarchy(obj)
+        root = len(hierarchy.parent) - 1
+        here = handle(tip, shift(0.1, 0, 0))
+        self.assertIn("no handle", self.refusal())
+        self.assertIn("whole mesh", self.refusal(node=root, handles=[here]))
+        self.assertIn("no part", self.refusal(node=root + 1, handles=[here]))
+        self.assertIn("handle is the whole part", self.refusal(handles=[{**here, "radius": 1e6}]))
+        self.assertIn("doesn't have", self.refusal(handles=[{**here, "vertex": 10**6}]))
+        self.assertIn("not a point", self.refusal(handles=[{**here, "vertex": self.far(obj, tip)}]))
+        with self.assertRaises(ValueError):
+            part("api").deform(obj, node, [self.far(obj, tip)], shift(1, 0, 0))
+        with self.assertRaises(ValueError):
+            part("api").deform(obj, node, [], shift(1, 0, 0))
+        with self.assertRaises(part("core").PartwheelError):
+            part("api").deform(obj, node, [tip], shift(numpy.nan, 0, 0))
+        self.assertTrue((edited(obj) == before).all())
+
+    def far(self, obj, tip):
+        co = edited(obj)
+        return int(numpy.linalg.norm(co - co[tip], axis=1).argmax())
+
+    def test_faces_without_area(self):
+        vertices, polygons = BOX
+        obj = self.add([(x, y, 0) for x, y, _ in vertices], polygons)
+        for point in obj.data.vertices:
+            point.co = (1, 2, 3)
+        obj.data.update()
+        with self.assertRaises(part("deforming").Refused) as refused:
+            part("deforming").Region(obj, [0, 2, 4])
+        self.assertIn("area", str(refused.exception))
+
+    def test_no_operator_without_parts(self):
+        obj = self.add(*BOX)
+        self.edit(obj)
+        self.assertFalse(bpy.ops.mesh.partwheel_deform.poll())
