@@ -42,6 +42,7 @@ class Deform(MeshTest):
     def hand(self, level=2):
         """(object in Edit Mode, node of a finger, its faces, its inner vertices, the farthest of them from the rest)"""
         obj = self.add(*read_off("hand"))
+        self.edit(obj)
         api = part("api")
         node = api.select(obj, FINGER, level)
         faces = api.faces(obj, node).tolist()
@@ -49,7 +50,6 @@ class Deform(MeshTest):
         co = stored(obj.data.vertices)
         rest = numpy.delete(co, free, axis=0).mean(axis=0)
         tip = max(free, key=lambda vertex: numpy.linalg.norm(co[vertex] - rest))
-        self.edit(obj)
         return obj, node, faces, free, tip
 
     def run_operator(self, **arguments):
