@@ -16,7 +16,7 @@ from mathutils import Matrix, Vector
 from .. import handle_points, session
 from ..core import PartwheelError
 from ..deforming import HANDLE_SIZE, METHODS, Refused, Region, write
-from ..picking import Picker, view_under
+from ..picking import FaceTree, view_under
 
 LIVE_ITERATIONS = 2  # a mouse move
 REST_ITERATIONS = 3  # a tick while the mouse rests
@@ -232,7 +232,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         _, region, view = view_under(context.window, event.mouse_x, event.mouse_y)
         point = event.mouse_x - region.x, event.mouse_y - region.y
         obj = context.edit_object
-        hit = Picker().face_under(obj, region, view, point)
+        hit = FaceTree(obj).under(obj.matrix_world, region, view, point)
         if not hit or hit[0] not in self.faces:
             return None
         face, distance = hit
