@@ -130,13 +130,18 @@ def picked(obj):
     return pick if pick and hierarchy(obj) is pick.hierarchy else None
 
 
-def has_pick(obj):
-    """For poll(), which Blender calls often: picked(obj) is not None, as far as state() tells."""
+def picked_as_told(obj):
+    """The same for panels and poll(), which Blender calls often: as far as state() tells."""
     pick = _picks.get(key(obj.data))
     if not pick:
-        return False
+        return None
     fits, entry = state(obj.data)
-    return fits in {State.FITS, State.MOVED} and entry.hierarchy is pick.hierarchy
+    return pick if fits in {State.FITS, State.MOVED} and entry.hierarchy is pick.hierarchy else None
+
+
+def has_pick(obj):
+    """For poll(): whether picked_as_told() finds one."""
+    return picked_as_told(obj) is not None
 
 
 # ---- Building

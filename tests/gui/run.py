@@ -27,7 +27,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 OUTPUT = ROOT / "build" / "gui"
 MESHES = ROOT / "build" / "deps" / "meshes"
-MODELS = {"hand": "hand.off", "homer": "homer.off", "bear": "bear.off", "large": "armadillo.off"}
+MODELS = {"hand": "hand.off", "homer": "homer.off", "bear": "bear.off", "large": "armadillo.off",
+          "elephant": "refined_elephant.off"}
 SUBDIVIDED = {"large"}  # 208,000 faces
 PATH = "/usr/sbin:/usr/bin:/sbin:/bin"
 BLENDER = os.environ.get("PARTWHEEL_BLENDER", "blender")

@@ -23,7 +23,8 @@ WAIT = 40  # seconds until something that should happen counts as not happening
 TICK = 0.01
 FILL = 0.8  # share of the viewport's height or width that an opened model takes
 # How each model is looked at, in its own space: the rotation that the view has (w, x, y, z).
-VIEWS = {"hand": (0.7071, 0.7071, 0, 0), "homer": (1, 0, 0, 0), "bear": (1, 0, 0, 0), "large": (0, 0, 1, 0)}
+VIEWS = {"hand": (0.7071, 0.7071, 0, 0), "homer": (1, 0, 0, 0), "bear": (1, 0, 0, 0), "large": (0, 0, 1, 0),
+         "elephant": (0.7071, 0.7071, 0, 0)}
 
 
 class Failure(Exception):

@@ -42,6 +42,7 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
             column.operator_context = "INVOKE_REGION_WIN"
             column.operator("mesh.partwheel_select")
             draw_handoffs(column)
+            column.operator("mesh.partwheel_path")
             layout.separator()
         state, entry = session.state(context.active_object.data)
         if entry:

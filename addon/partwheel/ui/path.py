@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The way through the dendrogram of the part that was picked last: each stop of the wheel, how large it is and what it
+costs. A click on one takes it."""
+
+import math
+
+import bpy
+
+from .. import session, wheel
+
+SMALLEST = 0.25  # share of the width that the smallest part's bar takes
+
+
+def rows(pick):
+    """[(number from 1, node, faces, share of the area, cost as text, bar 0..1)] of a session.Picked, growing."""
+    hierarchy = pick.hierarchy
+    picked = wheel.pick(hierarchy, pick.face)
+    counts = [len(hierarchy.faces(node)) for node in picked.stops]
+    low, high = math.log(counts[0]), math.log(max(counts[-1], counts[0] + 1))
+    return [(number, node, count, hierarchy.area[node] / hierarchy.area[-1], cost(hierarchy, node),
+             (math.log(count) - low) / (high - low))
+            for number, (node, count) in enumerate(zip(picked.stops, counts), 1)]
+
+
+def cost(hierarchy, node):
+    """What joining the two halves of a node costs (Eq. 3 of the paper): the concavity, as a share of the volume of the
+    whole's hull, or nothing where they are convex together."""
+    if not hierarchy.cost_class[node]:
+        return "convex"
+    return f"{hierarchy.cost[node] / hierarchy.summary.hull_volume:.1e}"
+
+
+class VIEW3D_PT_partwheel_path(bpy.types.Panel):
+    bl_label = "Path of the Part"
+    bl_category = "Partwheel"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_parent_id = "VIEW3D_PT_partwheel"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.mode == "EDIT_MESH" and session.has_pick(context.edit_object)
+
+    def draw(self, context):
+        draw_path(self.layout, context.edit_object)
+
+
+class MESH_OT_partwheel_path(bpy.types.Operator):
+    """Show the parts that the wheel goes through, from the smallest to the whole, and click one to take it"""
+
+    bl_idname = "mesh.partwheel_path"
+    bl_label = "Path of the Part"
+    bl_options = {"INTERNAL"}
+
+    @classmethod
+    def poll(cls, context):
+        if context.mode != "EDIT_MESH" or not session.has_pick(context.edit_object):
+            cls.poll_message_set("Pick a part first, in Edit Mode")
+            return False
+        return True
+
+    def invoke(self, context, _event):
+        return context.window_manager.invoke_popup(self, width=380)
+
+    def draw(self, context):
+        draw_path(self.layout, context.edit_object)
+
+    def execute(self, _context):
+        return {"FINISHED"}
+
+
+def draw_path(layout, obj):
+    pick = session.picked_as_told(obj)
+    if not pick:
+        return
+    start = wheel.pick(pick.hierarchy, pick.face).start
+    column = layout.column(align=True)
+    column.operator_context = "EXEC_DEFAULT"
+    for number, node, count, share, text, bar in reversed(rows(pick)):
+        split = column.split(factor=0.62, align=True)
+        left = split.split(factor=SMALLEST + (1 - SMALLEST) * bar, align=True)
+        button = left.operator("mesh.partwheel_select", text=f"{count:,}", depress=node == pick.node)
+        button.face_index, button.level = pick.face, number - 1 - start
+        left.label(text="")
+        right = split.row()
+        right.label(text=f"{share:.1%}")
+        right.label(text=text)
+
+
+CLASSES = (VIEW3D_PT_partwheel_path, MESH_OT_partwheel_path)
+
+
+def register():
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,85 @@
+"""What a notch, a hover and a start cost of the add-on's own time, on 89,000 faces. Prints a table; see scripts/bench_felt."""
+import os
+import statistics
+import time
+
+LIMITS = {"notch, median": 0.016, "notch, 95 %": 0.033, "hover, median": 0.016, "start": 0.2}
+# On a machine that does other things as well the tests only ask that nothing is out of all proportion.
+SLACK = 1 if os.environ.get("PARTWHEEL_FELT") else 8
+
+
+class Clock:
+    """Processor time that a method of the add-on takes, call by call."""
+
+    def __init__(self, owner, name):
+        self.seconds = []
+        inner = getattr(owner, name)
+
+        def timed(*arguments, **more):
+            began = time.thread_time()
+            try:
+                return inner(*arguments, **more)
+            finally:
+                self.seconds.append(time.thread_time() - began)
+
+        setattr(owner, name, timed)
+
+    def take(self):
+        taken, self.seconds = self.seconds, []
+        return taken
+
+
+def play(stage):
+    yield from stage.open("elephant")
+    picker, hover, overlay = stage.part("operators.pick").PartPicker, stage.part("tools.hover").Hover, stage.part("overlay")
+    handle, begin, moves = Clock(picker, "_handle"), Clock(picker, "_begun"), Clock(hover, "move")
+    draws, hover_draws = Clock(overlay, "draw_held"), Clock(overlay, "draw_hover")
+    stage.use_tool()
+    spots = [stage.spot(x, y, above=2) for x in (0.2, 0.4, 0.5, 0.6, 0.8) for y in (0.3, 0.5, 0.7)]
+    stage.part("prepared")._kept.clear()
+    stage.mouse.move(*spots[0][:2])
+    yield from stage.until("hover has found a part", lambda: stage.hovered() is not None)
+    first_hover = sum(moves.take())
+    for x, y, face in spots * 4:
+        stage.mouse.move(x, y)
+        yield from stage.settle()
+        yield from stage.drawn()
+    hovers = moves.take()
+    hover_drawn = hover_draws.take()
+
+    notches, starts = [], []
+    for x, y, face in spots[::3]:
+        stops, start = stage.wheels.stops(face)
+        stage.mouse.move(x, y)
+        begin.take()
+        stage.mouse.click()
+        yield from stage.selected(stops[start], "after the click")
+        starts += begin.take()
+        for step in (1,) * (len(stops) - 1 - start) + (-1,) * (len(stops) - 1):
+            handle.take()
+            draws.take()
+            stage.mouse.wheel(step)
+            yield from stage.settle()
+            yield from stage.drawn()
+            notches.append(sum(handle.take()) + max(draws.take(), default=0.0))
+        stage.mouse.key("ESC")
+        yield from stage.settle()
+        stage.select(())
+    stage.part("prepared")._kept.clear()
+    stage.mouse.click()
+    yield from stage.settle()
+    cold = begin.take()[-1]
+    notches.sort()
+    measured = {"notch, median": statistics.median(notches), "notch, 95 %": notches[int(0.95 * len(notches))],
+                "hover, median": statistics.median(hovers) + statistics.median(hover_drawn),
+                "start": max(starts)}
+    print(f"{len(stage.wheels.triangles):,} faces; {len(notches)} notches, {len(hovers)} hovers, {len(starts)} starts; "
+          "processor milliseconds of the add-on")
+    for name, value in measured.items():
+        print(f"felt | {name} | {1000 * value:.1f} | {1000 * LIMITS[name]:.0f}")
+    print(f"felt | largest notch | {1000 * notches[-1]:.1f} |")
+    print(f"felt | hover, 95 % | {1000 * sorted(hovers)[int(0.95 * len(hovers))]:.1f} |")
+    print(f"felt | first hover after an edit | {1000 * first_hover:.1f} |")
+    print(f"felt | first start after an edit | {1000 * cold:.1f} |")
+    for name, value in measured.items():
+        stage.check(value <= SLACK * LIMITS[name], f"{name}: {1000 * value:.1f} ms")
