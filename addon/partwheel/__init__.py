@@ -17,7 +17,7 @@ bl_info = {
 
 
 def register():
-    from . import operators, preferences, prepared, session, tools, ui
+    from . import command, operators, preferences, prepared, session, tools, ui
 
     preferences.register()
     session.register()
@@ -25,11 +25,13 @@ def register():
     operators.register()
     ui.register()
     tools.register()
+    command.register()
 
 
 def unregister():
-    from . import operators, overlay, preferences, prepared, session, tools, ui
+    from . import command, operators, overlay, preferences, prepared, session, tools, ui
 
+    command.unregister()
     tools.unregister()
     ui.unregister()
     operators.unregister()

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""blender --command partwheel: hierarchies of whole files without a window, in Blender 4.2 and later.
+
+    blender --command partwheel build scene.blend
+    blender --command partwheel cut scene.blend --parts 8 --attribute part --output cut.blend
+"""
+
+import argparse
+
+import bpy
+
+from . import api
+from .core import LibraryError, PartwheelError
+from .session import Outdated
+
+NAME = "partwheel"
+_handle = None
+
+
+def run(arguments):
+    """The command. arguments: the words after its name. The exit code: 0, or 1 if any object failed."""
+    options = _parser().parse_args(arguments)
+    bpy.ops.wm.open_mainfile(filepath=options.file, load_ui=False)
+    objects = [obj for obj in bpy.data.objects if obj.type == "MESH" and not obj.library
+               and options.object in (None, obj.name)]
+    if not objects:
+        print(f"{options.file} holds no mesh object" + (f" named {options.object}" if options.object else ""))
+        return 1
+    failed = 0
+    for obj in {obj.data: obj for obj in objects}.values():
+        try:
+            print(options.do(obj, options), flush=True)
+        except (PartwheelError, LibraryError, Outdated) as error:
+            print(f"{obj.name}: {error}", flush=True)
+            failed += 1
+    bpy.ops.wm.save_as_mainfile(filepath=options.output or options.file)
+    print(f"{len(objects) - failed} of {len(objects)} objects, saved in {options.output or options.file}", flush=True)
+    return 1 if failed else 0
+
+
+def _build(obj, options):
+    built = api.build(obj, options.quality, options.open_surfaces)
+    return f"{obj.name}: {len(built.order)} faces, {len(built.tetrahedra)} tets. {built.account}".rstrip()
+
+
+def _cut(obj, options):
+    labels = api.cut(obj, options.parts, options.height)
+    attributes = obj.data.attributes
+    if options.attribute in attributes:
+        attributes.remove(attributes[options.attribute])
+    attributes.new(options.attribute, "INT", "FACE").data.foreach_set("value", labels)
+    return f"{obj.name}: {len(set(labels.tolist()))} parts in the face attribute {options.attribute}"
+
+
+def _parser():
+    parser = argparse.ArgumentParser(prog=f"blender --command {NAME}",
+                                     description="Finds the parts of the meshes in a .blend file and saves it.")
+    commands = parser.add_subparsers(required=True, metavar="build | cut")
+    for name, do, text in (("build", _build, "find the parts, which are saved with the file"),
+                           ("cut", _cut, "number the faces by part, as a face attribute")):
+        command = commands.add_parser(name, help=text, description=text)
+        command.set_defaults(do=do)
+        command.add_argument("file", help="the .blend file")
+        command.add_argument("--object", help="only this object (default: every mesh)")
+        command.add_argument("--output", help="save there (default: the file itself)")
+        if name == "build":
+            command.add_argument("--quality", type=float, default=0.0, help="0, or from 1.1 on: see the operator")
+            command.add_argument("--open-surfaces", action="store_true", help="take sheets for thin solids")
+        else:
+            size = command.add_mutually_exclusive_group(required=True)
+            size.add_argument("--parts", type=int, help="into so many")
+            size.add_argument("--height", type=float, help="at this height of the dendrogram")
+            command.add_argument("--attribute", default="part", help="its name (default: part)")
+    return parser
+
+
+def register():
+    global _handle
+    if hasattr(bpy.utils, "register_cli_command"):
+        _handle = bpy.utils.register_cli_command(NAME, run)
+
+
+def unregister():
+    global _handle
+    if _handle is not None:
+        bpy.utils.unregister_cli_command(_handle)
+        _handle = None

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""blender --command partwheel: builds and cuts the meshes of a file. Its function is called; 4.2 and later register it."""
+
+import contextlib
+import io
+import os
+import tempfile
+
+import bpy
+from common import BOX, SHEET, MeshTest, part, read_off
+
+
+class Command(MeshTest):
+    def setUp(self):
+        super().setUp()
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path, self.other = os.path.join(folder.name, "in.blend"), os.path.join(folder.name, "out.blend")
+
+    def run_command(self, *words):
+        """(exit code, what it printed)"""
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            code = part("command").run([*words])
+        return code, printed.getvalue()
+
+    def save(self):
+        bpy.ops.wm.save_as_mainfile(filepath=self.path)
+
+    def test_build_and_cut(self):
+        self.add(*read_off("hand"), "hand")
+        self.add(*BOX, "box")
+        self.save()
+        code, printed = self.run_command("build", self.path)
+        self.assertEqual(code, 0, printed)
+        self.assertIn("hand: 2390 faces", printed)
+        self.assertIn("box: 6 faces", printed)
+        bpy.ops.wm.open_mainfile(filepath=self.path)
+        for name in ("hand", "box"):
+            self.assertIsNotNone(part("session").hierarchy(bpy.data.objects[name]))
+        expected = part("api").cut(bpy.data.objects["hand"], parts=5).tolist()
+        code, printed = self.run_command("cut", self.path, "--object", "hand", "--parts", "5", "--attribute", "limb",
+                                         "--output", self.other)
+        self.assertEqual(code, 0, printed)
+        bpy.ops.wm.open_mainfile(filepath=self.other)
+        found = [value.value for value in bpy.data.objects["hand"].data.attributes["limb"].data]
+        self.assertEqual(found, expected)
+        self.assertNotIn("limb", bpy.data.objects["box"].data.attributes)
+
+    def test_what_fails_is_named(self):
+        self.add(*SHEET, "sheet")
+        self.add(*BOX, "box")
+        self.save()
+        code, printed = self.run_command("build", self.path)
+        self.assertEqual(code, 1)
+        self.assertIn("sheet: The mesh is a sheet", printed)
+        self.assertIn("box: 6 faces", printed)
+        code, printed = self.run_command("build", self.path, "--object", "none")
+        self.assertEqual(code, 1)
+        self.assertIn("named none", printed)
+
+    def test_registered_where_blender_has_commands(self):
+        self.assertEqual(part("command")._handle is not None, hasattr(bpy.utils, "register_cli_command"))
