@@ -1,0 +1,52 @@
+"""A part completed, as the nose in the paper's Figure 8: a finger copied (C), another one removed (X), the copy placed
+where that was, fitted to its border, and united; undone step by step."""
+import bpy
+from mathutils import Vector
+
+from compose import caps, enter, place_over, unite, volume
+
+
+def play(stage):
+    yield from stage.open("hand")
+    hand = stage.object
+    whole = volume(hand)
+    yield from finger(stage, 0.5, 0.9)
+    yield from stage.screenshot("1-picked")
+    count = len(stage.selection())
+    stage.mouse.key("C")
+    yield from stage.until("the copy is there, in Object Mode",
+                           lambda: stage.object != hand and stage.object.mode == "OBJECT")
+    part = stage.object
+    stage.check((~caps(part)).sum() == count, "the copy has the part's faces")
+    stage.check(caps(part).any() and abs(volume(hand) - whole) < 1e-6 * whole, "it is capped; the hand is as it was")
+    part.matrix_world.translation += stage.view_3d.view_rotation @ Vector((-0.8, 0.3, 0))
+    yield from stage.screenshot("2-copied")
+
+    yield from enter(stage, hand)
+    yield from finger(stage, 0.97, 0.62)
+    gone = len(stage.selection())
+    stage.mouse.key("X")
+    yield from stage.until("the other finger is gone", lambda: len(hand.data.polygons) != len(stage.wheels.triangles))
+    stage.mouse.key("TAB")
+    yield from stage.until("Object Mode", lambda: hand.mode == "OBJECT")
+    stage.check((~caps(hand)).sum() == len(stage.wheels.triangles) - gone, "only its faces are gone")
+    rest = volume(hand)
+    stage.check(rest < 0.99 * whole, "the hand has lost a finger")
+    yield from stage.screenshot("3-removed")
+
+    yield from place_over(stage, part, hand, fit=True)
+    yield from stage.screenshot("4-placed")
+    yield from unite(stage, hand, part)
+    stage.check(rest < volume(hand) < rest + 0.2 * whole, "the hand has a finger more")
+    yield from stage.screenshot("5-united")
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.until("one undo step brings both back",
+                           lambda: "hand part" in bpy.data.objects and abs(volume(bpy.data.objects["hand"]) - rest)
+                           < 1e-6 * whole)
+
+
+def finger(stage, x, y):
+    _, stops, start = yield from stage.pick(x, y)
+    wanted = next(i for i, part in enumerate(stops) if len(part) >= 0.05 * len(stage.wheels.triangles))
+    stage.mouse.wheel(wanted - start)
+    yield from stage.selected(stops[wanted], "the finger")
