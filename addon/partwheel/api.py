@@ -99,8 +99,8 @@ def place(part, location, normal=(0, 0, 1), scale=1.0, angle=0.0, depth=0.0, tar
     to location in the world, turned against the surface's normal there. scale: times its size. angle: about the normal,
     in radians. depth: how far it is sunk in, times the border's radius, beyond the little that a union needs.
 
-    target: the mesh object it goes onto. fit: onto the target's border nearest to location, and of its size. mirror: the
-    mirror image across the target's own YZ plane as well; it is returned, else None. ValueError: no border to fit."""
+    target: the mesh object it goes onto. fit: onto the target's border nearest to location, and of its size. mirror:
+    the mirror image across the target's own YZ plane as well; it is returned, else None. ValueError: no border there."""
     _check(part)
     if fit or mirror:
         _check(target)
@@ -110,8 +110,8 @@ def place(part, location, normal=(0, 0, 1), scale=1.0, angle=0.0, depth=0.0, tar
 
 def unite(target, others):
     """Makes the target's mesh the union of it and the other objects, which stay, by Blender's Boolean: n-gons, layers
-    and materials kept, modifiers of the others applied. union.NotUnited, before anything has changed: one of them is not
-    closed, or no solver gave a closed mesh of a possible volume. Outside Edit Mode only."""
+    and materials kept, modifiers of the others applied. union.NotUnited, before anything has changed: one of them is
+    not closed, or no solver gave a closed mesh of a possible volume. Outside Edit Mode only."""
     for obj in (target, *others):
         _check(obj)
     if any(obj.mode == "EDIT" for obj in (target, *others)):

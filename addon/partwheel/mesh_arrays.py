@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Blender mesh as numpy arrays: the cage as it is, without modifiers, in its object's own space. Only reads, but for normals."""
+"""A Blender mesh as numpy arrays: the cage as it is, without modifiers, in its object's own space.
+Only reads, but for normals."""
 
 import hashlib
 from typing import NamedTuple

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A part of a Blender mesh as a closed mesh of its own, and the mesh without it: polygons keep all their layers.
 
-On the exact rung the part is core's Solid: the polygons that lie in it whole stay as they are, those that are cut become
-triangles with their attributes, and the caps close it. On the other rungs it is the mesh's own polygons: doubles welded,
-wound alike, set apart where more than two meet at an edge, and every border filled. Either way each edge has two faces.
+On the exact rung the part is core's Solid: the polygons that lie in it whole stay as they are, those that are cut
+become triangles with their attributes, and the caps close it. On the other rungs it is the mesh's own polygons: doubles
+welded, wound alike, set apart where more than two meet at an edge, every border filled. Either way each edge has two faces.
 """
 
 from typing import NamedTuple

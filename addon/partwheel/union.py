@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Closed meshes united into one by Blender's Boolean. What it gives is never trusted: it is checked, and the next solver
-is tried."""
+"""Closed meshes united into one by Blender's Boolean. What it gives is never trusted: it is checked, and the next
+solver is tried."""
 
 import bmesh
 import bpy
@@ -139,8 +139,8 @@ def _united(base, operand, base_name, operand_name, slots):
             return result, solver
         reasons.append(f"by {solver.title()}{' within' if within else ''}: {wrong}")
         bpy.data.meshes.remove(result)
-    raise NotUnited(f"{base_name} and {operand_name} can't be united ({'; '.join(reasons)}). Move one of them a little: "
-                    "faces that lie in each other are the usual cause.")
+    raise NotUnited(f"{base_name} and {operand_name} can't be united ({'; '.join(reasons)}). Move one of them a "
+                    "little: faces that lie in each other are the usual cause.")
 
 
 def _inside(inner, outer):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the tests of parts as solids share: what a solid is, counted from the mesh's polygons; models with their parts."""
+"""What the tests of parts as solids share: what a solid is, counted from its polygons; models with parts."""
 
 import bpy
 import numpy

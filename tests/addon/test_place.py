@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Placing parts: the border meets the surface, the normal is turned to it, borders are fitted, mirror images are solids."""
+"""Placing parts: the border meets the surface, turned to its normal; borders are fitted, mirror images are solids."""
 
 import math
 

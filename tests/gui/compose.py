@@ -114,7 +114,7 @@ def unite(stage, target, *parts):
 
 
 def picked_up_to(stage, x, y, share):
-    """Starts the tool by its key at a share of the active object's extent on the screen, whatever its mesh is by now, and
+    """Starts the tool by its key at a share of the active object's extent on the screen, whatever its mesh is now, and
     turns the wheel until the part has this share of the faces."""
     mesh, view = stage.object.data, seen(stage, stage.object)
     centers = view.centers()

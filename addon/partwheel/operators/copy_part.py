@@ -77,8 +77,7 @@ class _OnPart(_AsSolid):
 
 
 class MESH_OT_partwheel_copy(_OnPart, bpy.types.Operator):
-    """Copy the picked part as a solid: a new object, closed where the part was cut off. Ctrl C and Ctrl V then take it \
-to another file"""
+    """Copy the picked part as a solid: a new object, closed where it was cut; Ctrl C, Ctrl V take it to other files"""
 
     bl_idname = "mesh.partwheel_copy"
     bl_label = "Copy Part as Solid"

@@ -41,6 +41,7 @@ def play(stage):
     yield from unite(stage, homer, part, mirrored)
     stage.check(volume(homer) > rest and not caps(homer).all(), "Homer has arms again")
     yield from enter(stage, homer)
+    stage.select(())
     yield from picked_up_to(stage, 0.02, 0.62, 0.01)
     stage.mouse.key("RET")
     yield from stage.screenshot("5-united-and-picked")
