@@ -67,8 +67,12 @@ def _shader(colored):
     return _shaders[colored]
 
 
-def _vertices(shader, **attributes):
-    buffer = gpu.types.GPUVertBuf(shader.format_calc(), len(attributes["pos"]))
+def _vertices(**attributes):
+    """A buffer of these (n, width) attributes."""
+    form = gpu.types.GPUVertFormat()
+    for name, values in attributes.items():
+        form.attr_add(id=name, comp_type="F32", len=values.shape[1], fetch_mode="FLOAT")
+    buffer = gpu.types.GPUVertBuf(form, len(attributes["pos"]))
     for name, values in attributes.items():
         buffer.attr_fill(name, np.ascontiguousarray(values, np.float32))
     return buffer
@@ -85,11 +89,13 @@ class Parts:
         mesh.calc_loop_triangles()
         triangles = mesh_arrays.read(mesh.loop_triangles, "vertices", np.int32, 3)
         faces = mesh_arrays.read(mesh.loop_triangles, "polygon_index", np.int32)
-        seen = ~mesh_arrays.read(mesh.polygons, "hide", bool)[faces]
+        hidden = mesh_arrays.read(mesh.polygons, "hide", bool)
+        if hidden.any():
+            triangles, faces = triangles[~hidden[faces]], faces[~hidden[faces]]
         rank = np.empty(len(hierarchy.order), np.int32)
         rank[hierarchy.order] = np.arange(len(rank), dtype=np.int32)
-        ranks = rank[faces[seen]]
-        self.triangles = np.ascontiguousarray(triangles[seen][np.argsort(ranks, kind="stable")])
+        ranks = rank[faces]
+        self.triangles = np.ascontiguousarray(triangles[np.argsort(ranks, kind="stable")])
         self._start = np.concatenate([[0], np.cumsum(np.bincount(ranks, minlength=len(rank)))])
         self._buffer = None
         self._batches = {}
@@ -106,7 +112,7 @@ class Parts:
     def batch(self, piece):
         """(shader, batch) of a slice of triangles."""
         if piece not in self._batches:
-            self._buffer = self._buffer or _vertices(_shader(False), pos=self.positions)
+            self._buffer = self._buffer or _vertices(pos=self.positions)
             indices = gpu.types.GPUIndexBuf(type="TRIS", seq=self.triangles[slice(*piece)])
             self._keep(piece, gpu.types.GPUBatch(type="TRIS", buf=self._buffer, elem=indices))
         return _shader(False), self._batches[piece]
@@ -116,7 +122,7 @@ class Parts:
         if node not in self._batches:
             vertices, triangles = self.hierarchy.hull(node)
             indices = gpu.types.GPUIndexBuf(type="TRIS", seq=np.ascontiguousarray(triangles))
-            self._keep(node, gpu.types.GPUBatch(type="TRIS", buf=_vertices(_shader(False), pos=vertices), elem=indices))
+            self._keep(node, gpu.types.GPUBatch(type="TRIS", buf=_vertices(pos=vertices), elem=indices))
         return _shader(False), self._batches[node]
 
     def cut(self, node):
@@ -127,7 +133,7 @@ class Parts:
             labels = self.hierarchy.face_labels(bounds)[self.hierarchy.order]
             corners = self.positions[self.triangles.ravel()]
             colors = np.repeat(distinct(labels), 3 * np.diff(self._start), axis=0)
-            self._keep(name, gpu.types.GPUBatch(type="TRIS", buf=_vertices(_shader(True), pos=corners, color=colors)))
+            self._keep(name, gpu.types.GPUBatch(type="TRIS", buf=_vertices(pos=corners, color=colors)))
         return _shader(True), self._batches[name]
 
     def _keep(self, name, batch):

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The selection of a mesh in Edit Mode: sets of faces are selected by differences; the selection before comes back."""
 
+from collections import deque
+from itertools import repeat
+
 import bmesh
 import bpy
 import numpy as np
@@ -36,11 +39,12 @@ class Selection:
         self.history = [(_kind_of(element), element.index) for element in bm.select_history]
         self.active_face = bm.faces.active.index if bm.faces.active else None
         self.visible = ~mesh_arrays.read(mesh.polygons, "hide", bool)
-        corners = mesh_arrays.read(mesh.polygons, "loop_total", np.int32)
-        self.loop_face = np.repeat(np.arange(len(mesh.polygons)), corners)
         self.kind = next(kind for kind in KINDS if kind in bm.select_mode)
-        index = {"VERT": "vertex_index", "EDGE": "edge_index"}.get(self.kind)
-        self.loop_element = mesh_arrays.read(mesh.loops, index, np.int32) if index else self.loop_face
+        if self.kind != "FACE":
+            corners = mesh_arrays.read(mesh.polygons, "loop_total", np.int32)
+            self.loop_face = np.repeat(np.arange(len(mesh.polygons)), corners)
+            index = {"VERT": "vertex_index", "EDGE": "edge_index"}[self.kind]
+            self.loop_element = mesh_arrays.read(mesh.loops, index, np.int32)
         self.now = self.before[self.kind]
 
     def fits(self, obj):
@@ -58,18 +62,18 @@ class Selection:
         chosen = np.zeros(len(self.visible), bool)
         chosen[np.asarray(faces, np.int64)] = True
         chosen &= self.visible
-        target = np.zeros_like(self.now)
-        target[self.loop_element[chosen[self.loop_face]]] = True
+        if self.kind == "FACE":
+            target = chosen
+        else:
+            target = np.zeros_like(self.now)
+            target[self.loop_element[chosen[self.loop_face]]] = True
         if deselect:
             target = self.before[self.kind] & ~target
         elif extend:
             target |= self.before[self.kind]
         bm = bmesh.from_edit_mesh(obj.data)
-        elements = _sequence(bm, self.kind)
-        for index in np.flatnonzero(self.now & ~target).tolist():
-            elements[index].select_set(False)
-        for index in np.flatnonzero(target & ~self.now).tolist():
-            elements[index].select_set(True)
+        _set(_sequence(bm, self.kind), self.now & ~target, False)
+        _set(_sequence(bm, self.kind), target & ~self.now, True)
         self.now = target
         bm.select_flush_mode()
         if active is not None:
@@ -103,6 +107,14 @@ class Selection:
         _redraw(obj)
 
 
+def _set(elements, which, value):
+    """Selects or deselects the elements where which is True. Without a loop of Python's own, for there may be many."""
+    indices = np.flatnonzero(which).tolist()
+    if indices:
+        select_set = type(elements[indices[0]]).select_set
+        deque(map(select_set, map(elements.__getitem__, indices), repeat(value)), maxlen=0)
+
+
 def _kind_of(element):
     return {bmesh.types.BMVert: "VERT", bmesh.types.BMEdge: "EDGE", bmesh.types.BMFace: "FACE"}[type(element)]
 
@@ -121,8 +133,9 @@ def _redraw(obj):
 class Selections:
     """The selections of all meshes that are in Edit Mode together, for a part of one of them."""
 
-    def __init__(self, objects):
-        self._each = {obj.name: Selection(obj) for obj in objects}
+    def __init__(self, objects, fresh=None):
+        """fresh: an object whose mesh is known to be up to date."""
+        self._each = {obj.name: Selection(obj, obj.data if obj == fresh else None) for obj in objects}
 
     def _objects(self):
         """(object or None, its Selection) of each."""

@@ -331,8 +331,13 @@ class Stage:
         self.check(self.selection(kind) == expected, difference)
 
     def ended(self):
-        """Checks that the operator has ended: the wheel zooms again and leaves the selection alone."""
+        """Checks that the operator has ended: the wheel zooms again and leaves the selection alone, and nothing of it is
+        left: what it drew, its status text, its timers' build."""
         yield from self.settle()
+        self.check(self.drawn_things() == 0, "the overlay is gone")
+        bar = bpy.types.STATUSBAR_HT_header
+        self.check(bar.draw == getattr(bar, "_draw_orig", bar.draw), "the status bar is Blender's own again")
+        self.check(not self.session.running(), "nothing is being built")
         selection, distance = self.selection(), self.view_3d.view_distance
         self.mouse.wheel(1)
         yield from self.until("the wheel zooms again", lambda: self.view_3d.view_distance < distance)

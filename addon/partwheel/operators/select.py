@@ -62,7 +62,7 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
         except PartwheelError as error:
             self.report({"ERROR"}, f"Face {self.face_index} can't be picked: {error}")
             return {"CANCELLED"}
-        Selections(self._objects(context)).select(obj, hierarchy.faces(picked.node), picked.face, self.extend,
+        Selections(self._objects(context), obj).select(obj, hierarchy.faces(picked.node), picked.face, self.extend,
                                                   self.deselect)
         session.remember_pick(obj, picked.face, picked.node)
         return {"FINISHED"}
@@ -74,7 +74,7 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
         return sorted(context.objects_in_mode_unique_data, key=lambda obj: obj != context.edit_object)
 
     def _aim(self, context, obj):
-        return Selections(self._objects(context))
+        return Selections(self._objects(context), obj)  # whose hierarchy was just asked for, or built
 
     def _missed(self, context):
         """As Blender's own select tools: a click beside everything selects nothing."""
