@@ -121,6 +121,11 @@ public:
         return items.size() < 2 ? nullptr : &*std::min_element(items.begin() + 1, items.end());
     }
 
+    // Some of those that come after the top one: the items at these places of the heap.
+    std::span<const Item> items(size_t first, size_t last) const {
+        return {heap_.data() + std::min(first, heap_.size()), heap_.data() + std::min(last, heap_.size())};
+    }
+
     void prefetch(int32_t edge) const { __builtin_prefetch(&place_[static_cast<size_t>(edge)]); }
 
     void update(const Cost& cost, int32_t edge) { settle(place_[static_cast<size_t>(edge)], {cost, edge}); }
@@ -187,6 +192,7 @@ private:
     double enough(const Edge& edge, double concavity) const;
     void evaluate(std::span<const int32_t> edges, double concavity);
     std::span<const int32_t> first_unpriced();
+    void prefetch_next() const;
     void contract_all();
     void contract(int32_t edge);
     Hull unite(const Edge& edge);
@@ -341,9 +347,24 @@ std::span<const int32_t> Clustering::first_unpriced() {
     return unpriced_;
 }
 
+// What comes soon is anywhere in memory: lets it begin, step by step as it rises in the queue.
+void Clustering::prefetch_next() const {
+    for (const EdgeQueue::Item& item : queue_.items(5, 21)) __builtin_prefetch(&edge_at(item.edge));
+    for (const EdgeQueue::Item& item : queue_.items(1, 5)) {
+        __builtin_prefetch(&at(edge_at(item.edge).a));
+        __builtin_prefetch(&at(edge_at(item.edge).b));
+    }
+    if (const EdgeQueue::Item* second = queue_.runner_up())
+        for (const int32_t c : {edge_at(second->edge).a, edge_at(second->edge).b}) {
+            at(c).hull.prefetch();
+            __builtin_prefetch(at(c).links.data());
+        }
+}
+
 void Clustering::contract_all() {
     while (!queue_.empty()) {
         const int32_t top = queue_.top();
+        prefetch_next();
         if (!edge_at(top).exact) {
             const EdgeQueue::Item* second = queue_.runner_up();
             evaluate(first_unpriced(), second ? dear * second->concavity() : std::numeric_limits<double>::infinity());
@@ -440,15 +461,20 @@ void Clustering::join_components() {
     std::sort(rest.begin(), rest.end(), [&](int32_t a, int32_t b) { return at(a).low < at(b).low; });
     for (const int32_t c : rest)
         if (!at(c).hull) at(c).hull = kernel_.build(corners(c));
-    const auto join = [&](int32_t a, int32_t b) {
-        const int32_t edge = add_edge(a, b);
-        queue_.append(cost(edge_at(edge)), edge);
-        evaluate({&edge, 1}, std::numeric_limits<double>::infinity());
+    std::vector<int32_t> edges;
+    const auto join = [&](int32_t i, int32_t j) {
+        edges.push_back(add_edge(rest[static_cast<size_t>(i)], rest[static_cast<size_t>(j)]));
+        queue_.append(cost(edge_at(edges.back())), edges.back());
+    };
+    const auto price_all = [&] {
+        queue_.sort();
+        evaluate(edges, std::numeric_limits<double>::infinity());
     };
     const auto count = static_cast<int32_t>(rest.size());
     if (count <= all_pairs_components) {
         for (int32_t i = 0; i < count; ++i)
-            for (int32_t j = i + 1; j < count; ++j) join(rest[static_cast<size_t>(i)], rest[static_cast<size_t>(j)]);
+            for (int32_t j = i + 1; j < count; ++j) join(i, j);
+        price_all();
         return;
     }
 
@@ -467,7 +493,8 @@ void Clustering::join_components() {
             if (q->second != i) pairs.push_back(std::minmax(i, q->second));
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    for (const auto& [i, j] : pairs) join(rest[static_cast<size_t>(i)], rest[static_cast<size_t>(j)]);
+    for (const auto& [i, j] : pairs) join(i, j);
+    price_all();
 }
 
 BinaryTree Clustering::run() {
