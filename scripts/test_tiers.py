@@ -20,6 +20,7 @@ OUTPUT = ROOT / "build" / "test"
 VENV = ROOT / "build" / "venv"
 TIME_LIMIT = 1800  # seconds for any one command, so that nothing hangs for ever
 SHOWN = 60  # lines of a failed command's output
+NEWEST = ("tool", "pick_and_click", "overlays")  # the scenarios that the newest Blender plays
 THREADED = "[Tt]hread|Cancel|Progress"  # the names of tests in which threads meet
 
 
@@ -112,8 +113,29 @@ def gui():
     return own_runner("gui", [VENV / "core/bin/python", "tests/gui/run.py", package], dict(os.environ))
 
 
+def newest():
+    """Some scenarios of the GUI tier in the newest Blender that Debian has. It moves: without it they are skipped."""
+    package = make_package("newest")
+    try:
+        setup("newest", "setup_core", "setup_build", "setup_newest")
+    except CouldNotRun as reason:
+        print(f"   SKIPPED the newest Blender: {reason}")
+        return Result(skipped=len(NEWEST))
+    inside = ROOT / "build/deps/blender-sid"
+    room = inside / "partwheel"  # nothing is mounted: what the scenarios need is copied
+    shutil.rmtree(room, ignore_errors=True)
+    shutil.copytree(ROOT / "tests/gui", room / "tests/gui")
+    shutil.copytree(ROOT / "build/deps/meshes", room / "build/deps/meshes")
+    shutil.copy(package, room)
+    clean = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "LANG": "C.UTF-8"}
+    command = ["chroot", inside, "python3", "/partwheel/tests/gui/run.py", f"/partwheel/{package.name}",
+               "/partwheel/result.json", *NEWEST]
+    return own_runner("newest", command, clean, room / "result.json")
+
+
 TIERS = {function.__name__: function
-         for function in (native, sanitizers, threads, determinism, core, reliability, addon, gui)}
+         for function in (native, sanitizers, threads, determinism, core, reliability, addon, gui,
+                          newest)}
 
 
 def main():
@@ -180,10 +202,13 @@ def pytest(log, tests, **environment):
     return read_junit(log, report, code)
 
 
-def own_runner(log, command, environment):
-    """Runs tests/addon/run.py or tests/gui/run.py, which write {"passed": n, "failed": n, "failures": [...]}."""
-    report = fresh(log, "json")
-    code = run(log, [*command, report], environment)
+def own_runner(log, command, environment, report=None):
+    """Runs tests/addon/run.py or tests/gui/run.py, which write {"passed": n, "failed": n, "failures": [...]}. report:
+    where the command writes it, if it isn't to be told."""
+    if report is None:
+        report = fresh(log, "json")
+        command = [*command, report]
+    code = run(log, command, environment)
     if not report.exists():
         return broken(f"{log} ended with code {code} and no result, see {log_of(log)}")
     values = json.loads(report.read_text())

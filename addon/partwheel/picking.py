@@ -60,7 +60,8 @@ def clipped(view, point):
 def nearest(objects, tree_of, region, view, point):
     """(object, face index) of the first face under a point of the region, or (None, None). tree_of(object): a FaceTree.
     """
-    hits = [(*found, each) for each in objects if (found := tree_of(each).under(each.matrix_world, region, view, point))]
+    hits = [(tree_of(each).under(each.matrix_world, region, view, point), each) for each in objects]
+    hits = [(*found, each) for found, each in hits if found]
     if not hits:
         return None, None
     face, _, obj = min(hits, key=lambda hit: hit[1])

@@ -34,8 +34,8 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         default=False,
     )
     show_cut: bpy.props.BoolProperty(
-        name="All Parts", description="Show the parts of the whole mesh at the size of the part that is held, each in a "
-                                      "colour of its own",
+        name="All Parts",
+        description="Show the parts of the whole mesh at the size of the part that is held, each in a colour of its own",
         default=False,
     )
 

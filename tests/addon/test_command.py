@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""blender --command partwheel: builds and cuts the meshes of a file. Its function is called; 4.2 and later register it."""
+"""blender --command partwheel builds and cuts the meshes of a file. Its function is called; Blender 4.2 registers it."""
 
 import contextlib
 import io

@@ -67,7 +67,8 @@ class Paint(MeshTest):
         self.begin("WEIGHT_PAINT")
 
         def group():
-            return {v.index for v in self.obj.data.vertices for each in v.groups if each.group == 0 and each.weight == 1}
+            return {vertex.index for vertex in self.obj.data.vertices for each in vertex.groups
+                    if each.group == 0 and each.weight == 1}
 
         self.paint()
         self.assertEqual(group(), self.vertices[0])

@@ -110,3 +110,29 @@ class Registration(unittest.TestCase):
     def test_operators_undo_and_panel(self):
         self.assertEqual(bpy.types.MESH_OT_partwheel_select.bl_options, {"REGISTER", "UNDO"})
         self.assertEqual(bpy.types.VIEW3D_PT_partwheel.bl_category, "Partwheel")
+
+    def test_texts_follow_blenders_conventions(self):
+        """As Blender's extractor of UI messages wants them: no period at the end, no spaces around, a capital first."""
+        texts = {}
+        for name in dir(bpy.types):
+            cls = getattr(bpy.types, name)
+            if "partwheel" not in name.lower() or not hasattr(cls, "bl_rna"):
+                continue
+            texts[name] = cls.bl_rna.name
+            if issubclass(cls, (bpy.types.Operator, bpy.types.AddonPreferences)):
+                if issubclass(cls, bpy.types.Operator):
+                    space, _, operator = name.lower().partition("_ot_")
+                    texts[f"{name} tooltip"] = getattr(getattr(bpy.ops, space), operator).get_rna_type().description
+                for prop in cls.bl_rna.properties:
+                    if prop.identifier in getattr(cls, "__annotations__", {}) or (
+                            prop.identifier in {"face_index", "level", "extend", "deselect", "tool"}):
+                        texts[f"{name}.{prop.identifier}"], texts[f"{name}.{prop.identifier} tooltip"] = (
+                            prop.name, prop.description)
+        self.assertGreater(len(texts), 20)
+        for where, text in texts.items():
+            with self.subTest(where):
+                self.assertTrue(text, "there is none")
+                self.assertEqual(text, text.strip())
+                self.assertFalse(text.endswith("."), text)
+                self.assertFalse(text[0].islower(), text)
+                self.assertNotIn("  ", text)

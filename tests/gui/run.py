@@ -84,12 +84,14 @@ def main():
 
 
 def clean_environment(work):
-    """Nothing of the caller's environment reaches Blender: another Python on the PATH would break it."""
+    """Nothing of the caller's environment but our own switches reaches Blender: another Python on the PATH would break
+    it."""
     for name in ("home", "tmp"):
         (work / name).mkdir()
     cache = OUTPUT / "shader-cache"
     cache.mkdir(exist_ok=True)
-    return {"PATH": PATH, "HOME": str(work / "home"), "TMPDIR": str(work / "tmp"),
+    ours = {name: value for name, value in os.environ.items() if name.startswith("PARTWHEEL_")}
+    return {**ours, "PATH": PATH, "HOME": str(work / "home"), "TMPDIR": str(work / "tmp"),
             "LIBGL_ALWAYS_SOFTWARE": "1", "MESA_SHADER_CACHE_DIR": str(cache), "LANG": "C.UTF-8"}
 
 

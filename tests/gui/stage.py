@@ -331,8 +331,8 @@ class Stage:
         self.check(self.selection(kind) == expected, difference)
 
     def ended(self):
-        """Checks that the operator has ended: the wheel zooms again and leaves the selection alone, and nothing of it is
-        left: what it drew, its status text, its timers' build."""
+        """Checks that the operator has ended: the wheel zooms again and leaves the selection alone; and that nothing of
+        it is left: what it drew, its status text, its build."""
         yield from self.settle()
         self.check(self.drawn_things() == 0, "the overlay is gone")
         bar = bpy.types.STATUSBAR_HT_header

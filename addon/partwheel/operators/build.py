@@ -13,7 +13,7 @@ from .. import session
 from ..core import LibraryError, PartwheelError
 
 TICK = 0.1  # seconds between two looks at the worker
-BUSY = "Parts are being built already; Esc over the 3D view stops that."
+BUSY = "Parts are being built already; Esc over the 3D view stops that"
 
 
 class Building:
@@ -161,7 +161,10 @@ class MESH_OT_partwheel_build(bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         obj = context.active_object
-        return obj is not None and obj.type == "MESH" and obj.mode in {"OBJECT", "EDIT"} and idle(cls)
+        if obj is None or obj.type != "MESH" or obj.mode not in {"OBJECT", "EDIT"}:
+            cls.poll_message_set("Needs an active mesh object, in Edit Mode or Object Mode")
+            return False
+        return idle(cls)
 
     def execute(self, context):
         building = self._start(context)
@@ -199,7 +202,10 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         obj = context.active_object
-        return obj is not None and obj.type == "MESH" and session.state(obj.data)[0] != session.State.NONE
+        if obj is None or obj.type != "MESH" or session.state(obj.data)[0] == session.State.NONE:
+            cls.poll_message_set("The active object has no parts")
+            return False
+        return True
 
     def execute(self, context):
         session.forget(context.active_object)

@@ -34,7 +34,7 @@ def read_only(obj):
 
 
 class OBJECT_OT_partwheel_select(bpy.types.Operator):
-    """Enter Edit Mode of the mesh under the mouse and pick a part of it, then make it larger or smaller with the mouse wheel"""
+    """Enter Edit Mode of the mesh under the mouse and pick a part of it"""
 
     bl_idname = "object.partwheel_select"
     bl_label = "Select Part by Wheel"

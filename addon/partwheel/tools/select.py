@@ -21,10 +21,12 @@ class SelectPart(bpy.types.WorkSpaceTool):
                       "Shift adds, Ctrl takes away")
     bl_icon = ICON
     bl_widget = "VIEW3D_GGT_partwheel_hover"
-    bl_keymap = tuple(
-        ("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "PRESS", **held},
-         {"properties": [("tool", True), *properties]})
-        for held, properties in (({}, []), ({"shift": True}, [("extend", True)]), ({"ctrl": True}, [("deselect", True)]))
+    bl_keymap = (
+        ("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "PRESS"}, {"properties": [("tool", True)]}),
+        ("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "PRESS", "shift": True},
+         {"properties": [("tool", True), ("extend", True)]}),
+        ("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "PRESS", "ctrl": True},
+         {"properties": [("tool", True), ("deselect", True)]}),
     )
 
     def draw_settings(context, layout, _tool):

@@ -1,4 +1,4 @@
-"""What a notch, a hover and a start cost of the add-on's own time, on 89,000 faces. Prints a table; see scripts/bench_felt."""
+"""What a notch, a hover and a start cost of the add-on's own time, on 89,000 faces: the table of scripts/bench_felt."""
 import os
 import statistics
 import time
@@ -39,7 +39,8 @@ def points(stage):
 
 def play(stage):
     yield from stage.open("elephant")
-    picker, hover, overlay = stage.part("operators.pick").PartPicker, stage.part("tools.hover").Hover, stage.part("overlay")
+    picker, hover = stage.part("operators.pick").PartPicker, stage.part("tools.hover").Hover
+    overlay = stage.part("overlay")
     handle, begin, moves = Clock(picker, "_handle"), Clock(picker, "_begun"), Clock(hover, "move")
     draws, hover_draws = Clock(overlay, "draw_held"), Clock(overlay, "draw_hover")
     stage.use_tool()

@@ -1,0 +1,50 @@
+"""Objects of other kinds: mirrored in one axis and in all, and with a shape key that is edited."""
+import bpy
+from mathutils import Matrix
+
+
+def play(stage):
+    yield from stage.open("hand")
+    stage.use_tool()
+    model = stage.object
+    bpy.context.view_layer.update()
+    for name, scale in (("mirrored", (-1, 1, 1, 1)), ("all negative", (-1, -1, -1, 1))):
+        before = model.matrix_world.copy()
+        model.matrix_world = before @ Matrix.Diagonal(scale)
+        yield from stage.drawn()
+        yield from pick(stage, name)
+        model.matrix_world = before
+
+    with stage.override():
+        bpy.ops.object.mode_set(mode="OBJECT")
+        model.shape_key_add(name="Basis")
+        key = model.shape_key_add(name="moved")
+        for point in key.data:
+            point.co.x += 0.4 * model.dimensions.x / model.scale.x
+        model.active_shape_key_index = 1
+        key.value = 1
+        bpy.ops.object.mode_set(mode="EDIT")
+    stage.wheels.vertices[:, 0] += 0.4 * model.dimensions.x / model.scale.x
+    yield from stage.drawn()
+    yield from pick(stage, "shape key", picture=True)
+    with stage.override():
+        bpy.ops.object.mode_set(mode="OBJECT")
+        model.shape_key_clear()
+        bpy.ops.object.mode_set(mode="EDIT")
+
+
+def pick(stage, name, picture=False):
+    """A click on a place takes what is seen there."""
+    x, y, face = stage.spot(0.5, 0.9, above=1)
+    stops, start = stage.wheels.stops(face)
+    stage.mouse.move(x - 3, y)
+    stage.mouse.move(x, y)
+    yield from stage.until(f"hover ({name})", lambda: stage.hovered() == stops[start])
+    stage.mouse.click()
+    yield from stage.selected(stops[start], f"after a click ({name})")
+    stage.mouse.wheel(1)
+    yield from stage.selected(stops[start + 1], f"after a notch ({name})")
+    if picture:
+        yield from stage.screenshot(name.replace(" ", "-"))
+    stage.mouse.key("ESC")
+    yield from stage.selected((), f"after Esc ({name})")

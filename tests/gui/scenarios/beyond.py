@@ -1,0 +1,57 @@
+"""Object Mode enters Edit Mode with a part; Sculpt Mode makes a face set of one, Weight Paint a vertex group."""
+import bpy
+
+
+def play(stage):
+    yield from stage.open("hand")
+    x, y, face = stage.spot(0.5, 0.9, above=1)
+    stops, start = stage.wheels.stops(face)
+
+    def mode(name):
+        with stage.override():
+            bpy.ops.object.mode_set(mode=name)
+
+    def started(operator, **arguments):
+        with stage.override():
+            operator("INVOKE_DEFAULT", **arguments)
+
+    mode("OBJECT")
+    stage.mouse.move(x, y)
+    yield from stage.drawn()
+    started(bpy.ops.object.partwheel_select)
+    yield from stage.until("Edit Mode is entered", lambda: stage.object.mode == "EDIT")
+    yield from stage.selected(stops[start], "from Object Mode")
+    stage.mouse.wheel(1)
+    yield from stage.selected(stops[start + 1], "after a notch")
+    stage.mouse.key("RET")
+    yield from stage.ended()
+
+    mode("SCULPT")
+    yield from stage.drawn()
+    started(bpy.ops.mesh.partwheel_paint, write="FACE_SET")
+    yield from stage.until("the part is shown", lambda: stage.drawn_things() == 1)
+    stage.mouse.wheel(1)
+    yield from stage.settle()
+    yield from stage.screenshot("sculpt")
+    stage.mouse.key("RET")
+    yield from stage.until("Enter ends it", lambda: stage.drawn_things() == 0)
+    sets = [value.value for value in stage.object.data.attributes[".sculpt_face_set"].data]
+    first = min(stops[start + 1])
+    stage.check({index for index, value in enumerate(sets) if value == sets[first]} == set(stops[start + 1]),
+                "exactly the part is a face set")
+    stage.check(stage.object.mode == "SCULPT", "Sculpt Mode goes on")
+    yield from stage.screenshot("face-set")
+    started(bpy.ops.mesh.partwheel_paint, write="MASK")
+    yield from stage.until("the part is shown again", lambda: stage.drawn_things() == 1)
+    stage.mouse.key("ESC")
+    yield from stage.until("Esc ends it", lambda: stage.drawn_things() == 0)
+
+    mode("WEIGHT_PAINT")
+    yield from stage.drawn()
+    started(bpy.ops.mesh.partwheel_paint)
+    yield from stage.until("the part is shown in Weight Paint", lambda: stage.drawn_things() == 1)
+    stage.mouse.click()
+    yield from stage.until("a click confirms", lambda: stage.drawn_things() == 0)
+    painted = {vertex.index for vertex in stage.object.data.vertices for each in vertex.groups if each.weight == 1}
+    stage.check(painted == stage.elements(stops[start], "verts"), "exactly the part has the weight")
+    yield from stage.screenshot("weights")

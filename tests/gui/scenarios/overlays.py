@@ -1,0 +1,58 @@
+"""What is drawn over the model: the part, the next notch, the hull, all parts; and nothing once it is over."""
+import numpy
+from view import picture
+
+
+def play(stage):
+    yield from stage.open("homer")
+    settings = stage.part("preferences").preferences()
+    plain = picture((yield from stage.screenshot("0-plain")))
+    _, stops, start = yield from stage.pick(0.95, 0.6, above=2)
+    stage.mouse.wheel(2)
+    part, larger = stops[start + 2], stops[min(start + 3, len(stops) - 1)]
+    yield from stage.selected(part, "after two notches")
+    settings.show_part = False
+    yield from tinted(stage, plain, larger - part, "1-next", lambda change: change[2] - change[0] > 0.05)
+    settings.show_next = False
+    bare = picture((yield from stage.screenshot("2-none")))
+    settings.show_part = True
+    yield from tinted(stage, bare, part, "3-part", lambda change: change[0] - change[2] > 0.02)
+    settings.show_part, settings.show_hull = False, True
+    hull = picture((yield from stage.screenshot("4-hull")))
+    stage.check(changed(hull, bare) > 500, "the hull is drawn")
+    settings.show_hull, settings.show_cut = False, True
+    cut = picture((yield from stage.screenshot("5-cut")))
+    stage.check(changed(cut, bare) > 10000, "all parts are drawn")
+    settings.show_cut, settings.show_part, settings.show_next = False, True, True
+
+    stage.area.spaces.active.overlay.show_overlays = False
+    stage.check(stage.drawn_things() == 1, "the overlay is on")
+    hidden = picture((yield from stage.screenshot("6-overlays-off")))
+    colors = inside(stage, hidden, larger - part)
+    stage.check(numpy.abs(colors[:, 0] - colors[:, 2]).mean() < 0.02, "with Blender's overlays off nothing is tinted")
+    stage.area.spaces.active.overlay.show_overlays = True
+    stage.mouse.key("RET")
+    yield from stage.ended()
+    stage.check(stage.drawn_things() == 0, "nothing is drawn after Enter")
+    after = picture((yield from stage.screenshot("7-after")))
+    rest = inside(stage, after, larger - part) - inside(stage, plain, larger - part)
+    stage.check(numpy.abs(rest).mean() < 0.02, "the model looks as before")
+
+
+def inside(stage, pixels, faces):
+    """(n,3) colours at the centers of the faces that can be seen."""
+    faces = sorted(faces)
+    centers = stage.view.shown(faces[::len(faces) // 150 + 1]).round().astype(int)
+    stage.check(len(centers) > 10, "enough faces can be seen")
+    return pixels[centers[:, 1], centers[:, 0], :3]
+
+
+def tinted(stage, before, faces, name, holds):
+    pixels = picture((yield from stage.screenshot(name)))
+    change = (inside(stage, pixels, faces) - inside(stage, before, faces)).mean(axis=0)
+    stage.check(holds(change), f"{name}: tinted, by {change}")
+
+
+def changed(a, b):
+    """How many pixels differ."""
+    return int((numpy.abs(a - b).max(axis=2) > 0.04).sum())
