@@ -169,6 +169,21 @@ class Copy(SolidTest):
         self.assertEqual((bpy.context.mode, bpy.context.selected_objects), ("OBJECT", [copy]))
         self.assertEqual((~caps(copy.data)).sum(), len(hierarchy.faces(node)))
 
+    def test_blenders_clipboard_takes_it_to_another_file(self):
+        obj, hierarchy = self.built()
+        obj.data.materials.append(bpy.data.materials.new("skin"))
+        copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=self.nodes(hierarchy)[-2], material=True)
+        before, marks = arrays(copy.data), caps(copy.data)
+        bpy.ops.view3d.copybuffer()
+        bpy.ops.wm.read_homefile(use_empty=True)
+        self.assertEqual(len(bpy.data.meshes), 0)
+        bpy.ops.view3d.pastebuffer()
+        pasted = bpy.data.objects["model part"]
+        after = arrays(pasted.data)
+        self.assertTrue((before[0] == after[0]).all() and before[1] == after[1])
+        self.assertTrue((caps(pasted.data) == marks).all())
+        self.assertEqual([material.name for material in pasted.data.materials], ["skin", "Partwheel Cap"])
+
     def test_what_is_missing_is_said(self):
         obj = self.add(*read_off("dragknob"))
         with self.assertRaisesRegex(RuntimeError, "no parts"):
