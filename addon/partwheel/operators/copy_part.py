@@ -36,6 +36,9 @@ class _AsSolid:
             hierarchy = self.hierarchy(context, obj)
             if was_edited:
                 bpy.ops.object.mode_set(mode="OBJECT")
+                if not self.edits:
+                    # Undo steps of Edit Mode hold its mesh alone: without this one, undo would leave the new objects.
+                    bpy.ops.ed.undo_push(message="Leave Edit Mode")
             self.work(context, obj, hierarchy)
             if was_edited and self.edits:
                 bpy.ops.object.mode_set(mode="EDIT")

@@ -13,6 +13,12 @@ from .build import idle, start
 from .pick import PartPicker
 
 
+def _at_once(operator):
+    """Runs an operator that ends at once. Blender makes no undo step for one that another operator has called."""
+    if operator() == {"FINISHED"}:
+        bpy.ops.ed.undo_push(message=operator.get_rna_type().name)
+
+
 class HandOff(NamedTuple):
     """A key that confirms the part that is held and starts another operator with it."""
 
@@ -28,8 +34,8 @@ HANDOFFS = [
       for key, (_, label) in proportional.TRANSFORMS.items()),
     *(HandOff(key, True, f"{label} within the Part", proportional.within(key))
       for key, (_, label) in proportional.TRANSFORMS.items()),
-    HandOff("C", False, "Copy as Solid", lambda context: bpy.ops.mesh.partwheel_copy("INVOKE_DEFAULT", True)),
-    HandOff("X", False, "Remove", lambda context: bpy.ops.mesh.partwheel_remove("INVOKE_DEFAULT", True)),
+    HandOff("C", False, "Copy as Solid", lambda context: _at_once(bpy.ops.mesh.partwheel_copy)),
+    HandOff("X", False, "Remove", lambda context: _at_once(bpy.ops.mesh.partwheel_remove)),
     HandOff("D", True, "Duplicate", lambda context: bpy.ops.mesh.duplicate_move("INVOKE_DEFAULT")),
 ]
 

@@ -16,7 +16,17 @@ def play(stage):
     stage.mouse.key("C")
     yield from stage.until("the copy is there, in Object Mode",
                            lambda: stage.object != hand and stage.object.mode == "OBJECT")
-    part = stage.object
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.until("one undo step takes the copy away, in Object Mode",
+                           lambda: len(bpy.data.objects) == 1 and stage.object.mode == "OBJECT")
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.until("the next one is back in Edit Mode", lambda: stage.object.mode == "EDIT")
+    stage.check(len(stage.selection()) == count, "with the part selected")
+    stage.mouse.key("Z", ctrl=True, shift=True)
+    yield from stage.until("redo: Object Mode", lambda: stage.object.mode == "OBJECT")
+    stage.mouse.key("Z", ctrl=True, shift=True)
+    yield from stage.until("and redo brings it again", lambda: stage.object.name == "hand part")
+    hand, part = bpy.data.objects["hand"], stage.object
     stage.check((~caps(part)).sum() == count, "the copy has the part's faces")
     stage.check(caps(part).any() and abs(volume(hand) - whole) < 1e-6 * whole, "it is capped; the hand is as it was")
     part.matrix_world.translation += stage.view_3d.view_rotation @ Vector((-0.8, 0.3, 0))
@@ -26,9 +36,16 @@ def play(stage):
     yield from finger(stage, 0.97, 0.62)
     gone = len(stage.selection())
     stage.mouse.key("X")
-    yield from stage.until("the other finger is gone", lambda: len(hand.data.polygons) != len(stage.wheels.triangles))
+    yield from stage.until("the other finger is gone", lambda: len(stage.coordinates()) < len(stage.wheels.vertices))
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.until("one undo step brings it back, selected", lambda: stage.object.mode == "EDIT" and
+                           len(stage.coordinates()) == len(stage.wheels.vertices) and len(stage.selection()) == gone)
+    stage.mouse.key("Z", ctrl=True, shift=True)
+    yield from stage.until("and redo takes it away",
+                           lambda: len(stage.coordinates()) < len(stage.wheels.vertices))
     stage.mouse.key("TAB")
-    yield from stage.until("Object Mode", lambda: hand.mode == "OBJECT")
+    yield from stage.until("Object Mode", lambda: stage.object.mode == "OBJECT")
+    hand, part = bpy.data.objects["hand"], bpy.data.objects["hand part"]
     stage.check((~caps(hand)).sum() == len(stage.wheels.triangles) - gone, "only its faces are gone")
     rest = volume(hand)
     stage.check(rest < 0.99 * whole, "the hand has lost a finger")
