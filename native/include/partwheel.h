@@ -289,7 +289,7 @@ PW_API pw_status pw_hierarchy_solid(const pw_hierarchy *hierarchy, size_t tet_fi
  * faces   triangle_count: the source face that the triangle is a triangle of, or on the rungs below the exact one that
  *         is nearest to it; -1: none.
  * beyond  triangle_count: for a cap the tetrahedron on its other side; -1: a triangle of the surface. The solids on
- *         both sides of a cap have it with the same coordinates, turned. */
+ *         both sides of a cap have it with the same coordinates, turned; one may have it cut at an edge's middle. */
 PW_API pw_status pw_mesh_origins(const pw_mesh *mesh, const int32_t **ends, const int32_t **faces,
                                  const int32_t **beyond);
 
