@@ -3,9 +3,11 @@
 
 #include "predicates.h"
 
+#include <CGAL/Box_intersection_d/Box_with_info_d.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
+#include <CGAL/box_intersection_d.h>
 
 #include <algorithm>
 #include <cmath>
@@ -163,10 +165,80 @@ void check_manifold(const Surface& surface) {
                                                pinched.where() + ". Split or merge them there.");
 }
 
+// Whether two triangles surely have nothing in common but the corners that they share: there is a plane that holds some
+// of their corners, with all others of one strictly on one side of it and those of the other on the other side. Such
+// planes are those of the triangles, those of an edge of one and a corner of the other, and upright ones on the edges.
+// Triangles that only touch, or that cross, have none.
+bool surely_apart(const Surface& surface, const Triangle& t, const Triangle& u) {
+    const auto at = [&](int32_t v) -> const Point& { return surface.vertices[static_cast<size_t>(v)]; };
+    if (std::is_permutation(t.begin(), t.end(), u.begin())) return false;
+    constexpr int32_t above = -1;  // stands for a point beside the plane of the edge's triangle
+    const auto separated_by = [&](int32_t a, int32_t b, int32_t c, const Point& third) {
+        int side = 0;  // of t's corners
+        const auto beyond = [&](const Triangle& triangle, int sign) {
+            for (const int32_t v : triangle) {
+                if (v == a || v == b || v == c) continue;
+                const int here = sign * orientation(at(a), at(b), third, at(v));
+                if (here == 0 || here == -side) return false;
+                side = here;
+            }
+            return true;
+        };
+        return beyond(t, 1) && beyond(u, -1);
+    };
+    for (const Triangle* plane : {&t, &u})
+        if (separated_by((*plane)[0], (*plane)[1], (*plane)[2], at((*plane)[2]))) return true;
+    for (const Triangle* edges : {&t, &u}) {
+        const Triangle& e = *edges;
+        const Point normal = cross(at(e[1]) - at(e[0]), at(e[2]) - at(e[0]));
+        size_t steep = 0;
+        for (size_t k = 1; k < 3; ++k) steep = std::fabs(normal[k]) > std::fabs(normal[steep]) ? k : steep;
+        for (size_t k = 0; k < 3; ++k) {
+            Point up = at(e[k]);
+            up[steep] += 1;
+            if (separated_by(e[k], e[(k + 1) % 3], above, up)) return true;
+        }
+    }
+    for (const auto& [e, other] : {std::pair(t, u), std::pair(u, t)})
+        for (size_t k = 0; k < 3; ++k)
+            for (const int32_t v : other)
+                if (v != e[k] && v != e[(k + 1) % 3] && separated_by(e[k], e[(k + 1) % 3], v, at(v))) return true;
+    return false;
+}
+
+// The triangles that may have something in common with another but shared corners.
+std::vector<size_t> doubtful_triangles(const Surface& surface) {
+    using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, size_t>;
+    std::vector<Box> boxes;
+    for (const Triangle& t : surface.triangles) {
+        std::array<double, 3> low, high;
+        for (size_t k = 0; k < 3; ++k) {
+            const auto at = [&](size_t corner) { return surface.vertices[static_cast<size_t>(t[corner])][k]; };
+            std::tie(low[k], high[k]) = std::minmax({at(0), at(1), at(2)});
+        }
+        boxes.emplace_back(low.data(), high.data(), boxes.size());
+    }
+    std::vector<bool> doubtful(boxes.size(), false);
+    constexpr std::ptrdiff_t scanned = 2000;  // so many boxes are compared by a scan, as in CGAL's own check
+    CGAL::box_self_intersection_d(
+        boxes.begin(), boxes.end(),
+        [&](const Box& a, const Box& b) {
+            if (!surely_apart(surface, surface.triangles[a.info()], surface.triangles[b.info()]))
+                doubtful[a.info()] = doubtful[b.info()] = true;
+        },
+        scanned);
+    std::vector<size_t> found;
+    for (size_t t = 0; t < doubtful.size(); ++t)
+        if (doubtful[t]) found.push_back(t);
+    return found;
+}
+
 void check_self_intersection(const Surface& surface) {
     namespace pmp = CGAL::Polygon_mesh_processing;
     using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
     using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+    const std::vector<size_t> doubtful = doubtful_triangles(surface);
+    if (doubtful.empty()) return;
     Mesh mesh;
     for (const Point& p : surface.vertices) mesh.add_vertex({p[0], p[1], p[2]});
     const auto vertex = [](int32_t v) { return Mesh::Vertex_index(static_cast<Mesh::size_type>(v)); };
@@ -174,8 +246,10 @@ void check_self_intersection(const Surface& surface) {
         if (mesh.add_face(vertex(t[0]), vertex(t[1]), vertex(t[2])) == Mesh::null_face())
             throw Error(PW_ERROR_INTERNAL, "A manifold surface was not taken as one. Please report this mesh.");
 
+    std::vector<Mesh::Face_index> faces;
+    for (const size_t t : doubtful) faces.emplace_back(static_cast<Mesh::size_type>(t));
     std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
-    pmp::self_intersections<CGAL::Sequential_tag>(mesh.faces(), mesh, std::back_inserter(pairs),
+    pmp::self_intersections<CGAL::Sequential_tag>(faces, mesh, std::back_inserter(pairs),
                                                   CGAL::parameters::maximum_number(1));
     if (pairs.empty()) return;
     const auto source = [&](Mesh::Face_index f) { return surface.pieces[static_cast<size_t>(f)].face; };

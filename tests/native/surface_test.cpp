@@ -205,6 +205,33 @@ TEST(Surface, SelfIntersection) {
     EXPECT_EQ(checked(pierced).status, PW_ERROR_SELF_INTERSECTION);
 }
 
+TEST(Surface, FoldsInOnePlane) {
+    // A triangle split at a point of its plane: inside it, on an edge, or outside, where the new triangles fold over.
+    std::map<pw_status, int> seen;
+    for (int i = -2; i <= 6; ++i)
+        for (int j = -2; j <= 6; ++j)
+            for (const size_t t : {size_t{0}, size_t{5}, size_t{11}}) {
+                TriMesh mesh = without_faces(cube());
+                const Triangle split = mesh.triangles[t];
+                const auto corner = [&](size_t k) { return mesh.vertices[static_cast<size_t>(split[k])]; };
+                Point p;
+                for (size_t k = 0; k < 3; ++k)
+                    p[k] = corner(0)[k] + i / 4.0 * (corner(1)[k] - corner(0)[k]) + j / 4.0 * (corner(2)[k] - corner(0)[k]);
+                const auto v = static_cast<int32_t>(mesh.vertices.size());
+                mesh.vertices.push_back(p);
+                mesh.triangles[t] = {split[0], split[1], v};
+                mesh.triangles.push_back({split[1], split[2], v});
+                mesh.triangles.push_back({split[2], split[0], v});
+                mesh.face_count = mesh.triangles.size();
+                const Outcome outcome = checked(mesh);
+                EXPECT_EQ(outcome.status, expected_status(mesh)) << outcome.message << " " << i << " " << j << " " << t;
+                ++seen[outcome.status];
+            }
+    EXPECT_EQ(seen.size(), 3U);
+    EXPECT_GT(seen[PW_OK], 0);
+    EXPECT_GT(seen[PW_ERROR_SELF_INTERSECTION], 0);
+}
+
 TEST(Surface, FlatSheetsAreNamed) {
     const TriMesh sheet{"double triangle", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}, {}, 2};
     const Outcome outcome = checked(sheet);
