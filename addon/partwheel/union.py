@@ -49,7 +49,7 @@ def unite(target, others):
 
 
 def problem(mesh):
-    """What keeps the mesh from being a closed, manifold, outward surface, in words; None if nothing does."""
+    """What keeps the mesh from being a closed, manifold, oriented surface, in words; None if nothing does."""
     if not len(mesh.polygons):
         return "it has no faces"
     begin, total = read(mesh.polygons, "loop_start", np.int32), read(mesh.polygons, "loop_total", np.int32)
@@ -78,7 +78,7 @@ def problem(mesh):
     rounds = len(np.unique(label))
     if rounds != count or len(np.unique(vertex)) != count:
         return f"{abs(rounds - count) or 1} vertices are loose or join parts that only touch there"
-    return "it is inside out" if volume(mesh) < 0 else None
+    return None
 
 
 def volume(mesh):
@@ -126,6 +126,10 @@ def _input(obj, mesh, slots):
 def _united(base, operand, base_name, operand_name, slots):
     """(new mesh, solver)"""
     known = {item.identifier for item in bpy.types.BooleanModifier.bl_rna.properties["solver"].enum_items}
+    volumes = volume(base), volume(operand)
+    for name, measured in zip((base_name, operand_name), volumes):
+        if measured <= 0:
+            raise NotUnited(f"{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).")
     reasons = []
     for solver, within in WAYS:
         if solver not in known:
@@ -134,7 +138,7 @@ def _united(base, operand, base_name, operand_name, slots):
         wrong = problem(result)
         if wrong and _set_apart(result):
             wrong = problem(result)
-        wrong = wrong or _implausible((base, operand), result)
+        wrong = wrong or _implausible((base, operand), volumes, result)
         if not wrong:
             return result, solver
         reasons.append(f"by {solver.title()}{' within' if within else ''}: {wrong}")
@@ -177,10 +181,10 @@ def _set_apart(mesh):
         bm.free()
 
 
-def _implausible(meshes, result):
+def _implausible(meshes, volumes, result):
     """What is wrong with a union's volume, by inclusion and exclusion: it is at least the larger volume and at most the
     sum. The larger mesh as it was is the union only if the other lies within."""
-    volumes, united = [volume(mesh) for mesh in meshes], volume(result)
+    united = volume(result)
     slack = TOLERANCE * sum(volumes)
     if not max(volumes) - slack <= united <= sum(volumes) + slack:
         return f"its volume would be {united:.6g}, of {volumes[0]:.6g} and {volumes[1]:.6g}"

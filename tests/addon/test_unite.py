@@ -148,6 +148,16 @@ class Unite(SolidTest):
         self.assertEqual(self.everything(target), before)
         del other
 
+    def test_inside_out_is_refused(self):
+        target = self.cube()
+        turned = self.cube().data.copy()
+        turned.flip_normals()
+        self.place(target, turned, Matrix.Translation((1, 1, 1)))
+        before = self.everything(target)
+        with self.assertRaisesRegex(RuntimeError, "inside out"):
+            bpy.ops.object.partwheel_unite()
+        self.assertEqual(self.everything(target), before)
+
     def test_faces_that_only_touch(self):
         """Two cubes face to face: united, or refused with a reason, and then unchanged."""
         for shift in ((2, 0, 0), (2, 1, 0), (2, 2, 0), (2, 2, 2)):
