@@ -69,6 +69,7 @@ class Registration(unittest.TestCase):
             on = everything()
             self.assertLessEqual({"partwheel_build", "partwheel_clear", "partwheel_copy", "partwheel_deform",
                                   "partwheel_remove", "partwheel_select", "partwheel_split"}, set(on[1]))
+            self.assertLessEqual({"VIEW3D_MT_edit_mesh", "VIEW3D_MT_object"}, set(on[4]))
             self.assertLessEqual({"VIEW3D_MT_select_edit_mesh", "VIEW3D_MT_select_object", "VIEW3D_MT_face_sets",
                                   "VIEW3D_MT_mask", "VIEW3D_MT_paint_weight", "VIEW3D_MT_paint_vertex"}, set(on[4]))
             self.assertEqual(on[7]["EDIT_MESH"].count("partwheel.select"), 1)

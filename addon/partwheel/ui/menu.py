@@ -32,7 +32,22 @@ def _entry(text, write):
     return draw
 
 
+def draw_solids_mesh(self, _context):
+    self.layout.separator()
+    for operator in ("mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_split"):
+        self.layout.operator(operator)
+
+
+def draw_solids_object(self, _context):
+    self.layout.separator()
+    self.layout.operator_context = "INVOKE_REGION_WIN"
+    for operator in ("mesh.partwheel_split", "object.partwheel_place", "object.partwheel_unite"):
+        self.layout.operator(operator)
+
+
 ENTRIES = (
+    ("VIEW3D_MT_edit_mesh", draw_solids_mesh),
+    ("VIEW3D_MT_object", draw_solids_object),
     ("VIEW3D_MT_select_edit_mesh", draw_select),
     ("VIEW3D_MT_select_object", draw_select_object),
     ("VIEW3D_MT_face_sets", _entry("Face Set from Part by Wheel", "FACE_SET")),
