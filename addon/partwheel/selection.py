@@ -170,11 +170,23 @@ def select_outside_edit_mode(mesh, faces, extend=False, deselect=False):
     before = mesh_arrays.read(mesh.polygons, "select", bool)
     chosen = before & ~chosen if deselect else before | chosen if extend else chosen
     corners = chosen[np.repeat(np.arange(len(mesh.polygons)), mesh_arrays.read(mesh.polygons, "loop_total", np.int32))]
+    selected = {}
+    for elements, index in (("edges", "edge_index"), ("vertices", "vertex_index")):
+        selected[elements] = np.zeros(len(getattr(mesh, elements)), bool)
+        selected[elements][mesh_arrays.read(mesh.loops, index, np.int32)[corners]] = True
     mesh.polygons.foreach_set("select", chosen)
-    for elements, index in ((mesh.edges, "edge_index"), (mesh.vertices, "vertex_index")):
-        values = np.zeros(len(elements), bool)
-        values[mesh_arrays.read(mesh.loops, index, np.int32)[corners]] = True
-        elements.foreach_set("select", values)
+    mesh.vertices.foreach_set("select", selected["vertices"])
+    _select_edges(mesh, selected["edges"])
     if len(faces):
         mesh.polygons.active = int(faces[0])
     mesh.update()
+
+
+def _select_edges(mesh, values):
+    """Blender 5.0.1 gives the attribute behind this property a wrong type, and crashes where the property is set."""
+    attribute = mesh.attributes.get(".select_edge") if bpy.app.version >= (5, 0) else None
+    if attribute and attribute.data_type != "BOOLEAN":
+        mesh.attributes.remove(attribute)
+        mesh.attributes.new(".select_edge", "BOOLEAN", "EDGE").data.foreach_set("value", values)
+    else:
+        mesh.edges.foreach_set("select", values)

@@ -80,12 +80,17 @@ class Paint(MeshTest):
         self.assertEqual(group(), self.vertices[0] - self.vertices[1])
 
     def test_paint_mask(self):
-        for mode in ("VERTEX_PAINT", "WEIGHT_PAINT"):
-            self.begin(mode)
-            self.paint(write="PAINT_MASK")
+        """In Object Mode: a paint mask that is on, in a paint mode, crashes Blender 5.0.1 without a window at the next
+        update of anything."""
+        self.begin("OBJECT")
+        write = part("operators.paint").WRITERS["PAINT_MASK"]
+        first, second = (sorted(faces) for faces in self.faces)
+        for faces, how, expected in ((first, (False, False), self.faces[0]),
+                                     (second, (True, False), self.faces[0] | self.faces[1]),
+                                     (first, (False, True), self.faces[1])):
+            write(self.obj, faces, *how)
             self.assertTrue(self.obj.data.use_paint_mask)
-            self.assertEqual({p.index for p in self.obj.data.polygons if p.select}, self.faces[0])
-            bpy.ops.object.mode_set(mode="OBJECT")
+            self.assertEqual({p.index for p in self.obj.data.polygons if p.select}, expected)
 
     def test_refusals(self):
         self.begin("VERTEX_PAINT")

@@ -35,6 +35,7 @@ BLENDER = os.environ.get("PARTWHEEL_BLENDER", "blender")
 PROGRAMS = (BLENDER, "Xvfb", "xdotool", "import")
 TIME_LIMIT = 300  # seconds a scenario: ten times what most take, for machines under load
 # Scenarios that run a second time with real input: X events made by xdotool instead of Blender's event_simulate.
+ONLY_BY_NAME = ("felt",)  # measures, and takes long on a machine under load: scripts/bench_felt
 ALSO_WITH_XDOTOOL = ("pick_and_click", "empty_space", "navigate")
 
 sys.path.insert(0, str(HERE))
@@ -55,7 +56,7 @@ def main():
     missing = [program for program in PROGRAMS if not shutil.which(program, path=PATH)]
     if missing:
         sys.exit(f"Install {', '.join(missing)} first: scripts/test gui does that.")
-    names = arguments.scenario or known
+    names = arguments.scenario or [name for name in known if name not in ONLY_BY_NAME]
     runs = [(name, driver) for name in names for driver in ("simulate", "xdotool")
             if driver == "simulate" or name in ALSO_WITH_XDOTOOL]
 

@@ -161,13 +161,15 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         if way not in ways:
             self.report({"ERROR"}, f"There is no {way.replace('_', ' ').lower()} in this mode")
             return {"CANCELLED"}
-        mode = obj.mode
+        if context.mode != "SCULPT":
+            WRITERS[way](obj, faces, self.extend, self.deselect)
+            return {"FINISHED"}
         # Sculpt Mode keeps data of its own beside the mesh's: it reads the mesh anew when it is entered.
         bpy.ops.object.mode_set(mode="OBJECT")
         try:
             WRITERS[way](obj, faces, self.extend, self.deselect)
         finally:
-            bpy.ops.object.mode_set(mode=mode)
+            bpy.ops.object.mode_set(mode="SCULPT")
         return {"FINISHED"}
 
 

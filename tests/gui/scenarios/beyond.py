@@ -55,3 +55,10 @@ def play(stage):
     painted = {vertex.index for vertex in stage.object.data.vertices for each in vertex.groups if each.weight == 1}
     stage.check(painted == stage.elements(stops[start], "verts"), "exactly the part has the weight")
     yield from stage.screenshot("weights")
+    started(bpy.ops.mesh.partwheel_paint, write="PAINT_MASK")
+    yield from stage.until("the part is shown once more", lambda: stage.drawn_things() == 1)
+    stage.mouse.key("RET")
+    yield from stage.until("Enter confirms", lambda: stage.drawn_things() == 0)
+    mesh = stage.object.data
+    stage.check(mesh.use_paint_mask, "the paint mask is on")
+    stage.check({face.index for face in mesh.polygons if face.select} == set(stops[start]), "it is exactly the part")

@@ -33,8 +33,8 @@ def points(stage):
     """Pixels of the window with the model under them."""
     view = stage.view
     centers = view.centers().round().astype(int)
-    near = [tuple(map(int, centers[face])) for face in range(0, len(centers), len(centers) // 400)]
-    return [point for point in near if view.face_at(*point) is not None][:60]
+    near = [tuple(map(int, centers[face])) for face in range(0, len(centers), len(centers) // 60)]
+    return [point for point in near if view.face_at(*point) is not None][:16]
 
 
 def play(stage):
@@ -57,13 +57,13 @@ def play(stage):
     hover_drawn = hover_draws.take()
 
     notches, starts = [], []
-    for x, y in spots[::20]:
+    for x, y in spots[::8]:
         stage.mouse.move(x, y)
         begin.take()
         stage.mouse.click()
         yield from stage.until("something is selected", lambda: stage.object.data.total_face_sel > 0)
         starts += begin.take()
-        for step in (1,) * 7 + (-1,) * 8:
+        for step in (1,) * 6 + (-1,) * 7:
             handle.take()
             draws.take()
             stage.mouse.wheel(step)
