@@ -102,6 +102,7 @@ def addon():
         shutil.rmtree(home, ignore_errors=True)
         home.mkdir(parents=True)
         clean = {"PATH": os.environ["PATH"], "HOME": str(home), "LANG": "C.UTF-8"}
+        clean |= {name: value for name, value in os.environ.items() if name == "PARTWHEEL_UNITES"}
         result += own_runner(f"addon-{name}", [*command, package], clean)
     return result
 

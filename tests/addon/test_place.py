@@ -91,6 +91,30 @@ class Place(SolidTest):
         off = max(abs(a - b) for one, other in zip(ours, theirs) for a, b in zip(one, other))
         self.assertLess(off, 0.01)
 
+    def test_the_same_from_scripts(self):
+        api = part("api")
+        obj, hierarchy = self.built("hand")
+        whole, node = volume(obj.data), self.nodes(hierarchy)[-2]
+        solids = api.split(obj, parts=4, explode=0.5)
+        self.assertAlmostEqual(sum(volume(solid.data) for solid in solids) / whole, 1, places=4)
+        copy = api.copy_part(obj, node, material=True)
+        self.assertSolid(copy.data)
+        api.remove(obj, node)
+        self.assertSolid(obj.data)
+        self.assertAlmostEqual((volume(copy.data) + volume(obj.data)) / whole, 1, places=4)
+        rest, size = volume(obj.data), volume(copy.data)
+        where = part("placement").border(copy).middle
+        self.assertIsNone(api.place(copy, where, target=obj, fit=True))
+        api.unite(obj, [copy])
+        self.assertSolid(obj.data)
+        self.assertTrue(rest + 0.5 * size < volume(obj.data) < rest + size)
+        with self.assertRaises(ValueError):
+            api.place(None, where)
+        self.edit(obj)
+        for refused in (lambda: api.remove(obj, node), lambda: api.unite(obj, [copy])):
+            with self.assertRaisesRegex(ValueError, "Edit Mode"):
+                refused()
+
     def test_a_part_without_caps_stands_on_its_underside(self):
         bpy.ops.mesh.primitive_cube_add()
         cube = bpy.context.active_object
