@@ -18,15 +18,16 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-frounding-math)
 endif()
 
+get_directory_property(partwheel_plain_options COMPILE_OPTIONS)  # of the release
 if(PARTWHEEL_SANITIZE)
   add_compile_options(-fsanitize=${PARTWHEEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${PARTWHEEL_SANITIZE})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # What a sanitizer adds makes g++ see uninitialized variables where there are none, in CGAL's headers for one.
+    add_compile_options(-Wno-maybe-uninitialized)
+  endif()
 endif()
 
 add_library(partwheel_flags INTERFACE)
 target_compile_options(partwheel_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Woverloaded-virtual -Werror)
-if(PARTWHEEL_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # What a sanitizer adds makes g++ see uninitialized variables where there are none, in CGAL's headers for one.
-  target_compile_options(partwheel_flags INTERFACE -Wno-maybe-uninitialized)
-endif()

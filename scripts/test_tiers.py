@@ -8,6 +8,7 @@ import dataclasses
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -63,8 +64,17 @@ def sanitizers():
 
 def threads():
     """The native tests that use threads, watched by ThreadSanitizer."""
-    build("threads", "tsan")
+    programs = [path.stem for path in sorted((ROOT / "tests" / "native").glob("*_test.cpp"))
+                if re.search(THREADED, path.stem + "".join(re.findall(r"^TEST.*", path.read_text(), re.MULTILINE)))]
+    build("threads", "tsan", *programs)
     return ctest("threads", "tsan", "--tests-regex", THREADED)
+
+
+def fuzz():
+    """The fuzzers of the C API's two entrances, for some seconds each, watched by the sanitizers."""
+    build("fuzz", "fuzz", "mesh_fuzzer", "saved_fuzzer")
+    build("fuzz", "release", "partwheel")  # makes the seeds
+    return pytest("fuzz", "tests/fuzz")
 
 
 def determinism():
@@ -135,7 +145,7 @@ def newest():
 
 
 TIERS = {function.__name__: function
-         for function in (native, sanitizers, threads, determinism, core, reliability, addon, gui,
+         for function in (native, sanitizers, threads, determinism, fuzz, core, reliability, addon, gui,
                           newest)}
 
 

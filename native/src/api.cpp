@@ -6,6 +6,7 @@
 #include "ladder.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <exception>
 #include <memory>
@@ -18,6 +19,7 @@ using namespace partwheel;
 
 struct pw_context {
     Progress progress;
+    std::atomic<pw_rung> rung{PW_RUNG_EXACT};
 };
 
 struct pw_hierarchy {
@@ -190,6 +192,13 @@ pw_status pw_context_progress(const pw_context* context, double* fraction, pw_st
     });
 }
 
+pw_status pw_context_rung(const pw_context* context, pw_rung* rung) {
+    return guarded([&] {
+        require(context != nullptr && rung != nullptr, "context and rung must not be null.");
+        *rung = context->rung;
+    });
+}
+
 pw_status pw_context_seconds(const pw_context* context, double* seconds) {
     return guarded([&] {
         require(context != nullptr && seconds != nullptr, "context and seconds must not be null.");
@@ -217,7 +226,8 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
         Progress& progress = context ? context->progress : unwatched;
         const Watch watch(progress);
         const MeshView mesh{vertices, vertex_count, triangles, triangle_count, faces, face_count};
-        const LadderOptions ladder{given.quality, given.rungs, given.open_surfaces == 1};
+        const LadderOptions ladder{given.quality, given.rungs, given.open_surfaces == 1,
+                                   [&](pw_rung rung) { if (context) context->rung = rung; }};
         *hierarchy = new pw_hierarchy{build(mesh, ladder, threads_to_use(given.threads), progress)};
     });
 }

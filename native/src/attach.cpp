@@ -45,7 +45,7 @@ bool is_outside(const Tree& tree, const Point& p) {
 
 }  // namespace
 
-double attach(const Surface& source, Surface& surface, Progress& progress) {
+Attached attach(const Surface& source, Surface& surface, Progress& progress) {
     Triangles triangles;
     for (const Triangle& t : surface.triangles) {
         const auto at = [&](size_t k) { return to_cgal(surface.vertices[static_cast<size_t>(t[k])]); };
@@ -59,10 +59,10 @@ double attach(const Surface& source, Surface& surface, Progress& progress) {
     const double size = diagonal(source);
     const double spacing = std::max(size * sample_spacing, std::sqrt(2 * area / most_samples));
     Tree::Point_and_primitive_id nearest(triangles[0].vertex(0), triangles.begin());
-    double farthest = 0, outside = near_enough * size;
+    double farthest = 0, outside = near_enough * size, distance = 0, hidden = 0;
     const auto find = [&](const Point& p) {
         nearest = tree.closest_point_and_primitive(to_cgal(p), nearest);
-        const double distance = std::sqrt(CGAL::squared_distance(nearest.first, to_cgal(p)));
+        distance = std::sqrt(CGAL::squared_distance(nearest.first, to_cgal(p)));
         farthest = std::max(farthest, distance);
         if (distance > outside && is_outside(tree, p)) outside = distance;
         return static_cast<int32_t>(nearest.second - triangles.begin());
@@ -85,11 +85,12 @@ double attach(const Surface& source, Surface& surface, Progress& progress) {
                 Point p = at(0);
                 for (size_t k = 0; k < 3; ++k) p[k] += a * u[k] + b * v[k];
                 surface.pieces.push_back({source.pieces[s].face, find(p), source.pieces[s].area / n / n});
+                if (distance > hidden_beyond * size) hidden += surface.pieces.back().area;
             }
     }
     surface.face_count = source.face_count;
     surface.deviation = farthest < rounding * size ? 0 : farthest / size;
-    return outside > near_enough * size ? outside / size : 0;
+    return {outside > near_enough * size ? outside / size : 0, area > 0 ? hidden / area : 0};
 }
 
 std::string percent(double share) {

@@ -11,9 +11,17 @@ inline constexpr double sample_spacing = 1.0 / 100;
 // Less than this, relative to the diagonal, is not looked at more closely.
 inline constexpr double near_enough = 1.0 / 200;
 
-// Gives `surface`, which was made from `source`, its pieces, its deviation and its number of source faces. Returns how
-// far the source reaches out of the solid, relative to the diagonal; 0 if that is no more than near_enough.
-double attach(const Surface& source, Surface& surface, Progress& progress);
+// What lies further from the surface used than this, relative to the diagonal, is hidden: in a gap that a wrap did not
+// enter, or inside the solid.
+inline constexpr double hidden_beyond = 1.0 / 100;
+
+struct Attached {
+    double outside = 0;  // how far the source reaches out of the solid, relative to the diagonal; 0 if near enough
+    double hidden = 0;   // the share of the source's area that is
+};
+
+// Gives `surface`, which was made from `source`, its pieces, its deviation and its number of source faces.
+Attached attach(const Surface& source, Surface& surface, Progress& progress);
 
 // "0.12 %"
 std::string percent(double share);

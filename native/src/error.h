@@ -1,7 +1,7 @@
 // How a room says that it can't go on: a status of the C API and a sentence for the user.
 #pragma once
 
-#include "partwheel.h"
+#include "partwheel_types.h"
 
 #include <stdexcept>
 #include <string>

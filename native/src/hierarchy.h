@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dendrogram.h"
+#include "partwheel.h"
 #include "solid.h"
 
 #include <cstddef>

@@ -26,14 +26,14 @@ bool may_go_on(const Error& error) {
     }
 }
 
-Solid step(const Surface& source, pw_rung rung, const LadderOptions& options, Progress& progress) {
+Solid step(const Surface& source, pw_rung rung, double coarseness, const LadderOptions& options, Progress& progress) {
     Solid solid;
     if (rung == PW_RUNG_EXACT) check_surface(source, progress);
     progress.enter(PW_STAGE_REPAIR);
     try {
         if (rung == PW_RUNG_EXACT) solid.surface = source;
         if (rung == PW_RUNG_REPAIRED) solid.surface = repair(source, progress);
-        if (rung == PW_RUNG_WRAPPED) solid.surface = wrap(source, options.open_surfaces, progress);
+        if (rung == PW_RUNG_WRAPPED) solid.surface = wrap(source, options.open_surfaces, coarseness, progress);
     } catch (const std::logic_error&) {  // an assertion of CGAL's, or of what it uses
         throw Error(PW_ERROR_SELF_INTERSECTION,
                     "The mesh is too broken to be repaired or wrapped. Remesh it and try again.");
@@ -41,6 +41,20 @@ Solid step(const Surface& source, pw_rung rung, const LadderOptions& options, Pr
     progress.enter(PW_STAGE_TETRAHEDRA);
     solid.mesh = tetrahedralize(solid.surface, options.quality, progress);
     return solid;
+}
+
+// Now and then TetGen refuses a wrap: a coarser one is another surface.
+Solid step(const Surface& source, pw_rung rung, const LadderOptions& options, Progress& progress) {
+    if (options.trying) options.trying(rung);
+    if (rung == PW_RUNG_WRAPPED)
+        for (const double coarseness : {1.0, 1.4}) {
+            try {
+                return step(source, rung, coarseness, options, progress);
+            } catch (const Error& error) {
+                if (error.status() != PW_ERROR_TETRAHEDRA) throw;
+            }
+        }
+    return step(source, rung, 2, options, progress);
 }
 
 }  // namespace

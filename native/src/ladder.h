@@ -3,6 +3,8 @@
 
 #include "tetrahedra.h"
 
+#include <functional>
+
 namespace partwheel {
 
 // pw_build_options, checked.
@@ -10,6 +12,7 @@ struct LadderOptions {
     double quality = 0;
     uint32_t rungs = 0;
     bool open_surfaces = false;
+    std::function<void(pw_rung)> trying;  // told of each rung before it is tried; may be empty
 };
 
 struct Solid {

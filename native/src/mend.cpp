@@ -29,8 +29,9 @@ using Corners = std::array<size_t, 3>;
 using Face = CgalMesh::Face_index;
 using Halfedge = CgalMesh::Halfedge_index;
 
-// Longer rims are filled with a fan: the best triangulation takes time that grows with the square of their length.
-constexpr size_t longest_triangulated = 300;
+// Longer rims are filled with a fan, and so is what comes after many: the best triangulation takes time that grows with
+// the square of their length at least.
+constexpr size_t longest_triangulated = 300, most_squared = 20000000;
 
 // Points with equal coordinates become one, triangles without area and copies of others go.
 void read_soup(const Surface& source, std::vector<CgalPoint>& points, std::vector<Corners>& triangles, Mending& done) {
@@ -99,10 +100,11 @@ double volume_of(const CgalMesh& mesh, const std::vector<Face>& faces) {
 }
 
 // The faces that close a hole, or none if that fails.
-std::vector<Face> fill(CgalMesh& mesh, Halfedge rim) {
+std::vector<Face> fill(CgalMesh& mesh, Halfedge rim, size_t& squared) {
     std::vector<Face> patch;
     const size_t length = CGAL::halfedges_around_face(rim, mesh).size();
-    if (length <= longest_triangulated) {
+    squared += length * length;
+    if (length <= longest_triangulated && squared <= most_squared) {
         pmp::triangulate_hole(mesh, rim, std::back_inserter(patch));
         if (!patch.empty()) return patch;
     }
@@ -126,10 +128,11 @@ void fill_holes(Mended& mended, Progress& progress) {
     std::vector<Halfedge> rims;
     pmp::extract_boundary_cycles(mesh, std::back_inserter(rims));
     std::vector<size_t> holes(parts, 0);
+    size_t squared = 0;
     for (size_t i = 0; i < rims.size(); ++i) {
         progress.advance(0.1 + 0.1 * static_cast<double>(i) / static_cast<double>(rims.size()));
         const size_t p = part[mesh.face(mesh.opposite(rims[i]))];
-        const std::vector<Face> faces = fill(mesh, rims[i]);
+        const std::vector<Face> faces = fill(mesh, rims[i], squared);
         patch[p].insert(patch[p].end(), faces.begin(), faces.end());
         ++holes[p];
     }

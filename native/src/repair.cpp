@@ -31,6 +31,10 @@ using Vertex = CgalMesh::Vertex_index;
 // With a larger share of a part's faces crossing others, taking them out and filling the holes would invent a surface.
 constexpr double largest_crossed_share = 0.1;
 
+// Both of these take time that grows faster than the mesh: beyond so much a wrap is quicker.
+constexpr size_t most_crossed = 5000;          // faces of a part
+constexpr size_t most_faces_united = 2000000;  // of parts that are compared, each time they are
+
 // Vertices at one place, where parts only touch, are moved inwards by this share of their shortest edge.
 constexpr double nudge = 1e-3;
 
@@ -79,7 +83,9 @@ public:
     template <class Faces>
     void status_update(const Faces& crossed) {
         progress_->advance(0.2);
-        if (static_cast<double>(crossed.size()) > largest_crossed_share * static_cast<double>(faces_)) throw_tangled();
+        if (crossed.size() > most_crossed ||
+            static_cast<double>(crossed.size()) > largest_crossed_share * static_cast<double>(faces_))
+            throw_tangled();
     }
 
 private:
@@ -98,13 +104,15 @@ bool uncross(CgalMesh& mesh, Progress& progress) {
 
 // The union of the parts that cross each other. Parts that don't are left alone, also where one holds another.
 size_t unite(std::vector<CgalMesh>& parts, Progress& progress) {
-    size_t united = 0;
+    size_t united = 0, compared = 0;
     std::vector<CGAL::Bbox_3> boxes;
     for (const CgalMesh& part : parts) boxes.push_back(pmp::bbox(part));
     for (size_t i = 0; i < parts.size(); ++i)
         for (size_t j = 0; j < i; ++j) {
             progress.advance(0.2 + 0.4 * static_cast<double>(i) / static_cast<double>(parts.size()));
             if (parts[j].is_empty() || !CGAL::do_overlap(boxes[i], boxes[j])) continue;
+            compared += parts[i].number_of_faces() + parts[j].number_of_faces();
+            if (compared > most_faces_united) throw_tangled();
             if (!pmp::do_intersect(parts[i], parts[j])) continue;
             if (pmp::volume(parts[i]) <= 0 || pmp::volume(parts[j]) <= 0) throw_tangled();
             if (pmp::does_self_intersect(parts[i]) || pmp::does_self_intersect(parts[j])) throw_tangled();
@@ -144,7 +152,7 @@ Surface repair(const Surface& source, Progress& progress) {
     }
     Surface surface = to_surface(source, whole);
     check_surface(surface, progress);
-    if (attach(source, surface, progress) > 0) throw_tangled();  // something was lost
+    if (attach(source, surface, progress).outside > 0) throw_tangled();  // something was lost
     surface.rung = PW_RUNG_REPAIRED;
     surface.account = "Repaired: " + account.text() + ". " +
                       (surface.deviation == 0 ? "All of the mesh is on the surface used."

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace partwheel {
@@ -22,8 +23,9 @@ struct Soup {
     std::vector<Corners> triangles;
 };
 
-// A wrap with more vertices than this is given up, and begun again half as fine: it would take minutes.
-constexpr size_t most_vertices = 80000;
+// A wrap of more vertices than this is given up, and begun again half as fine: it would take minutes. So is one of more
+// steps, which would not end.
+constexpr size_t most_vertices = 80000, most_steps = 10000000;
 class TooFine {};
 
 // Told of every step; CGAL offers no other way to stop a wrap.
@@ -32,7 +34,8 @@ public:
     explicit Watcher(Progress& progress) : progress_(progress) {}
     template <class Wrapper, class Gate>
     void before_facet_treatment(const Wrapper&, const Gate&) {
-        if (++steps_ % 256 == 0) progress_.advance(0.2 + 0.6 * (1 - std::exp(-static_cast<double>(steps_) / 3e5)));
+        if (++steps_ > most_steps) throw TooFine();
+        if (steps_ % 256 == 0) progress_.advance(0.2 + 0.6 * (1 - std::exp(-static_cast<double>(steps_) / 3e5)));
     }
     template <class Wrapper, class Place>
     void before_Steiner_point_insertion(const Wrapper&, const Place&) {
@@ -44,13 +47,18 @@ private:
     size_t steps_ = 0, vertices_ = 0;
 };
 
-// How closely to wrap. A wrap has about 3 faces for each alpha^2 of area: some 30,000 are aimed at, so that thin limbs
-// get as many as a body does; 90,000 is the most where there is more than the usual area. Holes smaller than alpha are
-// not entered.
-double choose_alpha(double area, double diagonal) {
-    const double usual = std::clamp(std::sqrt(3 * area / 30000), diagonal / 400, diagonal / 100);
-    return std::max(usual, std::sqrt(3 * area / 90000));
-}
+// A wrap has about 3 faces for each alpha^2 of area: alpha for so many of them.
+double alpha_for(double faces, double area) { return std::sqrt(3 * area / faces); }
+
+// How closely to wrap. First with a few faces for each of the source's, within these bounds: a wrap of a large model
+// gets as many for its thin limbs as a body does, and that of a small one is quick. Gaps narrower than alpha are not
+// entered, so where too much of the source is hidden it is done again with half of alpha, down to the least. What then
+// is hidden still lies inside the solid.
+constexpr double faces_for_each = 4, least_faces = 3000, usual_faces = 30000, most_faces = 40000;
+constexpr double least_alpha = 1.0 / 400;  // relative to the diagonal
+constexpr double much_hidden = 0.01;       // a share of the area
+constexpr double worth_while = 1.5;        // a wrap this much finer than the last, or none
+constexpr double gain = 0.8;               // with more than this still hidden the coarser wrap is kept
 
 // A sheet is covered on both sides, and the closer they are, the more faces that takes.
 constexpr double sheet_alpha = 1.0 / 40;
@@ -82,7 +90,7 @@ CgalMesh wrap_soup(const Soup& soup, double alpha, double offset_share, Progress
 
 }  // namespace
 
-Surface wrap(const Surface& source, bool open_surfaces, Progress& progress) {
+Surface wrap(const Surface& source, bool open_surfaces, double coarseness, Progress& progress) {
     const Mended mended = mend(source, progress);
     if (mended.solids == 0 && !open_surfaces)
         throw Error(PW_ERROR_NOT_SOLID,
@@ -95,11 +103,21 @@ Surface wrap(const Surface& source, bool open_surfaces, Progress& progress) {
     const double diagonal = std::hypot(box.x_span(), box.y_span(), box.z_span());
     const double area = CGAL::Polygon_mesh_processing::area(mended.mesh);
     const bool sheet = mended.solids == 0;
-    const double alpha = sheet ? diagonal * sheet_alpha : choose_alpha(area, diagonal);
-    const CgalMesh wrapped = wrap_soup(soup, alpha, sheet ? 0.1 : 1.0 / 30, progress);
+    const double wanted = faces_for_each * static_cast<double>(soup.triangles.size());
+    const double least = coarseness * std::max(diagonal * least_alpha, alpha_for(most_faces, area));
+    const double first = alpha_for(std::clamp(wanted, least_faces, usual_faces), area);
+    double alpha = sheet ? coarseness * diagonal * sheet_alpha : std::max(least, coarseness * first);
 
-    Surface surface = to_surface(source, wrapped);
-    attach(source, surface, progress);
+    Surface surface;
+    for (double hidden = HUGE_VAL;; alpha = std::max(least, alpha / 2)) {
+        Surface closer = to_surface(source, wrap_soup(soup, alpha, sheet ? 0.1 : 1.0 / 30, progress));
+        const double still = attach(source, closer, progress).hidden;
+        if (still < gain * hidden) {
+            hidden = still;
+            surface = std::move(closer);
+        }
+        if (sheet || hidden < much_hidden || alpha < worth_while * least) break;
+    }
     surface.rung = PW_RUNG_WRAPPED;
     Account account;
     mended.done.tell(account);

@@ -6,7 +6,7 @@
 namespace partwheel {
 
 // A surface that passes check_surface(). open_surfaces: take sheets as thin solids, else throw PW_ERROR_NOT_SOLID if
-// there is nothing but sheets.
-Surface wrap(const Surface& source, bool open_surfaces, Progress& progress);
+// there is nothing but sheets. coarseness: 1, or more for a wrap less close.
+Surface wrap(const Surface& source, bool open_surfaces, double coarseness, Progress& progress);
 
 }  // namespace partwheel

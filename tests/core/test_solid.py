@@ -211,3 +211,13 @@ def test_real_models(path):
     for node in some_nodes(hierarchy, NODES):
         check_node(hierarchy, shape, node)
         check_copy_and_rest(hierarchy, node)
+
+
+def test_walls_within_the_solid_are_no_surface_of_it():
+    """A box inside another that is wound the same way: the winding number is 2 there, so it is all solid."""
+    inner = shapes.moved(shapes.cube(), (0.25, 0.25, 0.25), 0.5)
+    h = Hierarchy.build(*shapes.merged(shapes.cube(), inner))
+    assert h.summary.rung == "exact"
+    solid = h.solid(len(h.parent) - 1)
+    check_solid(solid)
+    assert np.isclose(volume(solid.vertices, solid.triangles), 1) and len(faces_of(solid)) == 6

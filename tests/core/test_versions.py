@@ -10,7 +10,7 @@ from conftest import ROOT
 from partwheel import core
 from partwheel.core import library
 
-HEADER = (ROOT / "native" / "include" / "partwheel.h").read_text()
+HEADER = "".join((ROOT / "native" / "include" / name).read_text() for name in ("partwheel_types.h", "partwheel.h"))
 BARE = re.sub(r"/\*.*?\*/", "", HEADER, flags=re.S)
 
 

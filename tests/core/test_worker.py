@@ -239,6 +239,13 @@ if LINUX and PLAIN:
         assert len(repaired.order) == shape.face_count
         assert repaired.summary.rung != h.summary.rung == "exact"
 
+    def test_a_rung_that_hangs_is_tried_once(harm):
+        harm("loop", 1, rung=4)
+        job = Job(*shapes.off("pig"), time_limit=3)  # neither closed nor to be repaired: one process gets to the wrap
+        with pytest.raises(WorkerError):
+            job.result()
+        assert [failure.name for failure in job.failures] == ["time limit"]
+
     def test_all_rungs_fail(harm):
         harm("abort", 0)
         job = Job(*shapes.cube())

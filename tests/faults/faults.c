@@ -2,7 +2,7 @@
 // A library that goes wrong on purpose: the real one, save that pw_build() comes to harm in the stage asked for.
 //
 // Linked with the real library, which provides all other functions. PARTWHEEL_FAULT is "FAULT:STAGE", the number of a
-// pw_stage; PARTWHEEL_FAULT_RUNG, if set, spares builds that may not use this rung. The fault happens inside the real
+// pw_stage; PARTWHEEL_FAULT_RUNG, if set, spares builds until they try this rung. The fault happens inside the real
 // pw_build(): a watching thread sends the building one a signal, whose handler does the harm.
 #define _GNU_SOURCE
 #include "partwheel.h"
@@ -17,7 +17,7 @@
 #include <unistd.h>
 
 static char fault[32];
-static int fault_stage;
+static int fault_stage, fault_rung;
 static const pw_context *watched;
 static pthread_t builder;
 static volatile int running, happened;
@@ -50,9 +50,14 @@ static void harm(int number) {
             }
 }
 
+static int on_the_rung(void) {
+    pw_rung rung;
+    return !fault_rung || (pw_context_rung(watched, &rung) == PW_OK && (int)rung == fault_rung);
+}
+
 static void *watch(void *unused) {
     for (pw_stage stage; running && !happened; usleep(20))
-        if (pw_context_progress(watched, NULL, &stage) == PW_OK && (int)stage >= fault_stage) {
+        if (on_the_rung() && pw_context_progress(watched, NULL, &stage) == PW_OK && (int)stage >= fault_stage) {
             pthread_kill(builder, SIGUSR2);
             break;
         }
@@ -66,8 +71,8 @@ pw_status pw_build(pw_context *context, const double *vertices, size_t vertex_co
     const char *wanted = getenv("PARTWHEEL_FAULT"), *rung = getenv("PARTWHEEL_FAULT_RUNG");
     pthread_t watcher;
     int watching = 0;
-    if (wanted && sscanf(wanted, "%31[^:]:%d", fault, &fault_stage) == 2 &&
-        (!rung || (options->rungs & (uint32_t)atoi(rung)))) {
+    fault_rung = rung ? atoi(rung) : 0;
+    if (wanted && sscanf(wanted, "%31[^:]:%d", fault, &fault_stage) == 2) {
         watched = context;
         builder = pthread_self();
         running = 1;
@@ -81,7 +86,7 @@ pw_status pw_build(pw_context *context, const double *vertices, size_t vertex_co
     running = 0;
     if (watching) {
         pthread_join(watcher, NULL);
-        if (!happened) harm(0);  // a stage too short to be met
+        if (!happened && on_the_rung()) harm(0);  // a stage too short to be met
     }
     return status;
 }

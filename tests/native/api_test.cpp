@@ -83,6 +83,7 @@ TEST(Api, NullsAreErrors) {
     expect_argument_error(pw_context_progress(nullptr, seconds, nullptr));
     expect_argument_error(pw_context_seconds(nullptr, seconds));
     expect_argument_error(pw_context_seconds(context.get(), nullptr));
+    expect_argument_error(pw_context_rung(context.get(), nullptr));
     expect_argument_error(
         pw_build(nullptr, mesh.vertex_data(), 8, mesh.triangle_data(), 12, nullptr, 12, nullptr, nullptr));
     expect_argument_error(pw_build(nullptr, nullptr, 8, mesh.triangle_data(), 12, nullptr, 12, nullptr, &loaded));
@@ -381,6 +382,22 @@ TEST(Api, SecondsOfAFailedBuild) {
     ASSERT_EQ(pw_context_seconds(context.get(), seconds), PW_OK);
     EXPECT_GT(seconds[PW_STAGE_SURFACE], 0);
     for (int s = PW_STAGE_TETRAHEDRA; s < PW_STAGE_COUNT; ++s) EXPECT_EQ(seconds[s], 0);
+}
+
+TEST(Api, TheRungTriedLast) {
+    const Context context = new_context();
+    pw_rung rung = PW_RUNG_WRAPPED;
+    ASSERT_EQ(pw_context_rung(context.get(), &rung), PW_OK);
+    EXPECT_EQ(rung, PW_RUNG_EXACT);
+    TriMesh open = without_faces(cube());
+    open.triangles.pop_back();
+    open = without_faces(open);
+    for (const auto& [rungs, last] : {std::pair(7U, PW_RUNG_REPAIRED), std::pair(5U, PW_RUNG_WRAPPED),
+                                      std::pair(1U, PW_RUNG_EXACT)}) {
+        (void)try_build(open, 0, context.get(), rungs);
+        ASSERT_EQ(pw_context_rung(context.get(), &rung), PW_OK);
+        EXPECT_EQ(rung, last);
+    }
 }
 
 TEST(Api, CancelBeforeABuildStopsTheNextOneOnly) {

@@ -18,7 +18,7 @@ namespace {
 Solid climbed(const TriMesh& mesh, uint32_t rungs = 0, bool open_surfaces = false) {
     Progress progress;
     progress.begin();
-    return climb(mesh.view(), {0, rungs, open_surfaces}, progress);
+    return climb(mesh.view(), {0, rungs, open_surfaces, {}}, progress);
 }
 
 // The surface used as a mesh of its own.
@@ -137,6 +137,24 @@ TEST(Ladder, AWrapHoldsAllOfTheSource) {
         EXPECT_LT(solid.surface.deviation, 0.02);
         for (const int32_t s : solid.surface.source_vertex) EXPECT_EQ(s, -1);
     }
+}
+
+TEST(Ladder, ASmallMeshGetsASmallWrap) {
+    for (const TriMesh& mesh : {cube(), torus(9, 6, 2, 0.5)}) {
+        const Solid solid = climbed(mesh, PW_RUNG_WRAPPED);
+        expect_sound(solid, mesh, PW_RUNG_WRAPPED);
+        EXPECT_LT(solid.surface.triangles.size(), 6000U);
+        EXPECT_LT(solid.surface.deviation, 0.02);
+    }
+}
+
+TEST(Ladder, AWrapThatHidesMuchIsDoneFiner) {
+    // Two plates that a first wrap would make one.
+    const TriMesh mesh = surface_of(
+        "gap", block({0, 0, 0}, {1, 4, 1}) + block({2, 0, 0}, {3, 4, 1}) + block({1, 0, 0}, {2, 1, 1}), {0.1, 1, 1});
+    const Solid solid = climbed(mesh, PW_RUNG_WRAPPED);
+    EXPECT_LT(solid.surface.deviation, 0.02);
+    EXPECT_LT(used_volume(solid), 1.1 * enclosed_volume(mesh));
 }
 
 TEST(Ladder, HolesAreFilledBeforeAWrap) {

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Builds hierarchies of meshes and writes what the Princeton Segmentation Benchmark's score reads: one .npz a mesh.
 
-usage: psb.py MESH_DIR OUT_DIR [--sdf PROGRAM] [--jobs N] [--again]
+usage: psb.py MESH_DIR OUT_DIR [--sdf PROGRAM] [--rungs N] [--jobs N] [--again]
 
 MESH_DIR/<id>.off -> OUT_DIR/<id>.npz: order, first, last, parent, leaf, start, counts, cuts, auto, as the benchmark's
 score.py documents them. Through the public Python API with its default settings, one process a core. A mesh that can't
 be built is named and gets no file: the score counts it as a failure. Meshes that have a file already are passed over,
 unless --again.
 
+--rungs: the rungs of the ladder that are allowed. 4, the wrap alone, beside the default shows what the wrap costs.
 --sdf: not Partwheel's hierarchies but CGAL's segmentation by the shape diameter function, made by the program given
 (sdf_bench, built by scripts/bench), as hierarchies of two levels: what a click on one of its segments would take.
 """
@@ -61,9 +62,9 @@ def automatic(hierarchy):
     return hierarchy.cut_height(0.03 * hierarchy.summary.hull_volume)
 
 
-def partwheel(path):
+def partwheel(path, rungs):
     mesh = meshes.read(path)
-    hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, threads=1)
+    hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, threads=1, rungs=rungs)
     parent, first, last, leaf, start = paths_as_tree(hierarchy, mesh.face_count)
     counts = COUNTS[COUNTS <= len(hierarchy.tetrahedra)]
     cuts = [hierarchy.face_labels(hierarchy.cut_parts(k)) for k in counts]
@@ -88,8 +89,8 @@ def sdf(path, program):
             "counts": np.array([parts]), "cuts": labels[None], "auto": labels}
 
 
-def write(path, target, program):
-    arrays = sdf(path, program) if program else partwheel(path)
+def write(path, target, program, rungs):
+    arrays = sdf(path, program) if program else partwheel(path, rungs)
     partial = target.with_suffix(".partial.npz")
     np.savez_compressed(partial, **arrays)
     partial.rename(target)
@@ -106,19 +107,20 @@ def main():
     parser.add_argument("meshes", type=Path, help="a directory of .off files, or one such file")
     parser.add_argument("out", type=Path)
     parser.add_argument("--sdf", metavar="PROGRAM")
+    parser.add_argument("--rungs", type=int, default=0, help="see pw_build_options")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--again", action="store_true", help="also those that have a file")
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     if args.meshes.is_file():
         try:
-            write(args.meshes, args.out / f"{args.meshes.stem}.npz", args.sdf)
+            write(args.meshes, args.out / f"{args.meshes.stem}.npz", args.sdf, args.rungs)
         except (PartwheelError, meshes.MeshFileError, subprocess.CalledProcessError) as error:
             sys.exit(str(error))
         return
     todo = [path for path in sorted(args.meshes.glob("*.off"))
             if args.again or not (args.out / f"{path.stem}.npz").exists()]
-    arguments = [str(args.out), *(["--sdf", args.sdf] if args.sdf else [])]
+    arguments = [str(args.out), "--rungs", str(args.rungs), *(["--sdf", args.sdf] if args.sdf else [])]
     with ThreadPoolExecutor(args.jobs) as pool:
         results = [(path, pool.submit(in_a_process, path, arguments)) for path in todo]
         for i, (path, result) in enumerate(results, 1):

@@ -95,6 +95,7 @@ FUNCTIONS = {
     "pw_context_free": (None, [c_void_p]),
     "pw_context_cancel": (c_int, [c_void_p]),
     "pw_context_progress": (c_int, [c_void_p, POINTER(c_double), POINTER(c_int)]),
+    "pw_context_rung": (c_int, [c_void_p, POINTER(c_int)]),
     "pw_context_seconds": (c_int, [c_void_p, POINTER(c_double)]),
     "pw_build": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_size_t, POINTER(BuildOptions),
                          POINTER(c_void_p)]),

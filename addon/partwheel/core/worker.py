@@ -14,7 +14,7 @@ import threading
 from pathlib import Path
 
 from .hierarchy import Hierarchy, checked_surface
-from .library import PartwheelError, Status, load
+from .library import PartwheelError, Rung, Status, load
 
 ENTRY = Path(__file__).with_name("worker_process.py")
 MEMORY_SHARE = 0.8  # of the memory that is available when the build starts
@@ -23,7 +23,6 @@ SECONDS, SECONDS_PER_TRIANGLE = 120, 0.002
 WATCH_SECONDS = 0.1
 # A message to or from the worker: kind, length, then so many bytes.
 MESSAGE = struct.Struct("<cQ")
-RUNGS = (7, 6, 4)  # what may still be tried, at first and after each failed process; see pw_build_options
 
 HARMLESS = "Nothing else was harmed; the mesh is as it was."
 
@@ -44,8 +43,8 @@ class Job:
     macOS does not honour such limits, and on Windows none is set; there the system's own limits hold.
     time_limit: seconds that one process may take (None: two minutes and 2 ms a triangle).
 
-    A worker that crashes, exits, or goes beyond a limit is followed by another that begins at the next rung of the
-    ladder; failures holds a WorkerError for each. Every method may be called from any thread. The worker ends when this
+    A worker that crashes, exits, or goes beyond a limit is followed by another that begins at the rung of the ladder
+    after the one it tried, if there is one; failures holds a WorkerError for each. Every method may be called from any thread. The worker ends when this
     process does, however that happens.
     """
 
@@ -54,7 +53,8 @@ class Job:
         load()  # a missing library is better told here
         self._arrays, self._face_count = checked_surface(vertices, triangles, faces, face_count)
         self._options = {"quality": float(quality), "open_surfaces": int(open_surfaces), "threads": threads}
-        self._rungs = rungs or RUNGS[0]
+        self._rungs = rungs or sum(Rung)
+        self._rung = Rung.EXACT  # that the worker tries, as far as it has told
         self._memory_limit = int(MEMORY_SHARE * available_memory()) if memory_limit is None else memory_limit
         self._time_limit = time_limit or SECONDS + SECONDS_PER_TRIANGLE * len(self._arrays[1])
         self.failures = []
@@ -103,15 +103,17 @@ class Job:
 
     def _run(self):
         try:
-            for rungs in dict.fromkeys(mask & self._rungs for mask in RUNGS):
-                if rungs:
-                    try:
-                        self._hierarchy = self._attempt(rungs)
-                        return
-                    except WorkerError as error:
-                        self.failures.append(error)
-                        if error.name == "worker":
-                            break
+            rungs = self._rungs
+            while rungs:
+                self._rung = rungs & -rungs  # the first
+                try:
+                    self._hierarchy = self._attempt(rungs)
+                    return
+                except WorkerError as error:
+                    self.failures.append(error)
+                    if error.name == "worker":
+                        break
+                rungs &= -2 * self._rung  # those after it
             self._error = self.failures[-1]
         except Exception as error:  # whatever it is, result() raises it
             self._error = error
@@ -197,7 +199,8 @@ class Job:
                 if kind == b"S":
                     seconds = {str(stage): float(value) for stage, value in values.items()}
                 else:
-                    fraction, stage = values
+                    fraction, stage, rung = values
+                    self._rung = Rung(rung)
                     self._progress = max(self._progress[0], float(fraction)), str(stage)
             except (ValueError, TypeError, AttributeError, LookupError):  # not what a sound worker writes
                 return _raising(WorkerError("crash", f"The worker process gave a damaged answer. {HARMLESS}"))

@@ -3,7 +3,7 @@
 
 worker.py starts it by its path, with a bare Python: no numpy, no site-packages, nothing of Blender. Messages are a
 kind, a length and so many bytes. In: B {options, face_count, memory_limit, sizes}, then the arrays' bytes. Out: P
-[fraction, stage] some times a second; in the end S {stage: seconds}, and H saved hierarchy or E {status, message}.
+[fraction, stage, rung] some times a second; in the end S {stage: seconds}, and H saved hierarchy or E {status, message}.
 """
 
 import ctypes
@@ -127,11 +127,12 @@ def build(header, arrays, answers):
         raise MemoryError
     thread = Build(context, header, arrays)
     thread.start()
-    fraction, stage = c_double(), c_int()
+    fraction, stage, rung = c_double(), c_int(), c_int()
     while thread.is_alive():
         thread.join(TICK)
         load().pw_context_progress(context, byref(fraction), byref(stage))
-        send(answers, b"P", [fraction.value, load().pw_stage_name(stage.value).decode()])
+        load().pw_context_rung(context, byref(rung))
+        send(answers, b"P", [fraction.value, load().pw_stage_name(stage.value).decode(), rung.value])
     seconds = (c_double * STAGE_COUNT)()
     load().pw_context_seconds(context, seconds)
     send(answers, b"S", {load().pw_stage_name(each).decode(): seconds[each] for each in Stage})

@@ -1,6 +1,7 @@
 // Hierarchies built through the C API, and what must hold of every one of them.
 #pragma once
 
+#include "partwheel.h"
 #include "support/shapes.h"
 
 #include <memory>
@@ -47,5 +48,8 @@ HullMesh hull(const Handle& handle, size_t tet_first, size_t tet_last);
 // All invariants that partwheel.h documents, as GoogleTest expectations. `volume` is that of the solid; `convex` says
 // whether the shape is.
 void expect_invariants(const Handle& handle, const TriMesh& mesh, double volume, bool convex = false);
+
+// Those that hold of any hierarchy, loaded from whatever bytes: the tree, and the questions.
+void expect_structure(const Handle& handle);
 
 }  // namespace partwheel::test

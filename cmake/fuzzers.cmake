@@ -1,0 +1,25 @@
+# The fuzzers: each tests/fuzz/*_fuzzer.cpp is a program of libFuzzer's, which scripts/test fuzz runs.
+
+find_package(GTest)
+if(NOT GTest_FOUND)
+  message(FATAL_ERROR "GoogleTest was not found. ${fix} Or configure with -DPARTWHEEL_FUZZERS=OFF.")
+endif()
+if(NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
+  message(FATAL_ERROR "The fuzzers need clang: cmake --preset fuzz")
+endif()
+
+# Then a saved hierarchy's hash is not compared, so that a fuzzer gets behind it.
+target_compile_definitions(partwheel_engine PRIVATE FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION)
+
+add_library(partwheel_fuzzed STATIC native/src/api.cpp tests/native/support/built.cpp tests/native/support/shapes.cpp)
+target_compile_definitions(partwheel_fuzzed PRIVATE PW_BUILDING)
+target_include_directories(partwheel_fuzzed PUBLIC tests/native)
+target_link_libraries(partwheel_fuzzed PUBLIC partwheel_engine GTest::gtest)
+
+file(GLOB programs CONFIGURE_DEPENDS tests/fuzz/*_fuzzer.cpp)
+foreach(source ${programs})
+  get_filename_component(name "${source}" NAME_WE)
+  add_executable(${name} "${source}")
+  target_link_libraries(${name} PRIVATE partwheel_fuzzed)
+  target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+endforeach()
