@@ -12,7 +12,7 @@ from mathutils.kdtree import KDTree
 from . import mesh_arrays
 from .core.deform import FIXED, FREE, Deformation, part_of_the_way, surface_distances
 
-HANDLE_SIZE = 0.12  # of a handle by default: its radius, by the square root of the part's area
+HANDLE_SIZE = 0.25  # of a handle by default: its radius, by the square root of the part's area
 SAME_PLACE = 1e-4  # mirrored vertices are so near to each other, by the mesh's size
 WAYS = 32  # matrices between rest and the handle's that a proportional deformation mixes
 MIRROR = np.diag([-1.0, 1, 1, 1])
@@ -96,7 +96,8 @@ class Region:
         if not self.free.any():
             raise Refused("The part has no vertex inside its border that is not hidden: pick a larger one.")
         if self.free.all():
-            raise Refused("The part is the whole mesh, so nothing would hold it: pick a smaller one, or move the object.")
+            raise Refused("The part is the whole mesh, so nothing would hold it: pick a smaller one, or move the "
+                          "object.")
         if not self.size > 0:
             raise Refused("The faces of the part have no area: there is nothing to deform.")
         self._find_partners(points) if mirror else self._no_partners()
@@ -142,6 +143,14 @@ class Region:
         """The region's indices of the free vertices within a radius along the surface, at least the one itself."""
         distance = surface_distances(self.rest, self.triangles, [index])
         return np.flatnonzero(self.free & (distance <= radius))
+
+    def usual_radius(self, index):
+        """Of a handle at this vertex: a share of the part's size, but its neighbours belong to it at least, for a point
+        alone draws out a thorn; and a quarter of the free vertices at most."""
+        around = np.unique(self.triangles[(self.triangles == index).any(axis=1)])
+        distance = surface_distances(self.rest, self.triangles, [index])
+        nearer = np.sort(distance[self.free])
+        return float(min(max(HANDLE_SIZE * self.size, 1.01 * distance[around].max()), nearer[len(nearer) // 4]))
 
     def changed(self, points):
         """(vertices of the mesh, where they go) for what deformed to points (n,3), mirrored ones included."""

@@ -145,6 +145,29 @@ void check(std::span<const Point> vertices, std::span<const Triangle> triangles)
                 throw Error(PW_ERROR_NOT_FINITE, "A coordinate is infinite, too large, or not a number.");
 }
 
+// Vertices along a space-filling curve (Morton's) through the box of a grid of 2^21 cells a side.
+std::vector<int32_t> along_curve(std::span<const Point> points, const Point& low, const Point& high) {
+    const double longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+    const double cells = longest > 0 ? 2097151 / longest : 0;
+    const auto spread = [](uint64_t x) {  // its 21 bits, two zeros after each
+        x = (x | x << 32) & 0x1f00000000ffff, x = (x | x << 16) & 0x1f0000ff0000ff;
+        x = (x | x << 8) & 0x100f00f00f00f00f, x = (x | x << 4) & 0x10c30c30c30c30c3;
+        return (x | x << 2) & 0x1249249249249249;
+    };
+    std::vector<std::pair<uint64_t, int32_t>> keys;
+    keys.reserve(points.size());
+    for (size_t v = 0; v < points.size(); ++v) {
+        uint64_t key = 0;
+        for (size_t k = 0; k < 3; ++k) key |= spread(static_cast<uint64_t>((points[v][k] - low[k]) * cells)) << k;
+        keys.push_back({key, static_cast<int32_t>(v)});
+    }
+    std::sort(keys.begin(), keys.end());
+    std::vector<int32_t> order;
+    order.reserve(keys.size());
+    for (const auto& [key, v] : keys) order.push_back(v);
+    return order;
+}
+
 // The root of each vertex's component, all with paths of length 1.
 std::vector<int32_t> components(size_t vertex_count, std::span<const Triangle> triangles) {
     std::vector<int32_t> root(vertex_count);
@@ -163,16 +186,29 @@ std::vector<int32_t> components(size_t vertex_count, std::span<const Triangle> t
 
 }  // namespace
 
-Deformation::Deformation(std::span<const Point> vertices, std::span<const Triangle> triangles,
-                         std::span<const int32_t> roles)
-    : given_(vertices.begin(), vertices.end()), role_(roles.begin(), roles.end()) {
-    check(vertices, triangles);
+Deformation::Deformation(std::span<const Point> vertices, std::span<const Triangle> given_triangles,
+                         std::span<const int32_t> roles) {
+    check(vertices, given_triangles);
     Point low = vertices[0], high = vertices[0];
     for (const Point& p : vertices)
         for (size_t k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
     origin_ = 0.5 * (low + high);
-    for (const Point& p : vertices) rest_.push_back(p - origin_);
+    place_in_given_ = along_curve(vertices, low, high);
+    std::vector<int32_t> ours(vertices.size());
+    for (size_t v = 0; v < vertices.size(); ++v) {
+        const int32_t given = place_in_given_[v];
+        ours[given] = static_cast<int32_t>(v);
+        given_.push_back(vertices[given]);
+        rest_.push_back(vertices[given] - origin_);
+        role_.push_back(roles[given]);
+    }
     now_ = rest_;
+    std::vector<Triangle> triangles;
+    triangles.reserve(given_triangles.size());
+    for (const auto& [a, b, c] : given_triangles) triangles.push_back({ours[a], ours[b], ours[c]});
+    std::stable_sort(triangles.begin(), triangles.end(), [](const Triangle& a, const Triangle& b) {
+        return std::min({a[0], a[1], a[2]}) < std::min({b[0], b[1], b[2]});
+    });
 
     // What nothing holds or moves stays.
     std::vector<int32_t> root = components(vertices.size(), triangles);
@@ -182,7 +218,7 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
     int32_t last_handle = -1;
     for (size_t v = 0; v < vertices.size(); ++v) {
         if (role_[v] < PW_VERTEX_FIXED || role_[v] >= PW_MAX_COUNT)
-            throw Error(PW_ERROR_ARGUMENT, "A vertex has a role that is neither free, nor fixed, nor a handle's number.");
+            throw Error(PW_ERROR_ARGUMENT, "A vertex's role is neither free, nor fixed, nor a handle's number.");
         if (role_[v] != PW_VERTEX_FREE) held[root[v]] = 1;
         last_handle = std::max(last_handle, role_[v]);
     }
@@ -244,10 +280,11 @@ void Deformation::factorize(std::span<const Triangle> triangles) {
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
     factor.analyzePattern(laplacian);
     factor.factorize(laplacian);
-    const bool sound = factor.info() == Eigen::Success && factor.vectorD().allFinite() && factor.vectorD().minCoeff() > 0;
+    const bool sound = factor.info() == Eigen::Success && factor.vectorD().allFinite() &&
+                       factor.vectorD().minCoeff() > 0;
     if (!sound)
-        throw Error(PW_ERROR_DEGENERATE, "The part's faces are too thin to be deformed. Dissolve degenerate faces or merge "
-                                         "vertices by distance first.");
+        throw Error(PW_ERROR_DEGENERATE, "The part's faces are too thin to be deformed. Dissolve degenerate faces or "
+                                         "merge vertices by distance first.");
     const auto& lower = factor.matrixL().nestedExpression();
     column_.assign(lower.outerIndexPtr(), lower.outerIndexPtr() + count + 1);
     row_.assign(lower.innerIndexPtr(), lower.innerIndexPtr() + lower.nonZeros());
@@ -303,7 +340,7 @@ void Deformation::move(size_t handle, const Affine& matrix) {
         about[4 * row + 3] += dot({matrix[4 * row], matrix[4 * row + 1], matrix[4 * row + 2]}, origin_) - origin_[row];
     for (const double x : about)
         if (!(std::abs(x) <= 1e100))
-            throw Error(PW_ERROR_NOT_FINITE, "A handle's matrix has an entry that is infinite, too large, or not a number.");
+            throw Error(PW_ERROR_NOT_FINITE, "An entry of a handle's matrix is infinite, too large, or not a number.");
     const Affine step = after_inverse(about, moved.matrix);
     if (finite(step)) {
         for (size_t u = 0; u < vertex_of_.size(); ++u) {
@@ -381,7 +418,7 @@ void Deformation::reset() {
 }
 
 void Deformation::positions(std::span<Point> out) const {
-    for (size_t v = 0; v < now_.size(); ++v) out[v] = given_[v] + (now_[v] - rest_[v]);
+    for (size_t v = 0; v < now_.size(); ++v) out[place_in_given_[v]] = given_[v] + (now_[v] - rest_[v]);
 }
 
 void surface_distances(std::span<const Point> vertices, std::span<const Triangle> triangles,

@@ -66,6 +66,8 @@ private:
     void solve(std::vector<Point>& x) const;
 
     Point origin_{};
+    // Below, vertices and triangles stand in an order of our own, in which neighbours are near each other in memory.
+    std::vector<int32_t> place_in_given_;    // of each vertex
     std::vector<Point> given_;               // at rest, as the caller has them
     std::vector<Point> rest_, now_;          // about the origin
     std::vector<int32_t> role_;              // as given; those that stay for want of a connection are fixed

@@ -8,6 +8,7 @@ import datetime
 import json
 import sys
 
+import deform
 import peers
 import plot
 import queries
@@ -17,7 +18,7 @@ import table
 import worst
 from programs import BUILD, ROOT, Failure, machine
 
-SECTIONS = {module.__name__: module for module in (ratio, scale, worst, queries, peers)}
+SECTIONS = {module.__name__: module for module in (ratio, scale, worst, queries, deform, peers)}
 
 
 def main():

@@ -11,7 +11,7 @@ PLOT = "docs/images/scale.png"
 
 def text(reports):
     """The table of all sections that there are reports of."""
-    makers = {"ratio": ratio, "scale": scale, "worst": worst, "queries": queries}
+    makers = {"ratio": ratio, "scale": scale, "worst": worst, "queries": queries, "deform": deform}
     rows = [("", "measured", "goal", "holds")]
     for name, rows_of in makers.items():
         if name in reports:
@@ -66,6 +66,11 @@ def queries(report):
             1000 * report["longest"], 1.0, "{:.3f}"),
         row("loading a saved hierarchy / building it", report["load_over_build"], 0.05, "{:.3f}"),
     ]
+
+
+def deform(report):
+    return [row(f"a mouse move that deforms a part of {size['count']:,} vertices, ms", 1000 * size["move"]["median"],
+                size["goal"], "{:.1f}") for size in report["sizes"]]
 
 
 def row(what, value, goal, form):

@@ -65,7 +65,8 @@ class Deform(MeshTest):
         before = edited(obj)
         size = numpy.ptp(before, axis=0).max()
         move = shift(0.1 * size, 0.05 * size, 0)
-        self.assertEqual(self.run_operator(handles=[handle(tip, move, 0.01 * size)]), {"FINISHED"})  # of the part picked last
+        # Of the part picked last.
+        self.assertEqual(self.run_operator(handles=[handle(tip, move, 0.01 * size)]), {"FINISHED"})
         after = edited(obj)
         moved = (after != before).any(axis=1)
         self.assertFalse(moved[numpy.setdiff1d(numpy.arange(len(before)), free)].any())

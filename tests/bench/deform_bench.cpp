@@ -1,10 +1,10 @@
 // What a mouse move costs while a part is deformed, through the C API, as JSON.
 //
-//   deform_bench MODEL.off SHARE MOVES ITERATIONS
+//   deform_bench MODEL.off AXIS COUNT MOVES ITERATIONS
 //
-// The part is what lies in the upper SHARE (0..1) of the model's longest side; its handle is the topmost tenth of it.
-// The handle turns a little at each move, as under a mouse, and each move iterates so often. `create`: seconds,
-// [wall, cpu]. `move`: the median and the longest, in seconds; `free`: how many vertices the system has.
+// The part is the COUNT vertices that lie highest along AXIS (0, 1, 2), its handle the highest tenth of them; all
+// others stay. The handle turns a little at each move, as under a mouse, and each move iterates so often. `create`:
+// seconds, [wall, cpu]. `move`: the median and the longest, in seconds of wall clock, and the median of processor time.
 #include "measured.h"
 #include "partwheel.h"
 
@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
 
 namespace {
@@ -23,22 +24,16 @@ void require_ok(pw_status status) {
     if (status != PW_OK) throw std::runtime_error(pw_error_message());
 }
 
-// The model's vertices as fixed, free, and handle 0, by their place along its longest side.
-std::vector<int32_t> roles(const Model& model, double share) {
-    double low[3], high[3];
-    for (size_t k = 0; k < 3; ++k) low[k] = high[k] = model.vertices[k];
-    for (size_t i = 0; i < model.vertices.size(); ++i) {
-        low[i % 3] = std::min(low[i % 3], model.vertices[i]);
-        high[i % 3] = std::max(high[i % 3], model.vertices[i]);
-    }
-    size_t axis = 0;
-    for (size_t k = 1; k < 3; ++k)
-        if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
-    std::vector<int32_t> found;
-    for (size_t v = 0; v < model.vertex_count(); ++v) {
-        const double place = (high[axis] - model.vertices[3 * v + axis]) / (high[axis] - low[axis]);
-        found.push_back(place > share ? PW_VERTEX_FIXED : place > share / 10 ? PW_VERTEX_FREE : 0);
-    }
+// The model's vertices as fixed, free, and handle 0, by their place along an axis.
+std::vector<int32_t> roles(const Model& model, size_t axis, size_t count) {
+    std::vector<size_t> order(model.vertex_count());
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+        return model.vertices[3 * a + axis] > model.vertices[3 * b + axis];
+    });
+    std::vector<int32_t> found(order.size());
+    for (size_t i = 0; i < order.size(); ++i)
+        found[order[i]] = i < count / 10 ? 0 : i < count ? PW_VERTEX_FREE : PW_VERTEX_FIXED;
     return found;
 }
 
@@ -46,10 +41,12 @@ std::vector<int32_t> roles(const Model& model, double share) {
 
 int main(int argc, char** argv) {
     try {
-        if (argc != 5) throw std::runtime_error("usage: deform_bench MODEL.off SHARE MOVES ITERATIONS");
+        if (argc != 6) throw std::runtime_error("usage: deform_bench MODEL.off AXIS COUNT MOVES ITERATIONS");
         const Model model = read_off(argv[1]);
-        const std::vector<int32_t> role = roles(model, std::stod(argv[2]));
-        const size_t moves = std::stoul(argv[3]), iterations = std::stoul(argv[4]);
+        const size_t axis = std::stoul(argv[2]), count = std::stoul(argv[3]);
+        if (axis > 2) throw std::runtime_error("AXIS must be 0, 1 or 2");
+        const std::vector<int32_t> role = roles(model, axis, count);
+        const size_t moves = std::stoul(argv[4]), iterations = std::stoul(argv[5]);
         Stopwatch watch;
         pw_deformation* made = nullptr;
         require_ok(pw_deformation_create(model.vertices.data(), model.vertex_count(), model.triangles.data(),

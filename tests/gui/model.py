@@ -6,11 +6,12 @@ def read_off(path):
     """Reads an OFF file of triangles: vertices (V,3) float64, triangles (T,3) int32."""
     lines = (line.split("#")[0] for line in path.read_text().splitlines())
     words = " ".join(lines).split()
-    if words[0] != "OFF":
+    if words[0] not in {"OFF", "COFF"}:
         raise ValueError(f"{path} does not start with OFF.")
+    width = 3 if words[0] == "OFF" else 7  # COFF: each vertex has a colour too
     vertex_count, face_count = int(words[1]), int(words[2])
-    end = 4 + 3 * vertex_count
-    vertices = numpy.array(words[4:end], float).reshape(-1, 3)
+    end = 4 + width * vertex_count
+    vertices = numpy.array(words[4:end], float).reshape(-1, width)[:, :3].copy()
     faces = numpy.array(words[end:end + 4 * face_count], numpy.int32).reshape(-1, 4)
     if (faces[:, 0] != 3).any():
         raise ValueError(f"{path} holds other polygons than triangles.")

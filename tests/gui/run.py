@@ -28,7 +28,7 @@ ROOT = HERE.parents[1]
 OUTPUT = ROOT / "build" / "gui"
 MESHES = ROOT / "build" / "deps" / "meshes"
 MODELS = {"hand": "hand.off", "homer": "homer.off", "bear": "bear.off", "large": "armadillo.off",
-          "elephant": "refined_elephant.off"}
+          "elephant": "refined_elephant.off", "dino": "dino.off"}
 SUBDIVIDED = {"large"}  # 208,000 faces
 PATH = "/usr/sbin:/usr/bin:/sbin:/bin"
 BLENDER = os.environ.get("PARTWHEEL_BLENDER", "blender")

@@ -15,7 +15,7 @@ from mathutils import Matrix, Vector
 
 from .. import handle_points, session
 from ..core import PartwheelError
-from ..deforming import HANDLE_SIZE, METHODS, Refused, Region, write
+from ..deforming import METHODS, Refused, Region, write
 from ..picking import FaceTree, view_under
 
 LIVE_ITERATIONS = 2  # a mouse move
@@ -29,10 +29,10 @@ PASS = {"MIDDLEMOUSE", "MOUSEPAN", "MOUSEZOOM", "MOUSEROTATE", "TRACKPADPAN", "T
 DIGITS = {name: str(digit) for digit, word in enumerate(
     ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE"))
     for name in (word, f"NUMPAD_{digit}")} | {"PERIOD": ".", "NUMPAD_PERIOD": "."}
-IDLE_KEYS = ("Partwheel   Drag: Move the Handle   Click: Put It Elsewhere   Shift Drag: One More Handle   G, R, S: Move, "
-             "Rotate, Scale   Wheel: Handle Size   Enter: Confirm   MMB: Navigate   Esc/RMB: Cancel")
-STAGE_KEYS = ("Partwheel   X, Y, Z: Axis   0-9 . -: Type   Ctrl: Snap   G, R, S: Move, Rotate, Scale   LMB, Enter: Done   "
-              "Esc/RMB: Cancel")
+IDLE_KEYS = ("Partwheel   Drag: Move the Handle   Click: Put It Elsewhere   Shift Drag: One More Handle   G, R, S: "
+             "Move, Rotate, Scale   Wheel: Handle Size   Enter: Confirm   MMB: Navigate   Esc/RMB: Cancel")
+STAGE_KEYS = ("Partwheel   X, Y, Z: Axis   0-9 . -: Type   Ctrl: Snap   G, R, S: Move, Rotate, Scale   LMB, Enter: "
+              "Done   Esc/RMB: Cancel")
 NO_PART = "Pick a part with Select Part by Wheel first."
 
 
@@ -247,11 +247,11 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         corners = obj.data.polygons[face].vertices if face is not None else ()
         known = [vertex for vertex in corners if vertex in self.region.vertices]
         if known:
-            vertex = self.region.vertices[self.region.nearest_free(known[0])]
+            index = self.region.nearest_free(known[0])
         else:
             away = METHODS["PROPORTIONAL"](self.region).weight
-            vertex = self.region.vertices[np.where(self.region.free, away, -1).argmax()]
-        return Handle(int(vertex), HANDLE_SIZE * self.region.size)
+            index = np.where(self.region.free, away, -1).argmax()
+        return Handle(int(self.region.vertices[index]), self.region.usual_radius(index))
 
     def _place(self, context, vertex, one_more):
         """Takes the handle to a vertex, unless it is in the handle already. The ones before stay where they were put if
@@ -272,7 +272,8 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
     def _resize(self, context, larger):
         before = self.placed, self.region, self.turns
         last = self.placed[-1]
-        self.placed = [*self.placed[:-1], Handle(last.vertex, last.radius * (NOTCH if larger else 1 / NOTCH), last.matrix)]
+        radius = last.radius * NOTCH if larger else last.radius / NOTCH
+        self.placed = [*self.placed[:-1], Handle(last.vertex, radius, last.matrix)]
         self._try(context, *before)
 
     def _try(self, context, placed, region, turns):
@@ -452,7 +453,8 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
 
     def _tell(self, context):
         stage = self.stage
-        what = f"Handle of {len(self.patches[-1])} vertices"
+        count = len(self.patches[-1])
+        what = f"Handle of {count} {'vertex' if count == 1 else 'vertices'}"
         if stage:
             axis = "" if stage.axis is None else f" along {'XYZ'[stage.axis]}"
             what = {"G": "Move", "R": "Rotate", "S": "Scale"}[stage.kind] + axis
