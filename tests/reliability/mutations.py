@@ -22,7 +22,8 @@ def duplicate(draw, vertices, triangles):
 
 
 def delete(draw, vertices, triangles):
-    return vertices, np.delete(triangles, some(draw, len(triangles), 0.3), axis=0)
+    kept = np.delete(triangles, some(draw, len(triangles), 0.3), axis=0)
+    return vertices, kept if len(kept) else triangles
 
 
 def cut(draw, vertices, triangles):
