@@ -216,7 +216,8 @@ TEST(Surface, FoldsInOnePlane) {
                 const auto corner = [&](size_t k) { return mesh.vertices[static_cast<size_t>(split[k])]; };
                 Point p;
                 for (size_t k = 0; k < 3; ++k)
-                    p[k] = corner(0)[k] + i / 4.0 * (corner(1)[k] - corner(0)[k]) + j / 4.0 * (corner(2)[k] - corner(0)[k]);
+                    p[k] = corner(0)[k] + i / 4.0 * (corner(1)[k] - corner(0)[k]) +
+                           j / 4.0 * (corner(2)[k] - corner(0)[k]);
                 const auto v = static_cast<int32_t>(mesh.vertices.size());
                 mesh.vertices.push_back(p);
                 mesh.triangles[t] = {split[0], split[1], v};
