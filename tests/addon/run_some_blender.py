@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The add-on tier: installs the zip into this Blender, then tests what was installed, without a window.
+
+    blender -b --factory-startup --python-exit-code 9 --python tests/addon/run.py -- ZIP RESULT.json
+    build/venv/bpy-X/bin/python tests/addon/run.py -- ZIP RESULT.json
+
+Start it with a HOME of its own: it installs into the user's directories. RESULT.json: {"passed": n, "failed": n,
+"failures": [sentence, ...]}. Exit code: 0 if all passed, 1 if a test failed.
+"""
+
+import json
+import sys
+import time
+import traceback
+import unittest
+from pathlib import Path
+
+import bpy
+
+SLOW = 3  # seconds
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+
+def installed(zip_path):
+    """Installs and enables the add-on the way this Blender's users do: the name of its module."""
+    if bpy.app.version >= (4, 2, 0):
+        module, root = "bl_ext.user_default.partwheel", bpy.utils.user_resource("EXTENSIONS")
+        bpy.ops.extensions.package_install_files(filepath=zip_path, repo="user_default", enable_on_install=True)
+    else:
+        module, root = "partwheel", bpy.utils.user_resource("SCRIPTS")
+        bpy.ops.preferences.addon_install(filepath=zip_path)
+        bpy.ops.preferences.addon_enable(module=module)
+    if module not in bpy.context.preferences.addons:
+        raise RuntimeError(f"{zip_path} did not install as {module}.")
+    package = sys.modules[module]
+    if Path(root).resolve() not in Path(package.__file__).resolve().parents:
+        raise RuntimeError(f"{module} was imported from {package.__file__}, not from what was installed in {root}.")
+    print(f"Blender {bpy.app.version_string}: {module} from {package.__file__}", flush=True)
+    return module
+
+
+class Timed(unittest.TextTestResult):
+    """Says which tests take long."""
+
+    def startTest(self, test):
+        self.began = time.monotonic()
+        super().startTest(test)
+
+    def stopTest(self, test):
+        super().stopTest(test)
+        seconds = time.monotonic() - self.began
+        if seconds > SLOW:
+            self.stream.writeln(f"({seconds:.1f} s: {test.id()})")
+
+
+def main():
+    zip_path, result_path = sys.argv[sys.argv.index("--") + 1:]
+    result_path = Path(result_path).resolve()
+    result = {"passed": 0, "failed": 1, "failures": []}
+    try:
+        import common
+
+        common.MODULE = installed(str(Path(zip_path).resolve()))
+        suite = unittest.defaultTestLoader.loadTestsFromNames('test_machine'.split())
+        run = unittest.TextTestRunner(stream=sys.stdout, verbosity=2, resultclass=Timed).run(suite)
+        failures = [f"{test.id()}: {text.strip().splitlines()[-1]}" for test, text in run.failures + run.errors]
+        failures += [f"{test.id()} was skipped: {reason}" for test, reason in run.skipped]
+        result = {"passed": run.testsRun - len(failures), "failed": len(failures), "failures": failures}
+    except Exception as error:  # whatever it is, the result must say so
+        traceback.print_exc()
+        result["failures"].append(f"The add-on could not be tested: {error}")
+    result_path.write_text(json.dumps(result, indent=1))
+    print(f"{result['passed']} passed, {result['failed']} failed", flush=True)
+    return 1 if result["failed"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
