@@ -21,7 +21,7 @@ OUTPUT = ROOT / "build" / "test"
 VENV = ROOT / "build" / "venv"
 TIME_LIMIT = 1800  # seconds for any one command, so that nothing hangs for ever
 SHOWN = 60  # lines of a failed command's output
-NEWEST = ("tool", "pick_and_click", "overlays")  # the scenarios that the newest Blender plays
+NEWEST = ("tool",)  # the scenarios that the newest Blender plays
 THREADED = "[Tt]hread|Cancel|Progress"  # the names of tests in which threads meet
 
 
