@@ -5,7 +5,13 @@ import numpy
 def play(stage):
     yield from stage.open("hand")
     stage.select([3])
-    proportional = stage.window.scene.tool_settings.use_proportional_edit
+    settings = stage.window.scene.tool_settings
+    settings.proportional_size = 0.37
+
+    def proportional():
+        return [getattr(settings, name) for name in dir(settings) if "proportional" in name]
+
+    users = proportional()
     x, y, face = stage.spot(0.05, 0.55)
     stops, start = stage.wheels.stops(face)
     part = stops[start]
@@ -40,8 +46,9 @@ def play(stage):
     stage.check(numpy.ptp(shift[inside], axis=0).max() < 1e-5, "all of the part has moved alike")
     stage.check((moved[inside] > 0.999).all(), "and most of all")
     stage.check(((moved[outside] > 0.05) & (moved[outside] < 0.95)).sum() > 20, "its surroundings have followed")
-    stage.check(stage.window.scene.tool_settings.use_proportional_edit == proportional,
-                "the user's own setting of proportional editing is as it was")
+    settings = stage.window.scene.tool_settings
+    stage.check(proportional() == users,
+                f"the user's own settings of proportional editing are as they were ({users}, {proportional()})")
 
     after = stage.coordinates()
     stage.mouse.key("Z", ctrl=True)
