@@ -12,3 +12,7 @@ foreach(source ${programs})
   add_executable(${name} "${source}")
   target_link_libraries(${name} PRIVATE partwheel_measured)
 endforeach()
+
+# What tests/quality/fit.py runs.
+add_executable(quality_trace tests/quality/trace.cpp)
+target_link_libraries(quality_trace PRIVATE partwheel_engine)

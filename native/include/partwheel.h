@@ -76,6 +76,12 @@ PW_API pw_status pw_context_seconds(const pw_context *context, double *seconds);
 
 /* ---- Building ------------------------------------------------------------------------------------------------- */
 
+/* Which tree is built. */
+typedef enum pw_mode {
+    PW_MODE_PAPER = 0,    /* the paper's as it is, and wheel and cuts by concavity alone */
+    PW_MODE_REGROUPED = 1 /* the paper's below some 300 parts, which are joined by what people take for one part */
+} pw_mode;
+
 typedef struct pw_build_options {
     /* sizeof(pw_build_options), so that later versions can tell. */
     size_t struct_size;
@@ -91,6 +97,8 @@ typedef struct pw_build_options {
     int32_t open_surfaces;
     /* 0: as many threads as help. 1 or more: at most so many. The result is the same, bit for bit. */
     int32_t threads;
+    /* A pw_mode. */
+    int32_t mode;
 } pw_build_options;
 
 typedef struct pw_hierarchy pw_hierarchy;
@@ -151,7 +159,8 @@ typedef struct pw_arrays {
     const int32_t *tet_last;   /* (N,)   */
     const uint8_t *cost_class; /* (N,)   Eq. 3 of the paper: 0 convex, 1 not; 0 for leaves */
     const double *cost;        /* (N,)   Eq. 3: C2 (Eq. 2) in class 0, the concavity (Eq. 1) in class 1; 0 for leaves */
-    const double *height;      /* (N,)   the node's place in the dendrogram: its concavity, 0 in class 0 */
+    const double *height;      /* (N,)   the node's place in the dendrogram: its concavity, 0 in class 0; of a regrouped
+                                *         node at least that of its children */
     const double *volume;      /* (N,)   of the node's tetrahedra */
     const double *area;        /* (N,)   of the node's source faces */
     const double *vertices;    /* (V,3)  the surface's, in a canonical order; then points that were added inside */
@@ -159,6 +168,8 @@ typedef struct pw_arrays {
     const int32_t *tetrahedra; /* (T,4)  positively oriented: vertex 3 sees 0, 1, 2 counter-clockwise */
     const int32_t *merges;     /* (T-1,2) the unpruned binary tree, in the order of merging: merge m joins the two
                                 *         clusters named, i < T being leaf i and T + j what merge j made */
+    const double *score;       /* (N,)   the overlap expected with what people would take, 0..1; 0 below the parts that
+                                *         are regrouped, and for all nodes of PW_MODE_PAPER */
 } pw_arrays;
 
 PW_API pw_status pw_hierarchy_arrays(const pw_hierarchy *hierarchy, pw_arrays *arrays);
@@ -193,8 +204,9 @@ PW_API pw_status pw_hierarchy_path(const pw_hierarchy *hierarchy, size_t face, i
                                    size_t *count);
 
 /* The stops of the mouse wheel after a click on a source face: nodes of its path, growing, the last one the root.
- * Each stop has at least 10 % more visible area than the one before, the last perhaps less; each holds the face.
- * start: index into nodes of the part that a click alone takes. */
+ * Each stop holds the face, and has at least 10 % more visible area than the one before, the last perhaps less.
+ * start: index into nodes of the part that a click alone takes: the best score; or, in PW_MODE_PAPER, the largest step
+ * of concavity to the parent. */
 PW_API pw_status pw_hierarchy_wheel(const pw_hierarchy *hierarchy, size_t face, int32_t *nodes, size_t capacity,
                                     size_t *count, size_t *start);
 
@@ -210,9 +222,15 @@ PW_API pw_status pw_hierarchy_faces(const pw_hierarchy *hierarchy, size_t node, 
 PW_API pw_status pw_hierarchy_cut_height(const pw_hierarchy *hierarchy, double height, int32_t *bounds,
                                          size_t capacity, size_t *count);
 
-/* The cut of the unpruned tree into this many parts that has the least total concavity. 1 <= parts <= min(T, 4096). */
+/* The cut of the unpruned tree into this many parts: the last parts - 1 merges undone; or, in PW_MODE_PAPER, the one
+ * with the least total concavity. 1 <= parts <= min(T, 4096). */
 PW_API pw_status pw_hierarchy_cut_parts(const pw_hierarchy *hierarchy, size_t parts, int32_t *bounds, size_t capacity,
                                         size_t *count);
+
+/* The parts that people would most likely divide the whole into: the cut of the dendrogram with the largest sum of area
+ * times score; or, in PW_MODE_PAPER, that at a height of 3 % of the hull's volume. */
+PW_API pw_status pw_hierarchy_cut_automatic(const pw_hierarchy *hierarchy, int32_t *bounds, size_t capacity,
+                                            size_t *count);
 
 /* A triangle mesh that the library made. */
 typedef struct pw_mesh pw_mesh;

@@ -104,14 +104,14 @@ int threads_to_use(int32_t asked) {
     return asked == 0 ? useful : std::min<int>(asked, 2);
 }
 
-Hierarchy build(const MeshView& mesh, const LadderOptions& options, int threads, Progress& progress) {
+Hierarchy build(const MeshView& mesh, const LadderOptions& options, int threads, int32_t mode, Progress& progress) {
     const Solid solid = climb(mesh, options, progress);
     progress.enter(PW_STAGE_CLUSTER);
     const BinaryTree tree = cluster(solid.mesh, progress, threads);
     progress.enter(PW_STAGE_DENDROGRAM);
-    const std::vector<uint8_t> kept = prune(tree.merges);
+    const Regrouped regrouped = mode == PW_MODE_PAPER ? Regrouped{tree, {}} : regroup(solid.mesh, tree, progress);
     progress.enter(PW_STAGE_HIERARCHY);
-    Hierarchy hierarchy(solid.surface, solid.mesh, tree, kept, mesh.vertices);
+    Hierarchy hierarchy(solid.surface, solid.mesh, regrouped, mesh.vertices);
     progress.advance(1);
     return hierarchy;
 }
@@ -213,7 +213,7 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
         require(hierarchy != nullptr, "hierarchy must not be null.");
         require(vertices != nullptr || vertex_count == 0, "vertices is null, but vertex_count is not 0.");
         require(triangles != nullptr || triangle_count == 0, "triangles is null, but triangle_count is not 0.");
-        const pw_build_options given = options ? *options : pw_build_options{sizeof given, 0, 0, 0, 0};
+        const pw_build_options given = options ? *options : pw_build_options{sizeof given, 0, 0, 0, 0, 0};
         require(given.struct_size == sizeof given,
                 "pw_build_options::struct_size is not that of this version of the library.");
         require(given.quality == 0 || (given.quality >= smallest_quality && std::isfinite(given.quality)),
@@ -222,13 +222,15 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
                 "rungs must be a sum of 1 (exact), 2 (repaired) and 4 (wrapped), or 0 for all.");
         require(given.open_surfaces == 0 || given.open_surfaces == 1, "open_surfaces must be 0 or 1.");
         require(given.threads >= 0, "threads must be 0 or more.");
+        require(given.mode == PW_MODE_REGROUPED || given.mode == PW_MODE_PAPER,
+                "mode must be 0 (the paper's) or 1 (regrouped).");
         Progress unwatched;
         Progress& progress = context ? context->progress : unwatched;
         const Watch watch(progress);
         const MeshView mesh{vertices, vertex_count, triangles, triangle_count, faces, face_count};
         const LadderOptions ladder{given.quality, given.rungs, given.open_surfaces == 1,
                                    [&](pw_rung rung) { if (context) context->rung = rung; }};
-        *hierarchy = new pw_hierarchy{build(mesh, ladder, threads_to_use(given.threads), progress)};
+        *hierarchy = new pw_hierarchy{build(mesh, ladder, threads_to_use(given.threads), given.mode, progress)};
     });
 }
 
@@ -302,6 +304,14 @@ pw_status pw_hierarchy_cut_parts(const pw_hierarchy* hierarchy, size_t parts, in
                 "The number of parts must be at least 1, and at most the number of tetrahedra and 4096.");
         require_room(bounds, capacity, count);
         hand_out<int32_t>(hierarchy->hierarchy.cut_parts(parts), bounds, capacity, count);
+    });
+}
+
+pw_status pw_hierarchy_cut_automatic(const pw_hierarchy* hierarchy, int32_t* bounds, size_t capacity, size_t* count) {
+    return guarded([&] {
+        require(hierarchy != nullptr, "hierarchy must not be null.");
+        require_room(bounds, capacity, count);
+        hand_out<int32_t>(hierarchy->hierarchy.cut_automatic(), bounds, capacity, count);
     });
 }
 

@@ -7,14 +7,17 @@
 
 namespace partwheel {
 
-std::vector<uint8_t> prune(std::span<const Merge> merges) {
+std::vector<uint8_t> prune(std::span<const Merge> merges, size_t top) {
     const size_t leaves = merges.size() + 1;
     std::vector<uint8_t> kept(merges.size(), 0);
     // What each merge would hang from is known once its parent has been decided: from the root down.
     std::vector<double> ceiling(merges.size(), std::numeric_limits<double>::infinity());
     for (size_t m = merges.size(); m-- > 0;) {
-        kept[m] = merges[m].concavity < ceiling[m];
-        const double below = kept[m] ? merges[m].concavity : ceiling[m];
+        const bool regrouped = m + top >= merges.size();
+        kept[m] = regrouped || merges[m].concavity < ceiling[m];
+        const double below = regrouped ? std::numeric_limits<double>::infinity()
+                             : kept[m] ? merges[m].concavity
+                                       : ceiling[m];
         for (int32_t child : {merges[m].left, merges[m].right})
             if (static_cast<size_t>(child) >= leaves) ceiling[static_cast<size_t>(child) - leaves] = below;
     }
@@ -64,6 +67,52 @@ std::vector<int32_t> cut_into_parts(std::span<const Merge> merges, size_t parts)
     return cut;
 }
 
+std::vector<int32_t> cut_undoing_last(std::span<const Merge> merges, size_t parts) {
+    const size_t leaves = merges.size() + 1, whole = leaves + merges.size() - (parts - 1);
+    std::vector<int32_t> cut, todo = {static_cast<int32_t>(leaves + merges.size() - 1)};
+    while (!todo.empty()) {
+        const auto c = static_cast<size_t>(todo.back());
+        todo.pop_back();
+        if (c < whole) {
+            cut.push_back(static_cast<int32_t>(c));
+            continue;
+        }
+        todo.push_back(merges[c - leaves].right);
+        todo.push_back(merges[c - leaves].left);
+    }
+    return cut;
+}
+
+std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, std::span<const double> areas,
+                                   std::span<const double> scores) {
+    const size_t leaves = merges.size() + 1;
+    std::vector<double> best(leaves + merges.size());
+    std::vector<uint8_t> divided(merges.size(), 0);
+    for (size_t c = 0; c < best.size(); ++c) {
+        best[c] = areas[c] * scores[c];
+        if (c < leaves || scores[c] == 0) continue;
+        const Merge& merge = merges[c - leaves];
+        const auto left = static_cast<size_t>(merge.left), right = static_cast<size_t>(merge.right);
+        const double apart = best[left] + best[right];
+        if (scores[left] > 0 && scores[right] > 0 && apart > best[c]) {
+            best[c] = apart;
+            divided[c - leaves] = 1;
+        }
+    }
+    std::vector<int32_t> cut, todo = {static_cast<int32_t>(best.size() - 1)};
+    while (!todo.empty()) {
+        const auto c = static_cast<size_t>(todo.back());
+        todo.pop_back();
+        if (c < leaves || !divided[c - leaves]) {
+            cut.push_back(static_cast<int32_t>(c));
+            continue;
+        }
+        todo.push_back(merges[c - leaves].right);
+        todo.push_back(merges[c - leaves].left);
+    }
+    return cut;
+}
+
 WheelStops wheel_stops(std::span<const double> areas, std::span<const double> heights) {
     constexpr double growth = 1.1, smallest_start = 0.01, largest_start = 0.6;
     const size_t root = areas.size() - 1;
@@ -93,6 +142,45 @@ WheelStops wheel_stops(std::span<const double> areas, std::span<const double> he
             wheel.start = s;
         }
     }
+    return wheel;
+}
+
+WheelStops scored_wheel_stops(std::span<const double> areas, std::span<const double> scores) {
+    constexpr double most_overlap = 0.85, shrink = 0.5;
+    const auto root = static_cast<int32_t>(areas.size()) - 1;
+    const auto area = [&](int32_t i) { return areas[static_cast<size_t>(i)]; };
+    const auto score = [&](int32_t i) { return scores[static_cast<size_t>(i)]; };
+    std::vector<int32_t> by_score;
+    for (int32_t i = 0; i <= root; ++i)
+        if (score(i) > 0 || i == root) by_score.push_back(i);
+    std::stable_sort(by_score.begin(), by_score.end(), [&](int32_t a, int32_t b) { return score(a) > score(b); });
+    WheelStops wheel;
+    for (const int32_t i : by_score) {
+        const auto same = [&](int32_t j) {
+            return std::min(area(i), area(j)) > most_overlap * std::max(area(i), area(j));
+        };
+        if (std::none_of(wheel.stops.begin(), wheel.stops.end(), same)) wheel.stops.push_back(i);
+    }
+    int32_t clicked = wheel.stops.front();
+    std::sort(wheel.stops.begin(), wheel.stops.end());
+    if (wheel.stops.back() != root) {
+        // The stop that kept the root out of the list: the root takes its place if it looks the same, else comes after.
+        if (area(wheel.stops.back()) < area(root)) {
+            wheel.stops.push_back(root);
+        } else {
+            if (clicked == wheel.stops.back()) clicked = root;
+            wheel.stops.back() = root;
+        }
+    }
+    std::vector<int32_t> below;
+    double least = area(wheel.stops.front());
+    for (int32_t i = root - 1; i >= 0; --i)
+        if (score(i) == 0 && area(i) <= shrink * least) {
+            below.push_back(i);
+            least = area(i);
+        }
+    wheel.stops.insert(wheel.stops.begin(), below.rbegin(), below.rend());
+    wheel.start = static_cast<size_t>(std::find(wheel.stops.begin(), wheel.stops.end(), clicked) - wheel.stops.begin());
     return wheel;
 }
 

@@ -106,8 +106,10 @@ std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh
 
 }  // namespace
 
-Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const BinaryTree& tree,
-                     std::span<const uint8_t> kept, const double* caller_vertices) {
+Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const Regrouped& regrouped,
+                     const double* caller_vertices)
+    : scores_(regrouped.scores) {
+    const BinaryTree& tree = regrouped.tree;
     const Frame& frame = surface.frame;
     source_ = surface.source_vertex;
     source_.resize(mesh.vertices.size(), -1);
@@ -150,12 +152,13 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const BinaryTr
     summary_.rung = surface.rung;
     summary_.deviation = surface.deviation;
     account_ = surface.account;
-    finish(kept);
+    finish();
 }
 
 // Everything that follows from the stored arrays, which are known to be sound.
-void Hierarchy::finish(std::span<const uint8_t> kept) {
+void Hierarchy::finish() {
     const size_t leaves = tetrahedra_.size(), merges = merges_.size(), faces = leaf_.size();
+    const std::vector<uint8_t> kept = prune(merges_, regrouped_merges());
 
     // Bottom up over the unpruned tree. Leaves are in depth-first order, so slices are a matter of their ends.
     std::vector<double> volume = tet_volume_, area(leaves, 0);
@@ -190,6 +193,23 @@ void Hierarchy::finish(std::span<const uint8_t> kept) {
     for (size_t f = 0; f < faces; ++f)
         order_[static_cast<size_t>(next[static_cast<size_t>(leaf_[f])]++)] = static_cast<int32_t>(f);
 
+    // The parts are the clusters that the regrouped merges join, and that are none of them.
+    std::vector<double> score(leaves + merges, 0), height(leaves + merges, 0);
+    if (!scores_.empty()) {
+        const size_t top = leaves + merges - regrouped_merges();
+        std::vector<size_t> parts;
+        if (top == leaves + merges) parts.push_back(top - 1);
+        for (size_t c = top; c < leaves + merges; ++c) {
+            score[c] = scores_[c - top + regrouped_merges() + 1];
+            for (const int32_t child : {merges_[c - leaves].left, merges_[c - leaves].right})
+                if (static_cast<size_t>(child) < top) parts.push_back(static_cast<size_t>(child));
+        }
+        std::sort(parts.begin(), parts.end(), [&](size_t a, size_t b) {
+            return begin(static_cast<int32_t>(a)) < begin(static_cast<int32_t>(b));
+        });
+        for (size_t p = 0; p < parts.size(); ++p) score[parts[p]] = scores_[p];
+    }
+
     // Nodes: all leaves, then the merges that were kept.
     std::vector<int32_t> node(leaves + merges, -1);
     size_t nodes = leaves;
@@ -204,11 +224,17 @@ void Hierarchy::finish(std::span<const uint8_t> kept) {
         last_.push_back(face_begin[static_cast<size_t>(end(c32))]);
         volume_.push_back(volume[c]);
         area_.push_back(area[c]);
-        const double height = leaf ? 0 : merges_[c - leaves].concavity;
-        height_.push_back(height);
-        cost_class_.push_back(height > 0);
-        double cost = height;
-        if (!leaf && height == 0) {  // Eq. 2
+        const double concavity = leaf ? 0 : merges_[c - leaves].concavity;
+        height[c] = concavity;
+        if (c + regrouped_merges() >= leaves + merges)
+            // Joining may make a cluster less concave; a node is never lower than what it is made of.
+            for (const int32_t child : {merges_[c - leaves].left, merges_[c - leaves].right})
+                height[c] = std::max(height[c], height[static_cast<size_t>(child)]);
+        height_.push_back(height[c]);
+        score_.push_back(score[c]);
+        cost_class_.push_back(concavity > 0);
+        double cost = concavity;
+        if (!leaf && concavity == 0) {  // Eq. 2
             const auto share = [&](int32_t child) { return double(end(child) - begin(child)) / double(leaves); };
             const double left = share(merges_[c - leaves].left), right = share(merges_[c - leaves].right);
             cost = left * left + right * right;
@@ -227,6 +253,10 @@ void Hierarchy::finish(std::span<const uint8_t> kept) {
         }
     }
 
+    if (!scores_.empty()) {
+        cluster_area_ = std::move(area);
+        cluster_score_ = std::move(score);
+    }
     frame_ = Frame::around(vertices_);
     summary_.volume = volume.back();
     summary_.hull_volume = merges_.empty() ? volume.back() : merges_.back().hull_volume;
@@ -254,6 +284,7 @@ pw_arrays Hierarchy::arrays() const {
     a.source = source_.data();
     a.tetrahedra = tetrahedra_.data()->data();
     a.merges = merge_pairs_.data();
+    a.score = score_.data();
     return a;
 }
 
@@ -265,12 +296,12 @@ std::vector<int32_t> Hierarchy::path(size_t face) const {
 
 WheelStops Hierarchy::wheel(size_t face) const {
     const std::vector<int32_t> nodes = path(face);
-    std::vector<double> areas, heights;
+    std::vector<double> areas, worth;
     for (int32_t n : nodes) {
         areas.push_back(area_[static_cast<size_t>(n)]);
-        heights.push_back(height_[static_cast<size_t>(n)]);
+        worth.push_back((scores_.empty() ? height_ : score_)[static_cast<size_t>(n)]);
     }
-    WheelStops wheel = wheel_stops(areas, heights);
+    WheelStops wheel = scores_.empty() ? wheel_stops(areas, worth) : scored_wheel_stops(areas, worth);
     for (int32_t& stop : wheel.stops) stop = nodes[static_cast<size_t>(stop)];
     return wheel;
 }
@@ -292,8 +323,18 @@ std::vector<int32_t> Hierarchy::cut_height(double height) const {
 }
 
 std::vector<int32_t> Hierarchy::cut_parts(size_t parts) const {
+    return bounds_of(scores_.empty() ? cut_into_parts(merges_, parts) : cut_undoing_last(merges_, parts));
+}
+
+std::vector<int32_t> Hierarchy::cut_automatic() const {
+    constexpr double paper_height = 0.03;  // of the hull's volume
+    if (scores_.empty()) return cut_height(paper_height * summary_.hull_volume);
+    return bounds_of(likeliest_cut(merges_, cluster_area_, cluster_score_));
+}
+
+std::vector<int32_t> Hierarchy::bounds_of(std::span<const int32_t> clusters) const {
     std::vector<int32_t> bounds = {0};
-    for (int32_t c : cut_into_parts(merges_, parts)) {
+    for (const int32_t c : clusters) {
         const size_t leaves = tetrahedra_.size(), i = static_cast<size_t>(c);
         bounds.push_back(i < leaves ? c + 1 : merge_last_[i - leaves]);
     }
@@ -341,7 +382,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the saved form is written as memory holds it");
 
 constexpr std::array<char, 8> magic = {'P', 'W', 'H', 'I', 'E', 'R', '\r', '\n'};
-constexpr uint32_t format_version = 3;
+constexpr uint32_t format_version = 4;
 
 // FNV-1a, by words of 8 bytes where they last: any single changed byte changes the hash.
 uint64_t hash(std::span<const uint8_t> bytes) {
@@ -401,11 +442,11 @@ struct Header {
     uint32_t version = format_version;
     uint32_t rung = 0;
     uint64_t faces = 0, tetrahedra = 0, vertices = 0, components = 0, cavities = 0, added_vertices = 0, account = 0;
-    uint64_t outer = 0;
+    uint64_t outer = 0, scores = 0;
     double deviation = 0;
 };
 
-static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Merge) == 24 && sizeof(Header) == 88);
+static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Merge) == 24 && sizeof(Header) == 96);
 
 }  // namespace
 
@@ -413,7 +454,8 @@ size_t Hierarchy::saved_size() const {
     const size_t vertex = sizeof(Point) + sizeof(int32_t), face = sizeof(int32_t) + sizeof(double);
     const size_t tetrahedron = sizeof(Tetrahedron) + sizeof(double);
     return sizeof(Header) + vertices_.size() * vertex + tetrahedra_.size() * tetrahedron + leaf_.size() * face +
-           outer_faces_.size() * sizeof(int32_t) + merges_.size() * sizeof(Merge) + account_.size() + sizeof(uint64_t);
+           outer_faces_.size() * sizeof(int32_t) + scores_.size() * sizeof(double) +
+           merges_.size() * sizeof(Merge) + account_.size() + sizeof(uint64_t);
 }
 
 std::vector<uint8_t> Hierarchy::save() const {
@@ -426,6 +468,7 @@ std::vector<uint8_t> Hierarchy::save() const {
     header.added_vertices = summary_.added_vertices;
     header.account = account_.size();
     header.outer = outer_faces_.size();
+    header.scores = scores_.size();
     header.rung = summary_.rung;
     header.deviation = summary_.deviation;
     Writer out;
@@ -439,6 +482,7 @@ std::vector<uint8_t> Hierarchy::save() const {
     out.put(face_area_.data(), face_area_.size());
     out.put(outer_faces_.data(), outer_faces_.size());
     out.put(merges_.data(), merges_.size());
+    out.put(scores_.data(), scores_.size());
     out.put(account_.data(), account_.size());
     const uint64_t h = hash(out.bytes);
     out.put(&h, 1);
@@ -471,6 +515,7 @@ Hierarchy Hierarchy::load(std::span<const uint8_t> bytes) {
     h.face_area_ = in.get_vector<double>(header.faces);
     h.outer_faces_ = in.get_vector<int32_t>(header.outer);
     h.merges_ = in.get_vector<Merge>(header.tetrahedra - 1);
+    h.scores_ = in.get_vector<double>(header.scores);
     h.summary_.components = header.components;
     h.summary_.cavities = header.cavities;
     h.summary_.added_vertices = header.added_vertices;
@@ -483,7 +528,7 @@ Hierarchy Hierarchy::load(std::span<const uint8_t> bytes) {
     in.get(&stored_hash, 1);
     if (!in.at_end()) refuse("it goes on after its end");
     h.check_stored();
-    h.finish(prune(h.merges_));
+    h.finish();
     return h;
 }
 
@@ -518,6 +563,10 @@ void Hierarchy::check_stored() const {
     if (!std::isfinite(std::reduce(tet_volume_.begin(), tet_volume_.end())) || !std::isfinite(concavities) ||
         !std::isfinite(std::reduce(face_area_.begin(), face_area_.end())))
         refuse("its measures are impossible");
+    // One for each part and each merge that joins them; with no parts there is none.
+    if (!scores_.empty() && (scores_.size() % 2 == 0 || scores_.size() > 2 * leaves - 1)) refuse("its scores are odd");
+    for (double s : scores_)
+        if (!(s >= 0 && s <= 1)) refuse("a score is impossible");
     if (summary_.components == 0 || summary_.components > leaves) refuse("its counts are impossible");
 
     const auto strangers = static_cast<size_t>(std::count(source_.begin(), source_.end(), -1));

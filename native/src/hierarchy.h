@@ -3,6 +3,7 @@
 
 #include "dendrogram.h"
 #include "partwheel.h"
+#include "regroup.h"
 #include "solid.h"
 
 #include <cstddef>
@@ -18,9 +19,9 @@ namespace partwheel {
 // pw_arrays documents the arrays, pw_hierarchy_* the questions; arguments are checked by api.
 class Hierarchy {
 public:
-    // From what the rooms before it made. kept is prune()'s, caller_vertices are the caller's own.
-    Hierarchy(const Surface& surface, const TetMesh& mesh, const BinaryTree& tree, std::span<const uint8_t> kept,
-              const double* caller_vertices);
+    // From what the rooms before it made: regroup()'s tree and scores, or the paper's tree and no scores.
+    // caller_vertices are the caller's own.
+    Hierarchy(const Surface& surface, const TetMesh& mesh, const Regrouped& regrouped, const double* caller_vertices);
 
     // Throws Error(PW_ERROR_DATA) for anything but what save() makes.
     static Hierarchy load(std::span<const uint8_t> bytes);
@@ -33,19 +34,23 @@ public:
     size_t face_count() const { return leaf_.size(); }
     size_t node_count() const { return parent_.size(); }
     size_t tetrahedron_count() const { return tetrahedra_.size(); }
+    std::span<const Merge> merges() const { return merges_; }
 
     std::vector<int32_t> path(size_t face) const;
     WheelStops wheel(size_t face) const;  // its stops are nodes
     std::span<const int32_t> faces(size_t node) const;
     std::vector<int32_t> cut_height(double height) const;   // bounds, as the C API documents
     std::vector<int32_t> cut_parts(size_t parts) const;     // likewise
+    std::vector<int32_t> cut_automatic() const;             // likewise
     TriangleMesh hull(size_t tet_first, size_t tet_last) const;
     TriangleMesh solid(size_t tet_first, size_t tet_last) const;
 
 private:
     Hierarchy() = default;
     void check_stored() const;
-    void finish(std::span<const uint8_t> kept);
+    void finish();
+    size_t regrouped_merges() const { return scores_.empty() ? 0 : (scores_.size() - 1) / 2; }
+    std::vector<int32_t> bounds_of(std::span<const int32_t> clusters) const;
 
     // Stored: all else follows from these. Tetrahedra are in depth-first order, lengths and volumes in the caller's
     // unit.
@@ -57,6 +62,7 @@ private:
     std::vector<double> face_area_;
     std::vector<int32_t> outer_faces_;  // see Facets
     std::vector<Merge> merges_;
+    std::vector<double> scores_;     // see Regrouped; none: this is the paper's tree
     pw_summary summary_{};
     std::string account_;
 
@@ -66,7 +72,8 @@ private:
     std::vector<int32_t> merge_first_, merge_last_;  // each merge's slice of the tetrahedra
     std::vector<int32_t> order_, parent_, first_, last_, tet_first_, tet_last_;
     std::vector<uint8_t> cost_class_;
-    std::vector<double> cost_, height_, volume_, area_;
+    std::vector<double> cost_, height_, volume_, area_, score_;
+    std::vector<double> cluster_area_, cluster_score_;  // by cluster number, see Merge; none in the paper's tree
 
     // Made when a solid is first asked for, whichever thread asks.
     struct Facing {

@@ -53,9 +53,9 @@ Repetition run(const Model& model, double quality) {
     const Solid solid = staged("solid", [&] { return climb(view, options, progress); });
     const TetMesh& mesh = solid.mesh;
     const BinaryTree tree = staged("cluster", [&] { return cluster(mesh, progress, 1); });
-    const std::vector<uint8_t> kept = staged("dendrogram", [&] { return prune(tree.merges); });
+    const Regrouped regrouped = staged("dendrogram", [&] { return regroup(mesh, tree, progress); });
     const auto saved = staged("hierarchy", [&] {
-        return Hierarchy(solid.surface, mesh, tree, kept, model.vertices.data()).save();
+        return Hierarchy(solid.surface, mesh, regrouped, model.vertices.data()).save();
     });
     staged("cluster_two_threads", [&] { return cluster(mesh, progress, 2); });
     r.tetgen = tetgen_watch();

@@ -11,19 +11,25 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "tests" / "faults"), str(Path(__file__).parent)]
 
 import shapes  # noqa: E402
-from partwheel.core import Hierarchy  # noqa: E402
+from partwheel.core import Hierarchy, Mode  # noqa: E402
 
 
 @functools.cache
-def built(name):
+def built(name, mode=Mode.PAPER):
     """(Shape, its Hierarchy)"""
     shape = shapes.SHAPES[name]()
-    return shape, Hierarchy.build(*shape)
+    return shape, Hierarchy.build(*shape, mode=mode)
+
+
+@pytest.fixture(params=[(name, mode) for mode in Mode for name in shapes.SHAPES],
+                ids=lambda name_mode: f"{name_mode[0]}, {name_mode[1].name.lower()}")
+def case(request):
+    return built(*request.param)
 
 
 @pytest.fixture(params=shapes.SHAPES)
-def case(request):
-    return built(request.param)
+def paper_case(request):
+    return built(request.param, Mode.PAPER)
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 import shapes
-from partwheel.core import Hierarchy, PartwheelError, Status
+from partwheel.core import Hierarchy, Mode, PartwheelError, Status
 from scipy.spatial import ConvexHull
 
 EXACT = 1e-9  # relative tolerance of sums of volumes
@@ -135,8 +135,8 @@ def test_volumes_and_areas_of_nodes(case):
     assert np.allclose(h.area, areas, rtol=1e-7, atol=EXACT * areas[-1])
 
 
-def test_costs_are_equation_3(case):
-    _, h = case
+def test_costs_are_equation_3(paper_case):
+    _, h = paper_case
     tets = len(h.tetrahedra)
     assert not h.cost_class[:tets].any() and not h.cost[:tets].any() and not h.height[:tets].any()
     slices = merge_slices(h)
@@ -163,6 +163,48 @@ def test_merges_are_one_binary_tree_and_the_dendrogram_prunes_it(case):
     assert (h.merges.max(1, initial=-1) < np.arange(tets - 1) + tets).all()
     clusters = set(map(tuple, merge_slices(h)))
     assert clusters >= set(zip(h.tet_first, h.tet_last))
+
+
+def test_the_papers_tree_has_no_scores(paper_case):
+    _, h = paper_case
+    assert not h.score.any()
+    assert h.cut_automatic().tolist() == h.cut_height(0.03 * h.summary.hull_volume).tolist()
+
+
+@pytest.mark.parametrize("name", ["cube", "L", "star", "torus", "three cubes apart", "hand.off"])
+def test_regrouped_heights_and_costs(name, build_shape):
+    _, h = build_shape(name, Mode.REGROUPED)
+    scale = h.summary.hull_volume
+    inner = h.parent >= 0
+    assert (h.height[inner] <= h.height[h.parent[inner]]).all()
+    for node in range(len(h.tetrahedra), len(h.parent)):
+        concavity = hull_volume(h, h.tet_first[node], h.tet_last[node]) - h.volume[node]
+        assert h.height[node] >= concavity - 1e-7 * scale
+        assert abs(concavity - h.cost[node] * h.cost_class[node]) <= 1e-7 * scale
+
+
+@pytest.mark.parametrize("name", ["cube", "L", "star", "torus", "three cubes apart", "hand.off"])
+def test_scores_begin_at_the_parts(name, build_shape):
+    _, h = build_shape(name, Mode.REGROUPED)
+    assert 0 < h.score[-1] <= 1 and ((0 <= h.score) & (h.score <= 1)).all()
+    # A score is a node's from the parts up: never above one without.
+    inner = h.parent >= 0
+    assert (h.score[h.parent[inner]] > 0)[h.score[inner] > 0].all()
+    parts = h.cut_automatic()
+    assert parts[0] == 0 and parts[-1] == len(h.tetrahedra) and (np.diff(parts) > 0).all()
+    assert set(zip(parts[:-1].tolist(), parts[1:].tolist())) <= set(zip(h.tet_first.tolist(), h.tet_last.tolist()))
+
+
+@pytest.mark.parametrize("name", ["cube", "L", "star", "hand.off"])
+def test_cuts_of_the_regrouped_tree_are_nested(name, build_shape):
+    _, h = build_shape(name, Mode.REGROUPED)
+    slices = merge_slices(h)
+    before = {0, len(h.tetrahedra)}
+    for parts in range(1, min(50, len(h.tetrahedra)) + 1):
+        bounds = h.cut_parts(parts)
+        assert len(bounds) == parts + 1 and before <= set(bounds.tolist())
+        assert set(zip(bounds[:-1].tolist(), bounds[1:].tolist())) <= set(map(tuple, np.array(slices).tolist()))
+        before = set(bounds.tolist())
 
 
 def test_path_and_faces_of_nodes(case):
@@ -295,7 +337,7 @@ def test_order_of_the_input_changes_nothing(name, build_shape):
     triangles = np.take_along_axis(triangles, (np.arange(3) + turns) % 3, 1)
     other = Hierarchy.build(shape.vertices[vertex_order], triangles, shape.faces[triangle_order], shape.face_count)
     for array in ("parent", "first", "last", "tet_first", "tet_last", "cost_class", "cost", "height", "volume", "area",
-                  "vertices", "tetrahedra", "merges", "leaf"):
+                  "score", "vertices", "tetrahedra", "merges", "leaf"):
         assert np.array_equal(getattr(h, array), getattr(other, array)), array
     assert np.array_equal(np.where(other.source < 0, -1, vertex_order[other.source]), h.source)
 

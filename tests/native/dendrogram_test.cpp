@@ -265,5 +265,102 @@ TEST_F(DendrogramTest, WheelStartsWhereAPartIsClearest) {
     EXPECT_EQ(only.start, 0U);
 }
 
+// ---- The regrouped tree ----
+
+TEST_F(DendrogramTest, RegroupedMergesAllStayAndHoldNothingDown) {
+    for (int i = 0; i < sized(400, 60); ++i) {
+        const auto merges = random_tree(whole(2, 40), i % 2 == 0);
+        const auto top = static_cast<size_t>(whole(0, static_cast<int>(merges.size())));
+        // The paper's pruning of each part by itself.
+        std::vector<uint8_t> expected(merges.size(), 0);
+        const Tree tree = tree_of(merges);
+        for (size_t m = merges.size() - top; m < merges.size(); ++m) expected[m] = 1;
+        std::vector<uint8_t> held(merges.size(), 0);
+        for (size_t m = 0; m < merges.size(); ++m)
+            for (const int32_t child : {merges[m].left, merges[m].right})
+                if (static_cast<size_t>(child) > merges.size() && m + top < merges.size())
+                    held[static_cast<size_t>(child) - merges.size() - 1] = 1;
+        for (size_t m = 0; m + top < merges.size(); ++m) {
+            if (held[m]) continue;
+            Node* part = tree.nodes[merges.size() + 1 + m].get();
+            to_dendrogram(part);
+            std::set<int32_t> inner;
+            collect(part, inner);
+            for (const int32_t n : inner) expected[static_cast<size_t>(n) - merges.size() - 1] = 1;
+        }
+        ASSERT_EQ(prune(merges, top), expected) << "round " << i;
+    }
+}
+
+TEST_F(DendrogramTest, UndoingTheLastMergesOneByOne) {
+    for (int i = 0; i < sized(200, 40); ++i) {
+        const auto merges = random_tree(whole(1, 30), false);
+        std::set<int32_t> parts = {static_cast<int32_t>(2 * merges.size())};
+        for (size_t count = 1; count <= merges.size() + 1; ++count) {
+            const auto cut = cut_undoing_last(merges, count);
+            ASSERT_EQ(cut.size(), count);
+            ASSERT_EQ(std::set<int32_t>(cut.begin(), cut.end()), parts);
+            if (count > merges.size()) break;
+            const Merge& last = merges[merges.size() - count];
+            parts.erase(static_cast<int32_t>(2 * merges.size() - count + 1));
+            parts.insert({last.left, last.right});
+        }
+    }
+}
+
+TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
+    for (int i = 0; i < sized(300, 60); ++i) {
+        const auto merges = random_tree(whole(1, 12), false);
+        const Tree tree = tree_of(merges);
+        std::vector<double> areas, scores;
+        for (size_t c = 0; c < 2 * merges.size() + 1; ++c) {
+            areas.push_back(whole(0, 4));
+            scores.push_back(std::uniform_real_distribution<double>(0.01, 1)(random));
+        }
+        const auto worth = [&](const std::vector<int32_t>& cut) {
+            double sum = 0;
+            for (const int32_t n : cut) sum += areas[static_cast<size_t>(n)] * scores[static_cast<size_t>(n)];
+            return sum;
+        };
+        double best = 0;
+        const auto cuts = all_cuts(tree.root());
+        for (const auto& cut : cuts) best = std::max(best, worth(cut));
+        const auto cut = likeliest_cut(merges, areas, scores);
+        ASSERT_EQ(std::count(cuts.begin(), cuts.end(), cut), 1);
+        ASSERT_NEAR(worth(cut), best, 1e-12);
+    }
+    // What has no score is not divided.
+    const std::vector<Merge> one(1, {0, 1, 0, 0});
+    EXPECT_EQ(likeliest_cut(one, std::vector<double>{1, 1, 2}, std::vector<double>{0, 0, 0.1}), std::vector<int32_t>{2});
+}
+
+TEST_F(DendrogramTest, ScoredStopsDifferAndTheClickTakesTheBest) {
+    for (int i = 0; i < sized(2000, 300); ++i) {
+        std::vector<double> areas = {whole(1, 5) / 5.0}, scores = {0};
+        const int length = whole(1, 30), below = whole(0, length - 1);
+        for (int k = 1; k < length; ++k) {
+            areas.push_back(areas.back() * (whole(0, 2) == 0 ? 1 : 1 + whole(0, 100) / 100.0));
+            scores.push_back(0);
+        }
+        for (int k = below; k < length; ++k) scores[static_cast<size_t>(k)] = whole(1, 5) / 5.0;
+        const WheelStops wheel = scored_wheel_stops(areas, scores);
+        ASSERT_FALSE(wheel.stops.empty());
+        ASSERT_EQ(wheel.stops.back(), length - 1);
+        ASSERT_LT(wheel.start, wheel.stops.size());
+        const auto area = [&](size_t s) { return areas[static_cast<size_t>(wheel.stops[s])]; };
+        for (size_t s = 0; s + 1 < wheel.stops.size(); ++s) {
+            ASSERT_LT(wheel.stops[s], wheel.stops[s + 1]);
+            ASSERT_LT(area(s), area(s + 1));  // a notch always adds visible faces
+            if (s + 2 < wheel.stops.size()) {
+                ASSERT_LE(area(s), 0.85 * area(s + 1) * (1 + 1e-12));
+            }
+        }
+        // Nothing on the path is better than what the click takes, but for what can't be told from the root.
+        const double best = *std::max_element(scores.begin(), scores.end());
+        const auto clicked = static_cast<size_t>(wheel.stops[wheel.start]);
+        ASSERT_TRUE(scores[clicked] == best || areas[clicked] == areas.back());
+    }
+}
+
 }  // namespace
 }  // namespace partwheel::test

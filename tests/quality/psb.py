@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Builds hierarchies of meshes and writes what the Princeton Segmentation Benchmark's score reads: one .npz a mesh.
 
-usage: psb.py MESH_DIR OUT_DIR [--sdf PROGRAM] [--rungs N] [--jobs N] [--again]
+usage: psb.py MESH_DIR OUT_DIR [--mode paper] [--sdf PROGRAM] [--rungs N] [--jobs N] [--again]
 
 MESH_DIR/<id>.off -> OUT_DIR/<id>.npz: order, first, last, parent, leaf, start, counts, cuts, auto, as the benchmark's
 score.py documents them. Through the public Python API with its default settings, one process a core. A mesh that can't
 be built is named and gets no file: the score counts it as a failure. Meshes that have a file already are passed over,
 unless --again.
 
+--mode paper: the paper's tree, with wheel and cuts by concavity alone.
 --rungs: the rungs of the ladder that are allowed. 4, the wrap alone, beside the default shows what the wrap costs.
 --sdf: not Partwheel's hierarchies but CGAL's segmentation by the shape diameter function, made by the program given
 (sdf_bench, built by scripts/bench), as hierarchies of two levels: what a click on one of its segments would take.
@@ -26,7 +27,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "addon"))
 
-from partwheel.core import Hierarchy, PartwheelError, meshes  # noqa: E402  (found only now)
+from partwheel.core import Hierarchy, Mode, PartwheelError, meshes  # noqa: E402  (found only now)
 
 COUNTS = np.arange(2, 41)
 
@@ -57,20 +58,16 @@ def paths_as_tree(hierarchy, face_count):
     return np.array(parent), np.array(first), np.array(last), leaf, start
 
 
-def automatic(hierarchy):
-    """The segmentation without any input: the dendrogram cut at the height of 3 % of the hull's volume."""
-    return hierarchy.cut_height(0.03 * hierarchy.summary.hull_volume)
-
-
-def partwheel(path, rungs):
+def partwheel(path, mode, rungs):
     mesh = meshes.read(path)
-    hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, threads=1, rungs=rungs)
+    hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, threads=1,
+                                mode=mode, rungs=rungs)
     parent, first, last, leaf, start = paths_as_tree(hierarchy, mesh.face_count)
     counts = COUNTS[COUNTS <= len(hierarchy.tetrahedra)]
     cuts = [hierarchy.face_labels(hierarchy.cut_parts(k)) for k in counts]
     return {"order": hierarchy.order, "first": first, "last": last, "parent": parent, "leaf": leaf, "start": start,
             "counts": counts, "cuts": np.array(cuts, np.int16).reshape(len(counts), mesh.face_count),
-            "auto": hierarchy.face_labels(automatic(hierarchy))}
+            "auto": hierarchy.face_labels(hierarchy.cut_automatic())}
 
 
 def sdf(path, program):
@@ -89,8 +86,8 @@ def sdf(path, program):
             "counts": np.array([parts]), "cuts": labels[None], "auto": labels}
 
 
-def write(path, target, program, rungs):
-    arrays = sdf(path, program) if program else partwheel(path, rungs)
+def write(path, target, program, mode, rungs):
+    arrays = sdf(path, program) if program else partwheel(path, mode, rungs)
     partial = target.with_suffix(".partial.npz")
     np.savez_compressed(partial, **arrays)
     partial.rename(target)
@@ -106,6 +103,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("meshes", type=Path, help="a directory of .off files, or one such file")
     parser.add_argument("out", type=Path)
+    parser.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="regrouped")
     parser.add_argument("--sdf", metavar="PROGRAM")
     parser.add_argument("--rungs", type=int, default=0, help="see pw_build_options")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
@@ -114,13 +112,15 @@ def main():
     args.out.mkdir(parents=True, exist_ok=True)
     if args.meshes.is_file():
         try:
-            write(args.meshes, args.out / f"{args.meshes.stem}.npz", args.sdf, args.rungs)
+            write(args.meshes, args.out / f"{args.meshes.stem}.npz", args.sdf,
+                  Mode[args.mode.upper()], args.rungs)
         except (PartwheelError, meshes.MeshFileError, subprocess.CalledProcessError) as error:
             sys.exit(str(error))
         return
     todo = [path for path in sorted(args.meshes.glob("*.off"))
             if args.again or not (args.out / f"{path.stem}.npz").exists()]
-    arguments = [str(args.out), "--rungs", str(args.rungs), *(["--sdf", args.sdf] if args.sdf else [])]
+    arguments = [str(args.out), "--mode", args.mode, "--rungs", str(args.rungs),
+                 *(["--sdf", args.sdf] if args.sdf else [])]
     with ThreadPoolExecutor(args.jobs) as pool:
         results = [(path, pool.submit(in_a_process, path, arguments)) for path in todo]
         for i, (path, result) in enumerate(results, 1):

@@ -166,6 +166,7 @@ class Hierarchy:
     first, last (N,), tet_first, tet_last (N,)
     cost_class (N,), cost (N,), height (N,)     Eq. 3 of the paper and the node's place in the dendrogram
     volume (N,), area (N,)
+    score (N,)      the overlap expected with what people would take, 0 below some 300 parts and in mode PAPER
     vertices (V,3), source (V,)     source: the source vertex that each is, -1 for all others
     tetrahedra (T,4), merges (T-1,2)
 
@@ -183,7 +184,7 @@ class Hierarchy:
             "order": (faces,), "leaf": (faces,), "vertices": (vertices, 3), "source": (vertices,),
             "tetrahedra": (tets, 4), "merges": (tets - 1, 2),
         }
-        dtypes = {"cost_class": np.uint8, **dict.fromkeys(("cost", "height", "volume", "area", "vertices"), np.float64)}
+        dtypes = {"cost_class": np.uint8, **dict.fromkeys(("cost", "height", "volume", "area", "vertices", "score"), np.float64)}
         for name in Arrays.POINTERS:
             setattr(self, name, _view(self._handle, getattr(raw, name), shapes.get(name, (nodes,)),
                                       dtypes.get(name, np.int32)))
@@ -195,7 +196,7 @@ class Hierarchy:
 
     @classmethod
     def build(cls, vertices, triangles, faces=None, face_count=None, *, quality=0.0, rungs=0, open_surfaces=False,
-              threads=0, progress=None):
+              threads=0, mode=0, progress=None):
         """Builds the hierarchy of a surface: as it is, or else repaired, or else wrapped.
 
         vertices (V,3) coordinates; triangles (T,3) indices, counter-clockwise from outside; faces (T,) the source face
@@ -205,6 +206,7 @@ class Hierarchy:
         rungs: the ways allowed to a surface that can be filled, a sum of Rung (0: all); the first that works is taken.
         open_surfaces: wrap a sheet (plane, cloth, car door) as a thin solid, instead of refusing it with NOT_SOLID.
         threads: 0 as many as help, else at most so many; the result is the same.
+        mode: Mode.PAPER, the paper's tree by concavity alone, or Mode.REGROUPED, one of what people take for parts.
         progress(fraction, stage): called in this thread about ten times a second while the build runs in another;
         returning True cancels the build. If it raises, the build is stopped and the exception goes on.
 
@@ -213,7 +215,7 @@ class Hierarchy:
         arrays, face_count = checked_surface(vertices, triangles, faces, face_count)
         context = _Context()
         options = BuildOptions(ctypes.sizeof(BuildOptions), quality, _number(rungs), bool(open_surfaces),
-                               _number(threads))
+                               _number(threads), _number(mode))
         build = _Build(context, arrays, face_count, options)
 
         def report():
@@ -270,8 +272,13 @@ class Hierarchy:
         return self._ask(load().pw_hierarchy_cut_height, np.int32, float(height))
 
     def cut_parts(self, parts):
-        """(parts + 1,) bounds of the cut into this many parts that has the least total concavity."""
+        """(parts + 1,) bounds of the cut into this many parts: the last merges undone; in mode PAPER, the one that has
+        the least total concavity."""
         return self._ask(load().pw_hierarchy_cut_parts, np.int32, _number(parts))
+
+    def cut_automatic(self):
+        """(parts + 1,) bounds of the cut into the parts that people would most likely take."""
+        return self._ask(load().pw_hierarchy_cut_automatic, np.int32)
 
     def face_labels(self, bounds):
         """(F,) the part of each source face in a cut."""

@@ -53,6 +53,13 @@ class Rung(enum.IntEnum):
     WRAPPED = 4
 
 
+class Mode(enum.IntEnum):
+    """pw_mode."""
+
+    PAPER = 0
+    REGROUPED = 1
+
+
 STAGE_COUNT = len(Stage)
 
 
@@ -61,7 +68,7 @@ class BuildOptions(ctypes.Structure):
 
     _fields_ = [
         ("struct_size", c_size_t), ("quality", c_double), ("rungs", c_uint32), ("open_surfaces", c_int32),
-        ("threads", c_int32),
+        ("threads", c_int32), ("mode", c_int32),
     ]
 
 
@@ -71,7 +78,7 @@ class Arrays(ctypes.Structure):
     COUNTS = ("face_count", "node_count", "tetrahedron_count", "vertex_count")
     POINTERS = (
         "order", "leaf", "parent", "first", "last", "tet_first", "tet_last", "cost_class", "cost", "height", "volume",
-        "area", "vertices", "source", "tetrahedra", "merges",
+        "area", "vertices", "source", "tetrahedra", "merges", "score",
     )
     _fields_ = [(name, c_size_t) for name in COUNTS] + [(name, c_void_p) for name in POINTERS]
 
@@ -108,6 +115,7 @@ FUNCTIONS = {
     "pw_hierarchy_faces": (c_int, [c_void_p, c_size_t, POINTER(c_void_p), POINTER(c_size_t)]),
     "pw_hierarchy_cut_height": (c_int, [c_void_p, c_double, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_cut_parts": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t)]),
+    "pw_hierarchy_cut_automatic": (c_int, [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_hull": (c_int, [c_void_p, c_size_t, c_size_t, POINTER(c_void_p)]),
     "pw_hierarchy_solid": (c_int, [c_void_p, c_size_t, c_size_t, POINTER(c_void_p)]),
     "pw_mesh_origins": (c_int, [c_void_p, POINTER(c_void_p), POINTER(c_void_p), POINTER(c_void_p)]),

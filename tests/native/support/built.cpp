@@ -32,8 +32,8 @@ std::vector<T> filled(Ask ask) {
 
 }  // namespace
 
-Built try_build(const TriMesh& mesh, double quality, pw_context* context, uint32_t rungs) {
-    const pw_build_options options{sizeof(pw_build_options), quality, rungs, 0, 0};
+Built try_build(const TriMesh& mesh, double quality, pw_context* context, uint32_t rungs, int32_t mode) {
+    const pw_build_options options{sizeof(pw_build_options), quality, rungs, 0, 0, mode};
     pw_hierarchy* made = nullptr;
     Built built;
     built.status = pw_build(context, mesh.vertex_data(), mesh.vertices.size(), mesh.triangle_data(),
@@ -161,16 +161,24 @@ void Structure::expect_tree() const {
             ASSERT_EQ(a_.first[c], face);
             tet = a_.tet_last[c];
             face = a_.last[c];
-            // Listing 2 leaves no child as high as its parent.
-            EXPECT_TRUE(leaf(static_cast<size_t>(c)) || a_.height[c] < a_.height[n]);
+            // Listing 2 leaves no child as high as its parent; regrouping (n has a score, and is above a part) may.
+            const bool regrouped = a_.score[n] > 0 && a_.score[c] > 0;
+            EXPECT_TRUE(leaf(static_cast<size_t>(c)) || a_.height[c] < a_.height[n] ||
+                        (regrouped && a_.height[c] == a_.height[n]));
         }
         ASSERT_EQ(tet, a_.tet_last[n]);
         ASSERT_EQ(face, a_.last[n]);
-        EXPECT_EQ(a_.cost_class[n], a_.height[n] > 0 ? 1 : 0);
-        if (a_.height[n] > 0) {
-            EXPECT_EQ(a_.cost[n], a_.height[n]);
+        EXPECT_GE(a_.score[n], 0);
+        EXPECT_LE(a_.score[n], 1);
+        if (a_.score[n] == 0) {
+            EXPECT_EQ(a_.cost_class[n], a_.height[n] > 0 ? 1 : 0);
+        }
+        if (a_.cost_class[n] == 1) {
+            EXPECT_GT(a_.cost[n], 0);
+            EXPECT_GE(a_.height[n], a_.cost[n]);
+            EXPECT_TRUE(a_.score[n] > 0 || a_.height[n] == a_.cost[n]);
         } else {
-            EXPECT_EQ(a_.height[n], 0);
+            EXPECT_TRUE(a_.score[n] > 0 || a_.height[n] == 0);
             EXPECT_GT(a_.cost[n], 0);
             EXPECT_LE(a_.cost[n], 1);
         }

@@ -22,7 +22,7 @@ struct Built {
 };
 
 Built try_build(const TriMesh& mesh, double quality = 0, pw_context* context = nullptr,
-                uint32_t rungs = PW_RUNG_EXACT);
+                uint32_t rungs = PW_RUNG_EXACT, int32_t mode = PW_MODE_PAPER);
 
 // On the exact rung. Throws with the library's message if it can't be built.
 Handle build(const TriMesh& mesh, double quality = 0);

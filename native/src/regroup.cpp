@@ -1,0 +1,598 @@
+// The top of the tree built anew: choose parts, measure them and what lies between, join them, score the result.
+#include "regroup.h"
+
+#include "hull.h"
+#include "regroup_fitted.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// Logarithm to the base 2 by arithmetic alone, so that it is the same on every machine; clamped.
+double log2_of(double x) {
+    constexpr double limit = 20;
+    if (!(x > 0)) return -limit;
+    int exponent = 0;
+    const double m = std::frexp(x, &exponent), root_half = 0.70710678118654752440;
+    const double z = (m - root_half) / (m + root_half), q = z * z;
+    const double series =
+        z * (1 + q * (1.0 / 3 + q * (1.0 / 5 + q * (1.0 / 7 + q * (1.0 / 9 + q * (1.0 / 11 + q * (1.0 / 13)))))));
+    return std::clamp(static_cast<double>(exponent) - 0.5 + 2 * 1.44269504088896340736 * series, -limit, limit);
+}
+
+double ratio(double a, double b) { return log2_of(a) - log2_of(b); }
+
+constexpr size_t facets[4][3] = {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}};  // opposite each corner, outward
+
+// Costs are the logits of a likelihood; more than this tells no more.
+constexpr double largest_cost = 8;
+
+// What lies between two parts, or around one: all of it is added up when parts are joined.
+struct Border {
+    double interface = 0;  // area of the facets between the tetrahedra
+    double length = 0;     // of the border on the surface
+    double crease = 0;     // its length times the sine of half the angle it bends by, below 0 where concave
+    double concave = 0;    // the length that is concave by more than concave_bend
+    double curvature = 0;  // its length times the smoothed mean curvature, squashed to -1..1
+
+    Border& operator+=(const Border& other) {
+        interface += other.interface;
+        length += other.length;
+        crease += other.crease;
+        concave += other.concave;
+        curvature += other.curvature;
+        return *this;
+    }
+};
+
+constexpr double concave_bend = 0.02;
+constexpr double middling_curvature = 4;  // of a model of unit area: squashed to a half
+constexpr int smoothing_passes = 4;
+
+struct Link {
+    int32_t a = 0, b = 0;  // parts
+    Border border;
+    double cost = 0;
+    bool alive = true;
+};
+
+struct Part {
+    double volume = 0, area = 0;
+    Border rim;
+    Hull hull;
+    double hull_volume = 0;
+    int32_t number = 0;          // its cluster's, see Merge
+    int32_t low = 0;             // its lowest tetrahedron
+    std::vector<int32_t> links;
+    double own_cost = -largest_cost, worst_cost = -largest_cost;  // of the merge that made it; of any below
+    bool alive = true;
+};
+
+class Regrouping {
+public:
+    Regrouping(const TetMesh& mesh, const BinaryTree& tree, Progress& progress, std::span<const double> pair_numbers,
+               RegroupTrace* trace)
+        : mesh_(mesh), tree_(tree), progress_(progress), pair_numbers_(pair_numbers), trace_(trace),
+          kernel_(mesh.vertices) {}
+    Regrouped run();
+
+private:
+    const Point& point(int32_t v) const { return mesh_.vertices[static_cast<size_t>(v)]; }
+    Part& at(int32_t p) { return parts_[static_cast<size_t>(p)]; }
+    Triangle facet(size_t tetrahedron, size_t corner) const;
+    void choose_parts();
+    void measure();
+    void price(Link& link);
+    std::array<double, pair_measures> measures(const Part& a, const Part& b, const Border& border);
+    void join(int32_t a, int32_t b, double cost);
+    void join_neighbours();
+    void join_components();
+    std::array<double, node_measures> measures(size_t node) const;
+    std::vector<double> scores() const;
+
+    const TetMesh& mesh_;
+    const BinaryTree& tree_;
+    Progress& progress_;
+    std::span<const double> pair_numbers_;
+    RegroupTrace* trace_;
+    HullKernel kernel_;
+    std::vector<Part> parts_;
+    std::vector<Link> links_;
+    std::vector<int32_t> part_of_;       // of each tetrahedron
+    std::vector<uint8_t> goes_;          // merges of the paper's tree that are undone
+    std::vector<std::array<int32_t, 2>> joined_;
+    std::vector<int32_t> above_, beside_;  // of each part: what it became a part of, and with which other; -1
+    std::vector<int32_t> link_to_;       // scratch of join()
+    size_t fine_ = 0;                    // parts before any was joined
+    double length_unit_ = 1, area_unit_ = 1, volume_unit_ = 1;  // of the longest side of the bounding box
+    double volume_ = 0, area_ = 0, hull_volume_ = 0;            // of all
+    Regrouped result_;
+};
+
+Triangle Regrouping::facet(size_t tetrahedron, size_t corner) const {
+    const Tetrahedron& t = mesh_.tetrahedra[tetrahedron];
+    const auto& f = facets[corner];
+    return {t[f[0]], t[f[1]], t[f[2]]};
+}
+
+// Cuts the paper's tree where most surface lies in what is least convex, components first.
+void Regrouping::choose_parts() {
+    const size_t leaves = mesh_.tetrahedra.size(), merges = tree_.merges.size(), joins = tree_.components - 1;
+    goes_.assign(merges, 0);
+    std::vector<uint8_t> root(leaves + merges, 1);
+    for (size_t m = 0; m + joins < merges; ++m)
+        root[static_cast<size_t>(tree_.merges[m].left)] = root[static_cast<size_t>(tree_.merges[m].right)] = 0;
+    std::vector<double> area(leaves + merges, 0);
+    for (size_t t = 0; t < leaves; ++t)
+        for (size_t k = 0; k < 4; ++k) {
+            if (mesh_.neighbours[t][k] >= 0) continue;
+            const Triangle f = facet(t, k);
+            area[t] += partwheel::area(point(f[0]), point(f[1]), point(f[2]));
+        }
+    for (size_t m = 0; m < merges; ++m) {
+        const Merge& merge = tree_.merges[m];
+        area[leaves + m] = area[static_cast<size_t>(merge.left)] + area[static_cast<size_t>(merge.right)];
+    }
+    std::priority_queue<std::pair<float, int32_t>> queue;   // the lower number first where they tie
+    std::vector<int32_t> chosen;
+    const auto offer = [&](int32_t c) {
+        const auto i = static_cast<size_t>(c);
+        float concavity = 0;  // rounded as costs are, see price()
+        if (i >= leaves && tree_.merges[i - leaves].concavity > 0)
+            concavity = static_cast<float>(tree_.merges[i - leaves].concavity /
+                                           tree_.merges[i - leaves].hull_volume * area[i]);
+        if (concavity > 0)
+            queue.push({concavity, -c});
+        else
+            chosen.push_back(c);
+    };
+    for (size_t c = 0; c + joins < leaves + merges; ++c)
+        if (root[c]) offer(static_cast<int32_t>(c));
+    while (!queue.empty() && queue.size() + chosen.size() < most_regrouped_parts) {
+        const auto m = static_cast<size_t>(-queue.top().second) - leaves;
+        queue.pop();
+        goes_[m] = 1;
+        offer(tree_.merges[m].left);
+        offer(tree_.merges[m].right);
+    }
+    for (; !queue.empty(); queue.pop()) chosen.push_back(-queue.top().second);
+    std::sort(chosen.begin(), chosen.end());
+
+    fine_ = chosen.size();
+    part_of_.assign(leaves, -1);
+    parts_.resize(fine_);
+    for (size_t p = 0; p < chosen.size(); ++p) {
+        parts_[p].number = chosen[p];
+        std::vector<int32_t> todo = {chosen[p]};
+        while (!todo.empty()) {
+            const auto c = static_cast<size_t>(todo.back());
+            todo.pop_back();
+            if (c < leaves) {
+                part_of_[c] = static_cast<int32_t>(p);
+            } else {
+                todo.push_back(tree_.merges[c - leaves].left);
+                todo.push_back(tree_.merges[c - leaves].right);
+            }
+        }
+    }
+}
+
+// Volumes, areas, hulls, and what lies between the parts.
+void Regrouping::measure() {
+    std::array<double, 3> low = mesh_.vertices.front(), high = low;
+    for (const Point& p : mesh_.vertices)
+        for (size_t k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], p[k]);
+            high[k] = std::max(high[k], p[k]);
+        }
+    length_unit_ = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+    area_unit_ = length_unit_ * length_unit_;
+    volume_unit_ = area_unit_ * length_unit_;
+
+    struct Side {
+        int32_t low, high, triangle;
+        bool forward;
+        auto operator<=>(const Side&) const = default;
+    };
+    struct Between {
+        int32_t a, b;
+        bool facet;
+        Border border;
+    };
+    std::vector<Side> sides;
+    std::vector<Between> between;
+    std::vector<Point> normals;
+    std::vector<int32_t> part;  // of each outer triangle
+    std::vector<double> curvature(mesh_.vertices.size(), 0), around(mesh_.vertices.size(), 0);
+    std::vector<std::vector<int32_t>> corners(fine_);
+    for (size_t t = 0; t < mesh_.tetrahedra.size(); ++t) {
+        const Tetrahedron& tet = mesh_.tetrahedra[t];
+        const int32_t p = part_of_[t];
+        std::vector<int32_t>& mine = corners[static_cast<size_t>(p)];
+        if (mine.empty()) at(p).low = static_cast<int32_t>(t);
+        mine.insert(mine.end(), tet.begin(), tet.end());
+        const double six = six_volumes(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3]));
+        at(p).volume += std::max(0.0, six / 6) / volume_unit_;
+        for (size_t k = 0; k < 4; ++k) {
+            const int32_t other = mesh_.neighbours[t][k];
+            const int32_t q = other < 0 ? -1 : part_of_[static_cast<size_t>(other)];
+            if (other >= 0 && q <= p) continue;
+            const Triangle f = facet(t, k);
+            Point n = cross(point(f[1]) - point(f[0]), point(f[2]) - point(f[0]));
+            const double twice = std::sqrt(dot(n, n));
+            const double size = twice / 2 / area_unit_;
+            if (other >= 0) {
+                between.push_back({p, q, true, {size, 0, 0, 0, 0}});
+                continue;
+            }
+            if (twice > 0)
+                for (double& x : n) x /= twice;
+            at(p).area += size;
+            const auto number = static_cast<int32_t>(normals.size());
+            normals.push_back(n);
+            part.push_back(p);
+            for (size_t i = 0; i < 3; ++i) {
+                const int32_t v = f[i], w = f[(i + 1) % 3];
+                sides.push_back({std::min(v, w), std::max(v, w), number, v < w});
+                around[static_cast<size_t>(v)] += size / 3;
+            }
+        }
+    }
+    progress_.advance(0.1);
+    for (size_t p = 0; p < fine_; ++p) {
+        std::sort(corners[p].begin(), corners[p].end());
+        corners[p].erase(std::unique(corners[p].begin(), corners[p].end()), corners[p].end());
+        parts_[p].hull = kernel_.build(corners[p]);
+        parts_[p].hull_volume = parts_[p].hull.volume() / volume_unit_;
+        volume_ += parts_[p].volume;
+        area_ += parts_[p].area;
+        if (p % 16 == 0) progress_.advance(0.1);
+    }
+    hull_volume_ = tree_.merges.back().hull_volume / volume_unit_;
+
+    struct Fold {
+        int32_t low, high, s, t;
+        double length, bend;  // bend: the sine of half the angle, below 0 where concave
+    };
+    std::vector<Fold> folds;
+    std::sort(sides.begin(), sides.end());
+    for (size_t i = 0; i + 1 < sides.size(); ++i) {
+        const Side &x = sides[i], &y = sides[i + 1];
+        if (x.low != y.low || x.high != y.high) continue;
+        const Point &m = normals[static_cast<size_t>(x.triangle)], &n = normals[static_cast<size_t>(y.triangle)];
+        const Point along = point(x.high) - point(x.low);
+        const double turn = dot(cross(m, n), along) * (x.forward ? 1 : -1);
+        const double bend = std::sqrt(std::max(0.0, (1 - dot(m, n)) / 2)) * (turn < 0 ? -1 : 1);
+        const double length = std::sqrt(dot(along, along)) / length_unit_;
+        folds.push_back({x.low, x.high, x.triangle, y.triangle, length, bend});
+        ++i;
+    }
+    // Mean curvature, smoothed over the surface: it finds creases that many small edges share. Only the quotient
+    // matters, so both sums may grow with each pass.
+    for (const Fold& f : folds)
+        for (const int32_t v : {f.low, f.high}) curvature[static_cast<size_t>(v)] += f.length * f.bend / 2;
+    for (int pass = 0; pass < smoothing_passes; ++pass) {
+        std::vector<double> c = curvature, r = around;
+        for (const Fold& f : folds) {
+            const auto i = static_cast<size_t>(f.low), j = static_cast<size_t>(f.high);
+            c[i] += curvature[j];
+            c[j] += curvature[i];
+            r[i] += around[j];
+            r[j] += around[i];
+        }
+        curvature.swap(c);
+        around.swap(r);
+    }
+    progress_.advance(0.2);
+    const double unit = std::sqrt(area_);
+    const auto curved = [&](int32_t v) {
+        const auto i = static_cast<size_t>(v);
+        return around[i] > 0 ? curvature[i] / around[i] * unit : 0;
+    };
+    for (const Fold& f : folds) {
+        const auto [p, q] = std::minmax(part[static_cast<size_t>(f.s)], part[static_cast<size_t>(f.t)]);
+        if (p == q) continue;
+        const double h = (curved(f.low) + curved(f.high)) / 2;
+        between.push_back({p, q, false,
+                           {0, f.length, f.length * f.bend, f.bend < -concave_bend ? f.length : 0,
+                            f.length * h / (middling_curvature + std::abs(h))}});
+    }
+    std::stable_sort(between.begin(), between.end(), [](const Between& x, const Between& y) {
+        return std::pair(x.a, x.b) < std::pair(y.a, y.b);
+    });
+    for (size_t i = 0; i < between.size();) {
+        Link link{between[i].a, between[i].b, {}};
+        bool facet_shared = false;
+        for (; i < between.size() && between[i].a == link.a && between[i].b == link.b; ++i) {
+            link.border += between[i].border;
+            facet_shared |= between[i].facet;
+        }
+        if (!facet_shared) continue;  // they only touch along an edge
+        for (const int32_t p : {link.a, link.b}) {
+            at(p).rim += link.border;
+            at(p).links.push_back(static_cast<int32_t>(links_.size()));
+        }
+        links_.push_back(link);
+    }
+}
+
+double convexity_gap(double volume, double hull) { return hull > 0 ? std::clamp(1 - volume / hull, 0.0, 1.0) : 0; }
+
+double share(double part, double whole) { return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0; }
+
+double mean(double sum, double length) { return length > 0 ? sum / length : 0; }
+
+// regroup_fitted.h has numbers for just these, in this order. s is the part with the smaller surface, l the larger.
+std::array<double, pair_measures> Regrouping::measures(const Part& a, const Part& b, const Border& border) {
+    const auto rough_a = static_cast<float>(a.area), rough_b = static_cast<float>(b.area);
+    const bool ordered = rough_a < rough_b || (rough_a == rough_b && a.low < b.low);
+    const Part &s = ordered ? a : b, &l = ordered ? b : a;
+    const bool by_facets = a.hull.facet_count() > b.hull.facet_count();
+    const Part &large = by_facets ? a : b, &small = by_facets ? b : a;
+    const double hull = kernel_.united_volume(large.hull, small.hull.vertices()).volume / volume_unit_;
+    const double volume = s.volume + l.volume, area = s.area + l.area;
+    const double gaps = std::max(0.0, s.hull_volume - s.volume) + std::max(0.0, l.hull_volume - l.volume);
+    const double excess = std::max(0.0, hull - volume - gaps);  // the concavity that joining adds
+    const double gap = convexity_gap(volume, hull), gap_s = convexity_gap(s.volume, s.hull_volume),
+                 gap_l = convexity_gap(l.volume, l.hull_volume);
+    const double length = log2_of(std::max(border.length, 1e-12)), face = log2_of(border.interface);
+    const double thick_s = ratio(s.volume, s.area), thick_l = ratio(l.volume, l.area);
+    const double size = log2_of(volume_) / 3;
+    return {ratio(s.area, area_),
+            ratio(area, area_),
+            ratio(s.volume, volume_),
+            ratio(volume, volume_),
+            gap,
+            gap_s,
+            gap_l,
+            log2_of(1e-4 + (s.hull_volume > 0 ? excess / s.hull_volume : 0)),
+            log2_of(1e-8 + excess / hull_volume_),
+            std::clamp(face - 2 * log2_of(s.volume) / 3, -8.0, 4.0),
+            std::clamp(face - log2_of(s.area), -8.0, 4.0),
+            std::clamp(length - log2_of(s.area) / 2, -8.0, 4.0),
+            share(border.length, s.rim.length),
+            share(border.length, l.rim.length),
+            share(border.interface, s.rim.interface),
+            share(border.interface, l.rim.interface),
+            std::clamp(thick_s - thick_l, -6.0, 6.0),
+            std::clamp(face - length - thick_s, -8.0, 4.0),
+            std::clamp(face - length - thick_l, -8.0, 4.0),
+            mean(border.crease, border.length),
+            share(border.concave, border.length),
+            mean(border.curvature, border.length),
+            std::clamp(2 * length - face, -4.0, 8.0),
+            std::clamp(face - 2 * log2_of(l.volume) / 3, -10.0, 4.0),
+            gap - std::max(gap_s, gap_l),
+            ratio(l.area, s.area),
+            std::clamp(thick_s - size, -8.0, 2.0),
+            std::clamp(thick_l - size, -8.0, 2.0)};
+}
+
+void Regrouping::price(Link& link) {
+    const Part &a = at(link.a), &b = at(link.b);
+    if (a.area == 0 || b.area == 0) {
+        // Without any surface it is no part: it goes first, with the neighbour that it shares most with.
+        link.cost = -1e6 - link.border.interface / area_;
+        return;
+    }
+    const auto inputs = measures(a, b, link.border);
+    // Rounded, so that pairs that cost the same by symmetry tie, whatever rounding errors their measures carry.
+    link.cost = static_cast<double>(static_cast<float>(fitted(pair_numbers_, inputs)));
+    if (trace_) trace_->pairs.push_back({link.a, link.b, inputs});
+}
+
+void Regrouping::join(int32_t ia, int32_t ib, double cost) {
+    const auto number = static_cast<int32_t>(parts_.size());
+    parts_.emplace_back();
+    Part &a = at(ia), &b = at(ib), &u = parts_.back();
+    u.volume = a.volume + b.volume;
+    u.area = a.area + b.area;
+    u.low = std::min(a.low, b.low);
+    u.own_cost = std::clamp(cost, -largest_cost, largest_cost);
+    u.worst_cost = std::max({u.own_cost, a.worst_cost, b.worst_cost});
+    const bool by_facets = a.hull.facet_count() > b.hull.facet_count();
+    const Part &large = by_facets ? a : b, &small = by_facets ? b : a;
+    u.hull = kernel_.unite(large.hull, small.hull.vertices());
+    u.hull_volume = u.hull.volume() / volume_unit_;
+    u.number = static_cast<int32_t>(part_of_.size() + result_.tree.merges.size());
+    const Part &first = a.low < b.low ? a : b, &second = a.low < b.low ? b : a;
+    result_.tree.merges.push_back(
+        {first.number, second.number, ranked_concavity(u.hull.volume(), u.volume * volume_unit_), u.hull.volume()});
+    joined_.push_back({ia, ib});
+
+    for (const int32_t old : {ia, ib})
+        for (const int32_t l : at(old).links) {
+            Link& link = links_[static_cast<size_t>(l)];
+            if (!link.alive) continue;
+            const int32_t other = link.a == old ? link.b : link.a;
+            int32_t& twin = link_to_[static_cast<size_t>(other)];
+            if (other == ia || other == ib) {
+                link.alive = false;
+            } else if (twin < 0) {
+                twin = l;
+                link.a = other;
+                link.b = number;
+                u.links.push_back(l);
+            } else {
+                links_[static_cast<size_t>(twin)].border += link.border;
+                link.alive = false;
+            }
+        }
+    for (const int32_t l : u.links) {
+        const Link& link = links_[static_cast<size_t>(l)];
+        link_to_[static_cast<size_t>(link.a)] = -1;
+        u.rim += link.border;
+    }
+    for (const int32_t l : u.links) price(links_[static_cast<size_t>(l)]);
+    a.alive = b.alive = false;
+    a.hull = Hull();
+    b.hull = Hull();
+}
+
+void Regrouping::join_neighbours() {
+    for (Link& link : links_) price(link);
+    for (;;) {
+        const Link* cheapest = nullptr;
+        for (const Link& link : links_)
+            if (link.alive && (!cheapest || link.cost < cheapest->cost)) cheapest = &link;
+        if (!cheapest) return;
+        join(cheapest->a, cheapest->b, cheapest->cost);
+        progress_.advance(0.2 + 0.8 * static_cast<double>(joined_.size()) / static_cast<double>(fine_));
+    }
+}
+
+// As in the paper's tree.
+void Regrouping::join_components() {
+    const size_t leaves = part_of_.size(), joins = tree_.components - 1, merges = tree_.merges.size();
+    std::vector<int32_t> component(leaves, -1);  // at its lowest tetrahedron
+    for (size_t p = 0; p < parts_.size(); ++p)
+        if (parts_[p].alive) component[static_cast<size_t>(parts_[p].low)] = static_cast<int32_t>(p);
+    std::vector<int32_t> low(leaves + merges);
+    std::iota(low.begin(), low.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
+    for (size_t m = 0; m < merges; ++m) {
+        const auto a = static_cast<size_t>(low[static_cast<size_t>(tree_.merges[m].left)]);
+        const auto b = static_cast<size_t>(low[static_cast<size_t>(tree_.merges[m].right)]);
+        low[leaves + m] = static_cast<int32_t>(std::min(a, b));
+        if (m + joins < merges) continue;
+        join(component[a], component[b], largest_cost);
+        component[std::min(a, b)] = static_cast<int32_t>(parts_.size()) - 1;
+    }
+}
+
+// regroup_fitted.h has numbers for just these, in this order: the node's own; then beside its parent and sibling.
+std::array<double, node_measures> Regrouping::measures(size_t node) const {
+    const auto own = [&](const Part& p) -> std::array<double, 15> {
+        const double length = log2_of(p.rim.length), face = log2_of(p.rim.interface);
+        const double thick = ratio(p.volume, p.area);
+        return {ratio(p.area, area_),
+                ratio(p.volume, volume_),
+                convexity_gap(p.volume, p.hull_volume),
+                std::clamp(length - log2_of(p.area) / 2, -8.0, 4.0),
+                std::clamp(face - 2 * log2_of(p.volume) / 3, -8.0, 4.0),
+                mean(p.rim.crease, p.rim.length),
+                mean(p.rim.concave, p.rim.length),
+                mean(p.rim.curvature, p.rim.length),
+                std::clamp(face - log2_of(p.area), -8.0, 4.0),
+                p.own_cost,
+                p.worst_cost,
+                std::clamp(thick - log2_of(volume_) / 3, -8.0, 2.0),
+                std::clamp(2 * length - face, -4.0, 8.0),
+                std::clamp(face - length - thick, -8.0, 4.0),
+                log2_of(1e-6 + std::max(0.0, p.hull_volume - p.volume) / hull_volume_)};
+    };
+    const bool root = above_[node] < 0;
+    const size_t up = root ? node : static_cast<size_t>(above_[node]);
+    const size_t side = root ? node : static_cast<size_t>(beside_[node]);
+    const auto f = own(parts_[node]), parent = own(parts_[up]), sibling = own(parts_[side]);
+    const double out = root ? largest_cost : parent[9];
+    double cheapest_above = largest_cost, dearest_above = root ? largest_cost : -largest_cost;
+    for (int32_t p = above_[node]; p >= 0; p = above_[static_cast<size_t>(p)]) {
+        cheapest_above = std::min(cheapest_above, parts_[static_cast<size_t>(p)].own_cost);
+        dearest_above = std::max(dearest_above, parts_[static_cast<size_t>(p)].own_cost);
+    }
+    // How many parts there are when it comes, and when it goes.
+    const auto parts_at = [&](size_t n) { return static_cast<double>(n < fine_ ? fine_ : 2 * fine_ - 1 - n); };
+    std::array<double, node_measures> all{};
+    auto next = std::copy(f.begin(), f.end(), all.begin());
+    for (const double x :
+         {out, out - f[9], sibling[0] - f[0], parent[0] - f[0], sibling[2], sibling[11], parent[2], parent[5],
+          parent[6], parent[7], root ? 1.0 : 0.0, parent[2] - f[2], log2_of(parts_at(node)),
+          log2_of(root ? 1 : parts_at(up) + 1), cheapest_above, dearest_above, std::abs(sibling[1] - f[1])})
+        *next++ = x;
+    return all;
+}
+
+std::vector<double> Regrouping::scores() const {
+    const size_t leaves = part_of_.size();
+    std::vector<double> of_part;
+    for (size_t n = 0; n < parts_.size(); ++n) {
+        const auto inputs = measures(n);
+        if (trace_) trace_->nodes.push_back(inputs);
+        const double logit = fitted(fitted_node_numbers, inputs);
+        of_part.push_back((1 + logit / (1 + std::abs(logit))) / 2);
+    }
+    // Parts in depth-first order of the new tree.
+    std::vector<int32_t> part_of_cluster(leaves + result_.tree.merges.size(), -1);
+    for (size_t p = 0; p < fine_; ++p)
+        part_of_cluster[static_cast<size_t>(parts_[p].number)] = static_cast<int32_t>(p);
+    std::vector<double> ordered;
+    std::vector<int32_t> todo = {static_cast<int32_t>(part_of_cluster.size()) - 1};
+    while (!todo.empty()) {
+        const auto c = static_cast<size_t>(todo.back());
+        todo.pop_back();
+        if (part_of_cluster[c] >= 0) {
+            ordered.push_back(of_part[static_cast<size_t>(part_of_cluster[c])]);
+            continue;
+        }
+        todo.push_back(result_.tree.merges[c - leaves].right);
+        todo.push_back(result_.tree.merges[c - leaves].left);
+    }
+    ordered.insert(ordered.end(), of_part.begin() + static_cast<std::ptrdiff_t>(fine_), of_part.end());
+    return ordered;
+}
+
+Regrouped Regrouping::run() {
+    choose_parts();
+    measure();
+    // What stays of the paper's tree, with new numbers.
+    const size_t leaves = part_of_.size(), joins = tree_.components - 1;
+    std::vector<int32_t> number(leaves + tree_.merges.size(), -1);
+    std::iota(number.begin(), number.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
+    result_.tree.components = tree_.components;
+    for (size_t m = 0; m + joins < tree_.merges.size(); ++m) {
+        if (goes_[m]) continue;
+        Merge merge = tree_.merges[m];
+        merge.left = number[static_cast<size_t>(merge.left)];
+        merge.right = number[static_cast<size_t>(merge.right)];
+        number[leaves + m] = static_cast<int32_t>(leaves + result_.tree.merges.size());
+        result_.tree.merges.push_back(merge);
+    }
+    for (Part& p : parts_) p.number = number[static_cast<size_t>(p.number)];
+
+    parts_.reserve(2 * fine_ - 1);  // join() holds references
+    link_to_.assign(2 * fine_ - 1, -1);
+    join_neighbours();
+    join_components();
+    above_.assign(parts_.size(), -1);
+    beside_.assign(parts_.size(), -1);
+    for (size_t j = 0; j < joined_.size(); ++j)
+        for (size_t k = 0; k < 2; ++k) {
+            above_[static_cast<size_t>(joined_[j][k])] = static_cast<int32_t>(fine_ + j);
+            beside_[static_cast<size_t>(joined_[j][k])] = joined_[j][1 - k];
+        }
+    result_.scores = scores();
+    if (trace_) {
+        trace_->part_of_tetrahedron = part_of_;
+        trace_->merges = joined_;
+    }
+    return std::move(result_);
+}
+
+}  // namespace
+
+double fitted(std::span<const double> numbers, std::span<const double> inputs) {
+    double sum = numbers.back();
+    const size_t row = inputs.size() + 2;
+    for (size_t h = 0; h + row < numbers.size(); h += row) {
+        double z = numbers[h];
+        for (size_t i = 0; i < inputs.size(); ++i) z += numbers[h + 1 + i] * inputs[i];
+        sum += numbers[h + 1 + inputs.size()] * (z / (1 + std::abs(z)));
+    }
+    return sum;
+}
+
+Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, Progress& progress,
+                  std::span<const double> pair_numbers, RegroupTrace* trace) {
+    if (tree.merges.empty()) return {tree, {1.0}};
+    return Regrouping(mesh, tree, progress, pair_numbers.empty() ? fitted_pair_numbers : pair_numbers, trace).run();
+}
+
+}  // namespace partwheel

@@ -1,0 +1,340 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fits the numbers of native/src/regroup_fitted.h to segmentations made by people, and says how well they do where they
+were not fitted.
+
+usage: fit.py MESH_DIR SEG_DIR WORK_DIR [--trace PROGRAM] [--rounds 3] [--folds 4] [--write]
+
+MESH_DIR/<id>.off, SEG_DIR/<id>/*.seg: of the Princeton Segmentation Benchmark, 20 ids a category.
+
+The pair cost is fitted to the likelihood that two faces, one of each part, lie in one part of a person's. Which pairs
+come up depends on the cost itself, so there are rounds: the first one with a cost by concavity and size alone, each
+later one with the pairs of the two rounds before. The node score is fitted to the overlap (intersection over union)
+with the segment that a click in the node is meant for, each segment being clicked equally often.
+
+Both are cross-validated: the categories are dealt into folds, and what is printed of a category comes from numbers that
+were fitted without it. What is written (--write) is fitted to all. Takes half an hour on two idle cores.
+"""
+
+import argparse
+import subprocess
+import sys
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "addon"))
+
+from partwheel.core import Hierarchy, Mode, PartwheelError, meshes  # noqa: E402  (found only now)
+
+HEADER = ROOT / "native" / "src" / "regroup_fitted.h"
+PAIR_MEASURES, NODE_MEASURES = 28, 32
+PAIR_RAMPS, NODE_RAMPS = 16, 12
+DIGITS = 4
+PAIRS_A_MODEL = 1200
+MOST_OVERLAP = 0.85  # as in scored_wheel_stops()
+
+
+# ---- A sum of ramps (fitted() in regroup.cpp), and its fit by Adam -------------------------------------------------
+
+def likelihood_logistic(z):
+    """(value, derivative of the cross entropy by z, given value - target): 1 / (1 + exp(-z))"""
+    return 1 / (1 + np.exp(-z)), lambda error: error
+
+
+def likelihood_rational(z):
+    """The same for (1 + z / (1 + |z|)) / 2, which needs no exp."""
+    return (1 + z / (1 + np.abs(z))) / 2, lambda error: 2 * error / (1 + 2 * np.abs(z))
+
+
+def fit(x, y, weight, ramps, likelihood, epochs, batch, rate=3e-3, decay=1e-4):
+    """The numbers, as regroup_fitted.h has them, that make likelihood(sum of ramps of x) most like y."""
+    rng = np.random.default_rng(0)
+    middle = np.average(x, axis=0, weights=weight)
+    spread = np.sqrt(np.average((x - middle) ** 2, axis=0, weights=weight)) + 1e-6
+    z, y, weight = (a.astype(np.float32) for a in ((x - middle) / spread, y, weight / weight.mean()))
+    inputs = x.shape[1]
+    p = [a.astype(np.float32) for a in (
+        rng.normal(0, inputs ** -0.5, (inputs, ramps)), np.zeros(ramps), rng.normal(0, ramps ** -0.5, ramps), [0])]
+    mean, square, step = [np.zeros_like(a) for a in p], [np.zeros_like(a) for a in p], 0
+    for epoch in range(epochs):
+        at, now = rng.permutation(len(y)), rate * (1.02 - epoch / epochs)
+        for i in range(0, len(y), batch):
+            k = at[i:i + batch]
+            ramp = z[k] @ p[0] + p[1]
+            size = 1 + np.abs(ramp)
+            value, slope = likelihood(ramp / size @ p[2] + p[3])
+            g = slope(value - y[k]) * weight[k] / len(k)
+            inner = np.outer(g, p[2]) / size ** 2
+            gradient = [z[k].T @ inner + decay * p[0], inner.sum(0), (ramp / size).T @ g + decay * p[2], g.sum()]
+            step += 1
+            for a, m, s, d in zip(p, mean, square, gradient):
+                m += 0.1 * (d - m)
+                s += 0.001 * (d * d - s)
+                a -= now * (m / (1 - 0.9 ** step)) / (np.sqrt(s / (1 - 0.999 ** step)) + 1e-8)
+    weights = p[0] / spread[:, None]
+    bias = p[1] - middle @ weights
+    rows = np.column_stack([bias, weights.T, p[2]])
+    return np.array([float(f"{number:.{DIGITS}g}") for number in [*rows.ravel(), p[3][0]]])
+
+
+def apply(numbers, x):
+    rows = numbers[:-1].reshape(-1, x.shape[1] + 2)
+    ramp = x @ rows[:, 1:-1].T + rows[:, 0]
+    return ramp / (1 + np.abs(ramp)) @ rows[:, -1] + numbers[-1]
+
+
+# ---- Models and traces ---------------------------------------------------------------------------------------------
+
+class People:
+    """A model's segmentations: labels (S,F), numbered on from segmentation to segmentation; clicks (face, label), one a
+    segment, as the benchmark draws them."""
+
+    def __init__(self, model, mesh_dir, seg_dir):
+        mesh = meshes.read(mesh_dir / f"{model}.off")
+        a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
+        self.area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+        labels, clicks, self.ends = [], [], [0]
+        for path in sorted((seg_dir / str(model)).glob("*.seg")):
+            raw = np.array(path.read_text().split(), int)
+            names, label = np.unique(raw, return_inverse=True)
+            if len(raw) != len(self.area) or len(names) < 2:
+                continue
+            labels.append(label + self.ends[-1])
+            for k, name in enumerate(names):
+                rng = np.random.default_rng(zlib.crc32(f"{model}/{path.name}/{name}".encode()))
+                faces = np.flatnonzero(label == k)
+                weight = self.area[faces]
+                even = weight.sum() == 0
+                clicks.append((rng.choice(faces) if even else rng.choice(faces, p=weight / weight.sum()),
+                               k + self.ends[-1]))
+            self.ends.append(self.ends[-1] + len(names))
+        self.labels, self.clicks = np.array(labels), np.array(clicks)
+
+
+class Trace:
+    """What regroup() did with a model, beside its people. Of each node: its area and its faces' number within each
+    label (inside, within), and the overlap with each (N, labels)."""
+
+    def __init__(self, path, people):
+        data = path.read_bytes()
+        faces, self.parts, pairs, merges, nodes = np.frombuffer(data, np.int32, 5)
+        at = 20
+
+        def take(count, dtype, columns):
+            nonlocal at
+            values = np.frombuffer(data, dtype, count * columns, at)
+            at += values.nbytes
+            return values.reshape(count, columns)
+
+        self.people = people
+        self.part_of_face = take(faces, np.int32, 1)[:, 0]
+        self.pairs, self.merges = take(pairs, np.int32, 2), take(merges, np.int32, 2)
+        self.pair_measures = take(pairs, np.float64, PAIR_MEASURES)
+        self.node_measures = take(nodes, np.float64, NODE_MEASURES)
+        labels, annotators = people.ends[-1], len(people.labels)
+        cell = (self.part_of_face * labels + people.labels).ravel()
+        sums = [np.bincount(cell, w, self.parts * labels).reshape(self.parts, labels)
+                for w in (np.tile(people.area, annotators), None)]
+        self.inside, self.within = (np.vstack([s, np.zeros((merges, labels))]) for s in sums)
+        self.above = np.full(nodes, -1)
+        for j, pair in enumerate(self.merges):
+            for table in (self.inside, self.within):
+                table[self.parts + j] = table[pair].sum(axis=0)
+            self.above[pair] = self.parts + j
+        self.area = self.inside.sum(axis=1) / annotators
+        self.size = self.within.sum(axis=1) / annotators
+        wanted = self.inside[-1]
+        self.overlap = self.inside / (self.area[:, None] + wanted - self.inside)
+
+    def one_part(self):
+        """(pairs,) the likelihood that people put a face of one and a face of the other into one part."""
+        share = self.inside / np.maximum(self.area, 1e-300)[:, None]
+        return (share[self.pairs[:, 0]] * share[self.pairs[:, 1]]).sum(axis=1) / len(self.people.labels)
+
+    def expected_overlap(self):
+        """(nodes,) the mean overlap with the segment of a click in the node."""
+        clicked = self.inside / self.inside[-1]
+        return (clicked * self.overlap).sum(axis=1) / np.maximum(clicked.sum(axis=1), 1e-300)
+
+    def measures(self, scores):
+        """best, click, within2, stops, notches, cut, auto: what score.py would say."""
+        rows, wheels = [], {}
+        for face, label in self.people.clicks:
+            part = self.part_of_face[face]
+            if part not in wheels:
+                wheels[part] = self.wheel(part, scores)
+            stops = wheels[part]
+            overlap = self.overlap[stops, label]
+            at, best = int(np.argmax(scores[stops])), int(overlap.argmax())
+            rows.append((overlap[best], overlap[at], overlap[max(0, at - 2):at + 3].max(), len(stops), abs(best - at)))
+        cuts = [self.disagreement(self.undone(end - begin), i)
+                for i, (begin, end) in enumerate(zip(self.people.ends, self.people.ends[1:]))]
+        likely = self.likeliest(scores)
+        auto = [self.disagreement(likely, i) for i in range(len(cuts))]
+        return [*np.mean(rows, axis=0), np.mean(cuts), np.mean(auto)]
+
+    def wheel(self, part, scores):
+        path = [part]
+        while self.above[path[-1]] >= 0:
+            path.append(self.above[path[-1]])
+        path, stops = np.array(path), []
+        for n in path[np.argsort(-scores[path], kind="stable")]:
+            if all(min(self.area[n], self.area[s]) <= MOST_OVERLAP * max(self.area[n], self.area[s]) for s in stops):
+                stops.append(n)
+        root = path[-1]
+        if root not in stops:
+            stops = [s for s in stops if self.area[s] < self.area[root]] + [root]
+        return np.sort(stops)
+
+    def undone(self, parts):
+        alive = {len(self.above) - 1}
+        for j in range(len(self.merges) - 1, max(-1, len(self.merges) - parts), -1):
+            alive.remove(self.parts + j)
+            alive.update(self.merges[j].tolist())
+        return sorted(alive)
+
+    def likeliest(self, scores):
+        best, divided = self.area * scores, np.zeros(len(scores), bool)
+        for j, pair in enumerate(self.merges):
+            if best[pair].sum() > best[self.parts + j]:
+                best[self.parts + j], divided[self.parts + j] = best[pair].sum(), True
+        cut, todo = [], [len(scores) - 1]
+        while todo:
+            n = todo.pop()
+            if divided[n]:
+                todo += self.merges[n - self.parts].tolist()
+            else:
+                cut.append(n)
+        return cut
+
+    def disagreement(self, cut, annotator):
+        """1 - Rand Index of a cut and a person's segmentation."""
+        ends = self.people.ends
+        joint = self.within[cut, ends[annotator]:ends[annotator + 1]]
+
+        def pairs(n):
+            return (n * (n - 1) / 2).sum()
+
+        return (pairs(joint.sum(0)) + pairs(joint.sum(1)) - 2 * pairs(joint)) / pairs(self.size[-1:])
+
+
+# ---- Fitting -------------------------------------------------------------------------------------------------------
+
+def start_numbers():
+    """The first round's cost: the concavity that joining adds, relative to the smaller part's hull; and its size."""
+    weights = np.zeros(PAIR_MEASURES)
+    weights[[0, 7]] = 0.1, 0.3
+    return np.array([0, *weights, 1, 0])
+
+
+def pair_data(traces):
+    x, y, weight = [], [], []
+    for trace in traces:
+        small = np.minimum(*trace.area[trace.pairs].T)
+        w = np.sqrt(small / trace.area[-1])
+        w /= w.sum()
+        # A sample in which the heavy ones are all and the light ones stand for many.
+        taken = np.random.default_rng(len(w)).random(len(w)) < w * PAIRS_A_MODEL
+        x.append(trace.pair_measures[taken].astype(np.float32))
+        y.append(trace.one_part()[taken])
+        weight.append(np.maximum(w[taken], 1 / PAIRS_A_MODEL))
+    return [np.concatenate(a) for a in (x, y, weight)]
+
+
+def fit_pairs(traces):
+    x, y, weight = pair_data(traces)
+    return fit(x, 1 - y, weight, PAIR_RAMPS, likelihood_logistic, 14, 2048)
+
+
+def fit_nodes(traces):
+    weight = [(trace.area / trace.area[-1]) ** 0.25 for trace in traces]
+    return fit(np.concatenate([trace.node_measures for trace in traces]),
+               np.concatenate([trace.expected_overlap() for trace in traces]),
+               np.concatenate([w / w.sum() for w in weight]), NODE_RAMPS, likelihood_rational, 24, 1024, 4e-3)
+
+
+def header(pair_numbers, node_numbers):
+    def array(name, numbers, measures):
+        rows = [*numbers[:-1].reshape(-1, measures + 2), numbers[-1:]]
+        lines = []
+        for row in rows:
+            line = "   "
+            for number in row:
+                word = f" {number:.{DIGITS}g},"
+                if len(line) + len(word) > 118:
+                    lines.append(line)
+                    line = "       "
+                line += word
+            lines.append(line)
+        return (f"inline constexpr std::array<double, {len(numbers)}> {name} = {{\n" + "\n".join(lines) + "\n};\n")
+
+    return (
+        "// The numbers of the pair cost and the node score: see regroup.h, and fitted() for what they mean.\n"
+        "// Written by tests/quality/fit.py; one ramp a paragraph (its bias, the weights of the measures, its own\n"
+        "// weight), the last number is the sum's bias.\n#pragma once\n\n#include <array>\n\nnamespace partwheel {\n\n"
+        + array("fitted_pair_numbers", pair_numbers, PAIR_MEASURES) + "\n"
+        + array("fitted_node_numbers", node_numbers, NODE_MEASURES) + "\n}  // namespace partwheel\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name in ("meshes", "segmentations", "work"):
+        parser.add_argument(name, type=Path)
+    parser.add_argument("--trace", type=Path, default=ROOT / "build" / "bench" / "quality_trace")
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--folds", type=int, default=4)
+    parser.add_argument("--write", action="store_true", help=f"writes {HEADER.relative_to(ROOT)}")
+    args = parser.parse_args()
+    args.work.mkdir(parents=True, exist_ok=True)
+
+    people = {}
+    for path in sorted(args.meshes.glob("*.off"), key=lambda path: int(path.stem)):
+        saved = args.work / f"{path.stem}.hierarchy"
+        if not saved.exists():
+            mesh = meshes.read(path)
+            try:
+                saved.write_bytes(Hierarchy.build(mesh.vertices, mesh.triangles, mode=Mode.PAPER).save())
+            except PartwheelError as error:
+                print(f"{path.stem} is left out: {error}", flush=True)
+                continue
+        people[int(path.stem)] = People(int(path.stem), args.meshes, args.segmentations)
+    category = {model: (model - 1) // 20 for model in people}
+    dealt = {c: i % args.folds for i, c in enumerate(sorted(set(category.values())))}
+    fold = {model: dealt[category[model]] for model in people}
+
+    def traced(number, numbers_of_fold):
+        directory = args.work / f"round{number}"
+        directory.mkdir(exist_ok=True)
+        for f, numbers in enumerate(numbers_of_fold):
+            (directory / f"fold{f}.txt").write_text("\n".join(repr(float(n)) for n in numbers))
+            subprocess.run([args.trace, directory / f"fold{f}.txt", directory,
+                            *(args.work / f"{model}.hierarchy" for model in people if fold[model] == f)], check=True)
+        return {model: Trace(directory / f"{model}.trace", people[model]) for model in people}
+
+    rounds = [traced(0, [start_numbers()] * args.folds)]
+    for number in range(1, args.rounds + 1):
+        seen = [(model, trace) for traces in rounds[-2:] for model, trace in traces.items()]
+        rounds.append(traced(number, [fit_pairs([t for m, t in seen if fold[m] != f]) for f in range(args.folds)]))
+    last = rounds[-1]
+    rows = {}
+    for f in range(args.folds):
+        numbers = fit_nodes([trace for model, trace in last.items() if fold[model] != f])
+        for model, trace in last.items():
+            if fold[model] == f:
+                scores = likelihood_rational(apply(numbers, trace.node_measures))[0]
+                rows[model] = trace.measures(scores)
+    print("category  best  click within2 stops notches 1-RI(K) 1-RI(auto), cross-validated over categories")
+    of_category = {c: np.mean([row for m, row in rows.items() if category[m] == c], axis=0) for c in dealt}
+    for c, means in of_category.items():
+        print(f"{20 * c + 1:3d}-{20 * c + 20:3d}", *(f"{x:.3f}" for x in means))
+    print("mean   ", *(f"{x:.4f}" for x in np.mean(list(rows.values()), axis=0)))
+    print("spread ", *(f"{x:.3f}" for x in np.std(list(of_category.values()), axis=0)))
+    if args.write:
+        HEADER.write_text(header(fit_pairs([t for traces in rounds[-2:] for t in traces.values()]),
+                                 fit_nodes(list(last.values()))))
+
+
+if __name__ == "__main__":
+    main()
