@@ -1,4 +1,5 @@
 // The checks of the input: every named error by a small example and by damage to real models; the canonical order.
+#include "partwheel.h"
 #include "surface.h"
 
 #include "support/real_meshes.h"
