@@ -5,6 +5,7 @@ Only reads, but for normals."""
 import hashlib
 from typing import NamedTuple
 
+import bpy
 import numpy as np
 
 from .core.polygons import triangulate
@@ -22,10 +23,22 @@ class Surface(NamedTuple):
     face_count: int
 
 
+writing_back = False  # while Blender tells of a change of geometry that is none: edits were written back into a mesh
+
+
 def up_to_date(obj):
-    """The object's mesh; in Edit Mode after Blender wrote the edits back into it. Same order of elements in both."""
+    """The object's mesh; in Edit Mode after Blender wrote the edits back into it. Same order of elements in both. Not to
+    be called while Blender draws."""
+    global writing_back
     if obj.mode == "EDIT":
+        layer = bpy.context.view_layer
+        layer.update()  # what was edited before is told of first
         obj.update_from_editmode()
+        writing_back = True
+        try:
+            layer.update()
+        finally:
+            writing_back = False
     return obj.data
 
 

@@ -34,13 +34,23 @@ class Prepared:
 
 def prepared(obj):
     """The Prepared of the object's mesh as it is now, as far as Blender has told of changes."""
-    stamp = obj.mode, session.revision(obj.data), _counts(obj)
-    key = session.key(obj.data)
+    stamp, key = _stamp(obj), session.key(obj.data)
     if key not in _kept or _kept[key].stamp != stamp:
         for gone in _kept.keys() - {session.key(mesh) for mesh in bpy.data.meshes}:
             del _kept[gone]
         _kept[key] = Prepared(obj, stamp)
     return _kept[key]
+
+
+def current(obj, parts):
+    """Whether these parts are of the object's mesh as it is now. Makes nothing, so it may be asked while Blender draws.
+    """
+    kept = _kept.get(session.key(obj.data))
+    return kept is not None and kept._parts is parts and kept.stamp == _stamp(obj)
+
+
+def _stamp(obj):
+    return obj.mode, session.revision(obj.data), _counts(obj)
 
 
 def _counts(obj):

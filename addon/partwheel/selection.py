@@ -75,7 +75,8 @@ class Selection:
         _set(_sequence(bm, self.kind), self.now & ~target, False)
         _set(_sequence(bm, self.kind), target & ~self.now, True)
         self.now = target
-        bm.select_flush_mode()
+        if self.kind != "FACE":  # a face takes its edges and vertices along
+            bm.select_flush_mode()
         if active is not None:
             face = _sequence(bm, "FACE")[active]
             bm.faces.active = face

@@ -242,6 +242,8 @@ def revision(mesh):
 
 @bpy.app.handlers.persistent
 def _edited(_scene, depsgraph):
+    if mesh_arrays.writing_back:
+        return
     for update in depsgraph.updates:
         if update.is_updated_geometry and isinstance(update.id, bpy.types.Mesh):
             mesh = key(update.id.original)

@@ -86,9 +86,10 @@ def nothing_is_left(tmp_path, monkeypatch):
 # ---- Answers
 
 
-def test_the_same_as_in_this_process(case):
+def test_the_same_as_in_this_process(case, request):
     shape, h = case
-    job = Job(*shape, **UNLIMITED)
+    _, mode = request.node.callspec.params["case"]
+    job = Job(*shape, mode=mode, **UNLIMITED)
     assert job.result().save() == h.save()
     assert job.failures == [] and job.poll() is None and job.wait(0)
     assert state(job.process_id) is None

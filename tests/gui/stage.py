@@ -182,7 +182,7 @@ class Stage:
     def hovered(self):
         """The faces of the part that hover shows, or None."""
         what = self.part("tools.hover").hover.what
-        return what and frozenset(what[1].faces(what[2]).tolist())
+        return what and frozenset(what[1].hierarchy.faces(what[2]).tolist())
 
     def drawn_things(self):
         """How many handlers of the add-on draw in the 3D views."""

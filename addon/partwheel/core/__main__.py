@@ -10,7 +10,7 @@ from pathlib import Path
 
 from . import meshes
 from .hierarchy import Hierarchy
-from .library import LibraryError, PartwheelError, Rung
+from .library import LibraryError, Mode, PartwheelError, Rung
 
 BUILT, NAMED_ERROR, USAGE = 0, 1, 2
 
@@ -41,6 +41,8 @@ def parse(arguments):
     build.add_argument("--open-surfaces", action="store_true",
                        help="wrap a sheet (plane, cloth, car door) as a thin solid instead of refusing it")
     build.add_argument("--threads", type=int, default=0, metavar="N", help="at most so many (default: what helps)")
+    build.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="paper",
+                       help="whether parts are joined by concavity alone, as in the paper (default), or as people would")
     return parser.parse_args(arguments)
 
 
@@ -65,6 +67,7 @@ def build(options, report):
         hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count,
                                     quality=options.quality, rungs=options.rungs,
                                     open_surfaces=options.open_surfaces, threads=options.threads,
+                                    mode=Mode[options.mode.upper()],
                                     progress=show_progress if sys.stderr.isatty() else None)
     finally:
         if sys.stderr.isatty():

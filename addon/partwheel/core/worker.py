@@ -44,15 +44,16 @@ class Job:
     time_limit: seconds that one process may take (None: two minutes and 2 ms a triangle).
 
     A worker that crashes, exits, or goes beyond a limit is followed by another that begins at the rung of the ladder
-    after the one it tried, if there is one; failures holds a WorkerError for each. Every method may be called from any thread. The worker ends when this
-    process does, however that happens.
+    after the one it tried, if there is one; failures holds a WorkerError for each. Every method may be called from any
+    thread. The worker ends when this process does, however that happens.
     """
 
     def __init__(self, vertices, triangles, faces=None, face_count=None, *, quality=0.0, rungs=0, open_surfaces=False,
-                 threads=0, memory_limit=None, time_limit=None):
+                 threads=0, mode=0, memory_limit=None, time_limit=None):
         load()  # a missing library is better told here
         self._arrays, self._face_count = checked_surface(vertices, triangles, faces, face_count)
-        self._options = {"quality": float(quality), "open_surfaces": int(open_surfaces), "threads": threads}
+        self._options = {"quality": float(quality), "open_surfaces": int(open_surfaces), "threads": threads,
+                         "mode": int(mode)}
         self._rungs = rungs or sum(Rung)
         self._rung = Rung.EXACT  # that the worker tries, as far as it has told
         self._memory_limit = int(MEMORY_SHARE * available_memory()) if memory_limit is None else memory_limit

@@ -8,11 +8,11 @@ draws it in every 3D view, for as long as the tool is active and no longer. It n
 import bpy
 
 from .. import overlay, picking, wheel
-from ..prepared import prepared
+from ..prepared import current, prepared
 
 
 class Hover:
-    """What the mouse is over: an object's name, its hierarchy and a node, or None."""
+    """What the mouse is over: an object's name, its overlay.Parts and a node, or None."""
 
     def __init__(self):
         self.what = None
@@ -28,16 +28,16 @@ class Hover:
         shown = [each for each in context.objects_in_mode_unique_data
                  if each.type == "MESH" and each.visible_get(viewport=context.space_data)]
         obj, face = picking.nearest(shown, lambda each: prepared(each).tree, context.region, context.region_data, point)
-        hierarchy = prepared(obj).hierarchy(obj) if obj else None
-        return hierarchy and (obj.name, hierarchy, wheel.pick(hierarchy, face).node)
+        parts = prepared(obj).parts(obj) if obj else None
+        return parts and (obj.name, parts, wheel.pick(parts.hierarchy, face).node)
 
     def draw(self, context):
         if not self.what or overlay.shown.on:
             return
-        name, hierarchy, node = self.what
+        name, parts, node = self.what
         obj = bpy.data.objects.get(name)
-        if obj and obj.mode == "EDIT" and overlay.visible(context, obj) and prepared(obj).hierarchy(obj) is hierarchy:
-            overlay.draw_hover(context, obj, prepared(obj).parts(obj), node)
+        if obj and obj.mode == "EDIT" and overlay.visible(context, obj) and current(obj, parts):
+            overlay.draw_hover(context, obj, parts, node)
 
 
 hover = Hover()
