@@ -4,6 +4,7 @@ Called by scripts/test. Everything that runs writes to build/test/TIER*.log; the
 """
 
 import argparse
+import concurrent.futures
 import dataclasses
 import json
 import os
@@ -106,14 +107,19 @@ def addon():
                                 "tests/addon/run.py", "--"]}
     for version in versions:
         interpreters[f"bpy-{version}"] = [VENV / f"bpy-{version}/bin/python", "tests/addon/run.py", "--"]
-    result = Result()
-    for name, command in interpreters.items():
+
+    def one(name):
         home = OUTPUT / "home" / name  # a new one, so that nothing installed before is there
         shutil.rmtree(home, ignore_errors=True)
         home.mkdir(parents=True)
         clean = {"PATH": os.environ["PATH"], "HOME": str(home), "LANG": "C.UTF-8"}
         clean |= {name: value for name, value in os.environ.items() if name == "PARTWHEEL_UNITES"}
-        result += own_runner(f"addon-{name}", [*command, package], clean)
+        return own_runner(f"addon-{name}", [*interpreters[name], package], clean)
+
+    result = Result()
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for each in pool.map(one, interpreters):
+            result += each
     return result
 
 

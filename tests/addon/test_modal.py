@@ -630,9 +630,9 @@ class Pick(MeshTest):
                 hidden = set()
                 for _ in range(2):
                     tree, hits = part("picking").FaceTree(obj), 0
-                    for x in range(1, 8):
-                        for y in range(1, 8):
-                            point = region.width * x // 8, region.height * y // 8
+                    for x in range(1, 6):
+                        for y in range(1, 6):
+                            point = region.width * x // 6, region.height * y // 6
                             found = tree.under(obj.matrix_world, region, region_view, point)
                             ray = (region_2d_to_origin_3d(region, region_view, point),
                                    region_2d_to_vector_3d(region, region_view, point))
