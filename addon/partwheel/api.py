@@ -22,16 +22,17 @@ from mathutils import Vector
 from . import composition, deforming, placement, selection, session, solids, union, wheel
 
 
-def build(obj, quality=0.0, open_surfaces=False):
+def build(obj, quality=0.0, open_surfaces=False, mode=None):
     """Builds the hierarchy of the object's mesh and keeps it; waits until it is done. The Hierarchy.
 
     quality: 0 adds no points inside the mesh; from 1.1 on it bounds how stretched the tetrahedra may be. open_surfaces:
-    take a sheet for a thin solid, instead of refusing it.
+    take a sheet for a thin solid, instead of refusing it. mode: a core.Mode, how parts are joined; None: as the add-on's
+    preferences have it.
     """
     _check(obj)
     if session.running():
         raise RuntimeError("Parts are being built already. One build runs at a time: wait for its end, or cancel it.")
-    return session.Build(obj, quality, open_surfaces).finish()
+    return session.Build(obj, quality, open_surfaces, mode).finish()
 
 
 def hierarchy(obj):

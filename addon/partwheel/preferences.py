@@ -12,6 +12,13 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         description="Parts that were built are there again when the file is opened. It grows by about 65 bytes a face",
         default=True,
     )
+    parts: bpy.props.EnumProperty(
+        name="Parts", description="How small parts are joined to larger ones in builds from now on",
+        items=[("PAPER", "Nearly Convex", "By convexity alone: the most regular, and the quickest"),
+               ("REGROUPED", "As People See Them", "By what people took for parts on some hundred models: a click alone "
+                "finds the part that was meant more often. New, and not yet the default")],
+        default="PAPER",
+    )
     memory_share: bpy.props.IntProperty(
         name="Memory", description="How much of the available memory a build may use (kept on Linux)",
         default=80, min=10, max=100, subtype="PERCENTAGE",
@@ -42,7 +49,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
     def draw(self, _context):
         column = self.layout.column()
         column.use_property_split = True
-        for name in ("save_with_file", "memory_share", "time_limit"):
+        for name in ("parts", "save_with_file", "memory_share", "time_limit"):
             column.prop(self, name)
         draw_overlays(column)
 
@@ -64,7 +71,7 @@ def preferences():
 
 
 class Defaults:
-    save_with_file, memory_share, time_limit = True, 80, 0
+    parts, save_with_file, memory_share, time_limit = "PAPER", True, 80, 0
     show_part, show_next, show_hull, show_cut = True, True, False, False
 
 

@@ -14,7 +14,7 @@ import bmesh
 import bpy
 
 from . import mesh_arrays, stored
-from .core import Hierarchy
+from .core import Hierarchy, Mode
 from .core.worker import Job, available_memory
 from .mesh_arrays import Fingerprint
 from .preferences import preferences
@@ -155,13 +155,15 @@ def running():
 class Build:
     """A build of the object's mesh in a process of its own. The mesh is not changed, nor kept from changing."""
 
-    def __init__(self, obj, quality=0.0, open_surfaces=False):
+    def __init__(self, obj, quality=0.0, open_surfaces=False, mode=None):
+        """mode: a core.Mode; None: the preferences'."""
         global _running
         mesh = mesh_arrays.up_to_date(obj)
         self.name = mesh.name
         self._key, self._counts, self._built = key(mesh), _counts(mesh), mesh_arrays.fingerprint(mesh)
         share, seconds = preferences().memory_share / 100, 60 * preferences().time_limit
         self.job = Job(*mesh_arrays.surface(mesh), quality=quality, open_surfaces=open_surfaces,
+                       mode=Mode[preferences().parts] if mode is None else mode,
                        memory_limit=int(share * available_memory()), time_limit=seconds or None)
         _running = self
 

@@ -22,6 +22,18 @@ class Api(MeshTest):
         for node in expected.path(700).tolist():
             self.assertEqual(self.api.faces(obj, node).tolist(), expected.faces(node).tolist())
 
+    def test_mode_of_the_preferences_unless_a_script_names_one(self):
+        obj, core, preferences = self.add(*read_off("hand")), part("core"), part("preferences").preferences()
+        expected = {mode: core.Hierarchy.build(*part("mesh_arrays").surface(obj.data), mode=mode).parent.tolist()
+                    for mode in core.Mode}
+        self.assertNotEqual(*expected.values())
+        for mode in core.Mode:
+            self.addCleanup(setattr, preferences, "parts", preferences.parts)
+            preferences.parts = mode.name
+            self.assertEqual(self.api.build(obj).parent.tolist(), expected[mode])
+            for other in core.Mode:
+                self.assertEqual(self.api.build(obj, mode=other).parent.tolist(), expected[other])
+
     def test_builds_when_there_is_none(self):
         obj = self.add(*BOX)
         self.assertEqual(self.api.path(obj, 0)[-1], len(self.hierarchy(obj).parent) - 1)

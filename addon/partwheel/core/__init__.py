@@ -5,5 +5,5 @@ from .deform import Deformation, surface_distances
 from .hierarchy import Hierarchy, Solid, Summary
 from .library import LibraryError, Mode, PartwheelError, Rung, Stage, Status, version
 
-__all__ = ["Deformation", "Hierarchy", "LibraryError", "Mode", "PartwheelError", "Rung", "Solid", "Stage", "Status", "Summary",
-           "surface_distances", "version"]
+__all__ = ["Deformation", "Hierarchy", "LibraryError", "Mode", "PartwheelError", "Rung", "Solid", "Stage", "Status",
+           "Summary", "surface_distances", "version"]
