@@ -20,12 +20,4 @@ CLASSES = (
     PARTWHEEL_PG_handle, MESH_OT_partwheel_deform,
 )
 
-
-def register():
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister():
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(CLASSES)

@@ -7,10 +7,9 @@ import bpy
 import numpy as np
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
-from .. import mesh_arrays, picking, session, wheel
-from ..core import PartwheelError
+from .. import mesh_arrays, picking
 from ..selection import select_outside_edit_mode
-from .build import idle, start
+from .build import idle
 from .pick import PartPicker
 
 FACE_SET = ".sculpt_face_set"
@@ -130,21 +129,8 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
             return False
         return idle(cls)
 
-    def execute(self, context):
-        obj = context.active_object
-        hierarchy = session.hierarchy(obj)
-        if not hierarchy:
-            building = start(self, obj)
-            hierarchy = building and building.wait(context)
-        if not hierarchy:
-            return {"CANCELLED"}
-        try:
-            picked = wheel.pick(hierarchy, self.face_index, self.level)
-        except PartwheelError as error:
-            self.report({"ERROR"}, f"Face {self.face_index} can't be picked: {error}")
-            return {"CANCELLED"}
-        session.remember_pick(obj, picked.face, picked.node)
-        return self._write(context, obj, hierarchy.faces(picked.node))
+    def _apply(self, context, obj, faces, _face):
+        return self._write(context, obj, faces)
 
     def _objects(self, context):
         return [context.active_object] if context.mode in WAYS else []

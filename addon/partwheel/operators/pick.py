@@ -10,6 +10,7 @@ import traceback
 import bpy
 
 from .. import keys, overlay, picking, session, wheel
+from ..core import PartwheelError
 from ..prepared import prepared
 from ..ui import status
 from .build import start
@@ -55,9 +56,32 @@ class PartPicker:
         """The part is confirmed; the answer of the operator."""
         return {"FINISHED"}
 
+    def _apply(self, context, obj, faces, face):
+        """Does at once with these faces what otherwise a target and _commit() do; the answer of the operator."""
+        raise NotImplementedError
+
     hand_offs = ()
 
-    # ---- Blender's side
+    # ---- Without a window
+
+    def execute(self, context):
+        obj = self._objects(context)[0]
+        hierarchy = session.hierarchy(obj)
+        if not hierarchy:
+            building = start(self, obj)
+            hierarchy = building and building.wait(context)
+        if not hierarchy:
+            return {"CANCELLED"}
+        try:
+            picked = wheel.pick(hierarchy, self.face_index, self.level)
+        except PartwheelError as error:
+            self.report({"ERROR"}, f"Face {self.face_index} can't be picked: {error}")
+            return {"CANCELLED"}
+        result = self._apply(context, obj, hierarchy.faces(picked.node), picked.face)
+        session.remember_pick(obj, picked.face, picked.node)
+        return result
+
+    # ---- With the mouse
 
     def invoke(self, context, event):
         if context.window is None or context.area is None or context.area.type != "VIEW_3D":

@@ -5,11 +5,9 @@ from typing import Callable, NamedTuple
 
 import bpy
 
-from .. import session, wheel
-from ..core import PartwheelError
 from ..selection import Selections
 from . import proportional
-from .build import idle, start
+from .build import idle
 from .pick import PartPicker
 
 
@@ -55,22 +53,8 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
             return False
         return idle(cls)
 
-    def execute(self, context):
-        obj = context.edit_object
-        hierarchy = session.hierarchy(obj)
-        if not hierarchy:
-            building = start(self, obj)
-            hierarchy = building and building.wait(context)
-        if not hierarchy:
-            return {"CANCELLED"}
-        try:
-            picked = wheel.pick(hierarchy, self.face_index, self.level)
-        except PartwheelError as error:
-            self.report({"ERROR"}, f"Face {self.face_index} can't be picked: {error}")
-            return {"CANCELLED"}
-        Selections(self._objects(context), obj).select(obj, hierarchy.faces(picked.node), picked.face, self.extend,
-                                                  self.deselect)
-        session.remember_pick(obj, picked.face, picked.node)
+    def _apply(self, context, obj, faces, face):
+        self._aim(context, obj).select(obj, faces, face, self.extend, self.deselect)
         return {"FINISHED"}
 
     def _objects(self, context):

@@ -71,13 +71,9 @@ class VIEW3D_GGT_partwheel_hover(bpy.types.GizmoGroup):
 
 CLASSES = (VIEW3D_GT_partwheel_hover, VIEW3D_GGT_partwheel_hover)
 
-
-def register():
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
+register, _unregister_classes = bpy.utils.register_classes_factory(CLASSES)
 
 
 def unregister():
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
+    _unregister_classes()
     hover.what = None

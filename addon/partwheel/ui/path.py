@@ -90,12 +90,4 @@ def draw_path(layout, obj):
 
 CLASSES = (VIEW3D_PT_partwheel_path, MESH_OT_partwheel_path)
 
-
-def register():
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister():
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(CLASSES)
