@@ -1,6 +1,6 @@
 // The numbers of the pair cost and the node score: see regroup.h, and fitted() for what they mean.
-// Written by tests/quality/fit.py; one ramp a paragraph (its bias, the weights of the measures, its own weight),
-// the last number is the sum's bias.
+// Fitted by the method of tests/quality/fit.py, whose --write makes this file anew. One ramp a paragraph (its bias, the
+// weights of the measures, its own weight), the last number is the sum's bias.
 #pragma once
 
 #include <array>

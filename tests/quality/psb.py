@@ -4,11 +4,11 @@
 usage: psb.py MESH_DIR OUT_DIR [--mode paper] [--sdf PROGRAM] [--rungs N] [--jobs N] [--again]
 
 MESH_DIR/<id>.off -> OUT_DIR/<id>.npz: order, first, last, parent, leaf, start, counts, cuts, auto, as the benchmark's
-score.py documents them. Through the public Python API with its default settings, one process a core. A mesh that can't
-be built is named and gets no file: the score counts it as a failure. Meshes that have a file already are passed over,
-unless --again.
+score.py documents them. Through the public Python API, one process a core, in mode "regrouped". A mesh that can't be built
+is named and gets no file: the score counts it as a failure. Meshes that have a file already are passed over, unless
+--again.
 
---mode paper: the paper's tree, with wheel and cuts by concavity alone.
+--mode paper: the paper's tree, with wheel and cuts by concavity alone, which is what Hierarchy.build() does by default.
 --rungs: the rungs of the ladder that are allowed. 4, the wrap alone, beside the default shows what the wrap costs.
 --sdf: not Partwheel's hierarchies but CGAL's segmentation by the shape diameter function, made by the program given
 (sdf_bench, built by scripts/bench), as hierarchies of two levels: what a click on one of its segments would take.
