@@ -3,6 +3,7 @@
 
 #include "geometry.h"
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <span>
@@ -24,10 +25,10 @@ public:
     std::span<const int32_t> vertices() const;  // in rising order
     std::span<const HullFacet> facets() const;
     size_t facet_count() const { return block_ ? block_->facet_count : 0; }
-    // Asks memory for its first part, ahead of use.
+    // Asks memory for its first part, ahead of use. An address may lie beyond the block: it is never read.
     void prefetch() const {
-        const char* p = reinterpret_cast<const char*>(block_.get());
-        for (size_t i = 0; i < 512; i += 64) __builtin_prefetch(p + i);
+        const auto begin = reinterpret_cast<uintptr_t>(block_.get());
+        for (uintptr_t i = 0; i < 512; i += 64) __builtin_prefetch(reinterpret_cast<const void*>(begin + i));
     }
     double volume() const { return block_ ? block_->volume : 0; }
 
