@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 
+from .composition import home
 from .mesh_arrays import read
 from .solids import CAP
 
@@ -126,7 +127,7 @@ def mirrored(part, target):
     mesh = part.data.copy()
     flip = Matrix.Scale(-1, 4, (1, 0, 0))
     new = bpy.data.objects.new(part.name, mesh)
-    (part.users_collection[0] if part.users_collection else bpy.context.scene.collection).objects.link(new)
+    home(part).objects.link(new)
     across = target.matrix_world @ flip @ target.matrix_world.inverted()
     # A mirror image of a mirror image is a turn: the matrix stays free of reflection.
     mesh.transform(flip)

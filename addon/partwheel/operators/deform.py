@@ -13,7 +13,7 @@ from bpy_extras.view3d_utils import (
 )
 from mathutils import Matrix, Vector
 
-from .. import handle_points, session
+from .. import handle_points, keys, session
 from ..core import PartwheelError
 from ..deforming import METHODS, Refused, Region, write
 from ..picking import FaceTree, view_under
@@ -23,12 +23,10 @@ REST_ITERATIONS = 3  # a tick while the mouse rests
 TICK = 0.03  # seconds
 NOTCH = 1.25  # what a notch of the wheel makes of the handle's size
 STEP_DEGREES, STEP_SCALE = 5.0, 0.1  # what Ctrl snaps to
-CONFIRM = {"RET", "NUMPAD_ENTER"}
+CONFIRM = keys.CONFIRM.events
 PASS = {"MIDDLEMOUSE", "MOUSEPAN", "MOUSEZOOM", "MOUSEROTATE", "TRACKPADPAN", "TRACKPADZOOM", "NDOF_MOTION", "HOME",
         "TIMER_REPORT", "WINDOW_DEACTIVATE"}
-DIGITS = {name: str(digit) for digit, word in enumerate(
-    ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE"))
-    for name in (word, f"NUMPAD_{digit}")} | {"PERIOD": ".", "NUMPAD_PERIOD": "."}
+DIGITS = {**keys.DIGITS, **{f"NUMPAD_{digit}": str(digit) for digit in range(10)}, "PERIOD": ".", "NUMPAD_PERIOD": "."}
 IDLE_KEYS = ("Partwheel   Drag: Move the Handle   Click: Put It Elsewhere   Shift Drag: One More Handle   G, R, S: "
              "Move, Rotate, Scale   Wheel: Handle Size   Enter: Confirm   MMB: Navigate   Esc/RMB: Cancel")
 STAGE_KEYS = ("Partwheel   X, Y, Z: Axis   0-9 . -: Type   Ctrl: Snap   G, R, S: Move, Rotate, Scale   LMB, Enter: "

@@ -7,18 +7,14 @@ import bpy
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 from mathutils import Vector
 
-from .. import placement
+from .. import keys, placement
 from ..picking import view_under
 
 KEYS = ("Partwheel   Move: Over a Surface   Wheel: Size   Shift Wheel: Turn   Page Up/Down: Depth   F: Fit Border   "
         "M: Mirror Copy   LMB, Enter: Confirm   MMB: Navigate   Esc/RMB: Cancel")
 UP, DOWN = {"WHEELUPMOUSE", "NUMPAD_PLUS"}, {"WHEELDOWNMOUSE", "NUMPAD_MINUS"}
-CONFIRM, CANCEL = {"LEFTMOUSE", "RET", "NUMPAD_ENTER"}, {"RIGHTMOUSE", "ESC"}
-PASS = {
-    "MIDDLEMOUSE", "MOUSEPAN", "MOUSEZOOM", "MOUSEROTATE", "TRACKPADPAN", "TRACKPADZOOM", "NDOF_MOTION", "HOME",
-    "NUMPAD_0", "NUMPAD_1", "NUMPAD_2", "NUMPAD_3", "NUMPAD_4", "NUMPAD_5", "NUMPAD_6", "NUMPAD_7", "NUMPAD_8",
-    "NUMPAD_9", "NUMPAD_PERIOD", "TIMER", "TIMER_REPORT", "WINDOW_DEACTIVATE",
-}
+CONFIRM, CANCEL = keys.CLICK.events | keys.CONFIRM.events, keys.CANCEL.events
+PASS = keys.NAVIGATE.events | keys.SYSTEM
 SIZE_STEP, TURN_STEP, DEPTH_STEP = 1.05, math.radians(5), 0.05
 
 
