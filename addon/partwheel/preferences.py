@@ -24,8 +24,8 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         default=80, min=10, max=100, subtype="PERCENTAGE",
     )
     time_limit: bpy.props.IntProperty(
-        name="Time Limit", description="Minutes after which a build is stopped; 0: two, and two more for each 60,000 "
-                                       "triangles, far more than builds take",
+        name="Time Limit", description="Minutes of processor time after which a build is stopped; 0: two, and two more "
+                                       "for each 60,000 triangles, far more than builds take",
         default=0, min=0, soft_max=60,
     )
     show_part: bpy.props.BoolProperty(

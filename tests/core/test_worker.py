@@ -5,7 +5,9 @@ no file, no open pipe left, and a new attempt on the next rung.
 The harm is done by a real library with one function replaced (tests/faults), so the product has no hook for tests.
 """
 
+import contextlib
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -56,6 +58,11 @@ def state(process):
     except OSError:
         return None
     return None if letter == "Z" else letter
+
+
+def ticks(process):
+    """Processor time of a process, in hundredths of a second."""
+    return sum(map(int, Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[11:13]))
 
 
 def until(predicate, seconds=10.0):
@@ -160,16 +167,45 @@ if LINUX and PLAIN:
         assert failed.value.name == "crash" and "Nothing else was harmed" in str(failed.value)
         assert job.failures == [failed.value] and state(job.process_id) is None
 
+    def processor_time_of_children():
+        """Seconds, of those that have ended."""
+        taken = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return taken.ru_utime + taken.ru_stime
+
     @pytest.mark.parametrize("stage", STAGES)
-    @pytest.mark.parametrize("fault", ["loop", "stop"])
-    def test_what_never_ends_is_ended(harm, fault, stage):
+    def test_an_endless_loop_is_ended(harm, stage):
+        harm("loop", stage)
+        before = processor_time_of_children()
+        job = Job(*shapes.off("hand"), rungs=EXACT, time_limit=1)
+        with pytest.raises(WorkerError, match="after 1 seconds of work") as failed:
+            job.result()
+        assert failed.value.name == "time limit" and 1 <= processor_time_of_children() - before < 2
+        assert state(job.process_id) is None
+
+    @pytest.mark.parametrize("stage", STAGES)
+    @pytest.mark.parametrize("fault", ["stop", "sleep"])
+    def test_what_does_nothing_is_ended(harm, fault, stage):
         harm(fault, stage)
         began = time.monotonic()
         job = Job(*shapes.off("hand"), rungs=EXACT, time_limit=1)
-        with pytest.raises(WorkerError, match="after 1 seconds") as failed:
+        with pytest.raises(WorkerError, match="after 1 seconds without any work") as failed:
             job.result()
-        assert failed.value.name == "time limit" and 1 <= time.monotonic() - began < 3
+        assert failed.value.name == "time limit" and 1 <= time.monotonic() - began < 4
         assert state(job.process_id) is None
+
+    def test_a_slow_machine_is_no_reason_to_stop_a_build():
+        """The worker is held up so often that it takes longer than the limit, though it does not work for so long."""
+        shape = shapes.off("homer")
+        limit, began = 1.5, time.monotonic()
+        job = Job(*shape, rungs=EXACT, time_limit=limit)
+        until(lambda: job.process_id)
+        while time.monotonic() - began < 1.5 * limit:
+            os.kill(job.process_id, signal.SIGSTOP)
+            time.sleep(0.4)
+            before = ticks(job.process_id)
+            os.kill(job.process_id, signal.SIGCONT)
+            until(lambda: ticks(job.process_id) > before + 1)
+        assert job.result().save() == Hierarchy.build(*shape).save() and job.failures == []
 
     @pytest.mark.parametrize("stage", STAGES)
     def test_memory_is_limited(harm, stage, build_shape):
@@ -189,6 +225,18 @@ if LINUX and PLAIN:
         except WorkerError as error:
             assert error.name in {"memory", "crash"}  # a library that does not look at what malloc() says crashes
         assert LIMIT / 4 < most < LIMIT + 50 * 2**20  # it did fill, and code and libraries come on top
+
+    @pytest.mark.parametrize("stage", STAGES)
+    def test_memory_written_over(harm, stage):
+        """The worker may notice or not: what it answers is loaded as a sound hierarchy of this mesh or refused."""
+        harm("corrupt", stage)
+        shape = shapes.off("homer")
+        job = Job(*shape, rungs=EXACT, time_limit=5)
+        try:
+            assert len(job.result().order) == shape.face_count
+        except PartwheelError as error:
+            assert str(error).endswith(".")
+        assert state(job.process_id) is None
 
     def test_a_mesh_too_large_for_the_memory():
         with pytest.raises(WorkerError, match="0.0 GiB") as failed:

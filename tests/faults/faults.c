@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
 static char fault[32];
@@ -21,6 +22,17 @@ static int fault_stage, fault_rung;
 static const pw_context *watched;
 static pthread_t builder;
 static volatile int running, happened;
+static char *own;  // the building thread's first piece of memory: what it asks for later mostly lies behind it
+
+// Writes over what the library holds in memory, eight bytes in every 64 KB, to the end of what there is. It goes on
+// then.
+static void corrupt(void) {
+    long noise = 0x3ff8a5a5a5a5a5a5;
+    for (char *page = own + 4096; page < own + (16 << 20); page += 1 << 16) {
+        struct iovec from = {&noise, sizeof noise}, to = {page + ((size_t)page >> 16) % 61 * 64, sizeof noise};
+        if (process_vm_writev(getpid(), &from, 1, &to, 1, 0) < 0) break;  // unlike memset() it tells
+    }
+}
 
 static void harm(int number) {
     (void)number;
@@ -33,6 +45,7 @@ static void harm(int number) {
         char *volatile never_allocated = fault + 16;
         free(never_allocated);
     }
+    if (!strcmp(fault, "corrupt")) corrupt();
     if (!strcmp(fault, "stack")) {
         volatile char *frame = __builtin_alloca(1 << 20);
         frame[0] = 1;
@@ -41,6 +54,7 @@ static void harm(int number) {
     if (!strcmp(fault, "kill")) raise(SIGKILL);
     if (!strcmp(fault, "stop")) raise(SIGSTOP);
     while (!strcmp(fault, "loop")) __asm__ volatile("");
+    while (!strcmp(fault, "sleep")) pause();
     if (!strcmp(fault, "fill"))
         for (size_t size = 1 << 24; size >= 1 << 12; size >>= 2)
             for (;;) {
@@ -75,6 +89,7 @@ pw_status pw_build(pw_context *context, const double *vertices, size_t vertex_co
     if (wanted && sscanf(wanted, "%31[^:]:%d", fault, &fault_stage) == 2) {
         watched = context;
         builder = pthread_self();
+        own = malloc(64);
         running = 1;
         signal(SIGUSR2, harm);
         watching = !pthread_create(&watcher, NULL, watch, NULL);

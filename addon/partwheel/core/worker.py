@@ -11,6 +11,7 @@ import struct
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
 
 from .hierarchy import Hierarchy, checked_surface
@@ -20,7 +21,7 @@ ENTRY = Path(__file__).with_name("worker_process.py")
 MEMORY_SHARE = 0.8  # of the memory that is available when the build starts
 # Some fifty times what an ordinary build takes: only what would never end should meet this limit.
 SECONDS, SECONDS_PER_TRIANGLE = 120, 0.002
-WATCH_SECONDS = 0.1
+WATCH_SECONDS = 0.1  # between two looks at what the worker has taken
 # A message to or from the worker: kind, length, then so many bytes.
 MESSAGE = struct.Struct("<cQ")
 
@@ -41,7 +42,9 @@ class Job:
 
     memory_limit: bytes that the worker may use (None: 80 % of what is available now; 0: no limit). Kept on Linux only:
     macOS does not honour such limits, and on Windows none is set; there the system's own limits hold.
-    time_limit: seconds that one process may take (None: two minutes and 2 ms a triangle).
+    time_limit: seconds of processor time that one process may take, all its threads together, so that a machine busy
+    with other things stops no build; and seconds by the clock in which it may do nothing at all (None: two minutes and
+    2 ms a triangle).
 
     A worker that crashes, exits, or goes beyond a limit is followed by another that begins at the rung of the ladder
     after the one it tried, if there is one; failures holds a WorkerError for each. Every method may be called from any
@@ -60,6 +63,7 @@ class Job:
         self._time_limit = time_limit or SECONDS + SECONDS_PER_TRIANGLE * len(self._arrays[1])
         self.failures = []
         self._progress = 0.0, "surface"
+        self._work, self._seen_working = 0.0, 0.0  # of this worker: processor time, and when that last grew
         self._lock = threading.Lock()  # for the two below
         self._process = None
         self._cancelled = False
@@ -132,12 +136,16 @@ class Job:
                     creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0))
             except OSError as error:
                 raise WorkerError("worker", f"The worker process could not be started: {error}.") from error
-        late, over = threading.Event(), threading.Event()
+        self._work, self._seen_working = 0.0, time.monotonic()
+        over, late = threading.Event(), []
 
         def watch():
-            if not over.wait(self._time_limit):
-                late.set()
-                process.kill()
+            while not over.wait(min(WATCH_SECONDS, self._time_limit)):
+                idle = time.monotonic() - self._seen_working
+                if max(self._work, idle) > self._time_limit:
+                    late.append("of work" if self._work > idle else "without any work")
+                    process.kill()
+                    break
 
         watchman = threading.Thread(target=watch, name="partwheel-watch", daemon=True)
         watchman.start()
@@ -160,10 +168,10 @@ class Job:
             return answer()
         if self._cancelled:
             raise PartwheelError(Status.CANCELLED, "The build was cancelled.")
-        if late.is_set():
+        if late:
             raise WorkerError("time limit", f"The build was still in the stage {self._progress[1]} after "
-                                            f"{self._time_limit:.0f} seconds and was stopped. {HARMLESS} A mesh with "
-                                            "fewer faces (Decimate, or a voxel remesh) is faster.")
+                                            f"{self._time_limit:.0f} seconds {late[0]} and was stopped. {HARMLESS} A "
+                                            "mesh with fewer faces (Decimate, or a voxel remesh) is faster.")
         raise WorkerError("crash", f"The worker process {_ending(process.returncode)} in the stage {self._progress[1]}."
                                    f" {HARMLESS} Merging vertices by distance, or a voxel remesh, often helps.")
 
@@ -200,8 +208,10 @@ class Job:
                 if kind == b"S":
                     seconds = {str(stage): float(value) for stage, value in values.items()}
                 else:
-                    fraction, stage, rung = values
+                    fraction, stage, rung, work = values
                     self._rung = Rung(rung)
+                    if float(work) > self._work:
+                        self._work, self._seen_working = float(work), time.monotonic()
                     self._progress = max(self._progress[0], float(fraction)), str(stage)
             except (ValueError, TypeError, AttributeError, LookupError):  # not what a sound worker writes
                 return _raising(WorkerError("crash", f"The worker process gave a damaged answer. {HARMLESS}"))
