@@ -28,7 +28,8 @@ def measure(quick):
         raise Failure("no model could be built")
     print(f"   {len(built)} built, {len(refused)} refused")
     return {"source": source, "models": built, "refused": refused,
-            **{name: median(model[name] for model in built) for name in ("htc", "two_threads", "pipeline")}}
+            **{name: median(model[name] for model in built)
+               for name in ("htc", "two_threads", "pipeline", "regrouping")}}
 
 
 def ratios(report):
@@ -38,4 +39,5 @@ def ratios(report):
         return median(sum(r[part][CPU] for part in parts) / r["tetgen"][CPU] for r in report["seconds"])
 
     return {"htc": over_tetgen(OURS), "pipeline": over_tetgen(PIPELINE),
+            "regrouping": median(r["regroup"][CPU] / sum(r[part][CPU] for part in PIPELINE) for r in report["seconds"]),
             "two_threads": median(r["cluster_two_threads"][WALL] / r["cluster"][WALL] for r in report["seconds"])}

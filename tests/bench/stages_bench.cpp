@@ -3,7 +3,8 @@
 //   stages_bench MODEL.off REPETITIONS [QUALITY]
 //
 // Each repetition runs every stage of pw_build from the model's arrays to the saved bytes in one thread, `solid` being
-// the checks of the surface and its filling by TetGen; then it clusters the same tetrahedra again with two threads.
+// the checks of the surface and its filling by TetGen, `hierarchy` with the paper's tree; then, beside that, it clusters
+// the same tetrahedra again with two threads, and regroups the tree, which the other mode of pw_build does.
 // `seconds` are [wall, cpu]; `peak` is the most memory in bytes that the process held during each stage of the first
 // repetition, `start` what it held before.
 #include "cluster.h"
@@ -53,11 +54,12 @@ Repetition run(const Model& model, double quality) {
     const Solid solid = staged("solid", [&] { return climb(view, options, progress); });
     const TetMesh& mesh = solid.mesh;
     const BinaryTree tree = staged("cluster", [&] { return cluster(mesh, progress, 1); });
-    const Regrouped regrouped = staged("dendrogram", [&] { return regroup(mesh, tree, progress); });
+    staged("dendrogram", [&] { return prune(tree.merges); });  // as Hierarchy does, once more
     const auto saved = staged("hierarchy", [&] {
-        return Hierarchy(solid.surface, mesh, regrouped, model.vertices.data()).save();
+        return Hierarchy(solid.surface, mesh, Regrouped{tree, {}}, model.vertices.data()).save();
     });
     staged("cluster_two_threads", [&] { return cluster(mesh, progress, 2); });
+    staged("regroup", [&] { return regroup(mesh, tree, progress); });
     r.tetgen = tetgen_watch();
     r.tets = mesh.tetrahedra.size();
     r.bytes = saved.size();
