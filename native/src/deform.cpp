@@ -24,18 +24,26 @@ constexpr double least_weight = 0.1;
 
 // Rotations: Newton's method ends when a step turns by less than this (its error is then about the square), or after so
 // many steps.
-constexpr double small_turn = 1e-5;
+constexpr double small_turn = 1e-3;
 constexpr int most_turns = 12;
 
-using Matrix = std::array<double, 9>;      // by rows
-using Quaternion = std::array<double, 4>;  // w, x, y, z
+// A second thread takes its share of the vertices, so many at a time, if there are at least so many.
+constexpr size_t shared_at_once = 512, worth_sharing = 4000;
 
 Point operator+(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 Point operator*(double s, const Point& a) { return {s * a[0], s * a[1], s * a[2]}; }
 
-Point operator*(const Matrix& m, const Point& p) {
-    return {m[0] * p[0] + m[1] * p[1] + m[2] * p[2], m[3] * p[0] + m[4] * p[1] + m[5] * p[2],
-            m[6] * p[0] + m[7] * p[1] + m[8] * p[2]};
+Wide wide(double x, double y, double z) { return {Wide::Pair{x, y}, z}; }
+Wide wide(const Point& p) { return wide(p[0], p[1], p[2]); }
+Point narrow(const Wide& p) { return {p.xy[0], p.xy[1], p.z}; }
+Wide operator+(const Wide& a, const Wide& b) { return {a.xy + b.xy, a.z + b.z}; }
+Wide operator*(double s, const Wide& a) { return {s * a.xy, s * a.z}; }
+Wide operator*(const Matrix& m, const Point& p) { return p[0] * m[0] + p[1] * m[1] + p[2] * m[2]; }
+
+using partwheel::dot;
+double dot(const Wide& a, const Wide& b) {
+    const Wide::Pair product = a.xy * b.xy;
+    return product[0] + product[1] + a.z * b.z;
 }
 
 Point moved_by(const Affine& m, const Point& p) {
@@ -62,11 +70,11 @@ Affine after_inverse(const Affine& b, const Affine& a) {
     return d;
 }
 
-Matrix to_matrix(const Quaternion& q) {
+inline Matrix to_matrix(const Quaternion& q) {
     const auto [w, x, y, z] = q;
-    return {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
-            2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-            2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
+    return {wide(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
+            wide(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
+            wide(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y))};
 }
 
 // Solves h x = g for a symmetric h (xx, yy, zz, xy, xz, yz). False if h is not safely positive definite.
@@ -86,7 +94,8 @@ bool solve_positive(const std::array<double, 6>& h, const Point& g, Point& x) {
 
 // The rotation R with the largest trace(R^T s), by singular values.
 Quaternion rotation_by_svd(const Matrix& s) {
-    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> m(s.data());
+    Eigen::Matrix3d m;
+    for (Eigen::Index j = 0; j < 3; ++j) m.col(j) << s[j].xy[0], s[j].xy[1], s[j].z;
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
     Eigen::Matrix3d u = svd.matrixU();
     if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
@@ -99,12 +108,13 @@ Quaternion rotation_by_svd(const Matrix& s) {
 Quaternion best_rotation(const Matrix& s, Quaternion q) {
     for (int turn = 0; turn < most_turns; ++turn) {
         const Matrix r = to_matrix(q);
-        Matrix m;  // r^T s
-        for (size_t i = 0; i < 3; ++i)
-            for (size_t j = 0; j < 3; ++j) m[3 * i + j] = r[i] * s[j] + r[3 + i] * s[3 + j] + r[6 + i] * s[6 + j];
-        const Point gradient{m[7] - m[5], m[2] - m[6], m[3] - m[1]};
-        const std::array<double, 6> hessian{m[4] + m[8],           m[0] + m[8],           m[0] + m[4],
-                                            -(m[1] + m[3]) * 0.5, -(m[2] + m[6]) * 0.5, -(m[5] + m[7]) * 0.5};
+        // m = r^T s
+        const double m00 = dot(r[0], s[0]), m01 = dot(r[0], s[1]), m02 = dot(r[0], s[2]);
+        const double m10 = dot(r[1], s[0]), m11 = dot(r[1], s[1]), m12 = dot(r[1], s[2]);
+        const double m20 = dot(r[2], s[0]), m21 = dot(r[2], s[1]), m22 = dot(r[2], s[2]);
+        const Point gradient{m21 - m12, m02 - m20, m10 - m01};
+        const std::array<double, 6> hessian{m11 + m22,          m00 + m22,          m00 + m11,
+                                            -(m01 + m10) * 0.5, -(m02 + m20) * 0.5, -(m12 + m21) * 0.5};
         Point step;
         if (!solve_positive(hessian, gradient, step)) break;
         const Point half = 0.5 * step;
@@ -187,7 +197,7 @@ std::vector<int32_t> components(size_t vertex_count, std::span<const Triangle> t
 }  // namespace
 
 Deformation::Deformation(std::span<const Point> vertices, std::span<const Triangle> given_triangles,
-                         std::span<const int32_t> roles) {
+                         std::span<const int32_t> roles, size_t threads) {
     check(vertices, given_triangles);
     Point low = vertices[0], high = vertices[0];
     for (const Point& p : vertices)
@@ -240,7 +250,7 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
     find_weights();
     quaternion_.assign(vertices.size(), {1, 0, 0, 0});
     rotation_.resize(vertices.size());
-    spread_.resize(vertices.size());
+    if (vertices.size() >= worth_sharing && threads > 1) second_thread_.emplace();
 }
 
 void Deformation::build_elements(std::span<const Triangle> triangles) {
@@ -250,8 +260,17 @@ void Deformation::build_elements(std::span<const Triangle> triangles) {
         const Point &a = rest_[t[0]], &b = rest_[t[1]], &c = rest_[t[2]];
         const std::array<double, 3> cot = cotangents(a, b, c);
         cot_.push_back(cot);
-        elements_.push_back({t, cot[2] * (a - b) + cot[1] * (a - c), cot[2] * (b - a) + cot[0] * (b - c)});
+        elements_.push_back(
+            {wide(cot[2] * (a - b) + cot[1] * (a - c)), wide(cot[2] * (b - a) + cot[0] * (b - c)), t});
     }
+    first_around_.assign(rest_.size() + 1, 0);
+    for (const Triangle& t : triangles)
+        for (const int32_t v : t) ++first_around_[v + 1];
+    std::partial_sum(first_around_.begin(), first_around_.end(), first_around_.begin());
+    around_.resize(3 * triangles.size());
+    std::vector<int32_t> next = first_around_;
+    for (size_t t = 0; t < triangles.size(); ++t)
+        for (int32_t k = 0; k < 3; ++k) around_[next[triangles[t][k]]++] = {static_cast<int32_t>(t), k};
 }
 
 void Deformation::factorize(std::span<const Triangle> triangles) {
@@ -280,8 +299,8 @@ void Deformation::factorize(std::span<const Triangle> triangles) {
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
     factor.analyzePattern(laplacian);
     factor.factorize(laplacian);
-    const bool sound = factor.info() == Eigen::Success && factor.vectorD().allFinite() &&
-                       factor.vectorD().minCoeff() > 0;
+    const Eigen::VectorXd d = factor.vectorD();
+    const bool sound = factor.info() == Eigen::Success && d.allFinite() && d.minCoeff() > 0;
     if (!sound)
         throw Error(PW_ERROR_DEGENERATE, "The part's faces are too thin to be deformed. Dissolve degenerate faces or "
                                          "merge vertices by distance first.");
@@ -289,7 +308,7 @@ void Deformation::factorize(std::span<const Triangle> triangles) {
     column_.assign(lower.outerIndexPtr(), lower.outerIndexPtr() + count + 1);
     row_.assign(lower.innerIndexPtr(), lower.innerIndexPtr() + lower.nonZeros());
     value_.assign(lower.valuePtr(), lower.valuePtr() + lower.nonZeros());
-    for (Eigen::Index i = 0; i < count; ++i) one_by_d_.push_back(1 / factor.vectorD()[i]);
+    for (const double each : d) one_by_d_.push_back(1 / each);
     const auto& place_of = factor.permutationP().indices();
     vertex_of_.resize(count);
     for (size_t v = 0; v < rest_.size(); ++v)
@@ -352,38 +371,60 @@ void Deformation::move(size_t handle, const Affine& matrix) {
     moved.matrix = about;
 }
 
+// Calls task(first, last) for slices that make up all the vertices. What a task writes is its own vertices' alone, so
+// the result does not depend on who calls it.
+template <typename Task>
+void Deformation::for_slices(const Task& task) {
+    const size_t count = now_.size(), slices = (count + shared_at_once - 1) / shared_at_once;
+    const auto one = [&](size_t slice, size_t) {
+        task(slice * shared_at_once, std::min((slice + 1) * shared_at_once, count));
+    };
+    if (second_thread_) {
+        second_thread_->share(slices, one);
+    } else {
+        for (size_t slice = 0; slice < slices; ++slice) one(slice, 0);
+    }
+}
+
 void Deformation::fit_rotations() {
-    std::fill(spread_.begin(), spread_.end(), Matrix{});
-    for (const Element& e : elements_) {
-        const auto [a, b, c] = e.corners;
-        const Point u = now_[a] - now_[c], v = now_[b] - now_[c];
-        Matrix s;
-        for (size_t i = 0; i < 3; ++i)
-            for (size_t j = 0; j < 3; ++j) s[3 * i + j] = u[i] * e.d0[j] + v[i] * e.d1[j];
-        for (const int32_t corner : e.corners)
-            for (size_t k = 0; k < 9; ++k) spread_[corner][k] += s[k];
-    }
-    for (size_t v = 0; v < now_.size(); ++v) {
-        quaternion_[v] = best_rotation(spread_[v], quaternion_[v]);
-        rotation_[v] = to_matrix(quaternion_[v]);
-    }
+    for_slices([this](size_t first, size_t last) {
+        for (size_t vertex = first; vertex < last; ++vertex) {
+            Matrix s{};
+            for (int32_t p = first_around_[vertex]; p < first_around_[vertex + 1]; ++p) {
+                const Element& e = elements_[around_[p].element];
+                const Point& c = now_[e.corners[2]];
+                const Wide u = wide(now_[e.corners[0]] - c), v = wide(now_[e.corners[1]] - c);
+                const Point d0 = narrow(e.d0), d1 = narrow(e.d1);
+                s[0] = s[0] + (d0[0] * u + d1[0] * v);
+                s[1] = s[1] + (d0[1] * u + d1[1] * v);
+                s[2] = s[2] + (d0[2] * u + d1[2] * v);
+            }
+            quaternion_[vertex] = best_rotation(s, quaternion_[vertex]);
+            rotation_[vertex] = to_matrix(quaternion_[vertex]);
+        }
+    });
 }
 
 void Deformation::place() {
     std::fill(right_.begin(), right_.end(), Point{});
     for (const Coupling& coupling : couplings_)
         right_[coupling.unknown] = right_[coupling.unknown] + coupling.weight * now_[coupling.vertex];
-    for (const Element& e : elements_) {
-        const int32_t a = unknown_[e.corners[0]], b = unknown_[e.corners[1]], c = unknown_[e.corners[2]];
-        if (a < 0 && b < 0 && c < 0) continue;
-        Matrix mean;
-        const Matrix &ra = rotation_[e.corners[0]], &rb = rotation_[e.corners[1]], &rc = rotation_[e.corners[2]];
-        for (size_t k = 0; k < 9; ++k) mean[k] = (ra[k] + rb[k] + rc[k]) / 3;
-        const Point f0 = mean * e.d0, f1 = mean * e.d1;
-        if (a >= 0) right_[a] = right_[a] + f0;
-        if (b >= 0) right_[b] = right_[b] + f1;
-        if (c >= 0) right_[c] = right_[c] - (f0 + f1);
-    }
+    for_slices([this](size_t first, size_t last) {
+        for (size_t vertex = first; vertex < last; ++vertex) {
+            if (unknown_[vertex] < 0) continue;
+            Wide sum{};
+            for (int32_t p = first_around_[vertex]; p < first_around_[vertex + 1]; ++p) {
+                const Element& e = elements_[around_[p].element];
+                const Point d = narrow(around_[p].corner == 0   ? e.d0
+                                       : around_[p].corner == 1 ? e.d1
+                                                                : -1.0 * (e.d0 + e.d1));
+                const Matrix &a = rotation_[e.corners[0]], &b = rotation_[e.corners[1]], &c = rotation_[e.corners[2]];
+                for (size_t j = 0; j < 3; ++j) sum = sum + d[j] * (a[j] + b[j] + c[j]);
+            }
+            Point& right = right_[unknown_[vertex]];
+            right = right + narrow((1.0 / 3) * sum);
+        }
+    });
     solve(right_);
     for (size_t u = 0; u < right_.size(); ++u) now_[vertex_of_[u]] = right_[u];
 }
@@ -403,7 +444,7 @@ double Deformation::energy() {
         for (size_t k = 0; k < 3; ++k) {
             const int32_t a = corners[(k + 1) % 3], b = corners[(k + 2) % 3];
             for (const int32_t i : corners) {
-                const Point off = (now_[a] - now_[b]) - rotation_[i] * (rest_[a] - rest_[b]);
+                const Point off = (now_[a] - now_[b]) - narrow(rotation_[i] * (rest_[a] - rest_[b]));
                 sum += cot_[t][k] * dot(off, off);
             }
         }

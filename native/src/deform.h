@@ -2,18 +2,30 @@
 #pragma once
 
 #include "geometry.h"
+#include "pair_of_threads.h"
 #include "partwheel.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <thread>
 #include <vector>
 
 namespace partwheel {
 
 // Rows of a 3 x 4 matrix: x goes to its first three columns times x, plus the fourth.
 using Affine = std::array<double, 12>;
+
+// Three numbers, two of which are worked with at once.
+struct Wide {
+    using Pair = double __attribute__((vector_size(16)));
+    Pair xy;
+    double z;
+};
+using Matrix = std::array<Wide, 3>;        // by columns
+using Quaternion = std::array<double, 4>;  // w, x, y, z
 
 // The surface as it was at rest, and where it is now. After Sorkine, Alexa, "As-Rigid-As-Possible Surface Modeling"
 // (2007), with the energy "spokes and rims" (Chao, Pinkall, Sanan, Schroeder, "A Simple Geometric Model for Elastic
@@ -27,8 +39,10 @@ using Affine = std::array<double, 12>;
 class Deformation {
 public:
     // role: PW_VERTEX_FREE, vertex_fixed or the number of a handle, of each vertex. Vertices of a component without any
-    // fixed vertex or handle, and those of no triangle, stay. Throws an Error.
-    Deformation(std::span<const Point> vertices, std::span<const Triangle> triangles, std::span<const int32_t> roles);
+    // fixed vertex or handle, and those of no triangle, stay. threads: that there are to be used; two are, where there
+    // is much to do; the results are the same. Throws an Error.
+    Deformation(std::span<const Point> vertices, std::span<const Triangle> triangles, std::span<const int32_t> roles,
+                size_t threads = std::thread::hardware_concurrency());
 
     size_t vertex_count() const { return now_.size(); }
     size_t handle_count() const { return handles_.size(); }
@@ -52,15 +66,15 @@ private:
     // A triangle's part of the equations: sum over its edges of cot * e e'^T is
     // (p0 - p2) d0^T + (p1 - p2) d1^T, with p the positions now and d made of cotangents and edges at rest.
     struct Element {
+        Wide d0, d1;
         Triangle corners;
-        Point d0, d1;
     };
-    using Matrix = std::array<double, 9>;  // by rows
-    using Quaternion = std::array<double, 4>;  // w, x, y, z
 
     void build_elements(std::span<const Triangle> triangles);
     void factorize(std::span<const Triangle> triangles);
     void find_weights();
+    template <typename Task>
+    void for_slices(const Task& task);
     void fit_rotations();
     void place();
     void solve(std::vector<Point>& x) const;
@@ -76,6 +90,11 @@ private:
     std::vector<Handle> handles_;
     std::vector<std::array<double, 3>> cot_;  // of each triangle: opposite corner 0, 1, 2
     std::vector<Element> elements_;
+    struct Corner {
+        int32_t element, corner;
+    };
+    std::vector<int32_t> first_around_;  // of each vertex, where its corners begin in around_
+    std::vector<Corner> around_;
     // L D L^T of the free vertices' part of the cotangent Laplacian: L by columns, without its unit diagonal.
     std::vector<int32_t> column_, row_;
     std::vector<double> value_, one_by_d_;
@@ -86,8 +105,9 @@ private:
     };
     std::vector<Coupling> couplings_;
     std::vector<Quaternion> quaternion_;  // of each vertex, as last fitted: where the next fit starts
-    std::vector<Matrix> rotation_, spread_;
+    std::vector<Matrix> rotation_;
     std::vector<Point> right_;
+    std::optional<PairOfThreads> second_thread_;  // where there is much to do, and more than one core
 };
 
 // The length of a short way along the surface from the nearest vertex with start != 0 to each vertex; infinity where

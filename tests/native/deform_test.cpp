@@ -133,15 +133,34 @@ TEST(Deform, WithoutHandlesAllStays) {
 }
 
 TEST(Deform, AMoveAllocatesNothing) {
-    const Sheet s = sheet(20);
-    Deformation deformation(s.vertices, s.triangles, s.roles);
-    std::vector<Point> out(s.vertices.size());
-    const size_t before = allocations;
-    deformation.move(0, turn(170));  // far enough for rotations by singular values
-    deformation.iterate(5);
-    deformation.positions(out);
-    EXPECT_GE(deformation.energy(), 0);
-    EXPECT_EQ(allocations, before);
+    for (const int n : {20, 80}) {  // the larger one in two threads
+        const Sheet s = sheet(n);
+        Deformation deformation(s.vertices, s.triangles, s.roles, 2);
+        std::vector<Point> out(s.vertices.size());
+        const size_t before = allocations;
+        deformation.move(0, turn(170));  // far enough for rotations by singular values
+        deformation.iterate(5);
+        deformation.positions(out);
+        EXPECT_GE(deformation.energy(), 0);
+        EXPECT_EQ(allocations, before);
+    }
+}
+
+TEST(Deform, SameBitsInOneThreadAndTwoThreads) {
+    const Sheet s = sheet(80);
+    std::vector<std::vector<Point>> results;
+    std::vector<double> energies;
+    for (const size_t threads : {1, 2}) {
+        Deformation deformation(s.vertices, s.triangles, s.roles, threads);
+        for (const double degrees : {20.0, 45.0, 170.0}) {
+            deformation.move(0, turn(degrees));
+            deformation.iterate(3);
+        }
+        results.push_back(positions(deformation));
+        energies.push_back(deformation.energy());
+    }
+    EXPECT_EQ(results[0], results[1]);
+    EXPECT_EQ(energies[0], energies[1]);
 }
 
 TEST(Deform, TheHandleMayBeMirroredFlattenedOrGone) {
