@@ -40,10 +40,9 @@ Wide operator+(const Wide& a, const Wide& b) { return {a.xy + b.xy, a.z + b.z}; 
 Wide operator*(double s, const Wide& a) { return {s * a.xy, s * a.z}; }
 Wide operator*(const Matrix& m, const Point& p) { return p[0] * m[0] + p[1] * m[1] + p[2] * m[2]; }
 
-using partwheel::dot;
-double dot(const Wide& a, const Wide& b) {
-    const Wide::Pair product = a.xy * b.xy;
-    return product[0] + product[1] + a.z * b.z;
+double product(const Wide& a, const Wide& b) {
+    const Wide::Pair xy = a.xy * b.xy;
+    return xy[0] + xy[1] + a.z * b.z;
 }
 
 Point moved_by(const Affine& m, const Point& p) {
@@ -109,9 +108,9 @@ Quaternion best_rotation(const Matrix& s, Quaternion q) {
     for (int turn = 0; turn < most_turns; ++turn) {
         const Matrix r = to_matrix(q);
         // m = r^T s
-        const double m00 = dot(r[0], s[0]), m01 = dot(r[0], s[1]), m02 = dot(r[0], s[2]);
-        const double m10 = dot(r[1], s[0]), m11 = dot(r[1], s[1]), m12 = dot(r[1], s[2]);
-        const double m20 = dot(r[2], s[0]), m21 = dot(r[2], s[1]), m22 = dot(r[2], s[2]);
+        const double m00 = product(r[0], s[0]), m01 = product(r[0], s[1]), m02 = product(r[0], s[2]);
+        const double m10 = product(r[1], s[0]), m11 = product(r[1], s[1]), m12 = product(r[1], s[2]);
+        const double m20 = product(r[2], s[0]), m21 = product(r[2], s[1]), m22 = product(r[2], s[2]);
         const Point gradient{m21 - m12, m02 - m20, m10 - m01};
         const std::array<double, 6> hessian{m11 + m22,          m00 + m22,          m00 + m11,
                                             -(m01 + m10) * 0.5, -(m02 + m20) * 0.5, -(m12 + m21) * 0.5};
