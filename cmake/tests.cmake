@@ -30,3 +30,8 @@ endforeach()
 add_test(NAME exports COMMAND "${CMAKE_COMMAND}" -DNM=${CMAKE_NM} -DLIBRARY=$<TARGET_FILE:partwheel>
                               -DHEADER=${PROJECT_SOURCE_DIR}/native/include/partwheel.h
                               -P "${PROJECT_SOURCE_DIR}/cmake/check_exports.cmake")
+
+# What tests/core asks CGAL, through ctypes.
+add_library(partwheel_checks MODULE tests/core/self_intersections.cpp)
+target_link_libraries(partwheel_checks PRIVATE partwheel_cgal)
+set_target_properties(partwheel_checks PROPERTIES POSITION_INDEPENDENT_CODE ON)

@@ -87,7 +87,7 @@ def determinism():
 
 def core():
     """The Python core on the library as built, without Blender."""
-    build("core", "release", "partwheel")
+    build("core", "release", "partwheel", "partwheel_checks")
     return pytest("core", "tests/core")
 
 

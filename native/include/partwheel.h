@@ -261,9 +261,15 @@ PW_API pw_status pw_mesh_arrays(const pw_mesh *mesh, const double **vertices, si
  * no such cut is possible: two edges run beside each other, and one of them has a vertex in its middle.
  *
  * On the rungs below the exact one this is the solid that was made from the caller's surface, and caps have no face.
+ *
+ * middles  middle_count x 2, or null: edges, as two vertices of the hierarchy, that get a vertex in the middle wherever
+ *          they are on the surface. The solids of a cut whose caps are to match exactly are made twice: the second time
+ *          with all edges in whose middle any of them had a vertex the first time, see pw_mesh_origins.
+ *
  * The rest without tetrahedra[a : b] is the slice that goes on at the start: tet_first = b, tet_last = a.
  * PW_ERROR_EMPTY: no tetrahedron is left, which happens to a part that has no faces. */
-PW_API pw_status pw_hierarchy_solid(const pw_hierarchy *hierarchy, size_t tet_first, size_t tet_last, pw_mesh **mesh);
+PW_API pw_status pw_hierarchy_solid(const pw_hierarchy *hierarchy, size_t tet_first, size_t tet_last,
+                                    const int32_t *middles, size_t middle_count, pw_mesh **mesh);
 
 /* Where a solid's vertices and triangles come from; all owned by the mesh.
  *
@@ -272,7 +278,8 @@ PW_API pw_status pw_hierarchy_solid(const pw_hierarchy *hierarchy, size_t tet_fi
  * faces   triangle_count: the source face that the triangle is a triangle of, or on the rungs below the exact one that
  *         is nearest to it; -1: none.
  * beyond  triangle_count: for a cap the tetrahedron on its other side; -1: a triangle of the surface. The solids on
- *         both sides of a cap have it with the same coordinates, turned; one may have it cut at an edge's middle. */
+ *         both sides of a cap have it with the same coordinates, turned; one may have it cut at an edge's middle,
+ *         unless both were given the same middles. */
 PW_API pw_status pw_mesh_origins(const pw_mesh *mesh, const int32_t **ends, const int32_t **faces,
                                  const int32_t **beyond);
 

@@ -324,14 +324,18 @@ pw_status pw_hierarchy_hull(const pw_hierarchy* hierarchy, size_t tet_first, siz
     });
 }
 
-pw_status pw_hierarchy_solid(const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last, pw_mesh** mesh) {
+pw_status pw_hierarchy_solid(const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last, const int32_t* middles,
+                             size_t middle_count, pw_mesh** mesh) {
     return guarded([&] {
         require(hierarchy != nullptr && mesh != nullptr, "hierarchy and mesh must not be null.");
+        require(middles != nullptr || middle_count == 0, "middles must not be null, unless there are none.");
         const size_t count = hierarchy->hierarchy.tetrahedron_count();
         require(tet_first != tet_last && tet_first <= count && tet_last <= count,
                 "The tetrahedra must be a slice that is not empty: tet_first and tet_last differ and are at most their "
                 "number.");
-        *mesh = new pw_mesh{hierarchy->hierarchy.solid(tet_first, tet_last)};
+        std::vector<std::array<int32_t, 2>> edges(middle_count);
+        for (size_t i = 0; i < middle_count; ++i) edges[i] = {middles[2 * i], middles[2 * i + 1]};
+        *mesh = new pw_mesh{hierarchy->hierarchy.solid(tet_first, tet_last, edges)};
     });
 }
 

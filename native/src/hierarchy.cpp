@@ -367,12 +367,13 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last) const {
     return mesh;
 }
 
-TriangleMesh Hierarchy::solid(size_t tet_first, size_t tet_last) const {
+TriangleMesh Hierarchy::solid(size_t tet_first, size_t tet_last,
+                              std::span<const std::array<int32_t, 2>> middles) const {
     std::call_once(facing_->once, [&] {
         facing_->facets =
             std::make_unique<Facets>(tetrahedra_, outer_faces_, leaf_, summary_.rung == PW_RUNG_EXACT);
     });
-    return facing_->facets->solid(tetrahedra_, vertices_, tet_first, tet_last);
+    return facing_->facets->solid(tetrahedra_, vertices_, tet_first, tet_last, middles);
 }
 
 // ---- Saved form: magic, version, counts, the stored arrays, a hash of all that came before. Little-endian. ----

@@ -43,7 +43,7 @@ public:
     std::vector<int32_t> cut_parts(size_t parts) const;     // likewise
     std::vector<int32_t> cut_automatic() const;             // likewise
     TriangleMesh hull(size_t tet_first, size_t tet_last) const;
-    TriangleMesh solid(size_t tet_first, size_t tet_last) const;
+    TriangleMesh solid(size_t tet_first, size_t tet_last, std::span<const std::array<int32_t, 2>> middles) const;
 
 private:
     Hierarchy() = default;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <tuple>
 
 namespace partwheel {
@@ -145,7 +146,7 @@ Facets::Facet Facets::next_around(std::span<const Tetrahedron> tetrahedra, const
 }
 
 TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices, size_t first,
-                           size_t last) const {
+                           size_t last, std::span<const std::array<int32_t, 2>> middles) const {
     std::vector<bool> inside(tetrahedra.size(), false);
     const std::vector<int32_t> tets = at_home(first, last);
     if (tets.empty())
@@ -201,7 +202,9 @@ TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<co
 
     // Tetrahedra may touch along an edge and yet be joined about both of its ends: then several pairs of triangles
     // share two vertices. The first pair, the one with most of the source's own triangles, keeps the edge; each other
-    // pair gets a vertex in its middle.
+    // pair gets a vertex in its middle. Where the caller wants one, every pair gets it.
+    std::set<std::pair<int32_t, int32_t>> wanted;
+    for (const auto& [a, b] : middles) wanted.insert(std::minmax(a, b));
     struct Pair {
         int32_t low, high;
         int own;  // triangles that are the source's
@@ -223,9 +226,12 @@ TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<co
         return std::tuple(a.low, a.high, -a.own, a.edge) < std::tuple(b.low, b.high, -b.own, b.edge);
     });
     std::vector<std::array<int32_t, 3>> middle(surface.size(), {-1, -1, -1});
-    for (size_t i = 1; i < pairs.size(); ++i) {
-        if (pairs[i].low != pairs[i - 1].low || pairs[i].high != pairs[i - 1].high) continue;
+    for (size_t i = 0; i < pairs.size(); ++i) {
         const size_t edge = pairs[i].edge, back = across[edge / 3][edge % 3];
+        const bool again = i > 0 && pairs[i].low == pairs[i - 1].low && pairs[i].high == pairs[i - 1].high;
+        if (!again && (wanted.empty() || !wanted.contains(std::minmax(vertex(edge / 3, edge % 3),
+                                                                      vertex(edge / 3, edge % 3 + 1)))))
+            continue;
         const int32_t m = add_vertex(vertex(edge / 3, edge % 3), vertex(edge / 3, edge % 3 + 1));
         middle[edge / 3][edge % 3] = middle[back / 3][back % 3] = m;
     }
@@ -252,9 +258,12 @@ TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<co
             add(ab, b, c);
         } else {
             add(ab, b, bc);
-            if (splits == 2) {
+            if (splits == 2 && vertex(f, turn) < vertex(f, turn + 2)) {  // the same seen from both sides
                 add(a, ab, bc);
                 add(a, bc, c);
+            } else if (splits == 2) {
+                add(a, ab, c);
+                add(ab, bc, c);
             } else {
                 add(a, ab, ca);
                 add(bc, c, ca);

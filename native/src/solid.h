@@ -32,8 +32,9 @@ public:
     std::vector<int32_t> at_home(size_t first, size_t last) const;
 
     // The surface around at_home(first, last). Where tetrahedra only touch, at an edge or a vertex, it is cut apart.
+    // middles: edges, as their two vertices, that get a vertex in their middle wherever they are on it.
     TriangleMesh solid(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices, size_t first,
-                       size_t last) const;
+                       size_t last, std::span<const std::array<int32_t, 2>> middles) const;
 
 private:
     struct Facet {

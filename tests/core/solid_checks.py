@@ -1,8 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What must hold of every solid, checked with numpy and trimesh alone."""
+"""What must hold of every solid, checked with numpy, scipy and CGAL alone."""
+
+import ctypes
+import functools
+import os
+from pathlib import Path
 
 import numpy as np
-import trimesh
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+ROOT = Path(__file__).resolve().parents[2]
 
 TOLERANCE = 1e-9
 
@@ -24,28 +32,37 @@ def check_solid(solid):
     """Closed, manifold and consistently wound, with a mesh in which every vertex is used."""
     vertices, triangles = solid.vertices, solid.triangles
     assert np.array_equal(np.unique(triangles), np.arange(len(vertices)))
-    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    _, counts = np.unique(edges, axis=0, return_counts=True)
-    assert counts.max() == 1, "an edge is run along twice in the same direction"
-    mesh = trimesh.Trimesh(vertices, triangles, process=False, validate=False)
-    assert mesh.is_watertight and mesh.is_winding_consistent
-    # One umbrella a vertex: its triangles' opposite edges are a single ring.
-    fans = trimesh.graph.connected_components(_corner_links(triangles), nodes=np.arange(3 * len(triangles)))
-    assert len(fans) == len(vertices)
+    # Edge k of a triangle goes from its corner k to the next: each directed edge once, and its opposite once.
+    start, end = triangles.ravel().astype(np.int64), np.roll(triangles, -1, axis=1).ravel().astype(np.int64)
+    edge, back = start * len(vertices) + end, end * len(vertices) + start
+    order = np.argsort(edge)
+    assert (np.diff(edge[order]) > 0).all(), "an edge is run along twice in the same direction"
+    across = order[np.minimum(np.searchsorted(edge[order], back), len(edge) - 1)]
+    assert np.array_equal(edge[across], back), "an edge has a triangle on one side only"
+    # One umbrella a vertex: from a corner to the one across the edge that starts there, and so all around.
+    corner = np.arange(len(edge))
+    beside = np.roll(corner.reshape(-1, 3), -1, axis=1).ravel()[across]  # the corner that the edge across ends at
+    links = coo_matrix((np.ones(len(edge), bool), (corner, beside)), (len(edge), len(edge)))
+    assert connected_components(links, directed=False)[0] == len(vertices)
     ends = solid.ends
     assert ends.shape == (len(vertices), 2) and solid.faces.shape == solid.beyond.shape == (len(triangles),)
     assert not (solid.faces[solid.beyond >= 0] >= 0).any()
 
 
-def _corner_links(triangles):
-    """Pairs of corners (3 * triangle + corner) at the same vertex whose triangles share an edge."""
-    index = np.arange(3 * len(triangles)).reshape(-1, 3)
-    start, end = triangles, np.roll(triangles, -1, axis=1)
-    edge = {(a, b): (i, j) for a, b, i, j in zip(start.ravel().tolist(), end.ravel().tolist(), index.ravel().tolist(),
-                                                 np.roll(index, -1, axis=1).ravel().tolist())}
-    links = []
-    for (a, b), (i, j) in edge.items():
-        at_b, at_a = edge[b, a]
-        links.append((i, at_a))
-        links.append((j, at_b))
-    return np.array(links)
+@functools.cache
+def _checks():
+    """self_intersections.cpp, which is built beside the library."""
+    beside = os.environ.get("PARTWHEEL_LIBRARY") or ROOT / "build" / "release" / "libpartwheel.so"
+    return ctypes.CDLL(str(Path(beside).with_name("libpartwheel_checks.so")))
+
+
+def crossings(solid):
+    """How many pairs of triangles have more in common than corners and edges. Vertices made of the same one of the
+    hierarchy, or of the same edge, are one: where a solid only touches itself there, it does not cross itself."""
+    _, first, number = np.unique(np.sort(solid.ends, axis=1), axis=0, return_index=True, return_inverse=True)
+    vertices = np.ascontiguousarray(solid.vertices[first])
+    triangles = np.ascontiguousarray(number.reshape(-1)[solid.triangles], np.int32)
+    function = _checks().crossings
+    function.restype = ctypes.c_size_t
+    function.argtypes = [ctypes.c_void_p, ctypes.c_size_t] * 2
+    return function(vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles))

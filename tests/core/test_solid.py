@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Solids of nodes and of cuts: closed, manifold, outward, of the volume of their tetrahedra, with their faces.
+"""Solids of nodes and of cuts: closed, manifold, outward, free of crossings, of the volume of their tetrahedra, with
+their faces.
 
 PARTWHEEL_SOLIDS=all: ten random nodes of every clean model of libcgal-demo, and of the directory of models that
 PARTWHEEL_MODELS names.
@@ -12,7 +13,8 @@ import numpy as np
 import pytest
 import shapes
 from partwheel.core import Hierarchy, PartwheelError, meshes
-from solid_checks import TOLERANCE, check_solid, tetrahedra_volume, volume
+from partwheel.core.hierarchy import Solid
+from solid_checks import TOLERANCE, check_solid, crossings, tetrahedra_volume, volume
 
 EVERYTHING = os.environ.get("PARTWHEEL_SOLIDS") == "all"
 SOME = ["anchor_dense.off", "elephant.off", "femur.off", "hand.off"]
@@ -45,12 +47,21 @@ def check_node(hierarchy, shape, node):
     # The triangles of a face are the source's own, wound as there; edges may have got a middle.
     plain = (solid.ends[:, 0] == solid.ends[:, 1])[solid.triangles].all(axis=1) & (solid.faces >= 0)
     corners = hierarchy.source[solid.ends[solid.triangles[plain], 0]]
-    known = {(face, *turn) for face, triangle in zip(shape.faces.tolist(), shape.triangles.tolist())
-             for turn in (triangle, triangle[1:] + triangle[:1], triangle[2:] + triangle[:2])}
-    turned = volume(shape.vertices, shape.triangles) < 0
-    for face, triangle in zip(solid.faces[plain].tolist(), corners.tolist()):
-        assert (face, *(triangle[::-1] if turned else triangle)) in known
+    faces = solid.faces[plain]
+    if volume(shape.vertices, shape.triangles) < 0:
+        corners = corners[:, ::-1]
+    known = _numbers(shape.faces, shape.triangles)
+    assert np.isin(_numbers(faces, corners), known).all()
     return own
+
+
+def _numbers(faces, triangles):
+    """(m,) face and corners of each triangle, from the least corner on, as values that can be compared."""
+    triangles = np.asarray(triangles, np.int64)
+    least = triangles.argmin(axis=1)[:, None]
+    a, b, c = np.take_along_axis(triangles, (least + np.arange(3)) % 3, axis=1).T
+    key = np.stack([faces, a, b, c], axis=1)
+    return np.ascontiguousarray(key, np.int64).view([("", np.int64)] * 4).ravel()
 
 
 def check_copy_and_rest(hierarchy, node):
@@ -59,37 +70,23 @@ def check_copy_and_rest(hierarchy, node):
 
 
 def check_slices(hierarchy, slices):
-    """Solids that make the whole: their volumes add up. Their caps, as coordinates: (those that are whole, others)."""
-    total, caps, split = 0.0, set(), []
-    for first, last in slices:
-        try:
-            solid = hierarchy.solid_of_slice(first, last)
-        except PartwheelError as error:
-            assert error.name == "empty"  # a part without faces whose tetrahedra went with their polygons
+    """Solids that make the whole: their volumes add up, none crosses itself, and each cap is there from both sides.
+    How many vertices in the middle of an edge they have."""
+    total, caps, middles = 0.0, [], 0
+    for solid in hierarchy.solids(list(slices)):
+        if solid is None:  # a part without faces whose tetrahedra went with their polygons
             continue
         check_solid(solid)
+        assert crossings(solid) == 0
         total += volume(solid.vertices, solid.triangles)
-        has_middle = (solid.ends[:, 0] != solid.ends[:, 1])[solid.triangles].any(axis=1)
-        for corners, cut in zip(solid.vertices[solid.triangles[solid.beyond >= 0]], has_middle[solid.beyond >= 0]):
-            if cut:
-                split.append(corners)
-                continue
-            points = [tuple(point) for point in corners.tolist()]
+        middles += (solid.ends[:, 0] != solid.ends[:, 1]).sum()
+        for corners in solid.vertices[solid.triangles[solid.beyond >= 0]].tolist():
+            points = [tuple(point) for point in corners]
             least = points.index(min(points))
-            caps.add(tuple(points[least:] + points[:least]))
+            caps.append(tuple(points[least:] + points[:least]))
     assert abs(total - tetrahedra_volume(hierarchy)) <= TOLERANCE * tetrahedra_volume(hierarchy)
-    return caps, split
-
-
-def check_caps_meet(caps, split):
-    """Each cap is there from both sides, but for some that one side has cut at the middle of an edge: they and their
-    pieces add up to nothing, as areas with a direction."""
-    alone = [cap for cap in caps if (cap[0], cap[2], cap[1]) not in caps]
-    assert len(alone) <= len(split)
-    if split:
-        corners = np.array(alone + [piece.tolist() for piece in split])
-        areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        assert np.abs(areas.sum(axis=0)).max() <= TOLERANCE * np.abs(areas).sum()
+    assert sorted(caps) == sorted((a, c, b) for a, b, c in caps)
+    return middles
 
 
 def test_every_node(case):
@@ -110,13 +107,13 @@ def test_whole_is_the_source(case):
 def test_solids_of_a_cut_fill_the_whole(case, parts):
     _, hierarchy = case
     bounds = hierarchy.cut_parts(min(parts, len(hierarchy.tetrahedra)))
-    check_caps_meet(*check_slices(hierarchy, zip(bounds, bounds[1:])))
+    check_slices(hierarchy, zip(bounds, bounds[1:]))
 
 
 def test_copy_and_rest_make_the_whole(case):
     _, hierarchy = case
     for node in some_nodes(hierarchy, 6):
-        check_caps_meet(*check_copy_and_rest(hierarchy, node))
+        check_copy_and_rest(hierarchy, node)
 
 
 def test_polygons_stay_whole_but_where_two_parts_share_a_tetrahedron():
@@ -150,16 +147,30 @@ def build(name):
 
 def test_where_tetrahedra_touch_the_surface_is_cut_apart():
     """Random slices of the tetrahedra, which are no nodes, touch at vertices and edges."""
-    _, hierarchy = build("3torus.off")
     rng = np.random.default_rng(1)
-    copies = 0
-    for _ in range(40):
-        first = rng.integers(0, len(hierarchy.tetrahedra) - 1)
-        solid = hierarchy.solid_of_slice(first, rng.integers(first + 1, len(hierarchy.tetrahedra) + 1))
-        check_solid(solid)
-        plain = solid.ends[:, 0] == solid.ends[:, 1]
-        copies += plain.sum() - len(np.unique(solid.ends[plain, 0]))
-    assert copies > 0
+    copies = middles = 0
+    for name, count in (("3torus.off", 30), ("box with a cavity", 30)):
+        _, hierarchy = build(name)
+        tets = len(hierarchy.tetrahedra)
+        for _ in range(count):
+            first = rng.integers(0, tets - 1)
+            last = rng.integers(first + 1, tets + 1)
+            solid = hierarchy.solid_of_slice(first, last)
+            check_solid(solid)
+            middles += check_slices(hierarchy, [(first, last), (last, first)])
+            plain = solid.ends[:, 0] == solid.ends[:, 1]
+            copies += plain.sum() - len(np.unique(solid.ends[plain, 0]))
+    assert copies > 0 and middles > 0
+
+
+def test_crossings_are_seen():
+    """What the other tests count on: two boxes that overlap, two that touch at an edge of no common vertex."""
+    for shift, expected in (((3, 0, 0), False), ((0.5, 0.5, 0.5), True), ((1, 0.5, 0), True)):
+        both = shapes.merged(shapes.cube(), shapes.moved(shapes.cube(), shift, 1))
+        vertices, triangles = np.array(both.vertices, float), np.array(both.triangles, np.int32)
+        ends = np.repeat(np.arange(len(vertices))[:, None], 2, axis=1)
+        solid = Solid(vertices, triangles, ends, np.zeros(len(triangles)), np.full(len(triangles), -1))
+        assert (crossings(solid) > 0) == expected
 
 
 def test_wrapped_and_repaired_sources_give_closed_solids():
@@ -170,7 +181,10 @@ def test_wrapped_and_repaired_sources_give_closed_solids():
         for node in some_nodes(hierarchy, 20):
             solid = hierarchy.solid(node)
             check_solid(solid)
-            assert volume(solid.vertices, solid.triangles) > 0
+            tets = slice(hierarchy.tet_first[node], hierarchy.tet_last[node])
+            own, whole = tetrahedra_volume(hierarchy, tets), tetrahedra_volume(hierarchy)
+            assert abs(volume(solid.vertices, solid.triangles) - own) <= TOLERANCE * whole
+            check_copy_and_rest(hierarchy, node)
         whole = hierarchy.solid(len(hierarchy.parent) - 1)
         assert set(faces_of(whole)) == set(range(shape.face_count))
 

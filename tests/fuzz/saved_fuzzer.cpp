@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         const HullMesh part = hull(loaded.handle, t, t + 1), rest = hull(loaded.handle, t, a.tetrahedron_count);
         EXPECT_GE(rest.vertices.size(), part.vertices.empty() ? 0U : 1U);
         pw_mesh* solid = nullptr;
-        const pw_status status = pw_hierarchy_solid(loaded.handle.get(), t, a.tetrahedron_count, &solid);
+        const pw_status status = pw_hierarchy_solid(loaded.handle.get(), t, a.tetrahedron_count, nullptr, 0, &solid);
         EXPECT_TRUE(status == PW_OK || status == PW_ERROR_DATA || status == PW_ERROR_EMPTY) << pw_error_message();
         pw_mesh_free(solid);
     }

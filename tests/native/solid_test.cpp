@@ -96,7 +96,7 @@ TEST(Solid, AnySubsetOfTetrahedraHasAClosedManifoldSurface) {
         const std::vector<int32_t> outer(outer_facets(block), -1);
         const Facets facets(block.tetrahedra, outer, {}, false);
         const size_t count = 1 + random() % block.tetrahedra.size();
-        const TriangleMesh mesh = facets.solid(block.tetrahedra, block.vertices, 0, count);
+        const TriangleMesh mesh = facets.solid(block.tetrahedra, block.vertices, 0, count, {});
         expect_closed_and_manifold(mesh);
         EXPECT_NEAR(volume(mesh), static_cast<double>(count) / 6, 1e-12 * static_cast<double>(count));
         std::set<std::array<int32_t, 2>> distinct(mesh.ends.begin(), mesh.ends.end());
@@ -106,6 +106,48 @@ TEST(Solid, AnySubsetOfTetrahedraHasAClosedManifoldSurface) {
     // Both ways of cutting apart were needed.
     EXPECT_GT(copies, 100U);
     EXPECT_GT(middles, 20U);
+}
+
+// As coordinates, each from its least corner on; turned: the other way around.
+std::multiset<std::array<Point, 3>> caps_of(const TriangleMesh& mesh, bool turned) {
+    std::multiset<std::array<Point, 3>> caps;
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+        if (mesh.beyond[i] < 0) continue;
+        std::array<Point, 3> cap;
+        for (size_t k = 0; k < 3; ++k)
+            cap[k] = mesh.vertices[static_cast<size_t>(mesh.triangles[i][turned ? 2 - k : k])];
+        std::rotate(cap.begin(), std::min_element(cap.begin(), cap.end()), cap.end());
+        caps.insert(cap);
+    }
+    return caps;
+}
+
+TEST(Solid, CapsOfBothSidesAreTheSameTrianglesOnceTheyShareTheirMiddles) {
+    std::mt19937 random(9);
+    size_t differed = 0;
+    for (int round = 0; round < 60; ++round) {
+        Tets block = kuhn_block(2 + round % 3);
+        std::shuffle(block.tetrahedra.begin(), block.tetrahedra.end(), random);
+        const std::vector<int32_t> outer(outer_facets(block), -1);
+        const Facets facets(block.tetrahedra, outer, {}, false);
+        const size_t count = 1 + random() % (block.tetrahedra.size() - 1);
+        std::vector<std::array<int32_t, 2>> middles;
+        const auto solid = [&](bool rest) {
+            return facets.solid(block.tetrahedra, block.vertices, rest ? count : 0,
+                                rest ? block.tetrahedra.size() : count, middles);
+        };
+        TriangleMesh part = solid(false), rest = solid(true);
+        differed += caps_of(part, false) != caps_of(rest, true);
+        for (const TriangleMesh* mesh : {&part, &rest})
+            for (const auto& ends : mesh->ends)
+                if (ends[0] != ends[1]) middles.push_back(ends);
+        part = solid(false), rest = solid(true);
+        EXPECT_EQ(caps_of(part, false), caps_of(rest, true));
+        expect_closed_and_manifold(part);
+        expect_closed_and_manifold(rest);
+        EXPECT_NEAR(volume(part), static_cast<double>(count) / 6, 1e-12 * static_cast<double>(count));
+    }
+    EXPECT_GT(differed, 10U);
 }
 
 TEST(Solid, APolygonTakesTheTetrahedraThatHaveNothingElse) {
@@ -126,13 +168,13 @@ TEST(Solid, APolygonTakesTheTetrahedraThatHaveNothingElse) {
     EXPECT_TRUE(polygons.at_home(1, 2).empty());
     EXPECT_EQ(polygons.at_home(1, 6).size(), 4U);
     EXPECT_EQ(polygons.at_home(0, 6).size(), 6U);
-    EXPECT_THROW(polygons.solid(block.tetrahedra, block.vertices, 1, 2), Error);
+    EXPECT_THROW(polygons.solid(block.tetrahedra, block.vertices, 1, 2, {}), Error);
 }
 
 TEST(Solid, CapsNameTheOtherSide) {
     const Tets block = kuhn_block(2);
     const Facets facets(block.tetrahedra, std::vector<int32_t>(outer_facets(block), 0), std::vector<int32_t>{0}, false);
-    const TriangleMesh low = facets.solid(block.tetrahedra, block.vertices, 0, 20);
+    const TriangleMesh low = facets.solid(block.tetrahedra, block.vertices, 0, 20, {});
     size_t caps = 0;
     for (size_t i = 0; i < low.triangles.size(); ++i) {
         const int32_t beyond = low.beyond[i];
@@ -154,7 +196,7 @@ TEST(Solid, TetrahedraThatDoNotFitTogetherAreRefused) {
         try {
             const Facets facets(tets, std::vector<int32_t>(outer, -1), {}, false);
             const std::vector<Point> vertices(6, Point{});
-            for (size_t t = 0; t < tets.size(); ++t) facets.solid(tets, vertices, 0, t + 1);
+            for (size_t t = 0; t < tets.size(); ++t) facets.solid(tets, vertices, 0, t + 1, {});
         } catch (const Error& error) {
             return error.status() == PW_ERROR_DATA;
         }

@@ -301,7 +301,32 @@ class Hierarchy:
     def solid_of_slice(self, tet_first, tet_last):
         """The same around tetrahedra[tet_first:tet_last], for a part of a cut. With the two exchanged, around the rest:
         tetrahedra[tet_first:] and tetrahedra[:tet_last]."""
-        mesh, vertices, triangles = self._mesh(load().pw_hierarchy_solid, tet_first, tet_last)
+        return self._solid(tet_first, tet_last, np.empty((0, 2), np.int32))
+
+    def solids(self, slices):
+        """The Solids around slices (tet_first, tet_last) that have nothing in common, None for one that has no
+        tetrahedron left. A cap between two of them is the same triangle in both: where one has a vertex in the middle of
+        an edge, all have."""
+        none = np.empty((0, 2), np.int32)
+        made = [self._solid_or_none(*each, none) for each in slices]
+        wanted = [solid.ends[solid.ends[:, 0] != solid.ends[:, 1]] for solid in made if solid]
+        middles = np.unique(np.sort(np.vstack([none, *wanted]), axis=1), axis=0)
+        if not len(middles):
+            return made
+        return [solid and self._solid(*each, middles) for each, solid in zip(slices, made)]
+
+    def _solid_or_none(self, tet_first, tet_last, middles):
+        try:
+            return self._solid(tet_first, tet_last, middles)
+        except PartwheelError as error:
+            if error.status != Status.EMPTY:
+                raise
+            return None
+
+    def _solid(self, tet_first, tet_last, middles):
+        middles = np.ascontiguousarray(middles, np.int32)
+        mesh, vertices, triangles = self._mesh(load().pw_hierarchy_solid, tet_first, tet_last, middles.ctypes.data,
+                                               len(middles))
         ends, faces, beyond = c_void_p(), c_void_p(), c_void_p()
         check(load().pw_mesh_origins(mesh.address, byref(ends), byref(faces), byref(beyond)))
         return Solid(vertices, triangles, _view(mesh, ends.value, (len(vertices), 2), np.int32),
@@ -319,10 +344,10 @@ class Hierarchy:
             raise PartwheelError(Status.ARGUMENT, f"There is no node {node}: the hierarchy has {len(self.parent)}.")
         return self.tet_first[node], self.tet_last[node]
 
-    def _mesh(self, function, tet_first, tet_last):
+    def _mesh(self, function, tet_first, tet_last, *arguments):
         """What a function makes of a slice of the tetrahedra: (its handle, vertices, triangles)."""
         address = c_void_p()
-        check(function(self._handle.address, _number(tet_first), _number(tet_last), byref(address)))
+        check(function(self._handle.address, _number(tet_first), _number(tet_last), *arguments, byref(address)))
         mesh = _Handle(address.value, load().pw_mesh_free)
         vertices, triangles, vertex_count, triangle_count = c_void_p(), c_void_p(), c_size_t(), c_size_t()
         check(load().pw_mesh_arrays(mesh.address, byref(vertices), byref(vertex_count), byref(triangles),
