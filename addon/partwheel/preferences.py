@@ -14,10 +14,10 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
     )
     parts: bpy.props.EnumProperty(
         name="Parts", description="How small parts are joined to larger ones in builds from now on",
-        items=[("PAPER", "Nearly Convex", "By convexity alone: the most regular, and the quickest"),
-               ("REGROUPED", "As People See Them", "By what people took for parts on some hundred models: a click alone "
-                "finds the part that was meant more often. New, and not yet the default")],
-        default="PAPER",
+        items=[("REGROUPED", "As People See Them", "By what people took for parts on some hundred models: a click alone "
+                "finds the part that was meant more often"),
+               ("PAPER", "Nearly Convex", "By convexity alone: the most regular, and the quickest")],
+        default="REGROUPED",
     )
     memory_share: bpy.props.IntProperty(
         name="Memory", description="How much of the available memory a build may use (kept on Linux)",
@@ -71,7 +71,7 @@ def preferences():
 
 
 class Defaults:
-    parts, save_with_file, memory_share, time_limit = "PAPER", True, 80, 0
+    parts, save_with_file, memory_share, time_limit = "REGROUPED", True, 80, 0
     show_part, show_next, show_hull, show_cut = True, True, False, False
 
 

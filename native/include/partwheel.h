@@ -78,8 +78,8 @@ PW_API pw_status pw_context_seconds(const pw_context *context, double *seconds);
 
 /* Which tree is built. */
 typedef enum pw_mode {
-    PW_MODE_PAPER = 0,    /* the paper's as it is, and wheel and cuts by concavity alone */
-    PW_MODE_REGROUPED = 1 /* the paper's below some 300 parts, which are joined by what people take for one part */
+    PW_MODE_REGROUPED = 0, /* the paper's below some 300 parts, which are joined by what people take for one part */
+    PW_MODE_PAPER = 1      /* the paper's as it is, and wheel and cuts by concavity alone */
 } pw_mode;
 
 typedef struct pw_build_options {
@@ -97,7 +97,7 @@ typedef struct pw_build_options {
     int32_t open_surfaces;
     /* 0: as many threads as help. 1 or more: at most so many. The result is the same, bit for bit. */
     int32_t threads;
-    /* A pw_mode. */
+    /* A pw_mode; the first, 0, is the default. */
     int32_t mode;
 } pw_build_options;
 

@@ -223,7 +223,7 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
         require(given.open_surfaces == 0 || given.open_surfaces == 1, "open_surfaces must be 0 or 1.");
         require(given.threads >= 0, "threads must be 0 or more.");
         require(given.mode == PW_MODE_REGROUPED || given.mode == PW_MODE_PAPER,
-                "mode must be 0 (the paper's) or 1 (regrouped).");
+                "mode must be 0 (regrouped) or 1 (the paper's).");
         Progress unwatched;
         Progress& progress = context ? context->progress : unwatched;
         const Watch watch(progress);

@@ -15,7 +15,7 @@ from partwheel.core import Hierarchy, Mode  # noqa: E402
 
 
 @functools.cache
-def built(name, mode=Mode.PAPER):
+def built(name, mode=Mode.REGROUPED):
     """(Shape, its Hierarchy)"""
     shape = shapes.SHAPES[name]()
     return shape, Hierarchy.build(*shape, mode=mode)

@@ -23,9 +23,19 @@ Cells u_shape() { return block({0, 0, 0}, {5, 1, 2}) + block({0, 0, 0}, {1, 4, 2
 TriMesh rough_torus() { return named(snapped(perturbed(torus(16, 8, 2, 0.6), 0.03, 1), 0x1p-16), "rough torus"); }
 TriMesh rough_snowman() { return named(snapped(perturbed(snowman(7, 12), 0.02, 2), 0x1p-16), "rough snowman"); }
 
+// In either mode.
+class Hierarchies : public testing::TestWithParam<pw_mode> {
+protected:
+    static Handle build(const TriMesh& mesh, double quality = 0) { return test::build(mesh, quality, GetParam()); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Mode, Hierarchies, testing::ValuesIn(both_modes), [](const auto& mode) {
+    return mode.param == PW_MODE_PAPER ? "paper" : "regrouped";
+});
+
 // ---- Invariants ----
 
-TEST(Hierarchy, InvariantsOfConvexShapes) {
+TEST_P(Hierarchies, InvariantsOfConvexShapes) {
     for (const TriMesh& mesh :
          {tetrahedron(), cube(), octahedron(), surface_of("block", block({0, 0, 0}, {4, 3, 2})),
           surface_of("bar", block({0, 0, 0}, {12, 1, 1}), {0.1, 0.3, 0.7}),
@@ -35,7 +45,7 @@ TEST(Hierarchy, InvariantsOfConvexShapes) {
         expect_invariants(build(mesh), mesh, enclosed_volume(mesh), true);
 }
 
-TEST(Hierarchy, InvariantsOfShapesByFormula) {
+TEST_P(Hierarchies, InvariantsOfShapesByFormula) {
     for (const TriMesh& mesh :
          {surface_of("L", block({0, 0, 0}, {4, 1, 1}) + block({0, 0, 0}, {1, 3, 1})), surface_of("U", u_shape()),
           rotated(surface_of("U, turned", u_shape()), 0.7, {1, 2, 3}), torus(16, 8, 2, 0.6), snowman(7, 12),
@@ -50,7 +60,7 @@ TEST(Hierarchy, InvariantsOfShapesByFormula) {
     expect_invariants(build(turned), turned, -enclosed_volume(turned));
 }
 
-TEST(Hierarchy, InvariantsWithPointsInside) {
+TEST_P(Hierarchies, InvariantsWithPointsInside) {
     for (const TriMesh& mesh : {torus(14, 7, 2, 0.7), surface_of("bar", block({0, 0, 0}, {6, 2, 2})),
                                 surface_of("hollow", block({0, 0, 0}, {6, 6, 6}) - block({1, 1, 1}, {5, 5, 5}))}) {
         const Handle handle = build(mesh, 1.2);
@@ -74,11 +84,11 @@ TEST(Hierarchy, SummaryCountsComponentsAndCavities) {
 
 // Every model that is closed, manifold and free of self-intersection builds, and keeps the invariants; every other one
 // gets the error that it should.
-TEST(Hierarchy, RealModels) {
+TEST_P(Hierarchies, RealModels) {
     std::map<std::string, int> count;
     for (const TriMesh& mesh : real_meshes(sized<size_t>(6000, 500))) {
         SCOPED_TRACE(mesh.name);
-        const Built built = try_build(mesh);
+        const Built built = try_build(mesh, 0, nullptr, PW_RUNG_EXACT, GetParam());
         EXPECT_EQ(pw_status_name(built.status), std::string(pw_status_name(expected_status(mesh)))) << built.message;
         ++count[pw_status_name(built.status)];
         if (built.status == PW_OK) expect_invariants(built.handle, mesh, std::fabs(enclosed_volume(mesh)));
@@ -115,6 +125,7 @@ void expect_same(const Handle& x, const Handle& y) {
     EXPECT_TRUE(same(a.source, b.source, v));
     EXPECT_TRUE(same(a.tetrahedra, b.tetrahedra, 4 * t));
     EXPECT_TRUE(same(a.merges, b.merges, 2 * (t - 1)));
+    EXPECT_TRUE(same(a.score, b.score, n));
     const pw_summary s = summary(x), u = summary(y);
     EXPECT_EQ(s.components, u.components);
     EXPECT_EQ(s.cavities, u.cavities);
@@ -123,7 +134,7 @@ void expect_same(const Handle& x, const Handle& y) {
     EXPECT_EQ(s.hull_volume, u.hull_volume);
 }
 
-TEST(Hierarchy, LoadingGivesWhatWasSaved) {
+TEST_P(Hierarchies, LoadingGivesWhatWasSaved) {
     std::vector<TriMesh> meshes{tetrahedron(), cube(), surface_of("U", u_shape()), rough_torus(), hedgehog(8),
                                 surface_of("hollow", block({0, 0, 0}, {3, 3, 3}) - Cells{{1, 1, 1}}),
                                 stretched(rough_snowman(), {1e-80, 1e-80, 1e-80}),
@@ -160,7 +171,7 @@ TEST(Hierarchy, TinyModelsAreRefused) {
     }
 }
 
-TEST(Hierarchy, EveryFlippedByteIsRefused) {
+TEST_P(Hierarchies, EveryFlippedByteIsRefused) {
     const std::vector<uint8_t> bytes = save(build(surface_of("L", Cells{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})));
     std::mt19937 random(1);
     for (size_t i = 0; i < bytes.size(); ++i)
@@ -202,7 +213,7 @@ TEST(Hierarchy, ForeignBytesAreRefused) {
 
 // ---- The same result every time ----
 
-TEST(Hierarchy, SameBytesEveryTime) {
+TEST_P(Hierarchies, SameBytesEveryTime) {
     for (const TriMesh& mesh : {surface_of("U", u_shape()), rough_torus(), real_mesh("joint.off")}) {
         const auto bytes = save(build(mesh));
         for (unsigned i = 0; i < 3; ++i) {
@@ -213,7 +224,7 @@ TEST(Hierarchy, SameBytesEveryTime) {
 }
 
 // The same tetrahedra, tree and measures; what names the caller's vertices and faces, after mapping.
-TEST(Hierarchy, OrderOfTheInputDoesNotMatter) {
+TEST_P(Hierarchies, OrderOfTheInputDoesNotMatter) {
     for (const TriMesh& mesh :
          {surface_of("U", u_shape()), rough_torus(), sphere(7, 10), real_mesh("joint.off"), real_mesh("cross_quad.off"),
           surface_of("4 components", Cells{{0, 0, 0}, {3, 0, 0}, {0, 5, 0}, {9, 9, 9}})}) {
@@ -234,6 +245,7 @@ TEST(Hierarchy, OrderOfTheInputDoesNotMatter) {
             EXPECT_TRUE(same(a.parent, b.parent, a.node_count));
             EXPECT_TRUE(same(a.height, b.height, a.node_count));
             EXPECT_TRUE(same(a.cost, b.cost, a.node_count));
+            EXPECT_TRUE(same(a.score, b.score, a.node_count));
             EXPECT_TRUE(same(a.volume, b.volume, a.node_count));
             EXPECT_TRUE(same(a.first, b.first, a.node_count));
             EXPECT_TRUE(same(a.last, b.last, a.node_count));
@@ -260,10 +272,11 @@ void expect_scaled(const Handle& x, const Handle& y, double scale, double tolera
         EXPECT_NEAR(b.volume[n], cube_of * a.volume[n], tolerance * cube_of * a.volume[n]);
         EXPECT_NEAR(b.height[n], cube_of * a.height[n], tolerance * cube_of * a.height[n]);
         EXPECT_NEAR(b.area[n], scale * scale * a.area[n], tolerance * scale * scale * a.area[n]);
+        EXPECT_NEAR(b.score[n], a.score[n], tolerance);
     }
 }
 
-TEST(Hierarchy, PowersOfTwoScaleExactly) {
+TEST_P(Hierarchies, PowersOfTwoScaleExactly) {
     for (const TriMesh& mesh :
          {surface_of("U", u_shape()), rough_torus(), real_mesh("joint.off"), real_mesh("rotor.off")}) {
         SCOPED_TRACE(mesh.name);
@@ -275,7 +288,7 @@ TEST(Hierarchy, PowersOfTwoScaleExactly) {
     }
 }
 
-TEST(Hierarchy, AnyUnitGivesTheSameTree) {
+TEST_P(Hierarchies, AnyUnitGivesTheSameTree) {
     for (const TriMesh& mesh :
          {rough_torus(), rough_snowman(), named(perturbed(hedgehog(10), 0.01, 3), "rough hedgehog")})
         for (const double scale : {1e-4, 1e4, 3.7}) {
@@ -285,7 +298,7 @@ TEST(Hierarchy, AnyUnitGivesTheSameTree) {
         }
 }
 
-TEST(Hierarchy, AnyPlaceGivesTheSameTree) {
+TEST_P(Hierarchies, AnyPlaceGivesTheSameTree) {
     // Coordinates are multiples of 2^-16, so that the moves are exact.
     for (const TriMesh& mesh : {surface_of("U", u_shape()), rough_torus(), rough_snowman()})
         for (const Point& by : {Point{1e6, 0, 0}, Point{-1e6, 1e6, 123456}, Point{0.5, -2, 7}}) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <random>
@@ -64,7 +65,7 @@ Signature operator+(const Signature& a, const Signature& b) { return {a.first + 
 struct Tree {
     std::vector<Signature> leaves;                     // in depth-first order
     std::set<std::pair<Signature, Signature>> merges;  // of the unpruned tree
-    std::map<Signature, std::pair<double, double>> nodes;  // height and volume of each
+    std::map<Signature, std::array<double, 3>> nodes;  // height, volume and score of each
     std::map<int32_t, Signature> leaf_of_face;
 };
 
@@ -93,7 +94,7 @@ Tree tree_of(const Handle& handle, const std::vector<int32_t>& original_vertex =
     for (size_t n = 0; n < a.node_count; ++n) {
         const Signature& low = sums[static_cast<size_t>(a.tet_first[n])];
         const Signature& high = sums[static_cast<size_t>(a.tet_last[n])];
-        tree.nodes[{high.first - low.first, high.second - low.second}] = {a.height[n], a.volume[n]};
+        tree.nodes[{high.first - low.first, high.second - low.second}] = {a.height[n], a.volume[n], a.score[n]};
     }
     std::vector<Signature> clusters = tree.leaves;
     for (size_t m = 0; m + 1 < a.tetrahedron_count; ++m) {
@@ -126,7 +127,7 @@ void expect_same(const Tree& x, const Tree& y, double scale) {
     EXPECT_EQ(x.leaf_of_face, y.leaf_of_face);
     const double cube_of = scale * scale * scale;
     double whole = 0;
-    for (const auto& [node, measures] : x.nodes) whole = std::max(whole, measures.second);
+    for (const auto& [node, measures] : x.nodes) whole = std::max(whole, measures[1]);
     size_t lost = 0;
     for (const auto& [node, measures] : x.nodes) {
         const auto other = y.nodes.find(node);
@@ -134,14 +135,26 @@ void expect_same(const Tree& x, const Tree& y, double scale) {
             ++lost;
             continue;
         }
-        const auto& [height, volume] = measures;
-        EXPECT_NEAR(other->second.first / cube_of, height, 1e-8 * height + 1e-13 * whole);
-        EXPECT_NEAR(other->second.second / cube_of, volume, 1e-9 * volume + 1e-13 * whole);
+        const auto& [height, volume, score] = measures;
+        const auto& [other_height, other_volume, other_score] = other->second;
+        EXPECT_NEAR(other_height / cube_of, height, 1e-8 * height + 1e-13 * whole);
+        EXPECT_NEAR(other_volume / cube_of, volume, 1e-9 * volume + 1e-13 * whole);
+        EXPECT_NEAR(other_score, score, 1e-6);
     }
     EXPECT_EQ(lost, 0U) << "of " << x.nodes.size() << " nodes";
 }
 
-TEST(Invariance, Scaled) {
+// In either mode.
+class Invariance : public testing::TestWithParam<pw_mode> {
+protected:
+    static Handle build(const TriMesh& mesh, double quality = 0) { return test::build(mesh, quality, GetParam()); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Mode, Invariance, testing::ValuesIn(both_modes), [](const auto& mode) {
+    return mode.param == PW_MODE_PAPER ? "paper" : "regrouped";
+});
+
+TEST_P(Invariance, Scaled) {
     for (const TriMesh& model : without_added_points()) {
         SCOPED_TRACE(model.name);
         const TriMesh mesh = rounded(model), small = divided(mesh, 1e4), large = stretched(mesh, {1e4, 1e4, 1e4});
@@ -163,7 +176,7 @@ TEST(Invariance, Scaled) {
 
 // Where TetGen must add points, it searches places for them in floating-point numbers: these differ with any rounding,
 // so that only powers of two, which round nothing, leave them where they are.
-TEST(Invariance, ScaledWithAddedPoints) {
+TEST_P(Invariance, ScaledWithAddedPoints) {
     for (const TriMesh& mesh : with_added_points()) {
         SCOPED_TRACE(mesh.name);
         const Handle handle = build(mesh);
@@ -173,7 +186,7 @@ TEST(Invariance, ScaledWithAddedPoints) {
     }
 }
 
-TEST(Invariance, Moved) {
+TEST_P(Invariance, Moved) {
     for (const TriMesh& model : all_models()) {
         SCOPED_TRACE(model.name);
         const TriMesh mesh = rounded(model);
@@ -186,14 +199,14 @@ TEST(Invariance, Moved) {
     }
 }
 
-TEST(Invariance, MovedWithPointsInside) {
+TEST_P(Invariance, MovedWithPointsInside) {
     const TriMesh mesh = rounded(real_mesh("rotor.off"));
     const Handle handle = build(mesh, 1.4);
     ASSERT_GT(summary(handle).added_vertices, 0U);
     expect_same(tree_of(handle), tree_of(build(moved(mesh, {1e6, -1e6, 1e6}), 1.4)), 1);
 }
 
-TEST(Invariance, Shuffled) {
+TEST_P(Invariance, Shuffled) {
     for (const TriMesh& mesh : all_models()) {
         SCOPED_TRACE(mesh.name);
         const Tree tree = tree_of(build(mesh));
@@ -204,7 +217,7 @@ TEST(Invariance, Shuffled) {
     }
 }
 
-TEST(Invariance, AllAtOnce) {
+TEST_P(Invariance, AllAtOnce) {
     for (const TriMesh& model : without_added_points()) {
         SCOPED_TRACE(model.name);
         const TriMesh mesh = rounded(model);

@@ -4,11 +4,11 @@
 usage: psb.py MESH_DIR OUT_DIR [--mode paper] [--sdf PROGRAM] [--rungs N] [--jobs N] [--again]
 
 MESH_DIR/<id>.off -> OUT_DIR/<id>.npz: order, first, last, parent, leaf, start, counts, cuts, auto, as the benchmark's
-score.py documents them. Through the public Python API, one process a core, in mode "regrouped". A mesh that can't be built
+score.py documents them. Through the public Python API, one process a core, with default settings. A mesh that can't be built
 is named and gets no file: the score counts it as a failure. Meshes that have a file already are passed over, unless
 --again.
 
---mode paper: the paper's tree, with wheel and cuts by concavity alone, which is what Hierarchy.build() does by default.
+--mode paper: the paper's tree, with wheel and cuts by concavity alone.
 --rungs: the rungs of the ladder that are allowed. 4, the wrap alone, beside the default shows what the wrap costs.
 --sdf: not Partwheel's hierarchies but CGAL's segmentation by the shape diameter function, made by the program given
 (sdf_bench, built by scripts/bench), as hierarchies of two levels: what a click on one of its segments would take.
@@ -103,7 +103,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("meshes", type=Path, help="a directory of .off files, or one such file")
     parser.add_argument("out", type=Path)
-    parser.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="regrouped")
+    parser.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default=Mode(0).name.lower())
     parser.add_argument("--sdf", metavar="PROGRAM")
     parser.add_argument("--rungs", type=int, default=0, help="see pw_build_options")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())

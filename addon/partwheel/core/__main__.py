@@ -41,8 +41,8 @@ def parse(arguments):
     build.add_argument("--open-surfaces", action="store_true",
                        help="wrap a sheet (plane, cloth, car door) as a thin solid instead of refusing it")
     build.add_argument("--threads", type=int, default=0, metavar="N", help="at most so many (default: what helps)")
-    build.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="paper",
-                       help="whether parts are joined by concavity alone, as in the paper (default), or as people would")
+    build.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="regrouped",
+                       help="whether parts are joined as people would (default), or by concavity alone, as in the paper")
     return parser.parse_args(arguments)
 
 

@@ -10,7 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .library import STAGE_COUNT, Arrays, BuildOptions, PartwheelError, Rung, Stage, Status, SummaryStruct, check, load
+from .library import (
+    STAGE_COUNT, Arrays, BuildOptions, Mode, PartwheelError, Rung, Stage, Status, SummaryStruct, check, load,
+)
 
 POLL_SECONDS = 0.1
 
@@ -196,7 +198,7 @@ class Hierarchy:
 
     @classmethod
     def build(cls, vertices, triangles, faces=None, face_count=None, *, quality=0.0, rungs=0, open_surfaces=False,
-              threads=0, mode=0, progress=None):
+              threads=0, mode=Mode.REGROUPED, progress=None):
         """Builds the hierarchy of a surface: as it is, or else repaired, or else wrapped.
 
         vertices (V,3) coordinates; triangles (T,3) indices, counter-clockwise from outside; faces (T,) the source face
@@ -206,7 +208,7 @@ class Hierarchy:
         rungs: the ways allowed to a surface that can be filled, a sum of Rung (0: all); the first that works is taken.
         open_surfaces: wrap a sheet (plane, cloth, car door) as a thin solid, instead of refusing it with NOT_SOLID.
         threads: 0 as many as help, else at most so many; the result is the same.
-        mode: Mode.PAPER, the paper's tree by concavity alone, or Mode.REGROUPED, one of what people take for parts.
+        mode: Mode.REGROUPED, joined by what people take for parts, or Mode.PAPER, the paper's tree by concavity alone.
         progress(fraction, stage): called in this thread about ten times a second while the build runs in another;
         returning True cancels the build. If it raises, the build is stopped and the exception goes on.
 

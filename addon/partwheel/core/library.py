@@ -56,8 +56,8 @@ class Rung(enum.IntEnum):
 class Mode(enum.IntEnum):
     """pw_mode."""
 
-    PAPER = 0
-    REGROUPED = 1
+    REGROUPED = 0
+    PAPER = 1
 
 
 STAGE_COUNT = len(Stage)

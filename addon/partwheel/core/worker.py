@@ -15,7 +15,7 @@ import time
 from pathlib import Path
 
 from .hierarchy import Hierarchy, checked_surface
-from .library import PartwheelError, Rung, Status, load
+from .library import Mode, PartwheelError, Rung, Status, load
 
 ENTRY = Path(__file__).with_name("worker_process.py")
 MEMORY_SHARE = 0.8  # of the memory that is available when the build starts
@@ -52,7 +52,7 @@ class Job:
     """
 
     def __init__(self, vertices, triangles, faces=None, face_count=None, *, quality=0.0, rungs=0, open_surfaces=False,
-                 threads=0, mode=0, memory_limit=None, time_limit=None):
+                 threads=0, mode=Mode.REGROUPED, memory_limit=None, time_limit=None):
         load()  # a missing library is better told here
         self._arrays, self._face_count = checked_surface(vertices, triangles, faces, face_count)
         self._options = {"quality": float(quality), "open_surfaces": int(open_surfaces), "threads": threads,

@@ -22,10 +22,12 @@ struct Built {
 };
 
 Built try_build(const TriMesh& mesh, double quality = 0, pw_context* context = nullptr,
-                uint32_t rungs = PW_RUNG_EXACT, int32_t mode = PW_MODE_PAPER);
+                uint32_t rungs = PW_RUNG_EXACT, int32_t mode = PW_MODE_REGROUPED);
+
+inline constexpr pw_mode both_modes[] = {PW_MODE_REGROUPED, PW_MODE_PAPER};
 
 // On the exact rung. Throws with the library's message if it can't be built.
-Handle build(const TriMesh& mesh, double quality = 0);
+Handle build(const TriMesh& mesh, double quality = 0, int32_t mode = PW_MODE_REGROUPED);
 
 pw_arrays arrays(const Handle& handle);
 pw_summary summary(const Handle& handle);

@@ -176,11 +176,14 @@ void Invariants::expect_hulls() const {
         if ((nodes_ - 1 - n) % step != 0) continue;
         const auto first = static_cast<size_t>(a_.tet_first[n]), last = static_cast<size_t>(a_.tet_last[n]);
         const double hull_volume = expect_convex(hull(handle_, first, last), a_, first, last);
-        // The hull holds the cluster, and the height is what it holds beside.
+        // The hull holds the cluster, and the cost, unless it is C2, is what it holds beside.
         EXPECT_GE(hull_volume, a_.volume[n] * (1 - 1e-12));
         const double concavity = hull_volume - a_.volume[n];
         const double slack = 1e-8 * concavity + 1e-10 * hull_volume;
-        EXPECT_NEAR(a_.height[n], concavity, slack + (a_.cost_class[n] == 0 ? convex_tolerance * hull_volume : 0));
+        if (a_.cost_class[n] == 1)
+            EXPECT_NEAR(a_.cost[n], concavity, slack);
+        else
+            EXPECT_NEAR(0, concavity, slack + convex_tolerance * hull_volume);
         if (last - first > 300) continue;
         std::vector<Point> points;
         for (size_t i = 4 * first; i < 4 * last; ++i) {
@@ -190,8 +193,8 @@ void Invariants::expect_hulls() const {
         EXPECT_NEAR(hull_volume, static_cast<double>(reference_hull_volume(points)), 1e-10 * hull_volume);
     }
     const pw_summary s = summary(handle_);
-    const double height = a_.height[nodes_ - 1];
-    EXPECT_NEAR(s.hull_volume - s.volume, height, 1e-8 * height + 1.1 * convex_tolerance * s.hull_volume);
+    const double concavity = a_.cost_class[nodes_ - 1] == 1 ? a_.cost[nodes_ - 1] : 0;
+    EXPECT_NEAR(s.hull_volume - s.volume, concavity, 1e-8 * concavity + 1.1 * convex_tolerance * s.hull_volume);
 }
 
 void Invariants::expect_star() const {
