@@ -39,12 +39,16 @@ def inner(obj, faces):
 
 
 class Deform(MeshTest):
-    def hand(self, level=2):
+    def hand(self):
         """(object in Edit Mode, node of a finger, its faces, its inner vertices, the farthest of them from the rest)"""
         obj = self.add(*read_off("hand"))
         self.edit(obj)
         api = part("api")
-        node = api.select(obj, FINGER, level)
+        hierarchy = api.hierarchy(obj)
+        stops, start = hierarchy.wheel(FINGER)
+        # The finger is the largest part that is no more than a fifth of the hand.
+        finger = sum(hierarchy.area[stop] <= 0.2 * hierarchy.area[-1] for stop in stops) - 1
+        node = api.select(obj, FINGER, finger - start)
         faces = api.faces(obj, node).tolist()
         free = inner(obj, faces)
         co = stored(obj.data.vertices)

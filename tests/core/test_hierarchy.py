@@ -289,7 +289,7 @@ def least_concavity(h):
 
 @pytest.mark.parametrize("name", ["cube", "L", "jack", "frame", "box with a cavity", "star", "3torus.off", "P.off"])
 def test_cut_into_parts_is_the_best(name, build_shape):
-    _, h = build_shape(name)
+    _, h = build_shape(name, Mode.PAPER)
     tets = len(h.tetrahedra)
     volumes, clusters = tet_volumes(h.vertices, h.tetrahedra), set(map(tuple, merge_slices(h)))
     best = least_concavity(h)
