@@ -12,7 +12,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "addon"))
 
-from partwheel.core import Hierarchy, meshes  # noqa: E402  (found only now)
+from partwheel.core import Hierarchy, Mode, meshes  # noqa: E402  (found only now)
 
 MESHES = ROOT / "build" / "deps" / "meshes"
 CASES = {  # name: file, options of the build
@@ -20,6 +20,8 @@ CASES = {  # name: file, options of the build
         "helmet", "rotor", "pinion", "hand", "handle", "couplingdown", "knot", "elephant", "triceratops", "femur")},
     "rotor with points inside": ("rotor.off", {"quality": 1.4}),
     "hand with points inside": ("hand.off", {"quality": 1.4}),
+    "hand in mode paper": ("hand.off", {"mode": Mode.PAPER}),
+    "rotor in mode paper": ("rotor.off", {"mode": Mode.PAPER}),
     "head, repaired": ("head.off", {}),
     "pig, wrapped": ("pig.off", {}),
 }

@@ -40,7 +40,7 @@ Input read(const uint8_t* data, size_t size) {
     const size_t vertices = next();
     Input input;
     input.options = {sizeof(pw_build_options), flags & 16 ? 1.4 : 0, static_cast<uint32_t>(flags & 7),
-                     flags & 8 ? 1 : 0, 1, PW_MODE_PAPER};
+                     flags & 8 ? 1 : 0, 1, flags & 32 ? PW_MODE_PAPER : PW_MODE_REGROUPED};
     const double unit = flags & 128 ? 1e-60 : 1, shift = flags & 64 ? 1e5 : 0;
     for (size_t v = 0; v < vertices; ++v) {
         Point& p = input.mesh.vertices.emplace_back();
