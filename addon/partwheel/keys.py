@@ -35,6 +35,7 @@ NAVIGATE = Key("NAVIGATE", frozenset({
 SYSTEM = frozenset({"TIMER", "TIMER_REPORT", "WINDOW_DEACTIVATE"})
 MODIFIERS = frozenset({"LEFT_SHIFT", "RIGHT_SHIFT", "LEFT_CTRL", "RIGHT_CTRL", "LEFT_ALT", "RIGHT_ALT", "OSKEY",
                        "HYPER"})
+BUTTONS = frozenset({"LEFTMOUSE", "RIGHTMOUSE"})  # with Alt they navigate too, in some keymaps
 MOVES = frozenset({"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"})
 
 TURNS = {**dict.fromkeys(LARGER.events, 1), **dict.fromkeys(SMALLER.events, -1)}

@@ -14,6 +14,8 @@ from . import mesh_arrays
 # on rules: Blender derives the coarser elements' selection from it.
 KINDS = ("VERT", "EDGE", "FACE")
 ELEMENTS = {"VERT": "vertices", "EDGE": "edges", "FACE": "polygons"}
+# In units of the time to select a face: to deselect one (Blender looks at all its neighbours), and to deselect all.
+OFF, ALL_OFF = 2, 6000
 
 
 def _sequence(bm, kind):
@@ -25,14 +27,14 @@ def _sequence(bm, kind):
 class Selection:
     """The selection as it was when this was made, and the one this has made of it since.
 
-    Holds no reference to Blender's data, so undo or a mode change can't make it dangle; the object is handed to every
+    Holds no reference to Blender's data that undo or a mode change could make dangle; the object is handed to every
     method. Masks are (n,) bool, one for each vertex, edge or face of the mesh.
     """
 
     def __init__(self, obj, mesh=None):
         """mesh: the object's, if that is known to be up to date."""
         mesh = mesh or mesh_arrays.up_to_date(obj)
-        bm = bmesh.from_edit_mesh(mesh)
+        bm = self._edited(obj)
         for kind in KINDS:
             _sequence(bm, kind).index_update()
         self.before = {kind: mesh_arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool) for kind in KINDS}
@@ -47,11 +49,17 @@ class Selection:
             self.loop_element = mesh_arrays.read(mesh.loops, index, np.int32)
         self.now = self.before[self.kind]
 
+    def _edited(self, obj):
+        """The object's BMesh. Kept, which undo or a mode change only make invalid: elements have a field for Python's
+        references to them as long as there is one to the BMesh, and adding and removing it takes as long as a notch."""
+        self._bm = bmesh.from_edit_mesh(obj.data)
+        return self._bm
+
     def fits(self, obj):
         """Whether the object is still in Edit Mode with as many elements and the select mode of when this was made."""
         if obj is None or obj.type != "MESH" or obj.mode != "EDIT":
             return False
-        bm = bmesh.from_edit_mesh(obj.data)
+        bm = self._edited(obj)
         counts = len(bm.verts), len(bm.edges), len(bm.faces)
         return counts == tuple(len(self.before[kind]) for kind in KINDS) and self.kind in bm.select_mode
 
@@ -71,9 +79,14 @@ class Selection:
             target = self.before[self.kind] & ~target
         elif extend:
             target |= self.before[self.kind]
-        bm = bmesh.from_edit_mesh(obj.data)
-        _set(_sequence(bm, self.kind), self.now & ~target, False)
-        _set(_sequence(bm, self.kind), target & ~self.now, True)
+        bm = self._edited(obj)
+        removed, kept = self.now & ~target, self.now & target
+        if _alone(obj) and OFF * np.count_nonzero(removed) > ALL_OFF + np.count_nonzero(kept):
+            bpy.ops.mesh.select_all(action="DESELECT")
+            _set(_sequence(bm, self.kind), target, True)
+        else:
+            _set(_sequence(bm, self.kind), removed, False)
+            _set(_sequence(bm, self.kind), target & ~self.now, True)
         self.now = target
         if self.kind != "FACE":  # a face takes its edges and vertices along
             bm.select_flush_mode()
@@ -87,7 +100,7 @@ class Selection:
 
     def restore(self, obj):
         """Everything as it was: vertices, edges, faces, the active face and the history of picks."""
-        bm = bmesh.from_edit_mesh(obj.data)
+        bm = self._edited(obj)
         mesh = mesh_arrays.up_to_date(obj)
         # Blender hands a change of a face or an edge on to its vertices: so first all off, then on from fine to coarse.
         for kind in reversed(KINDS):
@@ -106,6 +119,11 @@ class Selection:
         bm.faces.active = None if self.active_face is None else _sequence(bm, "FACE")[self.active_face]
         self.now = self.before[self.kind]
         _redraw(obj)
+
+
+def _alone(obj):
+    """Whether what Blender's operators do to all that is being edited, they do to this object only."""
+    return list(bpy.context.objects_in_mode_unique_data) == [obj]
 
 
 def _set(elements, which, value):

@@ -42,10 +42,35 @@ class Select(MeshTest):
         self.assertEqual(found[4:], [found[2], found[1]])
         self.assertTrue(found[0] < found[1] < found[2] < found[3])
 
+    def always_all_off(self):
+        """For this test most is deselected at once also in small meshes, where one by one would be quicker."""
+        self.addCleanup(setattr, part("selection"), "ALL_OFF", part("selection").ALL_OFF)
+        part("selection").ALL_OFF = 0
+
+    def test_other_objects_in_edit_mode_keep_what_they_should(self):
+        self.always_all_off()
+        objects = [self.add(*BOX, name) for name in ("one", "two")]
+        for obj in objects:
+            obj.select_set(True)
+        self.edit(objects[1])
+        for extend in (True, False):
+            for obj in objects:
+                bm = bmesh.from_edit_mesh(obj.data)
+                bm.faces.ensure_lookup_table()
+                bm.faces[1].select_set(True)
+            selections = part("selection").Selections(objects)
+            for faces in (range(6), [2]):  # so most of it is deselected again
+                selections.select(objects[0], faces, 2, extend=extend)
+            self.assertEqual(selected(objects[0]), {1, 2} if extend else {2})
+            self.assertEqual(selected(objects[1]), {1} if extend else set())
+            selections.restore()
+            self.assertEqual([selected(obj) for obj in objects], [{1}, {1}])
+
     def test_vertex_and_edge_modes_look_as_blender_selects(self):
         obj = self.add(*read_off("hand"))
         h = self.hierarchy(obj)
         stops, start = h.wheel(700)
+        self.always_all_off()
         for kinds in (("VERT",), ("EDGE",), ("FACE",), ("VERT", "FACE"), ("EDGE", "FACE")):
             Selection = part("selection").Selection
             bm = self.edit(obj, kinds)

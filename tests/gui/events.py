@@ -43,6 +43,12 @@ class Simulated(_Driver):
             self._send("WHEELUPMOUSE" if notches > 0 else "WHEELDOWNMOUSE", "PRESS", **modifiers)
 
 
+    def scroll(self, pixels):
+        """Two fingers on a trackpad, upwards if pixels > 0."""
+        self._send("MOUSEMOVE", "NOTHING")  # a scroll is told from the place of the event before
+        self._window.event_simulate("TRACKPADPAN", "NOTHING", x=self.x, y=self.y + pixels)
+
+
 class Xdotool(_Driver):
     """Real X events, made by the program xdotool. The wheel is X's buttons 4 and 5."""
 

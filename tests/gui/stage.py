@@ -5,14 +5,17 @@ run until predicate() holds, for so many seconds at most, mostly through the met
 `yield from stage.selected(faces, "after the click")`.
 """
 import json
+import re
 import subprocess
 import sys
 import time
 import traceback
 
+import addon_utils
 import bmesh
 import bpy
 import numpy
+from bl_ui.space_toolsystem_toolbar import VIEW3D_PT_tools_active
 from mathutils import Euler, Matrix, Quaternion, Vector
 
 from events import DRIVERS
@@ -31,6 +34,22 @@ class Failure(Exception):
     """What the scenario expected and did not see."""
 
 
+class WM_OT_stage_timers(bpy.types.Operator):
+    """Counts the events of timers that operators have started, for as long as counting is on"""
+
+    bl_idname = "wm.stage_timers"
+    bl_label = "Count Timers"
+    count, counting = 0, True
+
+    def invoke(self, context, _event):
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, _context, event):
+        WM_OT_stage_timers.count += event.type == "TIMER"
+        return {"PASS_THROUGH"} if WM_OT_stage_timers.counting else {"FINISHED", "PASS_THROUGH"}
+
+
 class Stage:
     def __init__(self, driver, work, pictures, result):
         self._work, self._pictures, self._result = work, pictures, result
@@ -43,6 +62,7 @@ class Stage:
 
     def play(self, scenario):
         bpy.types.SpaceView3D.draw_handler_add(self._drawn, (), "WINDOW", "POST_PIXEL")
+        self._watch_drawing()
         steps = self._all(scenario)
         waiting = None  # (what, predicate, deadline)
 
@@ -75,6 +95,43 @@ class Stage:
         yield "a first draw of the 3D viewport", lambda: self._draws > 0, WAIT
         self.mouse = DRIVERS[self._driver](self.window)
         yield from scenario(self)
+        yield from self._nothing_left()
+
+    def _watch_drawing(self):
+        """Blender can't tell what draws in its views, so it is written down from now on."""
+        view, self._drawing = bpy.types.SpaceView3D, []
+        add, remove = view.draw_handler_add, view.draw_handler_remove
+
+        def added(*arguments):
+            self._drawing.append(add(*arguments))
+            return self._drawing[-1]
+
+        def removed(handler, region):
+            remove(handler, region)
+            self._drawing.remove(handler)
+
+        view.draw_handler_add, view.draw_handler_remove = staticmethod(added), staticmethod(removed)
+
+    def _nothing_left(self):
+        """Checks at the end of every scenario that nothing goes on or is drawn any more; and that the add-on takes
+        everything with it when it is disabled: classes, handlers, keys, menu entries, the tool."""
+        bpy.utils.register_class(WM_OT_stage_timers)
+        yield from self.settle()
+        with self.override():
+            bpy.ops.wm.stage_timers("INVOKE_DEFAULT")
+        quiet = time.monotonic() + 0.4  # the slowest timer of the add-on ticks every 0.1 s
+        yield "some time has passed", lambda: time.monotonic() > quiet, WAIT
+        WM_OT_stage_timers.counting = False
+        self.check(WM_OT_stage_timers.count == 0, "no timer runs")
+        self.check(not self._drawing, lambda: f"nothing is drawn by the add-on ({self._drawing})")
+        self.check(not self.session.running(), "nothing is being built")
+        bar = bpy.types.STATUSBAR_HT_header
+        self.check(bar.draw == getattr(bar, "_draw_orig", bar.draw), "the status bar is Blender's own")
+        package = self.session.__name__.rpartition(".")[0]
+        addon_utils.disable(package)
+        yield from self.drawn()  # without the add-on's tool, panels and gizmos
+        left = leftovers(package)
+        self.check(not left, f"the disabled add-on leaves nothing behind ({left})")
 
     def _drawn(self):
         self._draws += 1
@@ -360,6 +417,24 @@ class Stage:
         path = self._pictures.with_name(f"{self._pictures.name}-{name}.png")
         subprocess.run(["import", "-window", "root", str(path)], check=True)
         return path
+
+
+def leftovers(package):
+    """What of a disabled add-on Blender still knows, by name."""
+    ours = package.rpartition(".")[2]
+    found = [name for name in dir(bpy.types) if ours in name.lower()]
+    handlers = [each for each in (getattr(bpy.app.handlers, name) for name in dir(bpy.app.handlers))
+                if isinstance(each, list)]
+    menus = [menu.draw for menu in (getattr(bpy.types, name) for name in dir(bpy.types)) if hasattr(menu, "draw")]
+    functions = [each for some in handlers for each in some] + [
+        each for draw in menus for each in getattr(draw, "_draw_funcs", ())]
+    found += [f"{each.__module__}.{each.__qualname__}" for each in functions if each.__module__.startswith(package)]
+    keys = bpy.data.window_managers[0].keyconfigs
+    for configuration in (keys.default, keys.addon):  # the third, the user's, keeps what any tool once had
+        found += [f"a key of {configuration.name}, {keymap.name}" for keymap in configuration.keymaps for item in keymap.keymap_items
+                  if ours in item.idname]
+    tools = VIEW3D_PT_tools_active._tools["EDIT_MESH"]
+    return found + [name for name in re.findall(r"idname='([^']*)'", repr(tools)) if ours in name]
 
 
 def _text(what):

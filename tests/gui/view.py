@@ -24,13 +24,20 @@ class View:
         self._pixels = (points[:, :2] / points[:, 3:] + 1) / 2 * size + [self.region.x, self.region.y]
         self._depths = points[:, 2] / points[:, 3]
         self._triangles = triangles
+        # The planes of the clipping region, in the object's own space: a point p is shown where p1 . planes >= 0.
+        self._vertices = vertices
+        self._planes = numpy.zeros((4, 0))
+        if view.use_clip_planes:
+            self._planes = (numpy.array([list(plane) for plane in view.clip_planes])[:4]
+                            @ numpy.array(object.matrix_world)).T
 
     def centers(self):
         """(T,2) window pixels of the triangles' centers."""
         return self._pixels[self._triangles].mean(axis=1)
 
     def face_at(self, x, y):
-        """The triangle that window position x, y shows: of those that lie under it, the nearest. None if none does."""
+        """The triangle that window position x, y shows: of those that lie under it, the nearest that is not clipped. None
+        if there is none. (With perspective a clipped one's place is not quite exact.)"""
         a, b, c = (self._pixels[self._triangles[:, k]] - [x, y] for k in range(3))
         weights = numpy.c_[_cross(b, c), _cross(c, a), _cross(a, b)]
         hits = numpy.flatnonzero((weights >= 0).all(axis=1) | (weights <= 0).all(axis=1))
@@ -38,6 +45,11 @@ class View:
         if not len(hits):
             return None
         shares = weights[hits] / weights[hits].sum(axis=1, keepdims=True)
+        places = numpy.einsum("hk,hkc->hc", shares, self._vertices[self._triangles[hits]])
+        shown = (numpy.c_[places, numpy.ones(len(places))] @ self._planes >= 0).all(axis=1)
+        hits, shares = hits[shown], shares[shown]
+        if not len(hits):
+            return None
         return int(hits[(shares * self._depths[self._triangles[hits]]).sum(axis=1).argmin()])
 
     def face_around(self, x, y, margin=1):

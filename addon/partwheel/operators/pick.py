@@ -203,7 +203,7 @@ class PartPicker:
             return self._show(context, self.state.turned(notches))
         wheeled = event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE"}
         if event.type in keys.NAVIGATE.events or (wheeled and not over) or (
-                not plain and (event.type in keys.TURNS or event.type == "LEFTMOUSE")):
+                not plain and (event.type in keys.TURNS or event.type in keys.BUTTONS)):
             return {"PASS_THROUGH"}
         if event.type == "LEFTMOUSE" and event.value == "RELEASE":
             self.drag = None

@@ -1,4 +1,8 @@
-"""What a notch, a hover and a start cost of the add-on's own time, on 89,000 faces: the table of scripts/bench_felt."""
+"""What a notch, a hover and a start cost of the add-on's own time, on 89,000 faces: the table of scripts/bench_felt.
+
+Processor time of Blender's main thread. Tests have no graphics card: what the drawing itself takes there, in software,
+is told apart. It is no time of the add-on's: with a card the call comes back at once.
+"""
 import os
 import statistics
 import time
@@ -29,6 +33,26 @@ class Clock:
         return taken
 
 
+class Watched:
+    """A batch whose drawing is timed."""
+
+    def __init__(self, batch):
+        self._batch = batch
+
+    def draw(self, shader):
+        self._batch.draw(shader)
+
+
+def watch_batches(parts):
+    """Has all that an overlay.Parts draws timed by the Clock that this returns."""
+    for name in ("batch", "hull", "cut"):
+        def watched(*arguments, inner=getattr(parts, name)):
+            shader, batch = inner(*arguments)
+            return shader, Watched(batch)
+        setattr(parts, name, watched)
+    return Clock(Watched, "draw")
+
+
 def points(stage):
     """Pixels of the window with the model under them."""
     view = stage.view
@@ -42,7 +66,8 @@ def play(stage):
     picker, hover = stage.part("operators.pick").PartPicker, stage.part("tools.hover").Hover
     overlay = stage.part("overlay")
     handle, begin, moves = Clock(picker, "_handle"), Clock(picker, "_begun"), Clock(hover, "move")
-    draws, hover_draws = Clock(overlay, "draw_held"), Clock(overlay, "draw_hover")
+    draws, hover_draws, software = (
+        Clock(overlay, "draw_held"), Clock(overlay, "draw_hover"), watch_batches(overlay.Parts))
     stage.use_tool()
     spots = points(stage)
     stage.part("prepared")._kept.clear()
@@ -54,21 +79,24 @@ def play(stage):
         yield from stage.settle()
     hovers = moves.take()
     yield from stage.drawn()
-    hover_drawn = hover_draws.take()
+    hover_drawn = statistics.median(hover_draws.take()) - statistics.median(software.take())
 
-    notches, starts = [], []
-    for x, y in spots[::8]:
+    notches, drawing, starts = [], [], []
+    for x, y in spots[::4]:
         stage.mouse.move(x, y)
         begin.take()
         stage.mouse.click()
         yield from stage.until("something is selected", lambda: stage.object.data.total_face_sel > 0)
         starts += begin.take()
         for step in (1,) * 6 + (-1,) * 7:
-            handle.take()
-            draws.take()
+            for clock in (handle, draws, software):
+                clock.take()
+            before = stage.object.data.total_face_sel
             stage.mouse.wheel(step)
             yield from stage.settle()  # Blender draws before the timer's next tick
-            notches.append(sum(handle.take()) + max(draws.take(), default=0.0))
+            if stage.object.data.total_face_sel != before:  # not at the end of the path
+                drawing.append(sum(software.take()))
+                notches.append(sum(handle.take()) + sum(draws.take()) - drawing[-1])
         stage.mouse.key("ESC")
         yield from stage.settle()
         stage.select(())
@@ -79,15 +107,12 @@ def play(stage):
     cold = begin.take()[-1]
     notches.sort()
     measured = {"notch, median": statistics.median(notches), "notch, 95 %": notches[int(0.95 * len(notches))],
-                "hover, median": statistics.median(hovers) + statistics.median(hover_drawn),
-                "start": max(starts)}
-    print(f"{len(stage.wheels.triangles):,} faces; {len(notches)} notches, {len(hovers)} hovers, {len(starts)} starts; "
-          "processor milliseconds of the add-on")
-    for name, value in measured.items():
-        print(f"felt | {name} | {1000 * value:.1f} | {1000 * LIMITS[name]:.0f}")
-    print(f"felt | largest notch | {1000 * notches[-1]:.1f} |")
-    print(f"felt | hover, 95 % | {1000 * sorted(hovers)[int(0.95 * len(hovers))]:.1f} |")
-    print(f"felt | first hover after an edit | {1000 * first_hover:.1f} |")
-    print(f"felt | first start after an edit | {1000 * cold:.1f} |")
+                "hover, median": statistics.median(hovers) + hover_drawn, "start": max(starts)}
+    others = {"largest notch": notches[-1], "first hover after an edit": first_hover,
+              "first start after an edit": cold, "beside a notch, drawing in software, median": statistics.median(drawing)}
+    print(f"felt | {len(stage.wheels.triangles):,} faces, {len(notches)} notches, {len(hovers)} hovers, {len(starts)} "
+          "starts | milliseconds | goal |\nfelt | --- | --- | --- |")
+    for name, value in (measured | others).items():
+        print(f"felt | {name} | {1000 * value:.1f} | {f'{1000 * LIMITS[name]:.0f}' if name in LIMITS else ''} |")
     for name, value in measured.items():
         stage.check(value <= SLACK * LIMITS[name], f"{name}: {1000 * value:.1f} ms")
