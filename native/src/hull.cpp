@@ -5,8 +5,9 @@
 // keeps the vertices exactly the extreme points, and no degenerate facet can arise: an edge of the rim has a facet on
 // its far side that strictly doesn't see the point, so the point is not on the edge's line.
 //
-// The hulls of clusters are mostly tiny: there all facets are tested, two at a time. On a large hull a walk finds one
-// facet that sees the point. What a point sees can't be foreseen, so the inner loops don't branch on it.
+// The hulls of clusters are mostly tiny: there all facets are tested, two at a time, and those that see the point are a
+// set of bits. On a large hull a walk finds one of them, the others are found from there. What a point sees can't be
+// foreseen, so the inner loops don't branch on it.
 #include "hull.h"
 
 #include "predicates.h"
@@ -28,6 +29,9 @@ constexpr size_t large_hull = 64;
 // A point that adds less than this part of the hull's volume does not count when the volume is all that is asked for.
 constexpr double negligible = 1e-14;
 
+// So many facets at most are a set of bits.
+constexpr size_t set_bits = 64;
+
 constexpr size_t next_corner[3] = {1, 2, 0};
 
 // One vector register of every 64-bit machine. A closed surface of triangles has an even number of facets.
@@ -42,6 +46,16 @@ Vector vector_at(const Number* numbers) {
     return v;
 }
 
+// Bit k is set if number k is negative.
+unsigned signs(Pair x) {
+#if defined(__SSE2__)
+    return static_cast<unsigned>(__builtin_ia32_movmskpd(x));
+#else
+    const auto bits = std::bit_cast<std::array<uint64_t, 2>>(x);
+    return static_cast<unsigned>(bits[0] >> 63 | bits[1] >> 63 << 1);
+#endif
+}
+
 constexpr size_t whole_fours(size_t n) { return (n + 3) / 4 * 4; }
 
 // Among numbers that have been filled up to whole fours.
@@ -51,6 +65,13 @@ bool contains(std::span<const int32_t> numbers, int32_t v) {
     const auto halves = std::bit_cast<std::array<int64_t, 2>>(equal);
     return (halves[0] | halves[1]) != 0;
 }
+
+Pair magnitude(Pair x) {
+    return std::bit_cast<Pair>(std::bit_cast<PairBits>(x) & std::numeric_limits<int64_t>::max());
+}
+
+// The larger of 0 and each number.
+Pair positive(Pair x) { return std::bit_cast<Pair>(std::bit_cast<PairBits>(x) & (x > 0)); }
 
 // Twice the larger of 0 and x, without a branch.
 double twice_positive(double x) { return x + std::fabs(x); }
@@ -180,6 +201,11 @@ private:
         int32_t vertex = 0;
     };
 
+    struct RimEdge {
+        int32_t from, to;
+        int32_t beyond;  // the facet that stays
+    };
+
     static constexpr size_t none = ~size_t{0};
 
     const Point& at(int32_t v) const { return points_[static_cast<size_t>(v)]; }
@@ -198,6 +224,8 @@ private:
     Plane plane(const Triangle& corners) const;
     void set_plane(size_t f, const Plane& plane);
     bool insert(int32_t vertex);
+    bool see(const Point& p, int32_t vertex);
+    void make_facets(std::span<const RimEdge> rim, const Point& p, int32_t vertex);
     void close_gaps();
     Hull unload();
     Hull allocate(std::span<const int32_t> vertices, size_t facets);
@@ -225,10 +253,6 @@ private:
     bool loaded_ = false;
 
     // Scratch.
-    struct RimEdge {
-        int32_t from, to;
-        int32_t beyond;  // the facet that stays
-    };
     size_t seen_count_ = 0, rim_count_ = 0;
     std::vector<uint32_t> seen_;        // the facets that the last point flooded from sees
     std::vector<RimEdge> rim_;          // the edges around them
@@ -347,10 +371,10 @@ bool HullKernel::Impl::surely_inside(const View& h, const Point& p, double& volu
     PairBits negative = {-1, -1};
     for (size_t f = 0; f < h.count; f += 2) {
         const Pair side = h.sides(f, p);
-        sum += side + std::bit_cast<Pair>(std::bit_cast<PairBits>(side) & std::numeric_limits<int64_t>::max());
+        sum += positive(side);
         negative &= std::bit_cast<PairBits>(side + factor * vector_at<Pair>(h.size + f));
     }
-    volume6 = (sum[0] + sum[1]) / 2;
+    volume6 = sum[0] + sum[1];
     return (negative[0] & negative[1]) < 0;
 }
 
@@ -427,13 +451,82 @@ void HullKernel::Impl::set_plane(size_t f, const Plane& plane) {
     size_[f] = plane.size;
 }
 
+// What find_seen() and flood() do, for a hull at work with at most set_bits facets; the volume is added to volume6_.
+// False if the vertex is in the hull.
+bool HullKernel::Impl::see(const Point& p, int32_t vertex) {
+    const View h = view();
+    const double factor = h.error_factor(p);
+    uint64_t sees = 0, surely = 0;
+    Pair sum = {0, 0};
+    for (size_t f = 0; f < h.count; f += 2) {  // a gap sees nothing
+        const Pair side = h.sides(f, p), error = factor * vector_at<Pair>(h.size + f);
+        sum += positive(side);
+        sees |= uint64_t{3 ^ signs(side + error)} << f;
+        surely |= uint64_t{signs(error - side)} << f;
+    }
+    for (uint64_t doubtful = sees & ~surely; doubtful != 0; doubtful &= doubtful - 1) {
+        const auto f = static_cast<size_t>(std::countr_zero(doubtful));
+        const int side = exact_side(h, f, vertex);
+        if (side < 0) sees &= ~(uint64_t{1} << f);
+        if (side > 0) surely |= uint64_t{1} << f;
+    }
+    if (surely == 0) return false;
+    volume6_ += sum[0] + sum[1];
+    uint32_t* seen = seen_.data();
+    RimEdge* rim = rim_.data();
+    for (uint64_t left = sees; left != 0; left &= left - 1) {
+        const auto f = static_cast<uint32_t>(std::countr_zero(left));
+        *seen++ = f;
+        const HullFacet& facet = h.facets[f];
+        for (size_t k = 0; k < 3; ++k) {
+            *rim = {facet.corners[k], facet.corners[next_corner[k]], facet.neighbours[k]};
+            rim += (~sees >> facet.neighbours[k]) & 1;
+        }
+    }
+    seen_count_ = static_cast<size_t>(seen - seen_.data());
+    rim_count_ = static_cast<size_t>(rim - rim_.data());
+    return true;
+}
+
+// The planes of the facets between the rim and the vertex, two at a time, as plane() gives them: they go to the places
+// in seen_. p is the vertex relative to the origin.
+void HullKernel::Impl::make_facets(std::span<const RimEdge> rim, const Point& p, int32_t vertex) {
+    const Point& c = at(vertex);
+    for (size_t i = 0; i < rim.size(); i += 2) {
+        const size_t j = std::min(i + 1, rim.size() - 1);
+        const Point &from0 = at(rim[i].from), &to0 = at(rim[i].to), &from1 = at(rim[j].from), &to1 = at(rim[j].to);
+        Pair u[3], v[3];
+        for (size_t k = 0; k < 3; ++k) {
+            u[k] = Pair{from0[k], from1[k]} - c[k];
+            v[k] = Pair{to0[k], to1[k]} - c[k];
+        }
+        const Pair yz = u[1] * v[2], zy = u[2] * v[1], zx = u[2] * v[0], xz = u[0] * v[2], xy = u[0] * v[1],
+                   yx = u[1] * v[0];
+        const Pair x = yz - zy, y = zx - xz, z = xy - yx;
+        const Pair size = magnitude(yz) + magnitude(zy) + magnitude(zx) + magnitude(xz) + magnitude(xy) + magnitude(yx);
+        const Pair offset = x * p[0] + y * p[1] + z * p[2];
+        for (size_t k = 0; k < 2; ++k) {
+            const size_t f = seen_[k == 0 ? i : j];
+            x_[f] = x[k];
+            y_[f] = y[k];
+            z_[f] = z[k];
+            offset_[f] = offset[k];
+            size_[f] = size[k];
+        }
+    }
+}
+
 // Returns false if the vertex is in the hull already.
 bool HullKernel::Impl::insert(int32_t vertex) {
     reserve(count_);
     const Point p = at(vertex) - origin_;
-    const size_t seen = find_seen(view(), p, vertex, latest_);
-    if (seen == none) return false;
-    volume6_ += flood(view(), seen, p, vertex);
+    if (count_ <= set_bits) {
+        if (!see(p, vertex)) return false;
+    } else {
+        const size_t seen = find_seen(view(), p, vertex, latest_);
+        if (seen == none) return false;
+        volume6_ += flood(view(), seen, p, vertex);
+    }
     reach_ = std::max(reach_, reach_of(p));
 
     // The new facets take the places of those that go, then gaps, then further places.
@@ -446,13 +539,13 @@ bool HullKernel::Impl::insert(int32_t vertex) {
         set_plane(seen_[i], {{}, HUGE_VAL, 0});
     }
     latest_ = seen_[0];
+    make_facets(rim, p, vertex);
     HullFacet* const facets = facets_.data();
     int32_t* const facet_from = facet_from_.data();
     for (size_t i = 0; i < rim.size(); ++i) {
         const auto [from, to, beyond] = rim[i];
         const uint32_t f = seen_[i];
         facets[f].corners = {from, to, vertex};
-        set_plane(f, plane({from, to, vertex}));
         facets[f].neighbours[0] = beyond;
         HullFacet& across = facets[beyond];
         const size_t k = size_t{across.corners[1] == to} + 2 * size_t{across.corners[2] == to};
