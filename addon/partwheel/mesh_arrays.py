@@ -1,15 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Blender mesh as numpy arrays: the cage as it is, without modifiers, in its object's own space.
-Only reads, but for normals."""
+"""A Blender mesh as numpy arrays: as it is, without modifiers, in its object's own space. Only reads, but for normals.
+Where the cage shows it under modifiers is asked for by name."""
 
 import hashlib
 from typing import NamedTuple
 
+import bmesh
 import bpy
 import numpy as np
 
 from .core.polygons import triangulate
 
+# Modifiers whose mesh begins with the vertices of the one that they are given, moved or not.
+KEEPING = {"ARRAY", "MIRROR", "MULTIRES", "SOLIDIFY", "SUBSURF",
+           "ARMATURE", "CAST", "CORRECTIVE_SMOOTH", "CURVE", "DISPLACE", "HOOK", "LAPLACIANDEFORM", "LAPLACIANSMOOTH",
+           "LATTICE", "MESH_DEFORM", "SHRINKWRAP", "SIMPLE_DEFORM", "SMOOTH", "SURFACE_DEFORM", "WARP", "WAVE"}
 # A triangle's doubled area by the square of its longest side; below this it is taken for one without area.
 THIN = 1e-9
 
@@ -108,9 +113,38 @@ def fingerprint(mesh):
     return Fingerprint(topology.digest(), positions.digest())
 
 
+def on_cage(obj):
+    """The object's modifiers that act in Edit Mode, if any of them is shown on the cage, else none."""
+    acting = [each for each in obj.modifiers if each.show_viewport and each.show_in_editmode]
+    return acting if any(each.show_on_cage for each in acting) else []
+
+
+def cage_positions(obj):
+    """(V,3) float32: where modifiers on the cage show the vertices in Edit Mode, in the object's own space; None without
+    such modifiers, or if it can't be told. Not to be called while Blender draws.
+
+    Blender lets nobody ask for the cage, so this is the mesh after all modifiers; those after the cage move it little.
+    """
+    modifiers = on_cage(obj) if obj.mode == "EDIT" else []
+    if not modifiers:
+        return None
+    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh, count = evaluated.to_mesh(), len(bmesh.from_edit_mesh(obj.data).verts)
+    try:
+        keeping = len(mesh.vertices) >= count and all(each.type in KEEPING for each in modifiers)
+        if not keeping and len(mesh.vertices) != count:
+            return None
+        return read(mesh.vertices, "co", np.float32, 3)[:count]
+    finally:
+        evaluated.to_mesh_clear()
+
+
 def shown_positions(obj):
-    """(V,3) float32: where the vertices are in Edit Mode, in the object's own space: of the shape key that is edited.
-    The mesh must be up to date."""
+    """(V,3) float32: where the vertices are shown in Edit Mode, in the object's own space: of the shape key that is
+    edited, or of the cage. The mesh must be up to date. Not to be called while Blender draws."""
+    cage = cage_positions(obj)
+    if cage is not None:
+        return cage
     mesh = obj.data
     if mesh.shape_keys and obj.mode == "EDIT":
         return read(obj.active_shape_key.data, "co", np.float32, 3)

@@ -6,6 +6,8 @@ from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
+from . import mesh_arrays
+
 STEP = 1e-5  # how far behind a clipped face the search goes on, as a share of the way there
 
 
@@ -14,15 +16,23 @@ class FaceTree:
 
     def __init__(self, obj):
         if obj.mode == "EDIT":
-            self._fill(bmesh.from_edit_mesh(obj.data))
+            self._fill(bmesh.from_edit_mesh(obj.data), mesh_arrays.cage_positions(obj))
         else:
             bm = bmesh.new()
             bm.from_mesh(obj.data)
             self._fill(bm)
             bm.free()
 
-    def _fill(self, bm):
+    def _fill(self, bm, cage=None):
+        """cage: (V,3) where the vertices are shown, if elsewhere."""
         bm.faces.index_update()
+        if cage is not None:
+            bm.verts.index_update()
+            faces = [face for face in bm.faces if not face.hide]
+            self._indices = [face.index for face in faces]
+            corners = [[vertex.index for vertex in face.verts] for face in faces]
+            self._tree = BVHTree.FromPolygons(cage.tolist(), corners)
+            return
         hidden = [face.index for face in bm.faces if face.hide]
         self._indices = None  # of the faces in the mesh; none is needed where all are visible
         if not hidden:

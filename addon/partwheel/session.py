@@ -237,8 +237,8 @@ def known(mesh):
 
 
 def revision(mesh):
-    """A number that is another one after each change of the mesh's geometry, or of what is hidden, that Blender told
-    of. Selecting is none."""
+    """A number that is another one after each change of the mesh's geometry, or of its cage, or of what is hidden, that
+    Blender told of. Selecting is none."""
     return _revisions.get(key(mesh), 0), _undos
 
 
@@ -252,6 +252,10 @@ def _edited(_scene, depsgraph):
             _revisions[mesh] = _revisions.get(mesh, 0) + 1
             if mesh in _entries:
                 _entries[mesh].sure = False
+        elif (update.is_updated_geometry and isinstance(update.id, bpy.types.Object) and update.id.type == "MESH"
+              and mesh_arrays.on_cage(update.id)):
+            mesh = key(update.id.original.data)
+            _revisions[mesh] = _revisions.get(mesh, 0) + 1
 
 
 @bpy.app.handlers.persistent

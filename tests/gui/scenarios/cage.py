@@ -1,0 +1,52 @@
+"""Modifiers that are shown on the cage: what is seen there is picked, also after a modifier has changed."""
+import math
+
+import bpy
+import numpy
+
+
+def play(stage):
+    yield from stage.open("hand")
+    stage.use_tool()
+    model, own = stage.object, stage.wheels.vertices
+    bend = model.modifiers.new("bend", "SIMPLE_DEFORM")
+    bend.deform_method, bend.deform_axis, bend.show_in_editmode = "BEND", "Y", True
+    for angle, on_cage in ((1.2, True), (-1.0, True), (-1.0, False)):
+        bend.angle, bend.show_on_cage = angle, on_cage
+        yield from stage.drawn()
+        stage.wheels.vertices = shown(model) if on_cage else own
+        stage.check(not on_cage or numpy.abs(stage.wheels.vertices - own).max() > 0.05 * numpy.ptp(own),
+                    "the modifier moves a good deal")
+        yield from take(stage, f"bent by {math.degrees(angle):.0f} degrees, {'on the cage' if on_cage else 'beside it'}")
+    model.modifiers.remove(bend)
+
+    mirror = model.modifiers.new("mirror", "MIRROR")
+    mirror.show_in_editmode = mirror.show_on_cage = True
+    smooth = model.modifiers.new("smooth", "SUBSURF")
+    smooth.show_in_editmode = smooth.show_on_cage = True
+    yield from stage.drawn()
+    stage.wheels.vertices = shown(model)
+    yield from take(stage, "mirrored and subdivided on the cage")
+
+
+def shown(model):
+    """(V,3) where the modifiers put the mesh's own vertices, which come first in their result."""
+    mesh = model.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+    return numpy.array([vertex.co for vertex in mesh.vertices][:len(model.data.vertices)])
+
+
+def take(stage, when):
+    x, y, face = stage.spot(0.5, 0.9, above=1)
+    stops, start = stage.wheels.stops(face)
+    stage.mouse.move(x - 3, y)
+    stage.mouse.move(x, y)
+    yield from stage.until(f"hover shows the part of a click ({when})", lambda: stage.hovered() == stops[start])
+    stage.mouse.click()
+    yield from stage.selected(stops[start], f"after a click ({when})")
+    made = stage.part("prepared").prepared(stage.object)
+    stage.mouse.wheel(1)
+    yield from stage.selected(stops[start + 1], f"after a notch ({when})")
+    stage.check(stage.part("prepared").prepared(stage.object) is made, f"a notch makes nothing anew ({when})")
+    yield from stage.screenshot("-".join(when.replace(",", "").split()))
+    stage.mouse.key("ESC")
+    yield from stage.ended()
