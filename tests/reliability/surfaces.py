@@ -1,11 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is wrong with a surface, found without the library: slow, simple, and exact where it matters."""
 
+import re
 from fractions import Fraction
 
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
+
+
+def deserved(vertices, triangles, faces, name, message):
+    """Whether the surface has earned this refusal of the exact rung. For self-intersection the faces that the message
+    names must truly meet, and nothing else be wrong, for that is looked for first."""
+    wrong = defects(vertices, triangles)
+    if name != "self-intersection":
+        return name in wrong
+    first, second = (np.flatnonzero(faces == int(face))
+                     for face in re.search(r"faces (\d+) and (\d+) meet", message).groups())
+    return not wrong and any(crossing(vertices, triangles, a, b) for a in first for b in second if a != b)
 
 
 def defects(vertices, triangles):

@@ -13,9 +13,10 @@ import models
 import numpy as np
 import pytest
 import solids
+import surfaces
 import trimesh
 from conftest import ROOT
-from partwheel.core import Hierarchy, PartwheelError
+from partwheel.core import Hierarchy, PartwheelError, Rung
 from partwheel.core.meshes import MeshFileError
 from partwheel.core.worker import Job
 
@@ -86,6 +87,19 @@ def test_built_or_a_sheet(name, outcomes):
     else:
         assert outcome.error is None
         solids.check(outcome.hierarchy, *models.read(name))
+
+
+@pytest.mark.parametrize("name", [*models.primitives(), *models.benchmark()])  # the others: test_real_meshes.py
+def test_what_is_clean_is_built_exactly(name, outcomes):
+    """Whatever was not built on the exact rung has earned its refusal there."""
+    outcome = outcomes[name].result()
+    vertices, triangles, faces, face_count = models.read(name)
+    if outcome.hierarchy and outcome.hierarchy.summary.rung == "exact":
+        assert surfaces.defects(vertices, triangles) == set()
+        return
+    with pytest.raises(PartwheelError) as refused:
+        Job(vertices, triangles, faces, face_count, rungs=Rung.EXACT).result()
+    assert surfaces.deserved(vertices, triangles, faces, refused.value.name, str(refused.value)), refused.value
 
 
 @pytest.mark.parametrize("name", sorted(models.NOT_SOLID))

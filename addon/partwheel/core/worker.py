@@ -170,7 +170,7 @@ class Job:
             raise PartwheelError(Status.CANCELLED, "The build was cancelled.")
         if late:
             raise WorkerError("time limit", f"The build was still in the stage {self._progress[1]} after "
-                                            f"{self._time_limit:.0f} seconds {late[0]} and was stopped. {HARMLESS} A "
+                                            f"{self._time_limit:g} seconds {late[0]} and was stopped. {HARMLESS} A "
                                             "mesh with fewer faces (Decimate, or a voxel remesh) is faster.")
         raise WorkerError("crash", f"The worker process {_ending(process.returncode)} in the stage {self._progress[1]}."
                                    f" {HARMLESS} Merging vertices by distance, or a voxel remesh, often helps.")
