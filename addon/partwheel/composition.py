@@ -6,7 +6,6 @@ import numpy as np
 from mathutils import Vector
 
 from . import solids
-from .core import PartwheelError
 from .mesh_arrays import read
 
 
@@ -24,17 +23,12 @@ def removed(obj, hierarchy, node, options=solids.Options()):
 def split(obj, hierarchy, bounds, options=solids.Options(), explode=0.0):
     """New objects in a new collection: the parts of a cut as closed meshes, those without faces left out. Each is moved
     away from the middle of the object's bounding box by explode times its distance to it."""
-    collection = bpy.data.collections.new(f"{obj.name} parts")
-    home(obj).children.link(collection)
     middle = sum((Vector(corner) for corner in obj.bound_box), Vector()) / 8
     made = []
-    for first, last in zip(bounds, bounds[1:]):
-        try:
-            mesh = solids.part(obj, hierarchy, first, last, options)
-        except PartwheelError as error:
-            if error.name != "empty":
-                raise
-            continue
+    meshes = solids.parts(obj, hierarchy, list(zip(bounds.tolist(), bounds[1:].tolist())), options)
+    collection = bpy.data.collections.new(f"{obj.name} parts")
+    home(obj).children.link(collection)
+    for mesh in filter(None, meshes):
         part = _beside(obj, mesh, f"{obj.name} part", collection)
         corners = read(mesh.vertices, "co", np.float32, 3)
         away = Vector((corners.min(axis=0) + corners.max(axis=0)) / 2) - middle

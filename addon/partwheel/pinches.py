@@ -5,8 +5,6 @@ same. What core's solids do, for a mesh of Blender's own making."""
 import bmesh
 import numpy as np
 
-from .solids import copy_face
-
 
 def set_apart(bm):
     """Changes the bmesh where it must; whether its edges have now two faces each, wound alike. Several vertices then
@@ -47,7 +45,7 @@ def set_apart(bm):
             corners.append((own.get(loop, loop.vert), loop))
             if loop in middle:
                 corners.append((middle[loop], (loop, loop.link_loop_next)))
-        copy_face(bm, face, corners)
+        _copy_face(bm, face, corners)
     bmesh.ops.delete(bm, geom=list(faces), context="FACES")
     return all(edge.is_contiguous for edge in bm.edges)
 
@@ -96,3 +94,39 @@ def _umbrellas(vert, across):
                     todo.append(beyond)
         groups.append(group)
     return groups
+
+
+def _copy_face(bm, old, corners):
+    """A new face with the attributes of an old one. corners: (its vertex, the loop of old that it copies; or two, for a
+    vertex midway between them)."""
+    # Never copy_from(): it also copies Blender's link from an element to its Python object, and crashes later.
+    for (vert, source), (after, source_after) in zip(corners, corners[1:] + corners[:1]):
+        if isinstance(source, tuple):
+            source = source[0]
+        following = source_after[1] if isinstance(source_after, tuple) else source_after
+        if source.link_loop_next == following and not bm.edges.get((vert, after)):
+            bm.edges.new((vert, after), source.edge)
+    new = bm.faces.new([vert for vert, _ in corners], old)
+    new.smooth, new.material_index = old.smooth, old.material_index
+    for loop, (_, source) in zip(new.loops, corners):
+        if isinstance(source, tuple):
+            _mix_layers(bm.loops.layers, *source, loop)
+        else:
+            _copy_layers(bm.loops.layers, source, loop)
+
+
+def _copy_layers(layers, old, new):
+    for kind in ("bool", "int", "float", "string", "float_vector", "color", "float_color"):
+        for layer in getattr(layers, kind).values() if hasattr(layers, kind) else ():
+            new[layer] = old[layer]
+    for layer in layers.uv.values():
+        new[layer].uv, new[layer].pin_uv = old[layer].uv, old[layer].pin_uv
+
+
+def _mix_layers(layers, one, other, new):
+    _copy_layers(layers, one, new)
+    for kind in ("float", "float_vector", "color", "float_color"):
+        for layer in getattr(layers, kind).values() if hasattr(layers, kind) else ():
+            new[layer] = (one[layer] + other[layer]) / 2
+    for layer in layers.uv.values():
+        new[layer].uv = (one[layer].uv + other[layer].uv) / 2

@@ -12,7 +12,7 @@ import bmesh
 import bpy
 import numpy as np
 
-from . import mesh_arrays
+from . import mesh_arrays, pieces
 from .mesh_arrays import read
 
 CAP = "partwheel_cap"  # the attribute of faces that closes what was cut
@@ -37,13 +37,31 @@ class NotClosed(Exception):
 
 def part(obj, hierarchy, tet_first, tet_last, options=Options()):
     """A new mesh: the part tetrahedra[tet_first:tet_last] of the object's mesh, as it now is. Raises PartwheelError."""
+    return parts(obj, hierarchy, [(tet_first, tet_last)], options)[0]
+
+
+def parts(obj, hierarchy, slices, options=Options()):
+    """New meshes, one for each slice (tet_first, tet_last); with caps that match exactly, where they aren't smooth. None
+    for a slice that has no tetrahedron left, unless it is the only one."""
     mesh = mesh_arrays.up_to_date(obj)
-    made = mesh.copy()
-    made.name = f"{mesh.name} part"
+    exact = hierarchy.summary.rung == "exact"
+    if not exact:
+        found = [None] * len(slices)
+    else:
+        found = hierarchy.solids(slices) if len(slices) > 1 else [hierarchy.solid_of_slice(*slices[0])]
+    made = []
     try:
-        _carve(mesh, made, hierarchy, tet_first, tet_last, options, alone=True)
+        for each, solid in zip(slices, found):
+            if exact and solid is None:
+                made.append(None)
+                continue
+            new, normals = _carved(mesh, hierarchy, solid, *each, options, alone=True)
+            made.append(new)
+            if normals is not None:
+                mesh_arrays.set_custom_normals(new, normals)
     except Exception:
-        bpy.data.meshes.remove(made)
+        for new in filter(None, made):
+            bpy.data.meshes.remove(new)
         raise
     return made
 
@@ -51,196 +69,210 @@ def part(obj, hierarchy, tet_first, tet_last, options=Options()):
 def remove(obj, hierarchy, tet_first, tet_last, options=Options()):
     """Takes the part out of the object's mesh, which must not be in Edit Mode, and closes the hole. Raises
     PartwheelError before anything has changed."""
-    _carve(obj.data, obj.data, hierarchy, tet_last, tet_first, options, alone=False)
-
-
-def _carve(mesh, target, hierarchy, tet_first, tet_last, options, alone):
-    """Makes of target, which is the mesh or a copy, what is in the slice, closed. alone: loose elements go too."""
-    exact = hierarchy.summary.rung == "exact"
-    solid = hierarchy.solid_of_slice(tet_first, tet_last) if exact else None
-    normals = mesh_arrays.custom_normals(mesh)
-    bm = bmesh.new()
-    try:
-        bm.from_mesh(mesh)
-        if normals is not None:
-            _number_loops(bm)
-        open_before = set()
-        if exact:
-            caps = _keep_solid(bm, mesh, hierarchy, solid, alone, facets=not options.smooth)
-        else:
-            open_before = _keep_faces(bm, hierarchy, tet_first, tet_last, alone)
-        if not exact or options.smooth:
-            if exact or alone:
-                _set_apart(bm)
-            caps = _fill(bm, options.smooth, open_before)
-            if (exact or alone) and any(len(edge.link_faces) != 2 for edge in bm.edges if edge.link_faces):
-                raise NotClosed("This part can't be closed: its border crosses itself. Take a larger or smaller one.")
-        bm.faces.index_update()
-        indices = np.fromiter((face.index for face in caps), np.int32, len(caps))
-        if options.material and len(indices):
-            slot = _cap_slot(target)
-            for face in caps:
-                face.material_index = slot
-        loops = _take_loop_numbers(bm) if normals is not None else None
-        bm.to_mesh(target)
-    finally:
-        bm.free()
-    _mark(target, indices)
+    target = obj.data
+    solid = hierarchy.solid_of_slice(tet_last, tet_first) if hierarchy.summary.rung == "exact" else None
+    made, normals = _carved(target, hierarchy, solid, tet_last, tet_first, options, alone=False)
+    if options.material and len(made.materials) > len(target.materials):
+        _cap_slot(target)
+    pieces.replace_geometry(target, made)
+    bpy.data.meshes.remove(made)
     if normals is not None:
-        chosen = normals[np.maximum(loops, 0)]
-        chosen[loops < 0] = 0  # as Blender computes them
-        mesh_arrays.set_custom_normals(target, chosen)
+        mesh_arrays.set_custom_normals(target, normals)
     target.update()
 
 
-# ---- The exact rung: core's Solid
+def _carved(mesh, hierarchy, solid, tet_first, tet_last, options, alone):
+    """(new mesh: what is in the slice, closed; its custom normals (L,3), if the mesh has any). solid: core's Solid of the
+    slice, on the exact rung. alone: without what has no face."""
+    exact = solid is not None
+    if exact:
+        plan = _of_solid(mesh, hierarchy, solid, alone, facets=not options.smooth)
+    else:
+        plan = _of_faces(mesh, hierarchy, tet_first, tet_last, alone)
+    normals = mesh_arrays.custom_normals(mesh)
+    made, loops = pieces.assembled(mesh, plan, f"{mesh.name} part"), plan.loops[:, 0]
+    try:
+        caps = np.flatnonzero(plan.polygons < 0)
+        if not exact or options.smooth:
+            caps, loops = _closed(made, loops, mesh, options.smooth, exact, alone)
+        if options.material and len(caps):
+            indices = read(made.polygons, "material_index", np.int32)
+            indices[caps] = _cap_slot(made)
+            made.polygons.foreach_set("material_index", indices)
+        _mark(made, caps)
+    except Exception:
+        bpy.data.meshes.remove(made)
+        raise
+    if normals is not None:
+        normals = np.where(loops[:, None] < 0, 0, normals[loops])  # 0: as Blender computes them
+    return made, normals
 
 
-def _keep_solid(bm, mesh, hierarchy, solid, alone, facets):
-    """Leaves only the solid's polygons, cuts those that lie in it in part, and adds its caps (if facets)."""
-    polygons = list(bm.faces)
+def _closed(made, loops, mesh, smooth, exact, alone):
+    """Closes the borders of a mesh made of another's polygons; where those are of no use as a solid, all that were open
+    before stay so, unless alone. (its caps, (L,) the loop of the other that each of its is, -1 for new ones)"""
+    bm = bmesh.new()
+    try:
+        bm.from_mesh(made)
+        number = bm.loops.layers.int.new(_LOOP)
+        for loop, source in zip((loop for face in bm.faces for loop in face.loops), loops.tolist()):
+            loop[number] = source + 1
+        open_before = set()
+        if not exact:
+            open_before = _mended(bm, loops, mesh, alone)
+        if exact or alone:
+            _set_apart(bm)
+        caps = _fill(bm, smooth, open_before)
+        if (exact or alone) and any(len(edge.link_faces) != 2 for edge in bm.edges if edge.link_faces):
+            raise NotClosed("This part can't be closed: its border crosses itself. Take a larger or smaller one.")
+        bm.faces.index_update()
+        caps = np.array([face.index for face in caps], np.int32)
+        number = bm.loops.layers.int[_LOOP]
+        loops = np.array([loop[number] - 1 for face in bm.faces for loop in face.loops], np.int32)
+        bm.loops.layers.int.remove(number)
+        bm.to_mesh(made)
+    finally:
+        bm.free()
+    return caps, loops
+
+
+def _mended(bm, loops, mesh, alone):
+    """Wound alike and doubles welded, if alone; else it is the edges that stay open, since they were before: what is left
+    of a broken mesh is as broken as before, and only the new hole is closed."""
+    if not alone:
+        edge = read(mesh.loops, "edge_index", np.int32)
+        was_open = np.bincount(edge, minlength=len(mesh.edges))[edge[loops]] == 1
+        return {loop.edge for loop, was in zip((loop for face in bm.faces for loop in face.loops), was_open.tolist())
+                if was}
+    size = max((max(vert.co[axis] for vert in bm.verts) - min(vert.co[axis] for vert in bm.verts)) for axis in range(3))
+    bmesh.ops.remove_doubles(bm, verts=[vert for vert in bm.verts if vert.is_boundary], dist=WELD * size)
+    bmesh.ops.recalc_face_normals(bm, faces=bm.faces[:])
+    return set()
+
+
+# ---- Where each vertex and polygon comes from
+
+
+def _of_solid(mesh, hierarchy, solid, alone, facets):
+    """The pieces.Plan of core's Solid: the polygons that lie in it whole stay, those that are cut become triangles; and
+    its caps (if facets)."""
     own = np.flatnonzero(solid.faces >= 0)
     faces, corners = solid.faces[own], solid.triangles[own]
     source = np.where(solid.ends[:, 0] == solid.ends[:, 1], hierarchy.source[solid.ends[:, 0]], -1)
 
     # Where the surface is cut apart, one source vertex is several: the first keeps Blender's.
-    _, firsts = np.unique(source, return_index=True)
-    is_first = np.zeros(len(source), bool)
-    is_first[firsts] = True
-    is_first &= source >= 0
+    first = np.full(len(mesh.vertices) + 1, -1)  # the last: of vertices that are no source vertex
+    first[source[::-1]] = np.arange(len(source))[::-1]
+    is_first = (first[source] == np.arange(len(source))) & (source >= 0)
 
-    totals = read(mesh.polygons, "loop_total", np.int32)
+    begin, totals = mesh_arrays.polygon_sizes(mesh)
     triangles = np.bincount(faces, minlength=len(totals))
-    pairs = np.unique(np.repeat(faces, 3).astype(np.int64) * len(source) + corners.ravel())
-    of, at = np.divmod(pairs, len(source))  # a face, and a corner of the solid that it has
     strange = np.zeros(len(totals), bool)  # with a corner that is not the polygon's own
-    strange[of[source[at] < 0]] = True
-    whole = (triangles == totals - 2) & (np.bincount(of, minlength=len(totals)) == totals) & ~strange
+    strange[faces[(source[corners] < 0).any(axis=1)]] = True
     parted = np.zeros(len(totals), bool)  # with a corner at which the surface is cut apart
-    parted[of[~is_first[at]]] = True
-    stays = whole & ~parted
+    parted[faces[~is_first[corners].all(axis=1)]] = True
+    whole = (triangles == totals - 2) & ~strange
+    large = whole[faces] & (totals[faces] > 3)
+    of, _ = _corners_of(faces[large], corners[large], len(source))
+    whole &= (totals <= 3) | (np.bincount(of, minlength=len(totals)) == totals)
+    stays, apart = whole & ~parted, whole & parted
+    cut, caps = ~whole[faces], solid.triangles[solid.beyond >= 0]
+    if not facets:
+        caps = caps[:0]
 
-    # Those that are not only corners of polygons that stay.
-    rest = corners[~stays[faces]].ravel()
-    verts = _vertices(bm, hierarchy, solid, source, is_first,
-                      np.union1d(rest, solid.triangles[solid.beyond >= 0]) if facets else np.unique(rest))
-    new_corner = {}
-    apart = (whole & parted)[of]
-    for face, corner in zip(of[apart].tolist(), at[apart].tolist()):
-        new_corner.setdefault(face, {})[int(source[corner])] = verts[corner]
-    for face, replaced in new_corner.items():
-        old = polygons[face]
-        copy_face(bm, old, [(replaced[loop.vert.index], loop) for loop in old.loops])
-    cut = ~whole[faces]
-    for face, triangle in zip(faces[cut].tolist(), corners[cut].tolist()):
-        old = polygons[face]
-        loops = {loop.vert.index: loop for loop in old.loops}
-        copy_face(bm, old, [(verts[corner], loops[int(source[corner])] if source[corner] >= 0 else
-                             tuple(loops[int(hierarchy.source[end])] for end in solid.ends[corner]))
-                            for corner in triangle])
-    caps = []
-    if facets:
-        for triangle in solid.triangles[solid.beyond >= 0].tolist():
-            cap = bm.faces.new([verts[corner] for corner in triangle])
-            cap.smooth = False
-            caps.append(cap)
-    _delete(bm, [face for face, keep in zip(polygons, stays.tolist()) if not keep], alone)
-    return caps
+    # Solid vertices that are not only corners of polygons that stay.
+    used = np.unique(np.concatenate([corners[~stays[faces]].ravel(), caps.ravel()]))
+    vertex, keep, loops, wires = _kept(mesh, stays, alone)
+    keep[source[used[is_first[used]]]] = True
+    kept = np.flatnonzero(keep)
+    new = used[~is_first[used]]
+    ends = solid.ends[new]
+    origins = np.concatenate([np.repeat(kept[:, None], 2, axis=1), hierarchy.source[ends]])
+    origins[(origins < 0).any(axis=1)] = -1
+    places = solid.vertices[new].astype(np.float32)
+    number = np.zeros(len(source), np.int32)  # solid vertex -> vertex of the plan
+    number[is_first] = (np.cumsum(keep) - 1)[source[is_first]]
+    number[new] = len(kept) + np.arange(len(new))
 
+    parts = [_Corners(np.repeat(loops[:, None], 2, axis=1), (np.cumsum(keep) - 1)[vertex[loops]], totals[stays],
+                      np.flatnonzero(stays))]
+    # The loops of polygons that don't stay, by polygon and vertex.
+    polygon = np.repeat(np.arange(len(totals)), totals)
+    theirs = np.flatnonzero((apart | (triangles > 0) & ~whole)[polygon])
+    key = polygon[theirs].astype(np.int64) * len(mesh.vertices) + vertex[theirs]
+    order = np.argsort(key)
 
-def _vertices(bm, hierarchy, solid, source, is_first, used):
-    """Solid vertex -> BMVert, of these: Blender's own where there is one, a copy of it where the surface is cut apart,
-    else new."""
-    verts = {}
-    own = list(bm.verts)
-    for corner in used.tolist():
-        vertex = int(source[corner])
-        if is_first[corner]:
-            verts[corner] = own[vertex]
-        elif vertex >= 0:
-            verts[corner] = bm.verts.new(own[vertex].co, own[vertex])
-        else:
-            a, b = (int(hierarchy.source[end]) for end in solid.ends[corner])
-            if a >= 0 and b >= 0:
-                middle = bm.verts.new((own[a].co + own[b].co) / 2, own[a])
-                middle.copy_from_vert_interp((own[a], own[b]), 0.5)
-                verts[corner] = middle
-            else:
-                verts[corner] = _new_vert(bm, solid.vertices[corner])
-    return verts
+    def loop_of(face, at):
+        return theirs[order[np.searchsorted(key, face.astype(np.int64) * len(mesh.vertices) + at, sorter=order)]]
+
+    replaced, by = _corners_of(faces[apart[faces]], corners[apart[faces]], len(source))
+    in_loop = np.zeros(len(vertex), np.int32)
+    in_loop[loop_of(replaced, source[by])] = number[by]
+    loops = np.flatnonzero(apart[polygon])
+    parts.append(_Corners(np.repeat(loops[:, None], 2, axis=1), in_loop[loops], totals[apart], np.flatnonzero(apart)))
+    at = corners[cut].ravel()
+    loops = np.stack([loop_of(np.repeat(faces[cut], 3), hierarchy.source[solid.ends[at, k]]) for k in (0, 1)], axis=1)
+    parts.append(_Corners(loops, number[at], np.full(cut.sum(), 3), faces[cut]))
+    parts.append(_Corners(np.full((caps.size, 2), -1), number[caps.ravel()], np.full(len(caps), 3),
+                          np.full(len(caps), -1)))
+    return _plan(mesh, parts, kept, origins, places, wires)
 
 
-def _new_vert(bm, place):
-    vert = bm.verts.new(place)
-    for key in bm.verts.layers.shape.values():
-        vert[key] = vert.co
-    return vert
+def _corners_of(faces, corners, count):
+    """Of triangles (T,3) with the faces that they are of, each pair of a face and one of its corners, once."""
+    pairs = np.unique(np.repeat(faces, 3).astype(np.int64) * count + corners.ravel())
+    return np.divmod(pairs, count)
 
 
-def copy_face(bm, old, corners):
-    """A new face with the attributes of an old one. corners: (its vertex, the loop of old that it copies; or two, for a
-    vertex midway between them)."""
-    # Never copy_from(): it also copies Blender's link from an element to its Python object, and crashes later.
-    for (vert, source), (after, source_after) in zip(corners, corners[1:] + corners[:1]):
-        if isinstance(source, tuple):
-            source = source[0]
-        following = source_after[1] if isinstance(source_after, tuple) else source_after
-        if source.link_loop_next == following and not bm.edges.get((vert, after)):
-            bm.edges.new((vert, after), source.edge)
-    new = bm.faces.new([vert for vert, _ in corners], old)
-    new.smooth, new.material_index = old.smooth, old.material_index
-    for loop, (_, source) in zip(new.loops, corners):
-        if isinstance(source, tuple):
-            _mix_layers(bm.loops.layers, *source, loop)
-        else:
-            _copy_layers(bm.loops.layers, source, loop)
-
-
-def _copy_layers(layers, old, new):
-    for kind in ("bool", "int", "float", "string", "float_vector", "color", "float_color"):
-        for layer in getattr(layers, kind).values() if hasattr(layers, kind) else ():
-            new[layer] = old[layer]
-    for layer in layers.uv.values():
-        new[layer].uv, new[layer].pin_uv = old[layer].uv, old[layer].pin_uv
-
-
-def _mix_layers(layers, one, other, new):
-    _copy_layers(layers, one, new)
-    for kind in ("float", "float_vector", "color", "float_color"):
-        for layer in getattr(layers, kind).values() if hasattr(layers, kind) else ():
-            new[layer] = (one[layer] + other[layer]) / 2
-    for layer in layers.uv.values():
-        new[layer].uv = (one[layer].uv + other[layer].uv) / 2
-
-
-def _delete(bm, faces, alone):
-    wires = [edge for edge in bm.edges if edge.is_wire] if alone else []
-    dots = [vert for vert in bm.verts if not vert.link_edges] if alone else []
-    for geometry, context in ((faces, "FACES"), (wires, "EDGES"), (dots, "VERTS")):
-        if geometry:  # even of nothing it takes its time
-            bmesh.ops.delete(bm, geom=geometry, context=context)
-    if wires:
-        bmesh.ops.delete(bm, geom=[vert for vert in bm.verts if not vert.link_edges], context="VERTS")
-
-
-# ---- The other rungs: the mesh's own polygons
-
-
-def _keep_faces(bm, hierarchy, tet_first, tet_last, alone):
-    """Leaves only the slice's polygons. Edges that were open before and are to stay so."""
+def _of_faces(mesh, hierarchy, tet_first, tet_last, alone):
+    """The pieces.Plan of the slice's polygons alone."""
     leaf = hierarchy.leaf
     inside = ((leaf >= tet_first) & (leaf < tet_last) if tet_first < tet_last
               else (leaf >= tet_first) | (leaf < tet_last))
     if not inside.any():
         raise NotClosed("This part has no face of the mesh. Take a larger one.")
-    open_before = {edge for edge in bm.edges if edge.is_boundary}
-    _delete(bm, [face for face, keep in zip(bm.faces, inside.tolist()) if not keep], alone)
-    if not alone:  # what is left of a broken mesh is as broken as before; only the new hole is closed
-        return {edge for edge in open_before if edge.is_valid}
-    size = max((max(vert.co[axis] for vert in bm.verts) - min(vert.co[axis] for vert in bm.verts)) for axis in range(3))
-    bmesh.ops.remove_doubles(bm, verts=[vert for vert in bm.verts if vert.is_boundary], dist=WELD * size)
-    bmesh.ops.recalc_face_normals(bm, faces=bm.faces[:])
-    return set()
+    vertex, keep, loops, wires = _kept(mesh, inside, alone)
+    kept = np.flatnonzero(keep)
+    part = _Corners(np.repeat(loops[:, None], 2, axis=1), (np.cumsum(keep) - 1)[vertex[loops]],
+                    mesh_arrays.polygon_sizes(mesh)[1][inside], np.flatnonzero(inside))
+    return _plan(mesh, [part], kept, np.repeat(kept[:, None], 2, axis=1), np.empty((0, 3), np.float32), wires)
+
+
+class _Corners(NamedTuple):
+    """Some of a Plan's polygons: loops (L,2), corners (L,), how many corners each polygon has (P,), polygons (P,)."""
+
+    loops: np.ndarray
+    corners: np.ndarray
+    totals: np.ndarray
+    polygons: np.ndarray
+
+
+def _kept(mesh, stays, alone):
+    """((L,) the vertex of each loop, (V,) whether it is of a polygon that stays, or has no face and stays, the loops of
+    polygons that stay, edges without a face that stay). What has no face goes if alone."""
+    vertex = read(mesh.loops, "vertex_index", np.int32)
+    loops = np.flatnonzero(np.repeat(stays, mesh_arrays.polygon_sizes(mesh)[1]))
+    keep = np.zeros(len(mesh.vertices), bool)
+    keep[vertex[loops]] = True
+    wires = np.empty(0, np.int64)
+    if not alone:
+        wires = np.flatnonzero(np.bincount(read(mesh.loops, "edge_index", np.int32), minlength=len(mesh.edges)) == 0)
+        ends = mesh_arrays.edge_vertices(mesh)
+        loose = np.ones(len(keep), bool)
+        loose[vertex] = loose[ends] = False
+        keep[ends[wires]] = keep[loose] = True
+    return vertex, keep, loops, wires
+
+
+def _plan(mesh, parts, kept, origins, places, wires):
+    loops, corners, totals, polygons = (np.concatenate(each) for each in zip(*parts))
+    begin = np.cumsum(totals) - totals
+    own = read(mesh.vertices, "co", np.float32, 3)
+    return pieces.Plan(np.concatenate([own[kept], places]), origins, loops, corners, begin, polygons, wires,
+                       np.searchsorted(kept, mesh_arrays.edge_vertices(mesh)[wires]))
+
+
+# ---- What closes a border
 
 
 def _set_apart(bm):
@@ -317,6 +349,13 @@ def _fill_border(bm, border, rings):
     return caps
 
 
+def _new_vert(bm, place):
+    vert = bm.verts.new(place)
+    for key in bm.verts.layers.shape.values():
+        vert[key] = vert.co
+    return vert
+
+
 def _fair(rows, top):
     """Moves the new vertices until the discrete bi-Laplacian vanishes (Kobbelt et al. 1998), so that the cap leaves the
     border as the surface arrives there. Rows of vertices from the border inwards; the border and what lies outside it
@@ -379,20 +418,3 @@ def _mark(mesh, caps):
     marks = read(layer.data, "value", bool)
     marks[caps] = True
     layer.data.foreach_set("value", marks)
-
-
-def _number_loops(bm):
-    layer = bm.loops.layers.int.new(_LOOP)
-    number = 1
-    for face in bm.faces:
-        for loop in face.loops:
-            loop[layer] = number
-            number += 1
-
-
-def _take_loop_numbers(bm):
-    """(L,) the source's loop that each loop was, -1 for new ones."""
-    layer = bm.loops.layers.int[_LOOP]
-    numbers = np.fromiter((loop[layer] - 1 for face in bm.faces for loop in face.loops), np.int32)
-    bm.loops.layers.int.remove(layer)
-    return numbers
