@@ -78,6 +78,19 @@ def polygon_sizes(mesh):
     return begin, np.diff(begin, append=np.int32(len(mesh.loops)))
 
 
+def material_indices(mesh):
+    """(F,)"""
+    layer = mesh.attributes.get("material_index")
+    return read(layer.data, "value", np.int32) if layer else np.zeros(len(mesh.polygons), np.int32)
+
+
+def set_material_indices(mesh, indices):
+    layer = mesh.attributes.get("material_index")
+    if layer or indices.any():
+        layer = layer or mesh.attributes.new("material_index", "INT", "FACE")
+        layer.data.foreach_set("value", indices)
+
+
 def triangles(mesh):
     """((T,3) the vertices of Blender's triangles, (T,) the polygon of each)"""
     if len(mesh.loops) == 3 * len(mesh.polygons):

@@ -96,9 +96,9 @@ def _carved(mesh, hierarchy, solid, tet_first, tet_last, options, alone):
         if not exact or options.smooth:
             caps, loops = _closed(made, loops, mesh, options.smooth, exact, alone)
         if options.material and len(caps):
-            indices = read(made.polygons, "material_index", np.int32)
+            indices = mesh_arrays.material_indices(made)
             indices[caps] = _cap_slot(made)
-            made.polygons.foreach_set("material_index", indices)
+            mesh_arrays.set_material_indices(made, indices)
         _mark(made, caps)
     except Exception:
         bpy.data.meshes.remove(made)
@@ -165,7 +165,7 @@ def _of_solid(mesh, hierarchy, solid, alone, facets):
     first[source[::-1]] = np.arange(len(source))[::-1]
     is_first = (first[source] == np.arange(len(source))) & (source >= 0)
 
-    begin, totals = mesh_arrays.polygon_sizes(mesh)
+    _, totals = mesh_arrays.polygon_sizes(mesh)
     triangles = np.bincount(faces, minlength=len(totals))
     strange = np.zeros(len(totals), bool)  # with a corner that is not the polygon's own
     strange[faces[(source[corners] < 0).any(axis=1)]] = True
@@ -182,7 +182,7 @@ def _of_solid(mesh, hierarchy, solid, alone, facets):
 
     # Solid vertices that are not only corners of polygons that stay.
     used = np.unique(np.concatenate([corners[~stays[faces]].ravel(), caps.ravel()]))
-    vertex, keep, loops, wires = _kept(mesh, stays, alone)
+    vertex, keep, loops, wires = _kept(mesh, stays, totals, alone)
     keep[source[used[is_first[used]]]] = True
     kept = np.flatnonzero(keep)
     new = used[~is_first[used]]
@@ -231,10 +231,11 @@ def _of_faces(mesh, hierarchy, tet_first, tet_last, alone):
               else (leaf >= tet_first) | (leaf < tet_last))
     if not inside.any():
         raise NotClosed("This part has no face of the mesh. Take a larger one.")
-    vertex, keep, loops, wires = _kept(mesh, inside, alone)
+    _, totals = mesh_arrays.polygon_sizes(mesh)
+    vertex, keep, loops, wires = _kept(mesh, inside, totals, alone)
     kept = np.flatnonzero(keep)
-    part = _Corners(np.repeat(loops[:, None], 2, axis=1), (np.cumsum(keep) - 1)[vertex[loops]],
-                    mesh_arrays.polygon_sizes(mesh)[1][inside], np.flatnonzero(inside))
+    part = _Corners(np.repeat(loops[:, None], 2, axis=1), (np.cumsum(keep) - 1)[vertex[loops]], totals[inside],
+                    np.flatnonzero(inside))
     return _plan(mesh, [part], kept, np.repeat(kept[:, None], 2, axis=1), np.empty((0, 3), np.float32), wires)
 
 
@@ -247,11 +248,11 @@ class _Corners(NamedTuple):
     polygons: np.ndarray
 
 
-def _kept(mesh, stays, alone):
+def _kept(mesh, stays, totals, alone):
     """((L,) the vertex of each loop, (V,) whether it is of a polygon that stays, or has no face and stays, the loops of
     polygons that stay, edges without a face that stay). What has no face goes if alone."""
     vertex = read(mesh.loops, "vertex_index", np.int32)
-    loops = np.flatnonzero(np.repeat(stays, mesh_arrays.polygon_sizes(mesh)[1]))
+    loops = np.flatnonzero(np.repeat(stays, totals))
     keep = np.zeros(len(mesh.vertices), bool)
     keep[vertex[loops]] = True
     wires = np.empty(0, np.int64)
@@ -268,8 +269,10 @@ def _plan(mesh, parts, kept, origins, places, wires):
     loops, corners, totals, polygons = (np.concatenate(each) for each in zip(*parts))
     begin = np.cumsum(totals) - totals
     own = read(mesh.vertices, "co", np.float32, 3)
-    return pieces.Plan(np.concatenate([own[kept], places]), origins, loops, corners, begin, polygons, wires,
-                       np.searchsorted(kept, mesh_arrays.edge_vertices(mesh)[wires]))
+    wire_ends = np.empty((0, 2), np.int64)
+    if len(wires):
+        wire_ends = np.searchsorted(kept, mesh_arrays.edge_vertices(mesh)[wires])
+    return pieces.Plan(np.concatenate([own[kept], places]), origins, loops, corners, begin, polygons, wires, wire_ends)
 
 
 # ---- What closes a border

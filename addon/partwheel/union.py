@@ -8,7 +8,8 @@ import numpy as np
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from . import mesh_arrays, pinches
+from . import mesh_arrays, pieces, pinches
+from .core import polygon_faults
 from .mesh_arrays import read
 
 # (solver, whether it also unites what overlaps within one mesh), in the order tried. Blenders before 4.5 have no
@@ -17,6 +18,8 @@ WAYS = (("MANIFOLD", False), ("EXACT", False), ("EXACT", True))
 SAMPLES = 200  # vertices that are looked at to see whether a mesh lies inside another
 RAY = Vector((0.5377, 0.3141, 0.7823)).normalized()  # no model is likely to be built along it
 TOLERANCE = 1e-5  # of the sum of the volumes: coordinates are of 24 bits
+# How the properties begin that are a mesh's settings.
+SETTINGS = ("remesh_", "use_remesh_", "use_mirror_", "use_paint_", "use_auto_", "auto_smooth", "radial", "texspace")
 
 
 class NotUnited(Exception):
@@ -42,9 +45,10 @@ def unite(target, others):
             bpy.data.meshes.remove(base)
             base = result
             solvers.append(solver)
-        _replace(target, base, slots)
-    finally:
+    except Exception:
         bpy.data.meshes.remove(base)
+        raise
+    _replace(target, base, slots)
     return solvers[-1]
 
 
@@ -52,44 +56,26 @@ def problem(mesh):
     """What keeps the mesh from being a closed, manifold, oriented surface, in words; None if nothing does."""
     if not len(mesh.polygons):
         return "it has no faces"
-    begin, total = read(mesh.polygons, "loop_start", np.int32), read(mesh.polygons, "loop_total", np.int32)
-    vertex = read(mesh.loops, "vertex_index", np.int32).astype(np.int64)
-    following = np.arange(1, len(vertex) + 1)
-    following[begin + total - 1] = begin
-    count = len(mesh.vertices)
-    edge, back = vertex * count + vertex[following], vertex[following] * count + vertex
-    order = np.argsort(edge)
-    place = np.minimum(np.searchsorted(edge, back, sorter=order), len(edge) - 1)
-    twin = order[place]
-    if len(mesh.edges) * 2 != len(edge) or len(np.unique(edge)) != len(edge) or (edge[twin] != back).any():
-        uses = np.bincount(read(mesh.loops, "edge_index", np.int32), minlength=len(mesh.edges))
-        if (uses != 2).any():
-            return f"{(uses != 2).sum()} edges have not just two faces"
-        return f"at {(edge[twin] != back).sum() // 2 or 1} edges the faces wind against each other"
-    # From corner to corner about each vertex: one round must meet all of them.
-    step = np.empty(len(vertex), np.int64)
-    step[following] = twin
-    label = np.arange(len(vertex))
-    while True:
-        least = np.minimum(label, label[step])
-        if np.array_equal(least, label):
-            break
-        label, step = least, step[step]
-    rounds = len(np.unique(label))
-    if rounds != count or len(np.unique(vertex)) != count:
-        return f"{abs(rounds - count) or 1} vertices are loose or join parts that only touch there"
+    begin, _ = mesh_arrays.polygon_sizes(mesh)
+    faults = polygon_faults(read(mesh.loops, "vertex_index", np.int32), begin, len(mesh.vertices))
+    open_edges = faults.open or abs(len(mesh.edges) - len(mesh.loops) // 2)  # or edges that no face has
+    if open_edges:
+        return f"{open_edges} edges have not just two faces"
+    if faults.against:
+        return f"at {faults.against} edges the faces wind against each other"
+    if faults.touching:
+        return f"{faults.touching} vertices are loose or join parts that only touch there"
     return None
 
 
 def volume(mesh):
     """That the mesh encloses, in its own unit cubed."""
-    mesh.calc_loop_triangles()
     corners = read(mesh.vertices, "co", np.float32, 3).astype(float)
     if not len(corners):
         return 0.0
     corners -= corners.mean(axis=0)
-    corners = corners[read(mesh.loop_triangles, "vertices", np.int32, 3)]
-    return float(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6)
+    a, b, c = (corners[each] for each in mesh_arrays.triangles(mesh)[0].T)
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
 def _evaluated(obj, slots):
@@ -107,15 +93,15 @@ def _input(obj, mesh, slots):
     wrong = problem(mesh)
     if wrong:
         raise NotUnited(f"{obj.name} is no solid: {wrong}. Repair it, or copy its part anew.")
-    indices = read(mesh.polygons, "material_index", np.int32)
     own = [slot.material for slot in obj.material_slots] or [None]
     for material in own:
         if material not in slots:
             slots.append(material)
+    indices = mesh_arrays.material_indices(mesh)
+    numbers = np.array([slots.index(material) for material in own], np.int32)
     copy = mesh.copy()
     copy.materials.clear()
-    numbers = np.array([slots.index(material) for material in own], np.int32)
-    copy.polygons.foreach_set("material_index", numbers[np.minimum(indices, len(own) - 1)])
+    mesh_arrays.set_material_indices(copy, numbers[np.minimum(indices, len(own) - 1)])
     if copy.shape_keys:  # they can't outlive a union
         holder = bpy.data.objects.new(copy.name, copy)
         holder.shape_key_clear()
@@ -203,11 +189,11 @@ def _boolean(base, operand, solver, within, slots):
     try:
         for obj in objects:
             collection.objects.link(obj)
-            indices = read(obj.data.polygons, "material_index", np.int32)
+            indices = mesh_arrays.material_indices(obj.data)
             obj.data.materials.clear()
             for material in slots:
                 obj.data.materials.append(material)
-            obj.data.polygons.foreach_set("material_index", indices)
+            mesh_arrays.set_material_indices(obj.data, indices)
         modifier = objects[0].modifiers.new("union", "BOOLEAN")
         modifier.operation, modifier.object, modifier.solver = "UNION", objects[1], solver
         if within:
@@ -223,24 +209,33 @@ def _boolean(base, operand, solver, within, slots):
 
 
 def _replace(target, result, slots):
-    """Puts the result into the target's own mesh: its name, properties and users stay."""
-    if target.data.users > 1:
-        target.data = target.data.copy()
-    if target.data.shape_keys:
-        target.shape_key_clear()
-    mesh = target.data
-    indices = read(result.polygons, "material_index", np.int32)
-    normals = mesh_arrays.custom_normals(result)
-    bm = bmesh.new()
-    try:
-        bm.from_mesh(result)
-        bm.to_mesh(mesh)
-    finally:
-        bm.free()
-    mesh.materials.clear()
-    for material in slots if slots != [None] else ():
-        mesh.materials.append(material)
-    mesh.polygons.foreach_set("material_index", indices)
-    if normals is not None:
-        mesh_arrays.set_custom_normals(mesh, normals)
-    mesh.update()
+    """Makes the result the target's mesh: name, settings, properties and users are those of the one before."""
+    if slots == [None]:
+        result.materials.clear()  # it was none
+    old, name = target.data, target.data.name
+    if old.animation_data or old.asset_data or old.use_fake_user:  # what a new one can't have
+        normals = mesh_arrays.custom_normals(result)
+        if old.users > 1 + old.use_fake_user:
+            target.data = old = old.copy()
+        if old.shape_keys:
+            target.shape_key_clear()
+        old.materials.clear()
+        for material in result.materials:
+            old.materials.append(material)
+        pieces.replace_geometry(old, result)
+        if normals is not None:
+            mesh_arrays.set_custom_normals(old, normals)
+        old.update()
+        bpy.data.meshes.remove(result)
+        return
+    for setting in old.bl_rna.properties:
+        if setting.identifier.startswith(SETTINGS) and not result.is_property_readonly(setting.identifier):
+            setattr(result, setting.identifier, getattr(old, setting.identifier))
+    for key in old.keys():
+        result[key] = old[key]
+    if old.users > 1:
+        target.data = result
+    else:
+        old.user_remap(result)
+        bpy.data.meshes.remove(old)
+        result.name = name

@@ -283,6 +283,16 @@ PW_API pw_status pw_hierarchy_solid(const pw_hierarchy *hierarchy, size_t tet_fi
 PW_API pw_status pw_mesh_origins(const pw_mesh *mesh, const int32_t **ends, const int32_t **faces,
                                  const int32_t **beyond);
 
+/* What keeps polygons from being a closed, manifold, oriented surface; all three 0 if nothing does.
+ *
+ * corners  corner_count vertices, polygon after polygon. begin  polygon_count: the first corner of each polygon.
+ * open     edges that have not just two polygons. against  edges whose two polygons run along them the same way.
+ * touching vertices, of vertex_count, that have no polygon, or several fans of them; not counted (0) where open or
+ *          against is not 0. */
+PW_API pw_status pw_polygon_faults(const int32_t *corners, size_t corner_count, const int32_t *begin,
+                                   size_t polygon_count, size_t vertex_count, size_t *open, size_t *against,
+                                   size_t *touching);
+
 /* ---- Saving --------------------------------------------------------------------------------------------------- */
 
 /* The hierarchy as bytes, the same on every machine. The same rule for capacity and *count (bytes here) as above. */

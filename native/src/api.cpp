@@ -4,6 +4,7 @@
 #include "deform.h"
 #include "hierarchy.h"
 #include "ladder.h"
+#include "polygons.h"
 
 #include <algorithm>
 #include <atomic>
@@ -336,6 +337,19 @@ pw_status pw_hierarchy_solid(const pw_hierarchy* hierarchy, size_t tet_first, si
         std::vector<std::array<int32_t, 2>> edges(middle_count);
         for (size_t i = 0; i < middle_count; ++i) edges[i] = {middles[2 * i], middles[2 * i + 1]};
         *mesh = new pw_mesh{hierarchy->hierarchy.solid(tet_first, tet_last, edges)};
+    });
+}
+
+pw_status pw_polygon_faults(const int32_t* corners, size_t corner_count, const int32_t* begin, size_t polygon_count,
+                            size_t vertex_count, size_t* open, size_t* against, size_t* touching) {
+    return guarded([&] {
+        require((corners != nullptr || corner_count == 0) && (begin != nullptr || polygon_count == 0) &&
+                    open != nullptr && against != nullptr && touching != nullptr,
+                "corners, begin, open, against and touching must not be null.");
+        const PolygonFaults faults = polygon_faults({corners, corner_count}, {begin, polygon_count}, vertex_count);
+        *open = faults.open;
+        *against = faults.against;
+        *touching = faults.touching;
     });
 }
 

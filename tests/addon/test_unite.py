@@ -135,6 +135,29 @@ class Unite(SolidTest):
             self.assertSolid(target.data)
             self.assertAlmostEqual(volume(target.data), expected, places=5)
 
+    def test_what_belongs_to_the_mesh_stays(self):
+        """Its settings and properties, whoever else uses it; a fake user, which only the very same mesh can keep."""
+        for fake, shared in ((False, False), (True, False), (False, True), (True, True)):
+            target = self.cube()
+            mesh, name = target.data, target.data.name
+            mesh["mine"], mesh.use_mirror_x, mesh.remesh_voxel_size, mesh.use_fake_user = "kept", True, 0.25, fake
+            target.shape_key_add(name="Basis")
+            if shared:
+                twin = self.link(bpy.data.objects.new("twin", mesh))
+            self.place(target, self.cube().data.copy(), Matrix.Translation((1, 0.9, 0.8)))
+            self.assertEqual(bpy.ops.object.partwheel_unite(), {"FINISHED"})
+            new = target.data
+            self.assertSolid(new)
+            self.assertAlmostEqual(volume(new), 16 - 1.0 * 1.1 * 1.2, places=5)
+            self.assertEqual((new["mine"], new.use_mirror_x, new.remesh_voxel_size), ("kept", True, 0.25))
+            self.assertEqual(len(new.materials), 0)
+            if shared:
+                self.assertEqual((twin.data, twin.data.name, len(twin.data.vertices)), (mesh, name, 8))
+            else:
+                self.assertEqual((new.name, new.use_fake_user), (name, fake))
+            for obj in list(bpy.data.objects):
+                bpy.data.objects.remove(obj)
+
     def test_what_is_no_solid_is_refused_and_nothing_changes(self):
         target = self.cube()
         sheet, _ = read_off("dragknob")

@@ -4,6 +4,7 @@
 from .deform import Deformation, surface_distances
 from .hierarchy import Hierarchy, Solid, Summary
 from .library import LibraryError, Mode, PartwheelError, Rung, Stage, Status, version
+from .polygons import Faults, polygon_faults
 
-__all__ = ["Deformation", "Hierarchy", "LibraryError", "Mode", "PartwheelError", "Rung", "Solid", "Stage", "Status",
-           "Summary", "surface_distances", "version"]
+__all__ = ["Deformation", "Faults", "Hierarchy", "LibraryError", "Mode", "PartwheelError", "Rung", "Solid", "Stage",
+           "Status", "Summary", "polygon_faults", "surface_distances", "version"]

@@ -1,7 +1,32 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Polygons of any number of corners, concave ones too, as triangles that have an area wherever that is possible."""
+"""Polygons of any number of corners: as triangles that have an area wherever that is possible; whether they are a solid."""
+
+import ctypes
+from typing import NamedTuple
 
 import numpy as np
+
+from .library import check, load
+
+
+class Faults(NamedTuple):
+    """What keeps polygons from being a closed, manifold, oriented surface. open: edges that have not just two polygons;
+    against: edges whose two wind against each other; touching: vertices without a polygon, or with several fans of them
+    (not counted where there are others)."""
+
+    open: int
+    against: int
+    touching: int
+
+
+def polygon_faults(corners, begin, vertex_count):
+    """The Faults of polygons: corners (L,) their vertices, one after the other, begin (F,) the first corner of each.
+    Raises PartwheelError (INDEX)."""
+    corners, begin = (np.ascontiguousarray(each, np.int32) for each in (corners, begin))
+    counts = [ctypes.c_size_t() for _ in Faults._fields]
+    check(load().pw_polygon_faults(corners.ctypes.data, len(corners), begin.ctypes.data, len(begin), vertex_count,
+                                   *map(ctypes.byref, counts)))
+    return Faults(*(count.value for count in counts))
 
 
 def triangulate(points, names):
