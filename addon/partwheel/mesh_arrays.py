@@ -166,8 +166,8 @@ def on_cage(obj):
 
 
 def cage_positions(obj):
-    """(V,3) float32: where modifiers on the cage show the vertices in Edit Mode, in the object's own space; None without
-    such modifiers, or if it can't be told. Not to be called while Blender draws.
+    """(V,3) float32: where modifiers on the cage show the vertices in Edit Mode, in the object's own space; None
+    without such modifiers, or if it can't be told. Not to be called while Blender draws.
 
     Blender lets nobody ask for the cage, so this is the mesh after all modifiers; those after the cage move it little.
     """

@@ -358,7 +358,9 @@ class Modal(ToolTest):
             known = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys()
             self.assertTrue({icon for _, icon in drawn} <= set(known))
         for each in part("operators.select").HANDOFFS:
-            self.assertIn((each.label, f"EVENT_{each.key}"), drawn)
+            self.assertIn(f"EVENT_{each.key}", [icon for _, icon in drawn])
+            self.assertIn(each.group or each.label, [words for words, _ in drawn])
+        self.assertEqual(sum("Transform" in words for words, _ in drawn), 2)
 
     def test_leaving_edit_mode_or_changing_the_mesh_ends_it(self):
         for change in (lambda: bpy.ops.object.mode_set(mode="OBJECT"), lambda: bpy.ops.mesh.delete(type="FACE"),

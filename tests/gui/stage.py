@@ -431,8 +431,8 @@ def leftovers(package):
     found += [f"{each.__module__}.{each.__qualname__}" for each in functions if each.__module__.startswith(package)]
     keys = bpy.data.window_managers[0].keyconfigs
     for configuration in (keys.default, keys.addon):  # the third, the user's, keeps what any tool once had
-        found += [f"a key of {configuration.name}, {keymap.name}" for keymap in configuration.keymaps for item in keymap.keymap_items
-                  if ours in item.idname]
+        found += [f"a key of {configuration.name}, {keymap.name}" for keymap in configuration.keymaps
+                  for item in keymap.keymap_items if ours in item.idname]
     tools = VIEW3D_PT_tools_active._tools["EDIT_MESH"]
     return found + [name for name in re.findall(r"idname='([^']*)'", repr(tools)) if ours in name]
 

@@ -36,8 +36,8 @@ class View:
         return self._pixels[self._triangles].mean(axis=1)
 
     def face_at(self, x, y):
-        """The triangle that window position x, y shows: of those that lie under it, the nearest that is not clipped. None
-        if there is none. (With perspective a clipped one's place is not quite exact.)"""
+        """The triangle that window position x, y shows: of those that lie under it, the nearest that is not clipped, or
+        None. (With perspective the place where one is clipped is not quite exact.)"""
         a, b, c = (self._pixels[self._triangles[:, k]] - [x, y] for k in range(3))
         weights = numpy.c_[_cross(b, c), _cross(c, a), _cross(a, b)]
         hits = numpy.flatnonzero((weights >= 0).all(axis=1) | (weights <= 0).all(axis=1))

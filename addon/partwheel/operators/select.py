@@ -22,15 +22,16 @@ class HandOff(NamedTuple):
 
     key: str  # Blender's name of the event type
     shift: bool
-    label: str  # what it does, for the status bar, after "Confirm and"
+    label: str  # what it does
     start: Callable  # start(context): called once the pick is confirmed, remembered and an undo step of its own
+    group: str = ""  # what the status bar says of several that stand together
 
 
 HANDOFFS = [
     HandOff("D", False, "Drag a Handle", lambda context: bpy.ops.mesh.partwheel_deform("INVOKE_DEFAULT", True)),
-    *(HandOff(key, False, f"{label} Proportionally", proportional.around(key))
+    *(HandOff(key, False, f"{label} Proportionally", proportional.around(key), "Transform Proportionally")
       for key, (_, label) in proportional.TRANSFORMS.items()),
-    *(HandOff(key, True, f"{label} within the Part", proportional.within(key))
+    *(HandOff(key, True, f"{label} within the Part", proportional.within(key), "Transform within the Part")
       for key, (_, label) in proportional.TRANSFORMS.items()),
     HandOff("C", False, "Copy as Solid", lambda context: _at_once(bpy.ops.mesh.partwheel_copy)),
     HandOff("X", False, "Remove", lambda context: _at_once(bpy.ops.mesh.partwheel_remove)),

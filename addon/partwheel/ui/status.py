@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the status bar shows while a part is picked: the keys that count now, with Blender's icons where it has them."""
+"""What the status bar shows while a modal operator runs: the keys that count now, with Blender's icons if it has them."""
+
+from itertools import groupby
 
 import bpy
 
@@ -13,16 +15,15 @@ WHEEL = "MOUSE_MMB_SCROLL"
 def drawer(row, hand_offs=()):
     """A function for WorkSpace.status_text_set(): these keys.Key, and what hands the part on."""
     def draw(header, _context):
-        layout = header.layout
         for key in row:
-            if key is keys.LARGER and WHEEL in ICONS:
-                layout.label(text="", icon=WHEEL)
-            for icon in key.icons[:-1]:
-                layout.label(text="", icon=icon)
-            text = f"{key.names}: {key.label}" if key.names else key.label
-            layout.label(text=text, icon=key.icons[-1] if key.icons else "NONE")
-        for each in hand_offs:
-            if each.shift:
-                layout.label(text="", icon="EVENT_SHIFT")
-            layout.label(text=each.label, icon=f"EVENT_{each.key}")
+            icons = (WHEEL, *key.icons) if key is keys.LARGER and WHEEL in ICONS else key.icons
+            _entry(header.layout, icons, f"{key.names}: {key.label}" if key.names else key.label)
+        for (shift, label), some in groupby(hand_offs, key=lambda each: (each.shift, each.group or each.label)):
+            _entry(header.layout, ["EVENT_SHIFT"] * shift + [f"EVENT_{each.key}" for each in some], label)
     return draw
+
+
+def _entry(layout, icons, text):
+    for icon in icons[:-1]:
+        layout.label(text="", icon=icon)
+    layout.label(text=text, icon=icons[-1] if icons else "NONE")

@@ -15,9 +15,10 @@ def play(stage):
         bend.angle, bend.show_on_cage = angle, on_cage
         yield from stage.drawn()
         stage.wheels.vertices = shown(model) if on_cage else own
-        stage.check(not on_cage or numpy.abs(stage.wheels.vertices - own).max() > 0.05 * numpy.ptp(own),
-                    "the modifier moves a good deal")
-        yield from take(stage, f"bent by {math.degrees(angle):.0f} degrees, {'on the cage' if on_cage else 'beside it'}")
+        farthest = numpy.abs(stage.wheels.vertices - own).max()
+        stage.check(not on_cage or farthest > 0.05 * numpy.ptp(own), "the modifier moves a good deal")
+        where = "on the cage" if on_cage else "beside it"
+        yield from take(stage, f"bent by {math.degrees(angle):.0f} degrees, {where}")
     model.modifiers.remove(bend)
 
     mirror = model.modifiers.new("mirror", "MIRROR")

@@ -109,7 +109,8 @@ def play(stage):
     measured = {"notch, median": statistics.median(notches), "notch, 95 %": notches[int(0.95 * len(notches))],
                 "hover, median": statistics.median(hovers) + hover_drawn, "start": max(starts)}
     others = {"largest notch": notches[-1], "first hover after an edit": first_hover,
-              "first start after an edit": cold, "beside a notch, drawing in software, median": statistics.median(drawing)}
+              "first start after an edit": cold,
+              "beside a notch, drawing in software, median": statistics.median(drawing)}
     print(f"felt | {len(stage.wheels.triangles):,} faces, {len(notches)} notches, {len(hovers)} hovers, {len(starts)} "
           "starts | milliseconds | goal |\nfelt | --- | --- | --- |")
     for name, value in (measured | others).items():

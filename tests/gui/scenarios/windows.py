@@ -1,4 +1,4 @@
-"""Several windows and 3D views: the tool works where the mouse is, shows the part in all, and a closed window ends it."""
+"""Several windows and 3D views: the tool works where the mouse is, shows its part in all; a closed window ends it."""
 import bpy
 from events import DRIVERS
 from view import View
