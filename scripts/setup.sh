@@ -7,7 +7,7 @@
 #   setup_bench     build/venv/bench: numpy, scipy, matplotlib for the benchmarks; build/venv/peers: what they compare with
 #   setup_bpy       build/venv/bpy-VERSION for each of $bpy_versions
 #   setup_blender   the distribution's Blender
-#   setup_newest    build/deps/blender-sid: the newest Blender that Debian has, in a Debian sid of its own; needs root
+#   setup_newest    build/deps/blender-SUITE: the Blender of another Debian (sid: the newest) in a directory; needs root
 #   setup_display   a virtual screen with software OpenGL, and tools to click on it
 #
 # Packages come from the distribution (root or sudo) and from PyPI; everything else stays under build/.
@@ -174,21 +174,23 @@ setup_blender() {
     start_setup && packages blender python3-numpy
 }
 
-# A Debian sid, from the mirror that apt is set up with.
+# Another Debian, $suite, from the mirror that apt is set up with.
 fill_newest() {
     local mirror
     # shellcheck disable=SC2016 # it is apt-get that puts in the site
     mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' | head -n 1)
-    say "setup: a Debian sid with its Blender from $mirror"
-    logged debootstrap --variant=minbase sid "$1" "$mirror" &&
+    say "setup: a Debian $suite with its Blender from $mirror"
+    logged debootstrap --variant=minbase "$suite" "$1" "$mirror" &&
         logged chroot "$1" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends blender \
             python3-numpy python3-cattr python3-requests xvfb xauth xdotool imagemagick libgl1-mesa-dri libegl1 libgl1 \
             libglx-mesa0
 }
 
+# setup_newest [SUITE]
 setup_newest() {
+    local suite=${1:-sid}
     [ "$(id -u)" = 0 ] || fail "only root can use a Debian inside a directory" || return
-    start_setup && packages debootstrap && into "$deps/blender-sid" fill_newest
+    start_setup && packages debootstrap && into "$deps/blender-$suite" fill_newest
 }
 
 setup_display() {

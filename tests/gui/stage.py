@@ -24,6 +24,7 @@ from view import View
 
 WAIT = 40  # seconds until something that should happen counts as not happening
 TICK = 0.01
+SLOW = 1.0  # seconds for one step; the log tells which took longer
 FILL = 0.8  # share of the viewport's height or width that an opened model takes
 # How each model is looked at, in its own space: the rotation that the view has (w, x, y, z).
 VIEWS = {"hand": (0.7071, 0.7071, 0, 0), "homer": (1, 0, 0, 0), "bear": (1, 0, 0, 0), "large": (0, 0, 1, 0),
@@ -56,6 +57,7 @@ class Stage:
         self._driver = driver
         self.checks = 0
         self._ticks = self._draws = 0
+        self._noted = time.monotonic()
         self.mouse = None
 
     # ---- Running ------------------------------------------------------------------------------------------------
@@ -76,7 +78,9 @@ class Stage:
                         if time.monotonic() > deadline:
                             raise Failure(f"{_text(what)}: not seen in time")
                         return TICK
+                    self._note(what, time.monotonic())
                 what, predicate, seconds = next(steps)
+                self._note("the scenario itself", time.monotonic())
                 waiting = what, predicate, time.monotonic() + seconds
                 return TICK
             except StopIteration:
@@ -90,6 +94,12 @@ class Stage:
             return None
 
         bpy.app.timers.register(tick, persistent=True)  # over the opening of files
+
+    def _note(self, what, now):
+        """Tells the log what took long."""
+        if now - self._noted > SLOW:
+            print(f"{now - self._noted:.1f} s: {_text(what)}", flush=True)
+        self._noted = now
 
     def _all(self, scenario):
         yield "a first draw of the 3D viewport", lambda: self._draws > 0, WAIT
