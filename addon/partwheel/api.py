@@ -140,7 +140,7 @@ def deform(obj, node, handle_vertices, matrix, rings=0):
         raise ValueError("The handle has no vertices.")
     shape = deforming.AsRigidAsPossible(region, [inside])
     shape.jump([numpy.asarray(matrix, float)])
-    deforming.write(obj, *region.changed(shape.points()))
+    deforming.Pen(obj, region).write(obj, shape.points())
 
 
 def _check(obj):

@@ -1,59 +1,95 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A part of a mesh object that deforms: what is free and what holds it, its handles, and the way back into the mesh.
 
-Coordinates are those of the shape being edited: the active shape key's, where there is one. No reference to Blender's
-data is kept, so undo or a mode change can't make it dangle; the object is handed to every function.
+Coordinates are those of the shape being edited: the active shape key's, where there is one. But for a Pen, no reference
+to Blender's data is kept, so undo or a mode change can't make it dangle; the object is handed to every function.
 """
+
+import struct
+from collections import deque
+from itertools import repeat
 
 import bmesh
 import numpy as np
 from mathutils.kdtree import KDTree
 
 from . import mesh_arrays
-from .core.deform import FIXED, FREE, Deformation, part_of_the_way, surface_distances
+from .core.deform import FIXED, FREE, SETTLED, Deformation, part_of_the_way, surface_distances, vertex_normals
 
 HANDLE_SIZE = 0.25  # of a handle by default: its radius, by the square root of the part's area
 SAME_PLACE = 1e-4  # mirrored vertices are so near to each other, by the mesh's size
+AT_ONCE, MOST_AT_ONCE = 30_000, 5  # iterations at a mouse move: so many vertices' in all; but no more than so many
 WAYS = 32  # matrices between rest and the handle's that a proportional deformation mixes
-MIRROR = np.diag([-1.0, 1, 1, 1])
+MIRROR, ACROSS = np.diag([-1.0, 1, 1, 1]), np.float32([-1, 1, 1])
 
 
 class Refused(ValueError):
     """This part, or this handle, can't be deformed. str() is a sentence for the user."""
 
 
-# ---- The object's coordinates
+# ---- The way into the mesh
 
 
-def coordinates(obj):
-    """(V,3) float32, in the object's own space."""
-    mesh = mesh_arrays.up_to_date(obj)
-    key = obj.active_shape_key
-    return mesh_arrays.read(key.data if key else mesh.vertices, "co", np.float32, 3)
+class Pen:
+    """Puts the vertices of a region that move to new places, as often as the mouse moves.
 
+    In Edit Mode it holds on to Blender's own vertices, so that it is for one tool's run alone: while the mesh keeps its
+    elements. (Blender's error is a ReferenceError.)
+    """
 
-def write(obj, vertices, points):
-    """Puts these vertices (n,) of the shape being edited to these points (n,3)."""
-    mesh = obj.data
-    if obj.mode == "EDIT":
-        bm = bmesh.from_edit_mesh(mesh)
+    def __init__(self, obj, region):
+        self.region, self._bm = region, None
+        if obj.mode != "EDIT":
+            return
+        self._bm = bm = bmesh.from_edit_mesh(obj.data)
         bm.verts.ensure_lookup_table()
-        verts = bm.verts
-        for index, point in zip(vertices.tolist(), points.tolist()):
-            verts[index].co = point
-        bm.normal_update()
-        bmesh.update_edit_mesh(mesh, loop_triangles=True, destructive=False)
-        return
-    key = obj.active_shape_key
-    for collection in ([key.data] if key else []) + ([mesh.vertices] if key in {None, _basis(mesh)} else []):
-        all_points = mesh_arrays.read(collection, "co", np.float32, 3)
-        all_points[vertices] = points
-        collection.foreach_set("co", all_points.ravel())
-    mesh.update()
+        bm.faces.ensure_lookup_table()
+        self._verts = list(map(bm.verts.__getitem__, region.moving.tolist()))
+        self._flat = list(map(bm.faces.__getitem__, region.flat_faces.tolist()))
+        self._smooth = list(map(bm.verts.__getitem__, region.vertices[region.smooth].tolist()))
+
+    def draft(self, obj, points):
+        """The region deformed to points (n,3), with the normals that are seen, for as long as the mouse moves. Blender
+        finds all of them in 1 to 3 us a vertex; in loops of Python's own this takes less than half of one."""
+        if self._bm is None:
+            self.write(obj, points)
+            return
+        _set_all(self._verts, "co", self.region.targets(points))
+        deque(map(bmesh.types.BMFace.normal_update, self._flat), 0)
+        if self._smooth:
+            _set_all(self._smooth, "normal", vertex_normals(points, self.region.triangles)[self.region.smooth])
+        bmesh.update_edit_mesh(obj.data, loop_triangles=self.region.polygons, destructive=False)
+
+    def write(self, obj, points):
+        """The region deformed to points (n,3)."""
+        self._put(obj, self.region.targets(points))
+
+    def restore(self, obj):
+        """Everything to where it was when the region was made, bit for bit."""
+        self._put(obj, self.region.before)
+
+    def _put(self, obj, points):
+        if self._bm is None:
+            self._put_mesh(obj, points)
+            return
+        _set_all(self._verts, "co", points)
+        self._bm.normal_update()
+        bmesh.update_edit_mesh(obj.data, loop_triangles=True, destructive=False)
+
+    def _put_mesh(self, obj, points):
+        mesh, key = obj.data, obj.active_shape_key
+        basis = mesh.shape_keys and mesh.shape_keys.reference_key
+        for collection in ([key.data] if key else []) + ([mesh.vertices] if key in {None, basis} else []):
+            all_points = mesh_arrays.read(collection, "co", np.float32, 3)
+            all_points[self.region.moving] = points
+            collection.foreach_set("co", all_points.ravel())
+        mesh.update()
 
 
-def _basis(mesh):
-    return mesh.shape_keys and mesh.shape_keys.reference_key
+def _set_all(elements, attribute, values):
+    """The same attribute of elements of a bmesh: values (n,3)."""
+    each = struct.iter_unpack("3f", np.ascontiguousarray(values, np.float32))
+    deque(map(setattr, elements, repeat(attribute), each), 0)
 
 
 # ---- The part
@@ -65,12 +101,15 @@ class Region:
     vertices (n,) of the mesh: the part's and those of the faces around it; rest (n,3) where they are, triangles (t,3)
     indices into these two. free (n,) bool: inside the part; its border and all beyond stay, and so does what is hidden.
     rings: so many rings of faces around the part deform with it. mirror: the same happens across the x axis.
+    moving (m,): the vertices of the mesh that may move, mirrored ones included, before (m,3) where they are. Of the
+    polygons that have such a vertex: flat_faces, those shaded flat; smooth (n,) bool, vertices of the others; polygons,
+    whether one is no triangle.
     """
 
     def __init__(self, obj, faces, rings=0, mirror=False):
         """Raises Refused."""
         surface = mesh_arrays.surface(mesh_arrays.up_to_date(obj))
-        mesh, points = obj.data, coordinates(obj)
+        mesh, points = obj.data, mesh_arrays.edited_positions(obj)
         count = len(points)
         inside = np.zeros(surface.face_count, bool)
         inside[faces] = True
@@ -86,8 +125,7 @@ class Region:
         near = member[surface.triangles].any(axis=1)
         self.vertices, triangles = np.unique(surface.triangles[near], return_inverse=True)
         self.triangles = triangles.reshape(-1, 3).astype(np.int32)
-        self.before = points[self.vertices]
-        self.rest = self.before.astype(np.float64)
+        self.rest = points[self.vertices].astype(np.float64)
         self.free = free[self.vertices]
         self.center = self.rest[self.free].mean(axis=0) if self.free.any() else np.zeros(3)
         corners = points[surface.triangles[within]].astype(np.float64)
@@ -100,21 +138,30 @@ class Region:
                           "object.")
         if not self.size > 0:
             raise Refused("The faces of the part have no area: there is nothing to deform.")
-        self._find_partners(points) if mirror else self._no_partners()
+        self.partner, self._sources, images = None, np.empty(0, int), np.empty(0, int)
+        if mirror:
+            self.partner, self._sources, images = self._partners(points)
+        self.moving = np.concatenate([self.vertices[self.free], images])
+        self.before = points[self.moving]
+        moves, changes, smooth = np.zeros(count, bool), np.zeros(len(inside), bool), np.zeros(count, bool)
+        moves[self.moving] = True
+        changes[surface.faces[moves[surface.triangles].any(axis=1)]] = True
+        shaded_smooth = mesh_arrays.read(mesh.polygons, "use_smooth", bool)
+        self.flat_faces = np.flatnonzero(changes & ~shaded_smooth)
+        smooth[surface.triangles[(changes & shaded_smooth)[surface.faces]]] = True
+        self.smooth = smooth[self.vertices]
+        self.polygons = bool((mesh_arrays.read(mesh.polygons, "loop_total", np.int32)[changes] > 3).any())
 
-    def _no_partners(self):
-        self.mirrored = self.partner = None
-
-    def _find_partners(self, points):
-        """partner (n,): of each vertex the one of the region across the x axis, -1 where there is none; mirrored:
-        (the region's vertices whose partner is outside of it, those partners in the mesh)."""
+    def _partners(self, points):
+        """(partner (n,): of each vertex the one of the region across the x axis, -1 where there is none; the region's
+        vertices whose partner is outside of it; those partners in the mesh)."""
         tree = KDTree(len(points))
         for index, point in enumerate(points.tolist()):
             tree.insert(point, index)
         tree.balance()
         limit = SAME_PLACE * float(np.ptp(points, axis=0).max())
         here = {vertex: index for index, vertex in enumerate(self.vertices.tolist())}
-        self.partner, ours, theirs = np.full(len(self.vertices), -1), [], []
+        partner, ours, theirs = np.full(len(self.vertices), -1), [], []
         for index in np.flatnonzero(self.free).tolist():
             x, y, z = self.rest[index]
             _, vertex, distance = tree.find((-x, y, z))
@@ -122,12 +169,11 @@ class Region:
                 continue
             other = here.get(vertex, -1)
             if other >= 0 and self.free[other]:
-                self.partner[index] = other
+                partner[index] = other
             else:
                 ours.append(index)
                 theirs.append(vertex)
-        self.mirrored = np.array(ours, int), np.array(theirs, int)
-        self.mirrored_before = points[self.mirrored[1]]
+        return partner, np.array(ours, int), np.array(theirs, int)
 
     def nearest_free(self, vertex):
         """The region's index of a vertex of the mesh; of the free one nearest to it if it is not free itself."""
@@ -152,27 +198,13 @@ class Region:
         nearer = np.sort(distance[self.free])
         return float(min(max(HANDLE_SIZE * self.size, 1.01 * distance[around].max()), nearer[len(nearer) // 4]))
 
-    def changed(self, points):
-        """(vertices of the mesh, where they go) for what deformed to points (n,3), mirrored ones included."""
+    def targets(self, points):
+        """(m,3) float32: where the vertices that move go if the region deformed to points (n,3)."""
         points = points.astype(np.float32)
         if self.partner is not None:
             both = np.flatnonzero(self.partner >= 0)
-            flipped = points[self.partner[both]] * np.float32([-1, 1, 1])
-            points[both] = (points[both] + flipped) / 2
-        vertices, targets = self.vertices[self.free], points[self.free]
-        if self.mirrored is not None:
-            ours, theirs = self.mirrored
-            vertices = np.concatenate([vertices, theirs])
-            targets = np.concatenate([targets, points[ours] * np.float32([-1, 1, 1])])
-        return vertices, targets
-
-    def restore(self, obj):
-        """Everything to where it was when this was made, bit for bit."""
-        vertices, points = self.vertices[self.free], self.before[self.free]
-        if self.mirrored is not None:
-            vertices = np.concatenate([vertices, self.mirrored[1]])
-            points = np.concatenate([points, self.mirrored_before])
-        write(obj, vertices, points)
+            points[both] = (points[both] + points[self.partner[both]] * ACROSS) / 2
+        return np.concatenate([points[self.free], points[self._sources] * ACROSS])
 
 
 # ---- How it follows
@@ -198,23 +230,29 @@ class AsRigidAsPossible:
         if len(np.unique(roles[roles >= 0])) < self._count + len(self._twins):
             raise Refused("One handle covers another: make it smaller, or put it elsewhere.")
         self.deformation = Deformation(region.rest, region.triangles, roles)
+        self._at_once = min(max(AT_ONCE // len(roles), 1), MOST_AT_ONCE)
         self._energy = np.inf
 
     def _all(self, matrices):
         return [*matrices, *(MIRROR @ matrices[handle] @ MIRROR for handle in self._twins)]
 
-    def follow(self, matrices, iterations):
-        """The handles go to their matrices, (4,4) each, and the region some of the way."""
+    def follow(self, matrices):
+        """The handles go to their matrices, (4,4) each, and the region most of the way: as much as a mouse move has
+        time for."""
         for handle, matrix in enumerate(self._all(matrices)):
             self.deformation.move(handle, matrix)
-        self.deformation.iterate(iterations)
+        self.deformation.iterate(self._at_once)
         self._energy = np.inf
 
-    def settle(self, iterations, share=1e-3):
-        """Goes on where the handles are. Whether there is more to do."""
-        self.deformation.iterate(iterations)
+    def go_on(self):
+        """A little further towards the shape of rest. Whether there is more to do."""
+        self.deformation.iterate(self._at_once)
         before, self._energy = self._energy, self.deformation.energy()
-        return self._energy < (1 - share) * before
+        return before - self._energy > SETTLED * self._at_once * before
+
+    def settle(self):
+        """All the way to the shape of rest."""
+        self.deformation.settle()
 
     def jump(self, matrices):
         """All the way at once."""
@@ -234,7 +272,7 @@ class Proportional:
         self.weight = share * share * (3 - 2 * share)  # Blender's "smooth" falloff
         self._rest = self._now = region.rest
 
-    def follow(self, matrices, _iterations=0):
+    def follow(self, matrices):
         ways = np.array([part_of_the_way(np.asarray(matrices[0], float), way / WAYS) for way in range(WAYS + 1)])
         below = np.minimum((self.weight * WAYS).astype(int), WAYS - 1)
         rest = (self.weight * WAYS - below)[:, None, None]
@@ -244,8 +282,11 @@ class Proportional:
 
     jump = follow
 
-    def settle(self, _iterations):
+    def go_on(self):
         return False
+
+    def settle(self):
+        pass
 
     def points(self):
         return self._now

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which event does what while a part is being picked, and how the status bar names it. No bpy here.
+"""Which event does what while a part is being picked or deformed, and how the status bar names it. No bpy here.
 
 A modal operator written in Python can't have a keymap that users edit, so this table is it: modal() looks events up
 here, and the status bar is drawn from the same rows.
@@ -44,6 +44,18 @@ WAITING = (CLICK, NAVIGATE, CANCEL)
 PICKED = (LARGER, SMALLER, NUMBER, CONFIRM, NAVIGATE, CANCEL)
 # With the toolbar's tool a click goes on to the next part.
 HELD = (LARGER, SMALLER, NUMBER, CLICK._replace(label="Next Part"), CONFIRM, NAVIGATE, CANCEL)
+
+# While a part is deformed: between two movements of the handle, and during one.
+DRAG = Key("DRAG", frozenset({"LEFTMOUSE"}), "Drag the Handle, or Put It Elsewhere", ("MOUSE_LMB_DRAG",))
+ONE_MORE = Key("ONE_MORE", frozenset(), "One More", ("EVENT_SHIFT", "MOUSE_LMB_DRAG"))
+TRANSFORM = Key("TRANSFORM", frozenset("GRS"), "Move, Rotate, Scale", ("EVENT_G", "EVENT_R", "EVENT_S"))
+HANDLE_SIZE = Key("HANDLE_SIZE", frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE"}), "Handle Size", names="Wheel")
+AXIS = Key("AXIS", frozenset("XYZ"), "Axis", ("EVENT_X", "EVENT_Y", "EVENT_Z"))
+TYPE = Key("TYPE", frozenset(DIGITS), "Type", names="0-9 . -")
+SNAP = Key("SNAP", frozenset({"LEFT_CTRL", "RIGHT_CTRL"}), "Snap", ("EVENT_CTRL",))
+DONE = Key("DONE", CLICK.events | CONFIRM.events, "Done", ("MOUSE_LMB", "EVENT_RETURN"))
+DEFORMING = (DRAG, ONE_MORE, TRANSFORM, HANDLE_SIZE, CONFIRM, NAVIGATE, CANCEL)
+MOVING = (AXIS, TYPE, SNAP, TRANSFORM, DONE, CANCEL)
 
 SCROLL_STEP, DRAG_STEP = 30, 24  # pixels of a trackpad's scroll, and of a drag, that count as a notch
 

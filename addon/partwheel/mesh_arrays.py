@@ -185,13 +185,15 @@ def cage_positions(obj):
         evaluated.to_mesh_clear()
 
 
+def edited_positions(obj):
+    """(V,3) float32: the vertices that an edit of the object moves, in its own space: those of the active shape key, if
+    it has one. The mesh must be up to date."""
+    key = obj.active_shape_key
+    return read(key.data if key else obj.data.vertices, "co", np.float32, 3)
+
+
 def shown_positions(obj):
     """(V,3) float32: where the vertices are shown in Edit Mode, in the object's own space: of the shape key that is
     edited, or of the cage. The mesh must be up to date. Not to be called while Blender draws."""
     cage = cage_positions(obj)
-    if cage is not None:
-        return cage
-    mesh = obj.data
-    if mesh.shape_keys and obj.mode == "EDIT":
-        return read(obj.active_shape_key.data, "co", np.float32, 3)
-    return read(mesh.vertices, "co", np.float32, 3)
+    return edited_positions(obj) if cage is None else cage

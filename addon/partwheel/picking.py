@@ -87,10 +87,15 @@ def view_under(window, x, y):
         regions = [region for region in area.regions if region.width > 1 and region.height > 1 and _holds(region, x, y)]
         if len(regions) != 1 or regions[0].type != "WINDOW":
             return None
-        space, windows = area.spaces.active, [region for region in area.regions if region.type == "WINDOW"]
-        views = list(space.region_quadviews) or [space.region_3d]  # four in quad view, in the order of the regions
-        return area, regions[0], views[windows.index(regions[0])]
+        return area, regions[0], view_of(area, regions[0])
     return None
+
+
+def view_of(area, region):
+    """The RegionView3D of a 3D view's region of type WINDOW."""
+    space, windows = area.spaces.active, [each for each in area.regions if each.type == "WINDOW"]
+    views = list(space.region_quadviews) or [space.region_3d]  # four in quad view, in the order of the regions
+    return views[windows.index(region)]
 
 
 def _holds(box, x, y):

@@ -361,6 +361,15 @@ PW_API pw_status pw_deformation_positions(const pw_deformation *deformation, dou
 /* Everything back to rest. */
 PW_API pw_status pw_deformation_reset(pw_deformation *deformation);
 
+/* Normals of vertices, for shading: of each the sum over its triangles of (a x b) / (|a|^2 |b|^2), with a and b the sides
+ * that meet there (Max, "Weights for Computing Vertex Normals from Facet Normals", 1999), made of length 1; 0, 0, 0 where
+ * that is nothing.
+ *
+ * vertices, triangles  as in pw_deformation_create, with the same errors.
+ * normals              vertex_count x 3. */
+PW_API pw_status pw_vertex_normals(const double *vertices, size_t vertex_count, const int32_t *triangles,
+                                   size_t triangle_count, double *normals);
+
 /* How far each vertex is from the nearest start along the surface: infinity where no way leads. The ways go along edges
  * and straight over an edge to the corner beyond, so they are a few percent too long.
  *

@@ -447,6 +447,15 @@ pw_status pw_deformation_reset(pw_deformation* deformation) {
     });
 }
 
+pw_status pw_vertex_normals(const double* vertices, size_t vertex_count, const int32_t* triangles,
+                            size_t triangle_count, double* normals) {
+    return guarded([&] {
+        require(normals != nullptr || vertex_count == 0, "normals must not be null.");
+        vertex_normals(as_points(vertices, vertex_count), as_triangles(triangles, triangle_count),
+                       {reinterpret_cast<Point*>(normals), vertex_count});
+    });
+}
+
 pw_status pw_surface_distances(const double* vertices, size_t vertex_count, const int32_t* triangles,
                                size_t triangle_count, const uint8_t* start, double* distance) {
     return guarded([&] {

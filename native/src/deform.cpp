@@ -461,6 +461,24 @@ void Deformation::positions(std::span<Point> out) const {
     for (size_t v = 0; v < now_.size(); ++v) out[place_in_given_[v]] = given_[v] + (now_[v] - rest_[v]);
 }
 
+void vertex_normals(std::span<const Point> vertices, std::span<const Triangle> triangles, std::span<Point> normals) {
+    check(vertices, triangles);
+    std::fill(normals.begin(), normals.end(), Point{});
+    for (const auto& [i, j, k] : triangles) {
+        const Point &a = vertices[i], &b = vertices[j], &c = vertices[k];
+        const Point ab = b - a, bc = c - b, ca = a - c, normal = cross(ab, bc);
+        const double one = dot(ab, ab), two = dot(bc, bc), three = dot(ca, ca);
+        if (!(one > 0 && two > 0 && three > 0)) continue;
+        normals[i] = normals[i] + (1 / (one * three)) * normal;
+        normals[j] = normals[j] + (1 / (one * two)) * normal;
+        normals[k] = normals[k] + (1 / (two * three)) * normal;
+    }
+    for (Point& normal : normals) {
+        const double length = std::sqrt(dot(normal, normal));
+        normal = length > 0 && std::isfinite(length) ? (1 / length) * normal : Point{};
+    }
+}
+
 void surface_distances(std::span<const Point> vertices, std::span<const Triangle> triangles,
                        std::span<const uint8_t> start, std::span<double> distance) {
     check(vertices, triangles);

@@ -110,6 +110,9 @@ private:
     std::optional<PairOfThreads> second_thread_;  // where there is much to do, and more than one core
 };
 
+// As pw_vertex_normals.
+void vertex_normals(std::span<const Point> vertices, std::span<const Triangle> triangles, std::span<Point> normals);
+
 // The length of a short way along the surface from the nearest vertex with start != 0 to each vertex; infinity where
 // none leads. Ways go along edges, and straight over an edge to the corner opposite it where the two triangles, laid
 // flat, allow that.

@@ -1,28 +1,54 @@
-"""What a mouse move costs while a part of 20,000 and one of 100,000 vertices is deformed."""
+"""What a mouse move costs while a part of 20,000 and one of 100,000 vertices is deformed: the engine's, and Blender's."""
+
+import json
+import os
+import subprocess
 
 import models
 import numpy as np
-from programs import BUILD, Failure, run
+from programs import BUILD, ROOT, Failure, run
 
 PARTS = {20_000: 33, 100_000: 100}  # vertices of the part, the goal in ms
-MOVES, ITERATIONS = 60, 2  # the iterations of a mouse move in the add-on
+MOVES, ITERATIONS = 60, 1  # the iterations of a mouse move in the add-on, for parts of these sizes
 AXIS = 1
+SCRIPT = ROOT / "scripts/bench_parts/deform_in_blender.py"
+BLENDERS = (["blender", "-b", "-noaudio", "--factory-startup", "--python-exit-code", "9", "--python", SCRIPT],
+            [ROOT / "build/venv/bpy-5.0/bin/python", SCRIPT])
+CLEAN = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": os.environ.get("HOME", "/"), "LANG": "C.UTF-8"}
 
 
 def measure(quick):
     """As the add-on does it: the part and the faces around it, nothing else."""
+    moves = MOVES // 3 if quick else MOVES
     sizes = []
     for count, goal in PARTS.items():
         vertices, triangles = models.subdivided(models.read(models.NATURAL), round(count * 2.5))
+        part = np.argsort(-vertices[:, AXIS], kind="stable")[:count]
         inside = np.zeros(len(vertices), bool)
-        inside[np.argsort(-vertices[:, AXIS], kind="stable")[:count]] = True
+        inside[part] = True
         near = triangles[inside[triangles].any(axis=1)]
         used, near = np.unique(near, return_inverse=True)
         path = models.write(f"part-{count}", (vertices[used], near.reshape(-1, 3)))
-        report, why_not = run(BUILD / "deform_bench", path, AXIS, count, MOVES // 3 if quick else MOVES, ITERATIONS)
+        report, why_not = run(BUILD / "deform_bench", path, AXIS, count, moves, ITERATIONS)
         if report is None:
             raise Failure(f"the part of {count} vertices: {why_not}")
         print(f"   {count} vertices: {1000 * report['move']['median']:.1f} ms a move (processor: "
               f"{1000 * report['move']['median_cpu']:.1f} ms), {report['create'][0]:.2f} s to begin")
-        sizes.append({"count": count, "goal": goal, **report})
+        given = path.with_suffix(".npz")
+        np.savez(given, vertices=vertices, triangles=triangles, part=part)
+        sizes.append({"count": count, "goal": goal, **report,
+                      "blenders": [in_blender(blender, given, moves) for blender in BLENDERS]})
     return {"iterations": ITERATIONS, "sizes": sizes}
+
+
+def in_blender(blender, given, moves):
+    """What deform_in_blender.py reports."""
+    result = given.with_suffix(".json")
+    result.unlink(missing_ok=True)
+    done = subprocess.run([*blender, "--", given, str(moves), result], env=CLEAN, capture_output=True, text=True)
+    if not result.exists():
+        raise Failure(f"{blender[0]} ended with code {done.returncode}: {done.stderr.strip()[-300:]}")
+    report = json.loads(result.read_text())
+    print(f"     in Blender {report['blender']}: {1000 * report['whole']:.1f} ms a move ({1000 * report['follow']:.1f} to "
+          f"follow, {1000 * report['write']:.1f} to write), {report['begin']:.2f} s to begin")
+    return report

@@ -202,7 +202,7 @@ class Deform(MeshTest):
         patch = region.patch(region.nearest_free(int(numpy.abs(co - (0.5, 0, 1)).sum(axis=1).argmin())), 0.3)
         shape = deforming.AsRigidAsPossible(region, [patch])
         shape.jump([shift(0.2, 0, 0.5)])
-        deforming.write(obj, *region.changed(shape.points()))
+        deforming.Pen(obj, region).write(obj, shape.points())
         after = stored(obj.data.vertices)
         self.assertGreater(after[:, 2].max(), 1.4)
         image = after * (-1, 1, 1)
@@ -224,7 +224,7 @@ class Deform(MeshTest):
         region = deforming.Region(obj, faces)
         shape = deforming.AsRigidAsPossible(region, [numpy.searchsorted(region.vertices, top)])
         shape.jump([shift(1, 0, 0)])
-        deforming.write(obj, *region.changed(shape.points()))
+        deforming.Pen(obj, region).write(obj, shape.points())
         self.assertAlmostEqual(max(vertex.co.x for vertex in obj.data.vertices), 2, places=4)
         self.assertEqual(uvs, [tuple(each.uv) for each in obj.data.uv_layers.active.data])
 
@@ -235,10 +235,10 @@ class Deform(MeshTest):
         region = deforming.Region(obj, faces)
         shape = deforming.AsRigidAsPossible(region, [[region.nearest_free(tip)]])
         for step in range(5):
-            shape.follow([shift(0.02 * step, 0, 0)], 2)
-            deforming.write(obj, *region.changed(shape.points()))
+            shape.follow([shift(0.02 * step, 0, 0)])
+            deforming.Pen(obj, region).write(obj, shape.points())
         self.assertTrue((edited(obj) != before).any())
-        region.restore(obj)
+        deforming.Pen(obj, region).restore(obj)
         self.assertTrue((edited(obj) == before).all())
 
     def test_turns_one_after_the_other(self):
@@ -249,7 +249,8 @@ class Deform(MeshTest):
         one, two = handle(tip, shift(0.05, 0, 0)), handle(other, shift(0, 0.03, 0))
         self.run_operator(handles=[one, {**two, "turn": 1}])
         at_once = edited(obj)
-        part("deforming").write(obj, numpy.arange(len(before)), before.astype(numpy.float32))
+        for vertex, point in zip(bmesh.from_edit_mesh(obj.data).verts, before):
+            vertex.co = point
         self.run_operator(handles=[one])
         self.run_operator(handles=[two])
         numpy.testing.assert_array_equal(edited(obj), at_once)

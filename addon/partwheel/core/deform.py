@@ -15,8 +15,8 @@ FREE, FIXED = -1, -2  # PW_VERTEX_FREE, PW_VERTEX_FIXED
 STEP_ANGLE = math.radians(10)
 STEP_ITERATIONS = 3
 # Settled: an iteration lowers the energy by less than this share; or so many iterations are over.
-SETTLED = 1e-3
-MOST_ITERATIONS = 200
+SETTLED = 1e-4
+MOST_ITERATIONS = 300
 
 
 class Deformation:
@@ -144,6 +144,15 @@ def _rotation_by(turn):
     x, y, z = turn / angle
     k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.eye(3) + math.sin(angle) * k + (1 - math.cos(angle)) * (k @ k)
+
+
+def vertex_normals(vertices, triangles):
+    """(V,3) of length 1, for shading; 0, 0, 0 where there are no triangles with area. See pw_vertex_normals."""
+    (vertices, triangles), _ = checked_surface(vertices, triangles, None, None)
+    normals = np.empty_like(vertices)
+    check(load().pw_vertex_normals(vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles),
+                                   normals.ctypes.data))
+    return normals
 
 
 def surface_distances(vertices, triangles, start):

@@ -132,6 +132,7 @@ FUNCTIONS = {
     "pw_deformation_energy": (c_int, [c_void_p, POINTER(c_double)]),
     "pw_deformation_positions": (c_int, [c_void_p, c_void_p, c_size_t]),
     "pw_deformation_reset": (c_int, [c_void_p]),
+    "pw_vertex_normals": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p]),
     "pw_surface_distances": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_void_p]),
 }
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """mesh.partwheel_deform: a picked part follows a handle that is dragged, turned and scaled; all beyond it stays."""
 
+import contextlib
 import math
 import traceback
 from dataclasses import dataclass, field
@@ -15,22 +16,14 @@ from mathutils import Matrix, Vector
 
 from .. import handle_points, keys, session
 from ..core import PartwheelError
-from ..deforming import METHODS, Refused, Region, write
-from ..picking import FaceTree, view_under
+from ..deforming import METHODS, Pen, Refused, Region
+from ..picking import FaceTree, view_of, view_under
+from ..ui import status
 
-LIVE_ITERATIONS = 2  # a mouse move
-REST_ITERATIONS = 3  # a tick while the mouse rests
 TICK = 0.03  # seconds
 NOTCH = 1.25  # what a notch of the wheel makes of the handle's size
 STEP_DEGREES, STEP_SCALE = 5.0, 0.1  # what Ctrl snaps to
-CONFIRM = keys.CONFIRM.events
-PASS = {"MIDDLEMOUSE", "MOUSEPAN", "MOUSEZOOM", "MOUSEROTATE", "TRACKPADPAN", "TRACKPADZOOM", "NDOF_MOTION", "HOME",
-        "TIMER_REPORT", "WINDOW_DEACTIVATE"}
 DIGITS = {**keys.DIGITS, **{f"NUMPAD_{digit}": str(digit) for digit in range(10)}, "PERIOD": ".", "NUMPAD_PERIOD": "."}
-IDLE_KEYS = ("Partwheel   Drag: Move the Handle   Click: Put It Elsewhere   Shift Drag: One More Handle   G, R, S: "
-             "Move, Rotate, Scale   Wheel: Handle Size   Enter: Confirm   MMB: Navigate   Esc/RMB: Cancel")
-STAGE_KEYS = ("Partwheel   X, Y, Z: Axis   0-9 . -: Type   Ctrl: Snap   G, R, S: Move, Rotate, Scale   LMB, Enter: "
-              "Done   Esc/RMB: Cancel")
 NO_PART = "Pick a part with Select Part by Wheel first."
 
 
@@ -126,10 +119,10 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
                 shape = METHODS[self.method](region, [region.patch(region.nearest_free(each.vertex), each.radius)
                                                       for each in handles])
                 shape.jump([np.array(each.matrix).reshape(4, 4) for each in handles])
-                write(obj, *region.changed(shape.points()))
+                Pen(obj, region).write(obj, shape.points())
         except (Refused, PartwheelError) as error:
             if first:
-                first.restore(obj)
+                Pen(obj, first).restore(obj)
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         return {"FINISHED"}
@@ -154,17 +147,19 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             return {"CANCELLED"}
         obj = context.edit_object
         try:
-            self.faces = self._faces(obj)
-            self.region = self.first = Region(obj, self.faces, self.rings, obj.data.use_mirror_x)
-            picked = session.picked(obj)
-            self.placed = [self._handle_of(obj, picked and picked.face)]
-            self._hold()
+            with _waiting(context):
+                self.faces = self._faces(obj)
+                self.region = self.first = Region(obj, self.faces, self.rings, obj.data.use_mirror_x)
+                picked = session.picked(obj)
+                self.placed = [self._handle_of(obj, picked and picked.face)]
+                self._hold()
         except (Refused, PartwheelError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        self.pen = None
         self.object_name, self.stage, self.turns = obj.name_full, None, []
         self.counts = len(obj.data.vertices), len(obj.data.polygons)
-        self.settling, self.changed = False, False
+        self.settling, self.changed, self.told = False, False, None
         self.timer = context.window_manager.event_timer_add(TICK, window=context.window)
         self.drawing = bpy.types.SpaceView3D.draw_handler_add(self._draw, (), "WINDOW", "POST_VIEW")
         if self.start != "NONE":
@@ -194,9 +189,10 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         if event.type == "TIMER":
             self._tick(context)
             return {"PASS_THROUGH"}
-        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
+        if event.type in keys.CANCEL.events and event.value == "PRESS":
             return self._cancelled(context)
-        if event.type in PASS:
+        passed = keys.NAVIGATE.events | keys.SYSTEM
+        if event.type in (passed - set(DIGITS) if self.stage else passed):
             return {"PASS_THROUGH"}
         if self.stage:
             return self._in_stage(context, event)
@@ -207,7 +203,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
     def _between(self, context, event):
         if event.value not in {"PRESS", "DOUBLE_CLICK"}:
             return {"RUNNING_MODAL"}
-        if event.type in CONFIRM:
+        if event.type in keys.CONFIRM.events:
             return self._confirmed(context)
         if event.type == "LEFTMOUSE":
             if not view_under(context.window, event.mouse_x, event.mouse_y):
@@ -220,7 +216,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             self._begin(context, event, "G", dragging=True)
         elif event.type in {"G", "R", "S"}:
             self._begin(context, event, event.type)
-        elif event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE"}:
+        elif event.type in keys.HANDLE_SIZE.events:
             self._resize(context, event.type == "WHEELUPMOUSE")
         self._tell(context)
         return {"RUNNING_MODAL"}
@@ -238,7 +234,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         local = np.array(obj.matrix_world.inverted_safe() @ place)
         corners = list(obj.data.polygons[face].vertices)
         inside = np.searchsorted(self.region.vertices, corners)
-        return corners[np.linalg.norm(self.shape.points()[inside] - local, axis=1).argmin()]
+        return corners[np.linalg.norm(self.shown[inside] - local, axis=1).argmin()]
 
     def _handle_of(self, obj, face):
         """The handle to begin with: at the face that was clicked, or else the part's farthest point from its border."""
@@ -276,48 +272,52 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
 
     def _try(self, context, placed, region, turns):
         """Holds the part by the new handles; if that can't be, all is as it was before, and why is reported."""
-        try:
-            self._hold()
-        except Refused as reason:
-            self.placed, self.region, self.turns = placed, region, turns
-            self._hold()
-            self.report({"WARNING"}, str(reason))
-        if any((handle.matrix != np.eye(4)).any() for handle in self.placed):
-            self.shape.jump([handle.matrix for handle in self.placed])
-            self._show(context)
+        with _waiting(context):
+            try:
+                self._hold()
+            except Refused as reason:
+                self.placed, self.region, self.turns = placed, region, turns
+                self._hold()
+                self.report({"WARNING"}, str(reason))
+            if any((handle.matrix != np.eye(4)).any() for handle in self.placed):
+                self.shape.jump([handle.matrix for handle in self.placed])
+                self._show(context, done=True)
 
     def _hold(self):
+        """Makes ready what follows the handles: for 100,000 vertices that takes a second."""
         self.patches = [self.region.patch(self.region.nearest_free(handle.vertex), handle.radius)
                         for handle in self.placed]
         self.shape = METHODS[self.method](self.region, self.patches)
+        self.shown = self.shape.points()
 
     # ---- During a movement
 
     def _begin(self, context, event, kind, dragging=False):
         self.stage = None
-        _, region, view = self._view(context)
+        region, view = self._view(context)
         start = event.mouse_x - region.x, event.mouse_y - region.y
         self.stage = Stage(kind, start, self.placed[-1].matrix, self._pivot(context), dragging)
         self._turn(region, view, start)
 
     def _view(self, context):
-        """(area, region, RegionView3D) that the tool was started in."""
+        """(region, RegionView3D) that the tool was started in, also where it was started from a panel of that view."""
         region = context.region
-        if context.area.spaces.active.region_quadviews and region.type == "WINDOW":
-            windows = [each for each in context.area.regions if each.type == "WINDOW"]
-            return context.area, region, context.area.spaces.active.region_quadviews[windows.index(region)]
-        window = next(each for each in context.area.regions if each.type == "WINDOW")
-        return context.area, region if region.type == "WINDOW" else window, context.area.spaces.active.region_3d
+        if region.type != "WINDOW":
+            region = next(each for each in context.area.regions if each.type == "WINDOW")
+        return region, view_of(context.area, region)
 
     def _pivot(self, context):
         """The last handle's center, or the whole part's, in the world."""
-        points = self.shape.points()
-        chosen = points[self.patches[-1]] if self.method == "RIGID" else points[self.region.free]
+        chosen = self.shown[self.patches[-1] if self.method == "RIGID" else self.region.free]
         return context.edit_object.matrix_world @ Vector(chosen.mean(axis=0))
 
     def _in_stage(self, context, event):
         stage = self.stage
-        if event.type in {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "LEFT_CTRL", "RIGHT_CTRL"}:
+        if event.type == "INBETWEEN_MOUSEMOVE":  # there is a later one: not worth a step, but full turns count
+            region, view = self._view(context)
+            self._turn(region, view, (event.mouse_x - region.x, event.mouse_y - region.y))
+            return {"RUNNING_MODAL"}
+        if event.type in {"MOUSEMOVE", "LEFT_CTRL", "RIGHT_CTRL"}:
             self._follow(context, event)
             return {"RUNNING_MODAL"}
         if stage.dragging and (event.type, event.value) == ("LEFTMOUSE", "RELEASE"):
@@ -327,7 +327,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             return {"RUNNING_MODAL"}
         if event.value not in {"PRESS", "DOUBLE_CLICK"}:
             return {"RUNNING_MODAL"}
-        if event.type in CONFIRM or event.type == "LEFTMOUSE":
+        if event.type in keys.CONFIRM.events or event.type == "LEFTMOUSE":
             self._follow(context, event)
             self.stage = None
             if self.start != "NONE":  # it was started for this movement
@@ -352,7 +352,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
 
     def _follow(self, context, event):
         """The handle goes where the mouse, or the number typed, says; the part follows."""
-        _, region, view = self._view(context)
+        region, view = self._view(context)
         mouse = event.mouse_x - region.x, event.mouse_y - region.y
         self._turn(region, view, mouse)
         world = {"G": self._moved, "R": self._rotated, "S": self._scaled}[self.stage.kind](region, view, mouse,
@@ -365,7 +365,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         last = self.placed[-1]
         self.placed = [*self.placed[:-1], Handle(last.vertex, last.radius, matrix)]
         try:
-            self.shape.follow([handle.matrix for handle in self.placed], LIVE_ITERATIONS)
+            self.shape.follow([handle.matrix for handle in self.placed])
         except PartwheelError as error:  # a number typed that leads nowhere
             self.report({"WARNING"}, str(error))
             return
@@ -435,19 +435,22 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
     def _tick(self, context):
         """While the mouse rests the part goes on towards its shape of rest."""
         if self.settling:
-            self.settling = self.shape.settle(REST_ITERATIONS)
-            self._show(context)
+            self.settling = self.shape.go_on()
+            self._show(context, done=not self.settling)
 
-    def _show(self, context):
+    def _show(self, context, done=False):
+        """done: with all that belongs to it, not only what is seen while it moves."""
         self.changed = True
-        write(context.edit_object, *self.region.changed(self.shape.points()))
+        if self.pen is None or self.pen.region is not self.region:
+            self.pen = Pen(context.edit_object, self.region)
+        self.shown = self.shape.points()
+        (self.pen.write if done else self.pen.draft)(context.edit_object, self.shown)
         context.area.tag_redraw()
 
     def _draw(self):
         obj = bpy.data.objects.get(self.object_name)
         if obj is not None and self.method == "RIGID":
-            points = self.shape.points()
-            handle_points.draw(obj.matrix_world, [points[patch] for patch in self.patches])
+            handle_points.draw(obj.matrix_world, [self.shown[patch] for patch in self.patches])
 
     def _tell(self, context):
         stage = self.stage
@@ -458,9 +461,11 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             what = {"G": "Move", "R": "Rotate", "S": "Scale"}[stage.kind] + axis
             if stage.typed:
                 what += f": {stage.typed}"
-        context.workspace.status_text_set(STAGE_KEYS if stage else IDLE_KEYS)
-        context.area.header_text_set(f"Partwheel: {what}")
-        context.area.tag_redraw()
+        shown = stage is not None, what
+        if shown != self.told:  # both bars are drawn anew each time
+            self.told = shown
+            context.workspace.status_text_set(status.drawer(keys.MOVING if stage else keys.DEFORMING))
+            context.area.header_text_set(f"Partwheel: {what}")
 
     # ---- The end
 
@@ -468,6 +473,10 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         if not self.changed:
             self._end(context)
             return {"CANCELLED"}
+        if self.settling:
+            with _waiting(context):
+                self.shape.settle()
+            self._show(context, done=True)
         self.handles.clear()
         for turn, placed in enumerate([*self.turns, self.placed]):
             for handle in placed:
@@ -480,7 +489,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
     def _cancelled(self, context):
         try:
             if self.changed and self._still_there(context):
-                self.first.restore(context.edit_object)
+                Pen(context.edit_object, self.first).restore(context.edit_object)
         finally:
             self._end(context)
         return {"CANCELLED"}
@@ -502,6 +511,16 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         if context.area:
             context.area.header_text_set(None)
             context.area.tag_redraw()
+
+
+@contextlib.contextmanager
+def _waiting(context):
+    """What takes a while has Blender's cursor for it."""
+    context.window.cursor_modal_set("WAIT")
+    try:
+        yield
+    finally:
+        context.window.cursor_modal_restore()
 
 
 def _about(pivot, matrix):

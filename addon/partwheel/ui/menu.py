@@ -32,9 +32,10 @@ def _entry(text, write):
     return draw
 
 
-def draw_solids_mesh(self, _context):
+def draw_part_mesh(self, _context):
     self.layout.separator()
-    for operator in ("mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_split"):
+    self.layout.operator_context = "INVOKE_REGION_WIN"
+    for operator in ("mesh.partwheel_deform", "mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_split"):
         self.layout.operator(operator)
 
 
@@ -46,7 +47,7 @@ def draw_solids_object(self, _context):
 
 
 ENTRIES = (
-    ("VIEW3D_MT_edit_mesh", draw_solids_mesh),
+    ("VIEW3D_MT_edit_mesh", draw_part_mesh),
     ("VIEW3D_MT_object", draw_solids_object),
     ("VIEW3D_MT_select_edit_mesh", draw_select),
     ("VIEW3D_MT_select_object", draw_select_object),
