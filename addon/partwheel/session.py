@@ -73,10 +73,11 @@ def key(mesh):
 def hierarchy(obj):
     """The hierarchy of the object's mesh, or None if there is none for its present topology."""
     mesh = mesh_arrays.up_to_date(obj)
-    now = mesh_arrays.fingerprint(mesh)
     entry = _entries.get(key(mesh))
+    opening = None if entry else _Opening(mesh)
+    now = mesh_arrays.fingerprint(mesh)  # takes half as long as opening
     if not entry or entry.built.topology != now.topology:
-        entry = _twin(now) or _open(mesh, now) or entry
+        entry = _twin(now) or (opening or _Opening(mesh)).entry(now) or entry
     if not entry:
         return None
     _entries[key(mesh)] = entry
@@ -90,17 +91,23 @@ def _twin(now):
     return entry and dataclasses.replace(entry)
 
 
-def _open(mesh, now):
-    """A new entry with the hierarchy that came with the mesh from a file, or None."""
-    packed = _unopened.pop(key(mesh), None) or _carried(mesh)
-    if packed is None:
-        return None
-    try:
-        built, opened = stored.unpack(packed, now.topology, len(mesh.polygons))
-    except stored.Refused as reason:
-        print(f"Partwheel: the parts saved with {mesh.name} are left aside, for {reason}.")
-        return None
-    return Entry(built, _counts(mesh), opened, packed)
+class _Opening:
+    """The hierarchy, if any, that came with the mesh from a file, being opened while the caller does other things."""
+
+    def __init__(self, mesh):
+        self.mesh, self.packed = mesh, _unopened.pop(key(mesh), None) or _carried(mesh)
+        self.unpacking = None if self.packed is None else stored.Unpacking(self.packed)
+
+    def entry(self, now):
+        """A new entry with it, or None."""
+        if not self.unpacking:
+            return None
+        try:
+            built, opened = self.unpacking.result(now.topology, len(self.mesh.polygons))
+        except stored.Refused as reason:
+            print(f"Partwheel: the parts saved with {self.mesh.name} are left aside, for {reason}.")
+            return None
+        return Entry(built, _counts(self.mesh), opened, self.packed)
 
 
 def _carried(mesh):

@@ -7,6 +7,7 @@ undo step and every copy of the mesh that Blender makes for drawing would drag t
 
 import hashlib
 import struct
+import threading
 import zlib
 
 from .core import Hierarchy, PartwheelError
@@ -32,7 +33,34 @@ def pack(fingerprint, hierarchy):
     return header + _hash(header) + zlib.compress(saved, 1)
 
 
-def unpack(data, topology, face_count):
+class Unpacking:
+    """Bytes that are being unpacked in a thread, while the caller finds out which mesh they must fit."""
+
+    def __init__(self, data):
+        self._opened = self._error = None
+        self._thread = threading.Thread(target=self._run, args=[data], name="partwheel-unpack")
+        self._thread.start()
+
+    def _run(self, data):
+        try:
+            self._opened = unpack(data)
+        except Exception as error:  # whatever it is, result() raises it
+            self._error = error
+
+    def result(self, topology, face_count):
+        """(Fingerprint when it was built, Hierarchy). Raises Refused, also when they are of another mesh."""
+        self._thread.join()
+        if self._error:
+            raise self._error
+        fingerprint, hierarchy = self._opened
+        if fingerprint.topology != topology:
+            raise Refused("the mesh has changed since")
+        if len(hierarchy.order) != face_count:
+            raise Refused("it is damaged")
+        return fingerprint, hierarchy
+
+
+def unpack(data):
     """(Fingerprint when it was built, Hierarchy). Raises Refused."""
     start = HEADER.size + HASH_SIZE
     if not isinstance(data, bytes) or len(data) < start or not data.startswith(MAGIC):
@@ -43,8 +71,6 @@ def unpack(data, topology, face_count):
         raise Refused("it is of another version")
     if _hash(data[:HEADER.size]) != data[HEADER.size:start] or size > MOST_GROWTH * len(data):
         raise Refused("it is damaged")
-    if fingerprint.topology != topology:
-        raise Refused("the mesh has changed since")
     try:
         inflate = zlib.decompressobj()
         saved = inflate.decompress(memoryview(data)[start:], size)
@@ -55,8 +81,6 @@ def unpack(data, topology, face_count):
         hierarchy = Hierarchy.load(saved)
     except (zlib.error, PartwheelError) as error:
         raise Refused("it is damaged, or of another version") from error
-    if len(hierarchy.order) != face_count:
-        raise Refused("it is damaged")
     return fingerprint, hierarchy
 
 
