@@ -216,15 +216,18 @@ private:
     size_t walk(const View& h, const Point& p, size_t start);
     size_t find_seen(const View& h, const Point& p, int32_t vertex, size_t start);
     double flood(const View& h, size_t f, const Point& p, int32_t vertex);
-    bool surely_inside(const View& h, const Point& p, double& volume6);
+    static double added_volume6(const View& h, const Point& p);
+    static bool surely_inside(const View& h, const Point& p);
     void survey(const Hull& hull, std::span<const int32_t> points);
 
     void reserve(size_t facets);
     void load(const Hull& hull);
     Plane plane(const Triangle& corners) const;
     void set_plane(size_t f, const Plane& plane);
-    bool insert(int32_t vertex);
-    bool see(const Point& p, int32_t vertex);
+    double look(int32_t vertex);
+    double see(const Point& p, int32_t vertex);
+    void attach(int32_t vertex);
+    void insert(int32_t vertex);
     void make_facets(std::span<const RimEdge> rim, const Point& p, int32_t vertex);
     void close_gaps();
     Hull unload();
@@ -364,18 +367,19 @@ double HullKernel::Impl::flood(const View& h, size_t f, const Point& p, int32_t 
     return volume / 2;
 }
 
-// As far as rounded numbers tell. volume6 is six times what the point adds to the hull, to rounding.
-bool HullKernel::Impl::surely_inside(const View& h, const Point& p, double& volume6) {
-    const double factor = h.error_factor(p);
+// Six times what the point adds to the hull, to rounding.
+double HullKernel::Impl::added_volume6(const View& h, const Point& p) {
     Pair sum = {0, 0};
-    PairBits negative = {-1, -1};
-    for (size_t f = 0; f < h.count; f += 2) {
-        const Pair side = h.sides(f, p);
-        sum += positive(side);
-        negative &= std::bit_cast<PairBits>(side + factor * vector_at<Pair>(h.size + f));
-    }
-    volume6 = sum[0] + sum[1];
-    return (negative[0] & negative[1]) < 0;
+    for (size_t f = 0; f < h.count; f += 2) sum += positive(h.sides(f, p));
+    return sum[0] + sum[1];
+}
+
+// As far as rounded numbers tell.
+bool HullKernel::Impl::surely_inside(const View& h, const Point& p) {
+    const double factor = h.error_factor(p);
+    unsigned negative = 3;
+    for (size_t f = 0; f < h.count; f += 2) negative &= signs(h.sides(f, p) + factor * vector_at<Pair>(h.size + f));
+    return negative == 3;
 }
 
 void HullKernel::Impl::survey(const Hull& hull, std::span<const int32_t> points) {
@@ -398,8 +402,8 @@ void HullKernel::Impl::survey(const Hull& hull, std::span<const int32_t> points)
                 start = f;
                 continue;
             }
-        Candidate found{.vertex = v};
-        if (!surely_inside(h, p, found.volume6)) candidates_.push_back(found);
+        const double volume6 = added_volume6(h, p);
+        if (volume6 > 0 || !surely_inside(h, p)) candidates_.push_back({volume6, v});
     }
     std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
         return a.volume6 != b.volume6 ? a.volume6 > b.volume6 : a.vertex < b.vertex;
@@ -451,9 +455,8 @@ void HullKernel::Impl::set_plane(size_t f, const Plane& plane) {
     size_[f] = plane.size;
 }
 
-// What find_seen() and flood() do, for a hull at work with at most set_bits facets; the volume is added to volume6_.
-// False if the vertex is in the hull.
-bool HullKernel::Impl::see(const Point& p, int32_t vertex) {
+// What look() does, on a hull with at most set_bits facets.
+double HullKernel::Impl::see(const Point& p, int32_t vertex) {
     const View h = view();
     const double factor = h.error_factor(p);
     uint64_t sees = 0, surely = 0;
@@ -470,8 +473,8 @@ bool HullKernel::Impl::see(const Point& p, int32_t vertex) {
         if (side < 0) sees &= ~(uint64_t{1} << f);
         if (side > 0) surely |= uint64_t{1} << f;
     }
-    if (surely == 0) return false;
-    volume6_ += sum[0] + sum[1];
+    rim_count_ = 0;
+    if (surely == 0) return 0;
     uint32_t* seen = seen_.data();
     RimEdge* rim = rim_.data();
     for (uint64_t left = sees; left != 0; left &= left - 1) {
@@ -485,7 +488,7 @@ bool HullKernel::Impl::see(const Point& p, int32_t vertex) {
     }
     seen_count_ = static_cast<size_t>(seen - seen_.data());
     rim_count_ = static_cast<size_t>(rim - rim_.data());
-    return true;
+    return sum[0] + sum[1];
 }
 
 // The planes of the facets between the rim and the vertex, two at a time, as plane() gives them: they go to the places
@@ -516,17 +519,21 @@ void HullKernel::Impl::make_facets(std::span<const RimEdge> rim, const Point& p,
     }
 }
 
-// Returns false if the vertex is in the hull already.
-bool HullKernel::Impl::insert(int32_t vertex) {
+// Finds seen_ and rim_ of a vertex on the hull at work; rim_ is empty if the vertex is in the hull. Returns six times
+// what the vertex adds.
+double HullKernel::Impl::look(int32_t vertex) {
     reserve(count_);
     const Point p = at(vertex) - origin_;
-    if (count_ <= set_bits) {
-        if (!see(p, vertex)) return false;
-    } else {
-        const size_t seen = find_seen(view(), p, vertex, latest_);
-        if (seen == none) return false;
-        volume6_ += flood(view(), seen, p, vertex);
-    }
+    if (count_ <= set_bits) return see(p, vertex);
+    rim_count_ = 0;
+    const size_t seen = find_seen(view(), p, vertex, latest_);
+    return seen == none ? 0 : flood(view(), seen, p, vertex);
+}
+
+// Takes the vertex that was looked at last into the hull at work.
+void HullKernel::Impl::attach(int32_t vertex) {
+    if (rim_count_ == 0) return;
+    const Point p = at(vertex) - origin_;
     reach_ = std::max(reach_, reach_of(p));
 
     // The new facets take the places of those that go, then gaps, then further places.
@@ -557,7 +564,11 @@ bool HullKernel::Impl::insert(int32_t vertex) {
         facets[seen_[i]].neighbours[1] = next;
         facets[next].neighbours[2] = static_cast<int32_t>(seen_[i]);
     }
-    return true;
+}
+
+void HullKernel::Impl::insert(int32_t vertex) {
+    volume6_ += look(vertex);
+    attach(vertex);
 }
 
 // Moves the last facets into the gaps.
@@ -717,15 +728,20 @@ HullKernel::Measure HullKernel::Impl::united_volume(const Hull& hull, std::span<
     if (candidates_.size() == 1 || candidates_[1].volume6 <= negligible * volume) return {with_first, true};
     if (with_first > enough) return {with_first, false};
     load(hull);
-    while (inserted_ < candidates_.size()) {
-        if (volume6_ / 6 > enough) {
+    for (;;) {
+        const int32_t vertex = candidates_[inserted_].vertex;
+        const double volume6 = volume6_ + look(vertex);
+        if (volume6 / 6 > enough) {
             surveyed_ = nullptr;
-            return {volume6_ / 6, false};
+            return {volume6 / 6, false};
         }
-        if (candidates_[inserted_].volume6 <= negligible * volume) break;
-        insert(candidates_[inserted_++].vertex);
+        // The last one need not be taken in.
+        if (inserted_ + 1 == candidates_.size() || candidates_[inserted_ + 1].volume6 <= negligible * volume)
+            return {volume6 / 6, true};
+        volume6_ = volume6;
+        attach(vertex);
+        ++inserted_;
     }
-    return {volume6_ / 6, true};
 }
 
 std::pair<Point, Point> HullKernel::Impl::bounds(const Hull& hull) const {
