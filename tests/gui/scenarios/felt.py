@@ -1,8 +1,9 @@
 """What a notch, a hover and a start cost of the add-on's own time, on 89,000 faces: the table of scripts/bench_felt.
 
-Processor time of Blender's main thread. Tests have no graphics card: what the drawing itself takes there, in software,
+Processor time of Blender's main thread, which other programs don't interrupt meanwhile if we may ask for that. Tests have no graphics card: what the drawing itself takes there, in software,
 is told apart. It is no time of the add-on's: with a card the call comes back at once.
 """
+import contextlib
 import os
 import statistics
 import time
@@ -10,6 +11,18 @@ import time
 LIMITS = {"notch, median": 0.016, "notch, 95 %": 0.033, "hover, median": 0.016, "start": 0.2}
 # On a machine that does other things as well the tests only ask that nothing is out of all proportion.
 SLACK = 1 if os.environ.get("PARTWHEEL_FELT") else 8
+
+
+@contextlib.contextmanager
+def undisturbed():
+    """This thread goes before all others for a moment, where the system allows it."""
+    before = os.sched_getscheduler(0), os.sched_getparam(0)
+    with contextlib.suppress(PermissionError):
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+    try:
+        yield
+    finally:
+        os.sched_setscheduler(0, *before)
 
 
 class Clock:
@@ -20,11 +33,12 @@ class Clock:
         inner = getattr(owner, name)
 
         def timed(*arguments, **more):
-            began = time.thread_time()
-            try:
-                return inner(*arguments, **more)
-            finally:
-                self.seconds.append(time.thread_time() - began)
+            with undisturbed():
+                began = time.thread_time()
+                try:
+                    return inner(*arguments, **more)
+                finally:
+                    self.seconds.append(time.thread_time() - began)
 
         setattr(owner, name, timed)
 
@@ -105,6 +119,8 @@ def play(stage):
     stage.mouse.click()
     yield from stage.until("something is selected", lambda: stage.object.data.total_face_sel > 0)
     cold = begin.take()[-1]
+    stage.mouse.key("ESC")
+    yield from stage.settle()
     notches.sort()
     measured = {"notch, median": statistics.median(notches), "notch, 95 %": notches[int(0.95 * len(notches))],
                 "hover, median": statistics.median(hovers) + hover_drawn, "start": max(starts)}

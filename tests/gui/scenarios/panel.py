@@ -40,7 +40,8 @@ def play(stage):
     yield from stage.ended()
     yield from stage.selected(stops[start + 1], "after Enter")
 
-    stage.mouse.key("TAB")
+    with stage.override():
+        bpy.ops.object.mode_set(mode="OBJECT")
     yield from stage.until("the panel is drawn in Object Mode", lambda: "OBJECT" in drawn)
     yield from stage.screenshot("object")
 
