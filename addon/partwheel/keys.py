@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which event does what while a part is being picked or deformed, and how the status bar names it. No bpy here.
+"""Which event does what while a part is being picked, placed or deformed, and how the status bar names it. No bpy here.
 
 A modal operator written in Python can't have a keymap that users edit, so this table is it: modal() looks events up
 here, and the status bar is drawn from the same rows.
@@ -56,6 +56,15 @@ SNAP = Key("SNAP", frozenset({"LEFT_CTRL", "RIGHT_CTRL"}), "Snap", ("EVENT_CTRL"
 DONE = Key("DONE", CLICK.events | CONFIRM.events, "Done", ("MOUSE_LMB", "EVENT_RETURN"))
 DEFORMING = (DRAG, ONE_MORE, TRANSFORM, HANDLE_SIZE, CONFIRM, NAVIGATE, CANCEL)
 MOVING = (AXIS, TYPE, SNAP, TRANSFORM, DONE, CANCEL)
+
+# While a part is placed. SIGNS: of events that come in pairs, which makes more and which less.
+SIZE = Key("SIZE", frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "NUMPAD_PLUS", "NUMPAD_MINUS"}), "Size", names="Wheel")
+TURN = Key("TURN", SIZE.events, "Turn", names="Shift Wheel")
+DEPTH = Key("DEPTH", frozenset({"PAGE_UP", "PAGE_DOWN"}), "Depth", names="Page Up/Down")
+FIT = Key("FIT", frozenset({"F"}), "Fit Border", ("EVENT_F",))
+MIRROR = Key("MIRROR", frozenset({"M"}), "Mirror Copy", ("EVENT_M",))
+SIGNS = {"WHEELUPMOUSE": 1, "NUMPAD_PLUS": 1, "PAGE_UP": 1, "WHEELDOWNMOUSE": -1, "NUMPAD_MINUS": -1, "PAGE_DOWN": -1}
+PLACING = (SIZE, TURN, DEPTH, FIT, MIRROR, CLICK._replace(label="Confirm"), NAVIGATE, CANCEL)
 
 SCROLL_STEP, DRAG_STEP = 30, 24  # pixels of a trackpad's scroll, and of a drag, that count as a notch
 

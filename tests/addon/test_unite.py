@@ -135,6 +135,12 @@ class Unite(SolidTest):
             self.assertSolid(target.data)
             self.assertAlmostEqual(volume(target.data), expected, places=5)
 
+    def test_parts_of_the_union_are_found_at_once(self):
+        target = self.cube()
+        self.place(target, self.cube().data.copy(), Matrix.Translation((1, 0.9, 0.8)))
+        self.assertEqual(bpy.ops.object.partwheel_unite(build=True), {"FINISHED"})
+        self.assertEqual(len(part("session").hierarchy(target).order), len(target.data.polygons))
+
     def test_what_belongs_to_the_mesh_stays(self):
         """Its settings and properties, whoever else uses it; a fake user, which only the very same mesh can keep."""
         for fake, shared in ((False, False), (True, False), (False, True), (True, True)):

@@ -29,6 +29,11 @@ def closed(obj):
     return len(directed) == len(set(directed)) and set(directed) == {(b, a) for a, b in directed}
 
 
+def places(obj):
+    """Of its mesh's vertices, as bytes."""
+    return numpy.array([vertex.co for vertex in obj.data.vertices]).tobytes()
+
+
 def caps(obj):
     """(F,) which faces are caps."""
     marks = numpy.empty(len(obj.data.polygons), bool)
@@ -66,15 +71,28 @@ def pixel(stage, place):
     return int(x + region.x), int(y + region.y)
 
 
+def choose(stage, menu, up):
+    """Takes an entry of a menu, counted from its last, with the mouse beside the models."""
+    stage.mouse.move(*stage.empty_spot())
+    yield from stage.settle()
+    with stage.override():
+        bpy.ops.wm.call_menu(name=menu)
+    yield from stage.settle()
+    stage.mouse.key("END")
+    for _ in range(up):
+        stage.mouse.key("UP_ARROW")
+    yield from stage.settle()
+    stage.mouse.key("RET")
+    yield from stage.settle()
+
+
 def place_over(stage, part, target, fit=False, mirror=False):
     """Places the part over the target's border with the mouse."""
     where = module("placement").border(target)
     start = part.matrix_world.copy()
+    before = places(target), target.matrix_world.copy()
     activate(stage, part)
-    stage.mouse.move(*stage.empty_spot())
-    yield from stage.settle()
-    with stage.override():
-        bpy.ops.object.partwheel_place("INVOKE_DEFAULT")
+    yield from choose(stage, "VIEW3D_MT_object", 1)
     x, y, _ = seen(stage, target).spot(*pixel(stage, where.middle))
     stage.mouse.move(x - 3, y)
     stage.mouse.move(x, y)
@@ -98,6 +116,8 @@ def place_over(stage, part, target, fit=False, mirror=False):
         stage.check((fitted.middle - where.middle).length < 0.1 * where.radius, "it is at the border")
     if mirror:
         stage.mouse.key("M")
+    yield from stage.settle()
+    stage.check((places(target), target.matrix_world) == before, "the target is as it was")
     stage.mouse.key("RET")
     yield from stage.settle()
     last = bpy.data.window_managers[0].operators[-1]
@@ -107,8 +127,7 @@ def place_over(stage, part, target, fit=False, mirror=False):
 def unite(stage, target, *parts):
     before = len(bpy.data.objects)
     activate(stage, target, *parts)
-    with stage.override():
-        bpy.ops.object.partwheel_unite("INVOKE_DEFAULT", True)
+    yield from choose(stage, "VIEW3D_MT_object", 0)
     yield from stage.until("the parts are gone", lambda: len(bpy.data.objects) == before - len(parts))
     stage.check(closed(target), "the union is closed")
 

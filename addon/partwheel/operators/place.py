@@ -9,10 +9,8 @@ from mathutils import Vector
 
 from .. import keys, placement
 from ..picking import view_under
+from ..ui import status
 
-KEYS = ("Partwheel   Move: Over a Surface   Wheel: Size   Shift Wheel: Turn   Page Up/Down: Depth   F: Fit Border   "
-        "M: Mirror Copy   LMB, Enter: Confirm   MMB: Navigate   Esc/RMB: Cancel")
-UP, DOWN = {"WHEELUPMOUSE", "NUMPAD_PLUS"}, {"WHEELDOWNMOUSE", "NUMPAD_MINUS"}
 CONFIRM, CANCEL = keys.CLICK.events | keys.CONFIRM.events, keys.CANCEL.events
 PASS = keys.NAVIGATE.events | keys.SYSTEM
 SIZE_STEP, TURN_STEP, DEPTH_STEP = 1.05, math.radians(5), 0.05
@@ -105,16 +103,16 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
                 context.view_layer.update()
                 placement.mirrored(part, bpy.data.objects[self.target]).select_set(True)
             return self._end(context, {"FINISHED"})
-        sign = 1 if event.type in UP | {"PAGE_UP"} else -1
-        if event.type in UP | DOWN and event.shift:
+        sign = keys.SIGNS.get(event.type, 0)
+        if event.type in keys.TURN.events and event.shift:
             self.angle += sign * TURN_STEP
-        elif event.type in UP | DOWN:
+        elif event.type in keys.SIZE.events:
             self.scale *= SIZE_STEP ** sign
-        elif event.type in {"PAGE_UP", "PAGE_DOWN"}:
+        elif event.type in keys.DEPTH.events:
             self.depth -= sign * DEPTH_STEP
-        elif event.type == "F" and self.target:
+        elif event.type in keys.FIT.events and self.target:
             self.fit, self.scale = not self.fit, 1
-        elif event.type == "M":
+        elif event.type in keys.MIRROR.events:
             self.mirror = not self.mirror
         else:
             return {"RUNNING_MODAL"}
@@ -168,7 +166,7 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
         self._tell(context, ", ".join(state + ["fitted"] * self.fit + ["with mirror copy"] * self.mirror))
 
     def _tell(self, context, header):
-        context.workspace.status_text_set(KEYS)
+        context.workspace.status_text_set(status.drawer(keys.PLACING))
         context.area.header_text_set(f"Partwheel: {header}")
 
     def _end(self, context, result):

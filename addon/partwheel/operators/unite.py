@@ -13,6 +13,9 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
     bl_label = "Unite Solids"
     bl_options = {"REGISTER", "UNDO"}
 
+    build: bpy.props.BoolProperty(
+        name="Find Parts", description="Find the parts of the united mesh at once, in a process of its own",
+        default=False)
     keep: bpy.props.BoolProperty(name="Keep Parts", description="Leave the other objects as they are", default=False)
 
     @classmethod
@@ -46,5 +49,10 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
                 bpy.data.objects.remove(other)
                 if not mesh.users:
                     bpy.data.meshes.remove(mesh)
+        if self.build:
+            try:
+                bpy.ops.mesh.partwheel_build("INVOKE_DEFAULT")
+            except RuntimeError as error:  # they are united all the same
+                self.report({"WARNING"}, str(error))
         self.report({"INFO"}, f"{target.name}: {len(target.data.polygons)} faces, closed (solver {solver.title()}).")
         return {"FINISHED"}
