@@ -31,6 +31,9 @@ if bpy.app.version < (4, 0, 0):
     _MARKS["edges"] += [("use_seam", bool), ("use_edge_sharp", bool), ("crease", np.float32),
                         ("bevel_weight", np.float32)]
     _MARKS["polygons"] += [("use_smooth", bool)]
+# Where the mesh itself knows whether it has any.
+_KNOWN = {("vertices", "bevel_weight"): "has_bevel_weight_vertex", ("edges", "bevel_weight"): "has_bevel_weight_edge",
+          ("edges", "crease"): "has_crease_edge"}
 
 
 class Plan(NamedTuple):
@@ -181,6 +184,8 @@ def _copy_attributes(mesh, made, origins):
 def _copy_marks(mesh, made, origins):
     for kind, marks in _MARKS.items():
         for field, dtype in marks:
+            if not getattr(mesh, _KNOWN.get((kind, field), ""), True):
+                continue
             values = read(getattr(mesh, kind), field, dtype)
             if values.any():
                 at = origins[kind]
