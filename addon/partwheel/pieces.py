@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A mesh put together from pieces of another, with all their layers, by whole arrays: a bmesh of the same costs ten times
-as much. (Not taken along: multires displacements and skin radii, which Python can't write.)"""
+"""A mesh put together from pieces of another, with all their layers, by whole arrays: a bmesh of the same costs ten
+times as much. (Not taken along: multires displacements and skin radii, which Python can't write.)"""
 
 from typing import NamedTuple
 
@@ -13,7 +13,8 @@ from .mesh_arrays import read
 
 # Type of an attribute -> (its field, type of its numbers, how many they are, whether a mean has a meaning)
 _TYPES = {
-    "FLOAT": ("value", np.float32, 1, True), "INT": ("value", np.int32, 1, False), "INT8": ("value", np.int32, 1, False),
+    "FLOAT": ("value", np.float32, 1, True), "INT": ("value", np.int32, 1, False),
+    "INT8": ("value", np.int32, 1, False),
     "BOOLEAN": ("value", bool, 1, False), "FLOAT2": ("vector", np.float32, 2, True),
     "FLOAT_VECTOR": ("vector", np.float32, 3, True), "FLOAT_COLOR": ("color", np.float32, 4, True),
     "BYTE_COLOR": ("color", np.float32, 4, True), "INT16_2D": ("value", np.int32, 2, False),

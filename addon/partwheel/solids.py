@@ -3,7 +3,8 @@
 
 On the exact rung the part is core's Solid: the polygons that lie in it whole stay as they are, those that are cut
 become triangles with their attributes, and the caps close it. On the other rungs it is the mesh's own polygons: doubles
-welded, wound alike, set apart where more than two meet at an edge, every border filled. Either way each edge has two faces.
+welded, wound alike, set apart where more than two meet at an edge, every border filled. Either way each edge has two
+faces.
 """
 
 from typing import NamedTuple
@@ -41,8 +42,8 @@ def part(obj, hierarchy, tet_first, tet_last, options=Options()):
 
 
 def parts(obj, hierarchy, slices, options=Options()):
-    """New meshes, one for each slice (tet_first, tet_last); with caps that match exactly, where they aren't smooth. None
-    for a slice that has no tetrahedron left, unless it is the only one."""
+    """New meshes, one for each slice (tet_first, tet_last); with caps that match exactly, where they aren't smooth.
+    None for a slice that has no tetrahedron left, unless it is the only one."""
     mesh = mesh_arrays.up_to_date(obj)
     exact = hierarchy.summary.rung == "exact"
     if not exact:
@@ -82,8 +83,8 @@ def remove(obj, hierarchy, tet_first, tet_last, options=Options()):
 
 
 def _carved(mesh, hierarchy, solid, tet_first, tet_last, options, alone):
-    """(new mesh: what is in the slice, closed; its custom normals (L,3), if the mesh has any). solid: core's Solid of the
-    slice, on the exact rung. alone: without what has no face."""
+    """(new mesh: what is in the slice, closed; its custom normals (L,3), if the mesh has any). solid: core's Solid of
+    the slice, on the exact rung. alone: without what has no face."""
     exact = solid is not None
     if exact:
         plan = _of_solid(mesh, hierarchy, solid, alone, facets=not options.smooth)
@@ -137,8 +138,8 @@ def _closed(made, loops, mesh, smooth, exact, alone):
 
 
 def _mended(bm, loops, mesh, alone):
-    """Wound alike and doubles welded, if alone; else it is the edges that stay open, since they were before: what is left
-    of a broken mesh is as broken as before, and only the new hole is closed."""
+    """Wound alike and doubles welded, if alone; else it is the edges that stay open, since they were before: what is
+    left of a broken mesh is as broken as before, and only the new hole is closed."""
     if not alone:
         edge = read(mesh.loops, "edge_index", np.int32)
         was_open = np.bincount(edge, minlength=len(mesh.edges))[edge[loops]] == 1

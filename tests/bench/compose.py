@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What copying parts and uniting solids cost in Blender. Called by scripts/bench_compose: in plain Python it prepares the
-models in a directory, in Blender it prints a row of a table."""
+"""What copying parts and uniting solids cost in Blender. Called by scripts/bench_compose: in plain Python it prepares
+the models in a directory, in Blender it prints a row of a table."""
 
 import sys
 import time

@@ -307,8 +307,8 @@ class Hierarchy:
 
     def solids(self, slices):
         """The Solids around slices (tet_first, tet_last) that have nothing in common, None for one that has no
-        tetrahedron left. A cap between two of them is the same triangle in both: where one has a vertex in the middle of
-        an edge, all have."""
+        tetrahedron left. A cap between two of them is the same triangle in both: where one has a vertex in the middle
+        of an edge, all have."""
         none = np.empty((0, 2), np.int32)
         made = [self._solid_or_none(*each, none) for each in slices]
         wanted = [solid.ends[solid.ends[:, 0] != solid.ends[:, 1]] for solid in made if solid]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Polygons of any number of corners: as triangles that have an area wherever that is possible; whether they are a solid."""
+"""Polygons of any number of corners: as triangles that have an area wherever that can be; whether they are a solid."""
 
 import ctypes
 from typing import NamedTuple
