@@ -134,8 +134,8 @@ class Region:
         if not self.free.any():
             raise Refused("The part has no vertex inside its border that is not hidden: pick a larger one.")
         if self.free.all():
-            raise Refused("The part is the whole mesh, so nothing would hold it: pick a smaller one, or move the "
-                          "object.")
+            raise Refused("The part is the whole mesh, or a loose piece of it, without a border that would hold it: "
+                          "pick a smaller one, or move it as it is.")
         if not self.size > 0:
             raise Refused("The faces of the part have no area: there is nothing to deform.")
         self.partner, self._sources, images = None, np.empty(0, int), np.empty(0, int)

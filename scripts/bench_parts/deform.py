@@ -1,4 +1,4 @@
-"""What a mouse move costs while a part of 20,000 and one of 100,000 vertices is deformed: the engine's, and Blender's."""
+"""What a mouse move costs while a part of 20,000 or 100,000 vertices is deformed: in the engine, and in Blender."""
 
 import json
 import os
@@ -49,6 +49,7 @@ def in_blender(blender, given, moves):
     if not result.exists():
         raise Failure(f"{blender[0]} ended with code {done.returncode}: {done.stderr.strip()[-300:]}")
     report = json.loads(result.read_text())
-    print(f"     in Blender {report['blender']}: {1000 * report['whole']:.1f} ms a move ({1000 * report['follow']:.1f} to "
-          f"follow, {1000 * report['write']:.1f} to write), {report['begin']:.2f} s to begin")
+    whole, follow, write = (1000 * report[name] for name in ("whole", "follow", "write"))
+    print(f"     in Blender {report['blender']}: {whole:.1f} ms a move ({follow:.1f} to follow, {write:.1f} to write), "
+          f"{report['begin']:.2f} s to begin")
     return report

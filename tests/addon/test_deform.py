@@ -289,6 +289,64 @@ class Deform(MeshTest):
             part("deforming").Region(obj, [0, 2, 4])
         self.assertIn("area", str(refused.exception))
 
+    def test_a_loose_piece_has_no_border(self):
+        vertices, polygons = BOX
+        count = len(vertices)
+        obj = self.add(vertices + [(x + 3, y, z) for x, y, z in vertices],
+                       polygons + [tuple(count + v for v in polygon) for polygon in polygons])
+        with self.assertRaises(part("deforming").Refused) as refused:
+            part("deforming").Region(obj, list(range(len(polygons))))
+        self.assertIn("loose piece", str(refused.exception))
+
+    def test_some_faces_without_area(self):
+        """Doubled vertices and needles in the part: it follows all the same, and can be put back bit for bit."""
+        obj, node, faces, free, tip = self.hand()
+        bm = bmesh.from_edit_mesh(obj.data)
+        bm.verts.ensure_lookup_table()
+        around = [edge.other_vert(bm.verts[free[0]]) for edge in bm.verts[free[0]].link_edges]
+        for vertex in around[:2]:
+            vertex.co = bm.verts[free[0]].co
+        around[2].co = (around[2].co + 99 * bm.verts[free[0]].co) / 100
+        before = edited(obj)
+        deforming = part("deforming")
+        region = deforming.Region(obj, faces)
+        shape = deforming.AsRigidAsPossible(region, [[region.nearest_free(tip)]])
+        pen = deforming.Pen(obj, region)
+        shape.follow([shift(0.05, 0, 0)])
+        pen.draft(obj, shape.points())
+        after = edited(obj)
+        self.assertTrue(numpy.isfinite(after).all())
+        self.assertLess(numpy.abs(after - before).max(), 0.06)
+        numpy.testing.assert_allclose(after[tip] - before[tip], (0.05, 0, 0), atol=1e-6)
+        pen.restore(obj)
+        self.assertTrue((edited(obj) == before).all())
+
+    def test_normals_while_it_moves(self):
+        """Those that are seen are right at once, flat or smooth; at the end all are Blender's own."""
+        for smooth in (False, True):
+            obj, node, faces, free, tip = self.hand()
+            bm = bmesh.from_edit_mesh(obj.data)
+            for face in bm.faces:
+                face.smooth = smooth
+            deforming = part("deforming")
+            region = deforming.Region(obj, faces)
+            shape, pen = deforming.AsRigidAsPossible(region, [[region.nearest_free(tip)]]), deforming.Pen(obj, region)
+            shape.follow([shift(0.05, 0.02, 0)])
+
+            def normals(elements):
+                return numpy.array([element.normal[:] for element in elements])
+
+            pen.draft(obj, shape.points())
+            seen = normals(bm.verts if smooth else bm.faces)
+            pen.write(obj, shape.points())
+            final = normals(bm.verts if smooth else bm.faces)
+            bm.normal_update()
+            numpy.testing.assert_array_equal(final, normals(bm.verts if smooth else bm.faces))
+            cosine = (seen * final).sum(axis=1)
+            self.assertGreater(numpy.median(cosine[free] if smooth else cosine[faces]), 0.999)
+            self.assertGreater(cosine.min(), 0.8 if smooth else 0.99999)
+            self.setUp()
+
     def test_no_operator_without_parts(self):
         obj = self.add(*BOX)
         self.edit(obj)

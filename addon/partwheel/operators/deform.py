@@ -14,7 +14,7 @@ from bpy_extras.view3d_utils import (
 )
 from mathutils import Matrix, Vector
 
-from .. import handle_points, keys, session
+from .. import handle_gizmo, handle_points, keys, session
 from ..core import PartwheelError
 from ..deforming import METHODS, Pen, Refused, Region
 from ..picking import FaceTree, view_of, view_under
@@ -208,6 +208,14 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         if event.type == "LEFTMOUSE":
             if not view_under(context.window, event.mouse_x, event.mouse_y):
                 return {"PASS_THROUGH"}
+            region, view = self._view(context)
+            mouse = event.mouse_x - region.x, event.mouse_y - region.y
+            grabbed = handle_gizmo.under(self._pivot(context.edit_object), region, view, mouse)
+            if grabbed:
+                kind, axis = grabbed
+                self._begin(context, event, kind, dragging=True, axis=axis)
+                self._tell(context)
+                return {"RUNNING_MODAL"}
             vertex = self._vertex_under(context, event)
             if vertex is None:
                 return self._confirmed(context)
@@ -292,11 +300,11 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
 
     # ---- During a movement
 
-    def _begin(self, context, event, kind, dragging=False):
+    def _begin(self, context, event, kind, dragging=False, axis=None):
         self.stage = None
         region, view = self._view(context)
         start = event.mouse_x - region.x, event.mouse_y - region.y
-        self.stage = Stage(kind, start, self.placed[-1].matrix, self._pivot(context), dragging)
+        self.stage = Stage(kind, start, self.placed[-1].matrix, self._pivot(context.edit_object), dragging, axis)
         self._turn(region, view, start)
 
     def _view(self, context):
@@ -306,10 +314,10 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             region = next(each for each in context.area.regions if each.type == "WINDOW")
         return region, view_of(context.area, region)
 
-    def _pivot(self, context):
+    def _pivot(self, obj):
         """The last handle's center, or the whole part's, in the world."""
         chosen = self.shown[self.patches[-1] if self.method == "RIGID" else self.region.free]
-        return context.edit_object.matrix_world @ Vector(chosen.mean(axis=0))
+        return obj.matrix_world @ Vector(chosen.mean(axis=0))
 
     def _in_stage(self, context, event):
         stage = self.stage
@@ -449,8 +457,12 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
 
     def _draw(self):
         obj = bpy.data.objects.get(self.object_name)
-        if obj is not None and self.method == "RIGID":
+        if obj is None:
+            return
+        if self.method == "RIGID":
             handle_points.draw(obj.matrix_world, [self.shown[patch] for patch in self.patches])
+        if not self.stage:
+            handle_gizmo.draw(self._pivot(obj), bpy.context.region, bpy.context.region_data)
 
     def _tell(self, context):
         stage = self.stage
