@@ -38,7 +38,8 @@ class Selection:
         for kind in KINDS:
             _sequence(bm, kind).index_update()
         self.before = {kind: mesh_arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool) for kind in KINDS}
-        self.history = [(_kind_of(element), element.index) for element in bm.select_history]
+        # list(): with Python 3.13 the history of Blender 4.3 is not to be gone through in a comprehension.
+        self.history = [(_kind_of(element), element.index) for element in list(bm.select_history)]
         self.active_face = bm.faces.active.index if bm.faces.active else None
         self.visible = ~mesh_arrays.read(mesh.polygons, "hide", bool)
         self.kind = next(kind for kind in KINDS if kind in bm.select_mode)

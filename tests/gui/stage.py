@@ -210,7 +210,7 @@ class Stage:
         bm = bmesh.from_edit_mesh(self.object.data)
         active = bm.select_history.active
         return {**{kind: self.selection(kind) for kind in ("faces", "edges", "verts")},
-                "history": [(type(element).__name__, element.index) for element in bm.select_history],
+                "history": [(type(element).__name__, element.index) for element in list(bm.select_history)],
                 "active": active and (type(active).__name__, active.index)}
 
     def reports(self):

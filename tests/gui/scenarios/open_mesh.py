@@ -31,6 +31,7 @@ def play(stage):
     stage.shortcut("mesh.partwheel_select")
     yield from stage.until("the error is reported", lambda: "(not solid)" in stage.reports())
     yield from stage.screenshot("error")
+    stage.mouse.key("ESC")  # it is shown until then
     stage.mouse.move(*stage.empty_spot())
     yield from stage.ended()
     yield from stage.selected({0}, "after the error")
