@@ -78,7 +78,7 @@ PW_API pw_status pw_context_seconds(const pw_context *context, double *seconds);
 
 /* Which tree is built. */
 typedef enum pw_mode {
-    PW_MODE_REGROUPED = 0, /* the paper's below some 300 parts, which are joined by what people take for one part */
+    PW_MODE_REGROUPED = 0, /* the paper's below some 600 parts, which are joined by what people take for one part */
     PW_MODE_PAPER = 1      /* the paper's as it is, and wheel and cuts by concavity alone */
 } pw_mode;
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <queue>
@@ -62,6 +63,7 @@ struct Link {
     Border border;
     double cost = 0;
     bool alive = true;
+    bool stale = false;  // the cost is from before one of the parts grew
 };
 
 struct Part {
@@ -91,6 +93,7 @@ private:
     void choose_parts();
     void measure();
     void price(Link& link);
+    void queue(const Link& link) { queue_.push({link.cost, static_cast<int32_t>(&link - links_.data())}); }
     std::array<double, pair_measures> measures(const Part& a, const Part& b, const Border& border);
     void join(int32_t a, int32_t b, double cost);
     void join_neighbours();
@@ -106,6 +109,8 @@ private:
     HullKernel kernel_;
     std::vector<Part> parts_;
     std::vector<Link> links_;
+    // By cost, then number; those whose cost is not the link's any more count no longer.
+    std::priority_queue<std::pair<double, int32_t>, std::vector<std::pair<double, int32_t>>, std::greater<>> queue_;
     std::vector<int32_t> part_of_;       // of each tetrahedron
     std::vector<uint8_t> goes_;          // merges of the paper's tree that are undone
     std::vector<std::array<int32_t, 2>> joined_;
@@ -198,9 +203,12 @@ void Regrouping::measure() {
     volume_unit_ = area_unit_ * length_unit_;
 
     struct Side {
-        int32_t low, high, triangle;
+        int64_t edge;  // its lower vertex, then its higher one: quicker to sort as one number
+        int32_t triangle;
         bool forward;
         auto operator<=>(const Side&) const = default;
+        int32_t low() const { return static_cast<int32_t>(edge >> 32); }
+        int32_t high() const { return static_cast<int32_t>(edge & 0xffffffff); }
     };
     struct Between {
         int32_t a, b;
@@ -241,7 +249,7 @@ void Regrouping::measure() {
             part.push_back(p);
             for (size_t i = 0; i < 3; ++i) {
                 const int32_t v = f[i], w = f[(i + 1) % 3];
-                sides.push_back({std::min(v, w), std::max(v, w), number, v < w});
+                sides.push_back({int64_t{std::min(v, w)} << 32 | std::max(v, w), number, v < w});
                 around[static_cast<size_t>(v)] += size / 3;
             }
         }
@@ -266,13 +274,13 @@ void Regrouping::measure() {
     std::sort(sides.begin(), sides.end());
     for (size_t i = 0; i + 1 < sides.size(); ++i) {
         const Side &x = sides[i], &y = sides[i + 1];
-        if (x.low != y.low || x.high != y.high) continue;
+        if (x.edge != y.edge) continue;
         const Point &m = normals[static_cast<size_t>(x.triangle)], &n = normals[static_cast<size_t>(y.triangle)];
-        const Point along = point(x.high) - point(x.low);
+        const Point along = point(x.high()) - point(x.low());
         const double turn = dot(cross(m, n), along) * (x.forward ? 1 : -1);
         const double bend = std::sqrt(std::max(0.0, (1 - dot(m, n)) / 2)) * (turn < 0 ? -1 : 1);
         const double length = std::sqrt(dot(along, along)) / length_unit_;
-        folds.push_back({x.low, x.high, x.triangle, y.triangle, length, bend});
+        folds.push_back({x.low(), x.high(), x.triangle, y.triangle, length, bend});
         ++i;
     }
     // Mean curvature, smoothed over the surface: it finds creases that many small edges share. Only the quotient
@@ -381,11 +389,13 @@ void Regrouping::price(Link& link) {
     if (a.area == 0 || b.area == 0) {
         // Without any surface it is no part: it goes first, with the neighbour that it shares most with.
         link.cost = -1e6 - link.border.interface / area_;
+        queue(link);
         return;
     }
     const auto inputs = measures(a, b, link.border);
     // Rounded, so that pairs that cost the same by symmetry tie, whatever rounding errors their measures carry.
     link.cost = static_cast<double>(static_cast<float>(fitted(pair_numbers_, inputs)));
+    queue(link);
     if (trace_) trace_->pairs.push_back({link.a, link.b, inputs});
 }
 
@@ -422,16 +432,21 @@ void Regrouping::join(int32_t ia, int32_t ib, double cost) {
                 link.b = number;
                 u.links.push_back(l);
             } else {
-                links_[static_cast<size_t>(twin)].border += link.border;
+                Link& kept = links_[static_cast<size_t>(twin)];
+                kept.border += link.border;
+                if (link.cost < kept.cost) {
+                    kept.cost = link.cost;
+                    queue(kept);
+                }
                 link.alive = false;
             }
         }
     for (const int32_t l : u.links) {
-        const Link& link = links_[static_cast<size_t>(l)];
+        Link& link = links_[static_cast<size_t>(l)];
         link_to_[static_cast<size_t>(link.a)] = -1;
+        link.stale = true;
         u.rim += link.border;
     }
-    for (const int32_t l : u.links) price(links_[static_cast<size_t>(l)]);
     a.alive = b.alive = false;
     a.hull = Hull();
     b.hull = Hull();
@@ -439,12 +454,17 @@ void Regrouping::join(int32_t ia, int32_t ib, double cost) {
 
 void Regrouping::join_neighbours() {
     for (Link& link : links_) price(link);
-    for (;;) {
-        const Link* cheapest = nullptr;
-        for (const Link& link : links_)
-            if (link.alive && (!cheapest || link.cost < cheapest->cost)) cheapest = &link;
-        if (!cheapest) return;
-        join(cheapest->a, cheapest->b, cheapest->cost);
+    while (!queue_.empty()) {
+        const auto [cost, number] = queue_.top();
+        queue_.pop();
+        Link& link = links_[static_cast<size_t>(number)];
+        if (!link.alive || link.cost != cost) continue;
+        if (link.stale) {  // pairs seldom get cheaper by growing, so the dear ones need not be priced until now
+            link.stale = false;
+            price(link);
+            continue;
+        }
+        join(link.a, link.b, link.cost);
         progress_.advance(0.2 + 0.8 * static_cast<double>(joined_.size()) / static_cast<double>(fine_));
     }
 }

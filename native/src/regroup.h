@@ -1,7 +1,8 @@
 // The top of the tree built anew: a few hundred parts of the paper's tree, joined in the order that people would.
 //
 // Concavity alone joins a leg's two halves late and a cup's handle early. So the paper's tree is cut into some parts,
-// which are joined again bottom-up, the cheapest pair of neighbours first; the cost is how unlikely it is that people
+// which are joined again bottom-up, the cheapest pair of neighbours first (a pair that has grown is priced again only
+// when it would come next by the price it had); the cost is how unlikely it is that people
 // put both into one part, told from 28 measures of the pair: sizes, convexity, the hull of both, the area of the
 // facets between them (the cross-section) and the length and the crease of the border on the surface, after the ideas
 // of Golovinskiy and Funkhouser, "Randomized Cuts for 3D Mesh Analysis" (2008). Another such function scores each node
@@ -21,7 +22,7 @@ namespace partwheel {
 inline constexpr size_t pair_measures = 28, node_measures = 32;
 
 // So many parts at most, but at least one a component: enough that most borders people draw run between them.
-inline constexpr size_t most_regrouped_parts = 300;
+inline constexpr size_t most_regrouped_parts = 600;
 
 // A sum of bounded ramps: hidden x (bias, weights of the inputs, weight of the ramp z / (1 + |z|)), then a bias.
 double fitted(std::span<const double> numbers, std::span<const double> inputs);

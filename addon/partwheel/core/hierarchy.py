@@ -168,7 +168,7 @@ class Hierarchy:
     first, last (N,), tet_first, tet_last (N,)
     cost_class (N,), cost (N,), height (N,)     Eq. 3 of the paper and the node's place in the dendrogram
     volume (N,), area (N,)
-    score (N,)      the overlap expected with what people would take, 0 below some 300 parts and in mode PAPER
+    score (N,)      the overlap expected with what people would take, 0 below some 600 parts and in mode PAPER
     vertices (V,3), source (V,)     source: the source vertex that each is, -1 for all others
     tetrahedra (T,4), merges (T-1,2)
 
