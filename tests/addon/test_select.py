@@ -36,7 +36,7 @@ class Select(MeshTest):
         obj = self.add(*read_off("hand"))
         self.edit(obj)
         found = []
-        for level in (0, 1, 2, 3, 2, 1):
+        for level in (-1, 0, 1, 2, 1, 0):
             self.pick(700, level)
             found.append(selected(obj))
         self.assertEqual(found[4:], [found[2], found[1]])
