@@ -410,6 +410,7 @@ class Stage:
         yield from self.until("the wheel zooms again", lambda: self.view_3d.view_distance < distance)
         self.mouse.wheel(-1)
         yield from self.until("the wheel zooms back", lambda: abs(self.view_3d.view_distance - distance) < 1e-3)
+        yield from self.drawn()  # only then the view's matrices are those of that distance again
         self.check(self.selection() == selection, "the wheel has left the selection alone")
 
     # ---- Pictures -------------------------------------------------------------------------------------------------

@@ -279,7 +279,10 @@ class PartPicker:
         """
         self._confirmed(context)
         bpy.ops.ed.undo_push(message=self.bl_label)
-        hand_off.start(context)
+        try:
+            hand_off.start(context)
+        except RuntimeError as refused:  # the other operator's own report of an error
+            self.report({"ERROR"}, str(refused).removeprefix("Error: ").strip())
         return {"CANCELLED"}
 
     def _cancelled(self, context):

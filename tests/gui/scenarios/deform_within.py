@@ -9,9 +9,10 @@ def play(stage):
     before = stage.coordinates()
     for way in ("ESC", "LEFTMOUSE"):
         _, stops, start = yield from stage.pick(0.05, 0.55, above=2)
-        stage.mouse.wheel(2)
-        part = stops[start + 2]
-        yield from stage.selected(part, "after two notches")
+        index = max(index for index, part in enumerate(stops) if len(part) < 0.4 * len(stage.wheels.triangles))
+        stage.mouse.wheel(index - start)
+        part = stops[index]
+        yield from stage.selected(part, f"at stop {index}")
         x, y = stage.mouse.x, stage.mouse.y
         stage.mouse.key("G", shift=True)
         yield from stage.settle()
@@ -31,3 +32,13 @@ def play(stage):
     stage.check(moved[free].mean() > 0.9, "the part has moved")
     stage.mouse.key("Z", ctrl=True)
     yield from stage.until("one Ctrl Z takes it back", lambda: (stage.coordinates() == before).all())
+
+    # What can't be deformed is refused with a sentence, and stays selected.
+    stage.select(())
+    _, stops, start = yield from stage.pick(0.05, 0.55)
+    stage.mouse.wheel(len(stops) - 1 - start)
+    yield from stage.selected(stops[-1], "at the last stop")
+    stage.mouse.key("G", shift=True)
+    yield from stage.until("why the whole mesh is not deformed is reported", lambda: "loose piece" in stage.reports())
+    yield from stage.selected(stops[-1], "afterwards")
+    stage.check((stage.coordinates() == before).all(), "nothing has moved")
