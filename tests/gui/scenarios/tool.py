@@ -46,7 +46,7 @@ def play(stage):
     stage.mouse.key("RET")
     yield from stage.selected(hand | foot, "after Enter")
     stage.mouse.click(ctrl=True)
-    yield from stage.selected(hand, "after a click with Ctrl")
+    yield from stage.selected(hand - foot, "after a click with Ctrl")
     stage.mouse.key("ESC")
     yield from stage.selected(hand | foot, "after Esc")
     yield from stage.ended()
