@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A mesh put together from pieces of another, with all their layers, by whole arrays: a bmesh of the same costs ten
-times as much. (Not taken along: multires displacements and skin radii, which Python can't write.)"""
+times as much. (Not taken along: multires displacements, which Python can't write.)"""
 
 from typing import NamedTuple
 
@@ -35,6 +35,17 @@ if bpy.app.version < (4, 0, 0):
 # Where the mesh itself knows whether it has any.
 _KNOWN = {("vertices", "bevel_weight"): "has_bevel_weight_vertex", ("edges", "bevel_weight"): "has_bevel_weight_edge",
           ("edges", "crease"): "has_crease_edge"}
+# What is a collection of layers of its own, which only a bmesh makes; without some of them in newer Blenders:
+# collection -> (elements, the bmesh's, its name there, fields: (name, type, how many, of a new element)).
+_OWN_LAYERS = {
+    "skin_vertices": ("vertices", "verts", "skin", [("radius", np.float32, 2, 0.25), ("use_root", bool, 1, False),
+                                                    ("use_loose", bool, 1, False)]),
+    "vertex_paint_masks": ("vertices", "verts", "paint_mask", [("value", np.float32, 1, 0)]),
+    "vertex_creases": ("vertices", "verts", "crease", [("value", np.float32, 1, 0)]),
+    "face_maps": ("polygons", "faces", "face_map", [("value", np.int32, 1, -1)]),
+}
+if bpy.app.version >= (4, 0, 0):  # the others are attributes
+    _OWN_LAYERS = {"skin_vertices": _OWN_LAYERS["skin_vertices"]}
 
 
 class Plan(NamedTuple):
@@ -64,6 +75,7 @@ def assembled(mesh, plan, name):
     if made.shape_keys:
         _clear_keys(made)
     made.clear_geometry()
+    _make_own_layers(mesh, made)
     of_edge, ends, edge_from = _edges(mesh, plan)
     for elements, count in ((made.vertices, len(plan.places)), (made.edges, len(ends)), (made.loops, len(plan.corners)),
                             (made.polygons, len(plan.begin))):
@@ -78,7 +90,9 @@ def assembled(mesh, plan, name):
     twice = {"POINT": plan.vertices, "CORNER": plan.loops, "EDGE": np.repeat(edge_from[:, None], 2, axis=1),
              "FACE": np.repeat(plan.polygons[:, None], 2, axis=1)}
     _copy_attributes(mesh, made, twice)
-    _copy_marks(mesh, made, {"vertices": plan.vertices[:, 0], "edges": edge_from, "polygons": plan.polygons})
+    first = {"vertices": plan.vertices[:, 0], "edges": edge_from, "polygons": plan.polygons}
+    _copy_marks(mesh, made, first)
+    _copy_own_layers(mesh, made, first)
     _copy_groups(mesh, made, plan.vertices)
     _copy_keys(mesh, made, plan)
     made.update()
@@ -193,6 +207,27 @@ def _copy_marks(mesh, made, origins):
                 taken = values[np.maximum(at, 0)]
                 taken[at < 0] = 0
                 getattr(made, kind).foreach_set(field, taken)
+
+
+def _make_own_layers(mesh, made):
+    """made has no elements yet."""
+    names = [each[1:3] for collection, each in _OWN_LAYERS.items() if len(getattr(mesh, collection))]
+    if names:
+        bm = bmesh.new()
+        for elements, name in names:
+            getattr(getattr(bm, elements).layers, name).verify()
+        bm.to_mesh(made)
+        bm.free()
+
+
+def _copy_own_layers(mesh, made, origins):
+    for collection, (elements, _, _, fields) in _OWN_LAYERS.items():
+        at = origins[elements]
+        for old, new in zip(getattr(mesh, collection), getattr(made, collection)):
+            for field, dtype, width, otherwise in fields:
+                taken = read(old.data, field, dtype, width)[np.maximum(at, 0)]
+                taken[at < 0] = otherwise
+                new.data.foreach_set(field, taken.ravel())
 
 
 def _held(mesh):

@@ -69,8 +69,12 @@ def parts(obj, hierarchy, slices, options=Options()):
 
 def remove(obj, hierarchy, tet_first, tet_last, options=Options()):
     """Takes the part out of the object's mesh, which must not be in Edit Mode, and closes the hole. Raises
-    PartwheelError before anything has changed."""
+    PartwheelError or NotClosed before anything has changed."""
     target = obj.data
+    if any(other.data == target and any(each.type == "MULTIRES" and each.total_levels for each in other.modifiers)
+           for other in bpy.data.objects):
+        raise NotClosed(f"{obj.name} is sculpted in several resolutions, which would be lost. Apply its "
+                        "Multiresolution modifier first, or copy the part.")
     solid = hierarchy.solid_of_slice(tet_last, tet_first) if hierarchy.summary.rung == "exact" else None
     made, normals = _carved(target, hierarchy, solid, tet_last, tet_first, options, alone=False)
     if options.material and len(made.materials) > len(target.materials):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Parts as solids: closed, with all layers of the source's polygons; removed, split; the user's mesh left alone."""
 
+import bmesh
 import bpy
 import numpy
 from common import part, read_off
@@ -241,6 +242,65 @@ class Remove(SolidTest):
         self.assertEqual([key.name for key in keys], ["Basis", "up"])
         moved = numpy.array([b.co[2] - a.co[2] for a, b in zip(keys[0].data, keys[1].data)])
         self.assertTrue(numpy.allclose(moved, 100, atol=1e-3))
+
+    def test_several_resolutions_are_not_lost(self):
+        obj, hierarchy = self.built("hand")
+        multires = obj.modifiers.new("Multires", "MULTIRES")
+        before = arrays(obj.data)
+        node = self.nodes(hierarchy)[-2]
+        bpy.ops.object.multires_subdivide(modifier=multires.name)
+        with self.assertRaisesRegex(RuntimeError, "Multiresolution"):
+            bpy.ops.mesh.partwheel_remove(node=node)
+        after = arrays(obj.data)
+        self.assertTrue((before[0] == after[0]).all() and before[1] == after[1])
+        self.assertEqual(multires.total_levels, 1)
+        self.assertSolid(self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node).data)
+
+    def test_layers_that_only_a_bmesh_makes_stay(self):
+        obj, hierarchy = self.built("hand")
+        mesh = obj.data
+        mesh.attributes.new("number", "INT", "POINT").data.foreach_set("value", numpy.arange(len(mesh.vertices)))
+        mesh.attributes.new("number of face", "INT", "FACE").data.foreach_set("value", numpy.arange(len(mesh.polygons)))
+        layers = {"skin_vertices": ("verts", "skin", "radius", 2), "vertex_creases": ("verts", "crease", "value", 1),
+                  "vertex_paint_masks": ("verts", "paint_mask", "value", 1),
+                  "face_maps": ("faces", "face_map", "value", 1)}
+        bm = bmesh.new()
+        bm.from_mesh(mesh)
+        made = []
+        for name, (elements, layer, _, _) in layers.items():
+            access = getattr(getattr(bm, elements).layers, layer, None)  # newer Blenders have attributes instead
+            if access is not None:
+                access.verify()
+                made.append(name)
+        bm.to_mesh(mesh)
+        bm.free()
+        self.assertIn("skin_vertices", made)
+        rng = numpy.random.default_rng(8)
+        written = {}
+        for name in made:
+            _, _, field, width = layers[name]
+            data = getattr(mesh, name)[0].data
+            values = rng.integers(0, 9, len(data) * width) if name == "face_maps" else rng.random(len(data) * width)
+            data.foreach_set(field, values.astype(numpy.int32 if name == "face_maps" else numpy.float32))
+            written[name] = values.reshape(-1, width)
+        self.run_on(obj, bpy.ops.mesh.partwheel_remove, node=self.nodes(hierarchy)[-2])
+        for name in made:
+            _, _, field, width = layers[name]
+            data = getattr(mesh, name)[0].data
+            found = numpy.empty(len(data) * width, numpy.int32 if name == "face_maps" else numpy.float32)
+            data.foreach_get(field, found)
+            origin = numpy.empty(len(data), numpy.int32)
+            number = "number of face" if name == "face_maps" else "number"
+            mesh.attributes[number].data.foreach_get("value", origin)
+            if name == "face_maps":
+                own = ~caps(mesh)
+                self.assertTrue((found[~own] == -1).all())
+            else:
+                corners = [v for polygon, cap in zip(mesh.polygons, caps(mesh)) if not cap for v in polygon.vertices]
+                own = numpy.zeros(len(data), bool)
+                own[corners] = True
+            self.assertGreater(own.sum(), 100)
+            self.assertTrue(numpy.allclose(found.reshape(-1, width)[own], written[name][origin[own]]))
 
 
 class Split(SolidTest):
