@@ -36,13 +36,14 @@ def border(obj, near=None):
     chosen = np.isin(read(mesh.loop_triangles, "polygon_index", np.int32), caps)
     triangles = read(mesh.loop_triangles, "vertices", np.int32, 3)[chosen]
     matrix = np.array(obj.matrix_world)
-    corners = (read(mesh.vertices, "co", np.float32, 3) @ matrix[:3, :3].T + matrix[:3, 3])[triangles]
+    places = read(mesh.vertices, "co", np.float32, 3)
+    corners = (places @ matrix[:3, :3].T + matrix[:3, 3])[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
     if obj.matrix_world.is_negative:
         normals = -normals
     areas, middles = np.linalg.norm(normals, axis=1), corners.mean(axis=1)
     found = []
-    for group in _groups(triangles, len(mesh.vertices)):
+    for group in _groups(places[triangles]):
         area = areas[group].sum()
         if area > 0:
             found.append(Border(Vector((areas[group, None] * middles[group]).sum(axis=0) / area),
@@ -54,9 +55,12 @@ def border(obj, near=None):
     return min(found, key=lambda each: (each.middle - near).length)
 
 
-def _groups(triangles, vertex_count):
-    """Indices of triangles in groups that share vertices: labels spread until nothing changes."""
-    label = np.arange(vertex_count)
+def _groups(corners):
+    """Indices of triangles (T,3,3) in groups that share corners: labels spread until nothing changes. By place: where
+    caps only touch, a part may have two vertices and the rest one, or the other way round."""
+    places, triangles = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    triangles = triangles.reshape(-1, 3)
+    label = np.arange(len(places))
     while True:
         least = label[triangles].min(axis=1)
         spread = label.copy()
