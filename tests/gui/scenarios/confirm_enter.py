@@ -4,7 +4,7 @@
 def play(stage):
     yield from stage.open("hand", build=False)
     parts = [frozenset()]
-    for key, place in (("RET", (0.5, 0.9)), ("NUMPAD_ENTER", (0.9, 0.6))):
+    for key, place in (("RET", (0.5, 0.9)), ("NUMPAD_ENTER", (0.05, 0.55))):
         _, stops, start = yield from stage.pick(*place, above=1)
         stage.mouse.wheel(1)
         yield from stage.selected(stops[start + 1], "after a notch up")
