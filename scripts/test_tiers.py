@@ -23,7 +23,7 @@ VENV = ROOT / "build" / "venv"
 TIME_LIMIT = 1800  # seconds for any one command, so that nothing hangs for ever
 SHOWN = 60  # lines of a failed command's output
 # The scenarios that the newest Blender plays: all but those that build large models, measure, or only make pictures.
-NEWEST = ("adjust", "anything", "beyond", "blender_itself", "cage", "confirm_enter", "deform",
+NEWEST = ("adjust", "anything", "beyond", "blender_itself", "cage", "compose_finger", "confirm_enter", "deform",
           "deform_keys", "deform_more", "deform_within", "duplicate", "empty_space", "industry", "left_out", "limits",
           "linked", "menu", "move", "navigate", "open_mesh", "overlays", "panel", "pick_and_click", "quad_view",
           "restore", "select_modes", "tool", "ways", "while_building", "windows")

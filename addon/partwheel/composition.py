@@ -11,6 +11,7 @@ from .mesh_arrays import read
 
 def copied(obj, hierarchy, node, options=solids.Options()):
     """A new object with the part as a closed mesh, in the place of the part."""
+    update_matrices()
     mesh = solids.part(obj, hierarchy, *_slice(hierarchy, node), options)
     return _beside(obj, mesh, f"{obj.name} part")
 
@@ -23,6 +24,7 @@ def removed(obj, hierarchy, node, options=solids.Options()):
 def split(obj, hierarchy, bounds, options=solids.Options(), explode=0.0):
     """New objects in a new collection: the parts of a cut as closed meshes, those without faces left out. Each is moved
     away from the middle of the object's bounding box by explode times its distance to it."""
+    update_matrices()
     middle = sum((Vector(corner) for corner in obj.bound_box), Vector()) / 8
     made = []
     meshes = solids.parts(obj, hierarchy, list(zip(bounds.tolist(), bounds[1:].tolist())), options)
@@ -35,6 +37,12 @@ def split(obj, hierarchy, bounds, options=solids.Options(), explode=0.0):
         part.matrix_world.translation += obj.matrix_world.to_3x3() @ away * explode
         made.append(part)
     return made
+
+
+def update_matrices():
+    """Afterwards each object's matrix_world fits its location, rotation and scale. Blender 5 forgets the matrices at
+    undo, and repeats an operator with other options right after that."""
+    bpy.context.view_layer.update()
 
 
 def home(obj):

@@ -7,10 +7,11 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 
-from .composition import home
+from .composition import home, update_matrices
 from .mesh_arrays import read
 from .solids import CAP
 
+_CHANNELS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
 SINK = 0.05  # of its border's radius that a part is sunk in: solids that only touch don't unite
 
 
@@ -119,10 +120,22 @@ def put(part, start, own, target, pose):
     part.matrix_world = matrix(start, own, location, normal, scale, pose.angle, pose.depth)
 
 
+def own_transform(obj):
+    """Its own location, rotation and scale, for put_back()."""
+    return {channel: tuple(getattr(obj, channel)) for channel in _CHANNELS}
+
+
+def put_back(obj, transform):
+    """Puts the object back exactly: a matrix keeps neither full turns nor which axes are mirrored, nor the last bit."""
+    for channel, values in transform.items():
+        setattr(obj, channel, values)
+
+
 def place(part, target, pose, mirror=False):
     """Moves the part. The mirror image, if that is wanted, else None."""
+    update_matrices()
     put(part, part.matrix_world.copy(), anchor(part), target, pose)
-    bpy.context.view_layer.update()
+    update_matrices()
     return mirrored(part, target) if mirror else None
 
 

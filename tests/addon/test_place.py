@@ -44,6 +44,51 @@ class Place(SolidTest):
         self.assertAlmostEqual(after.radius / before.radius, 3, places=3)
         self.near(after.middle, (1, 2, 3 - 3 * before.radius * (0.5 + placement.SINK)))
 
+    def test_matrices_are_made_up_to_date_first(self):
+        """Blender 5 has none when it repeats an operator after undo; scripts that moved an object have old ones."""
+        placement, composition = part("placement"), part("composition")
+        obj, hierarchy, node, copy = self.copied()
+        pose = placement.Pose(Vector((1, 2, 3)), Vector((0, 0, 1)))
+        where = {"location": (5, 6, 7), "rotation_euler": (1, 2, 3), "scale": (2, 2, 2)}
+        results = []
+        for update in (True, False):
+            self.reset(copy)
+            placement.put_back(copy, where)
+            if update:
+                bpy.context.view_layer.update()
+            placement.place(copy, None, pose)
+            results.append(copy.matrix_world.copy())
+        for one, other in zip(*results):
+            self.near(one, other)
+        placement.put_back(obj, where)
+        again = composition.copied(obj, hierarchy, node)
+        bpy.context.view_layer.update()
+        self.near(again.location, (5, 6, 7))
+        self.reset(obj)
+        placement.put_back(obj, where)
+        for each in composition.split(obj, hierarchy, hierarchy.cut_parts(3)):
+            self.near(each.matrix_world.translation, (5, 6, 7))
+
+    def reset(self, obj):
+        obj.matrix_world = Matrix()
+        bpy.context.view_layer.update()
+
+    def test_put_back_exactly(self):
+        placement = part("placement")
+        _, _, _, copy = self.copied()
+        for mode in ("XYZ", "QUATERNION", "AXIS_ANGLE"):
+            copy.rotation_mode = mode
+            copy.location, copy.rotation_euler, copy.scale = (0.1, 0.2, 0.3), (7, 2, -9), (-1, 2, -3)
+            copy.rotation_quaternion, copy.rotation_axis_angle = (0.8, 0.6, 0, 0), (9, 0, 0.6, 0.8)
+            bpy.context.view_layer.update()
+            before, transform = copy.matrix_world.copy(), placement.own_transform(copy)
+            self.place(copy, location=(1, 2, 3), normal=(0, 1, 1), angle=1)
+            self.assertNotEqual(placement.own_transform(copy), transform)
+            placement.put_back(copy, transform)
+            bpy.context.view_layer.update()
+            self.assertEqual(placement.own_transform(copy), transform)
+            self.assertEqual([tuple(row) for row in copy.matrix_world], [tuple(row) for row in before])
+
     def test_angle_turns_about_the_normal(self):
         _, _, _, copy = self.copied()
         self.place(copy, location=(0, 0, 0), normal=(0, 0, 1))

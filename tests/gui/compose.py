@@ -15,6 +15,7 @@ def module(name):
 
 def volume(obj):
     """In the world; in Edit Mode as before it was entered."""
+    bpy.context.view_layer.update()  # Blender 5 forgets matrices at undo until it draws
     obj.data.calc_loop_triangles()
     matrix = numpy.array(obj.matrix_world)
     places = numpy.array([vertex.co for vertex in obj.data.vertices]) @ matrix[:3, :3].T + matrix[:3, 3]

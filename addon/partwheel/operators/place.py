@@ -7,7 +7,7 @@ import bpy
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 from mathutils import Vector
 
-from .. import keys, placement
+from .. import composition, keys, placement
 from ..picking import view_under
 from ..ui import status
 
@@ -73,7 +73,8 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
             self.report({"ERROR"}, "Parts are placed in a 3D view: start this with the mouse over one.")
             return {"CANCELLED"}
         part = context.active_object
-        self.part_name, self.start, self.own = part.name_full, part.matrix_world.copy(), placement.anchor(part)
+        self.part_name, self.transform = part.name_full, placement.own_transform(part)
+        self.start, self.own = part.matrix_world.copy(), placement.anchor(part)
         self.target, self.scale = "", 1
         self._tell(context, "Move the mouse over a surface")
         self._follow(context, event)
@@ -93,14 +94,14 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
         if event.value not in {"PRESS", "DOUBLE_CLICK"}:
             return {"RUNNING_MODAL"}
         if event.type in CANCEL:
-            part.matrix_world = self.start
+            placement.put_back(part, self.transform)
             return self._end(context, {"CANCELLED"})
         if event.type in CONFIRM:
             if not self.target:
                 self._tell(context, "There is no surface under the mouse yet")
                 return {"RUNNING_MODAL"}
             if self.mirror:
-                context.view_layer.update()
+                composition.update_matrices()
                 placement.mirrored(part, bpy.data.objects[self.target]).select_set(True)
             return self._end(context, {"FINISHED"})
         sign = keys.SIGNS.get(event.type, 0)
@@ -123,7 +124,7 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
         """Blender itself ends the tool."""
         part = bpy.data.objects.get(self.part_name)
         if part:
-            part.matrix_world = self.start
+            placement.put_back(part, self.transform)
         self._end(context, {"CANCELLED"})
 
     def _follow(self, context, event):
