@@ -3,9 +3,10 @@
     build/venv/core/bin/python tests/gui/run.py ZIP RESULT.json [SCENARIO ...]
 
 Every file of scenarios/ is one scenario and runs in a Blender process and an X server (Xvfb, software GL) of its own,
-with the add-on installed from ZIP into a home directory made for the run. A scenario passes if it reports no failure
-and at least one check, Blender quits without a crash, and the log holds no traceback. Screenshots and logs go to
-build/gui. RESULT.json: {"passed": n, "failed": n, "failures": [sentence, ...]}. Exit code: 0 if all passed.
+with the add-on installed from ZIP into a home directory of its own (Blender saves preferences when it quits). A
+scenario passes if it reports no failure and at least one check, Blender quits without a crash, and the log holds no
+traceback. Screenshots and logs go to build/gui. RESULT.json: {"passed": n, "failed": n, "failures": [sentence, ...]}.
+Exit code: 0 if all passed.
 
 PARTWHEEL_BLENDER names another Blender than the one on the PATH.
 """
@@ -139,11 +140,14 @@ def run_scenario(name, driver, work, environment):
     command = [BLENDER, "-noaudio", "--window-geometry", "0", "0", "1280", "800", "--python-exit-code", "9",
                *(["--enable-event-simulate"] if driver == "simulate" else []),
                "--python", HERE / "inside.py", "--", name, driver, work, OUTPUT / title, result_path]
+    home = work / "homes" / title
+    shutil.copytree(environment["HOME"], home, symlinks=True)
     limit = LONG.get(name, TIME_LIMIT)
     with x_server(environment) as display, log_path.open("w") as log:
         try:
-            code = subprocess.run(command, env=environment | {"DISPLAY": display}, stdout=log, stderr=log,
-                                  stdin=subprocess.DEVNULL, cwd=work, timeout=limit).returncode
+            own = environment | {"HOME": str(home), "DISPLAY": display}
+            code = subprocess.run(command, env=own, stdout=log, stderr=log, stdin=subprocess.DEVNULL, cwd=work,
+                                  timeout=limit).returncode
         except subprocess.TimeoutExpired:
             return f"Blender was still running after {limit} s, see {log_path}", 0
     result = json.loads(result_path.read_text()) if result_path.exists() else None
