@@ -1,6 +1,7 @@
 // The C functions: argument checks and calls into the rooms, nothing else.
 #include "partwheel.h"
 
+#include "border.h"
 #include "deform.h"
 #include "hierarchy.h"
 #include "ladder.h"
@@ -462,5 +463,17 @@ pw_status pw_surface_distances(const double* vertices, size_t vertex_count, cons
         require((start != nullptr && distance != nullptr) || vertex_count == 0, "start and distance must not be null.");
         surface_distances(as_points(vertices, vertex_count), as_triangles(triangles, triangle_count),
                           {start, vertex_count}, {distance, vertex_count});
+    });
+}
+
+pw_status pw_snapped_border(const double* vertices, size_t vertex_count, const int32_t* triangles,
+                            size_t triangle_count, const int32_t* faces, size_t face_count, const uint8_t* inside,
+                            uint8_t* result) {
+    return guarded([&] {
+        require(vertices != nullptr || vertex_count == 0, "vertices is null, but vertex_count is not 0.");
+        require(triangles != nullptr || triangle_count == 0, "triangles is null, but triangle_count is not 0.");
+        require((inside != nullptr && result != nullptr) || face_count == 0, "inside and result must not be null.");
+        snapped_border({vertices, vertex_count, triangles, triangle_count, faces, face_count}, {inside, face_count},
+                       {result, face_count});
     });
 }

@@ -120,6 +120,7 @@ FUNCTIONS = {
     "pw_hierarchy_solid": (c_int, [c_void_p, c_size_t, c_size_t, c_void_p, c_size_t, POINTER(c_void_p)]),
     "pw_polygon_faults": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_size_t, POINTER(c_size_t),
                                   POINTER(c_size_t), POINTER(c_size_t)]),
+    "pw_snapped_border": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_void_p]),
     "pw_mesh_origins": (c_int, [c_void_p, POINTER(c_void_p), POINTER(c_void_p), POINTER(c_void_p)]),
     "pw_mesh_free": (None, [c_void_p]),
     "pw_mesh_arrays": (c_int, [c_void_p, POINTER(c_void_p), POINTER(c_size_t), POINTER(c_void_p), POINTER(c_size_t)]),
