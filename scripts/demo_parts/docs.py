@@ -13,10 +13,9 @@ from paint import parts_cells, percent, sheet, wheel_cells
 # Picture -> model, click, and what to call the wheel stop of about this share of the model's area.
 STORIES = {
     "man": ("man-remeshed", "finger tip", (
-        ("finger tip", 0.0013), ("fingers", 0.0128), ("hand", 0.023), ("arm", 0.092),
-        ("upper body", 0.476), ("body", 1.0))),
+        ("finger tip", 0.0012), ("finger", 0.005), ("hand", 0.02), ("arm", 0.079), ("body", 1.0))),
     "armadillo": ("armadillo", "finger tip", (
-        ("finger tip", 0.0008), ("finger", 0.004), ("hand", 0.03), ("forearm", 0.08), ("arm", 0.155), ("body", 1.0))),
+        ("finger tip", 0.0014), ("finger", 0.003), ("hand", 0.027), ("arm", 0.1), ("body", 1.0))),
 }
 CUTS = {"parts": ("armadillo", "dino")}
 SLACK = 1.5  # a stop whose area is this many times another than the named one is not the part that is named
