@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Makes partwheel.core importable from the checkout, and builds each shape of shapes.py once for all tests."""
 
-import os
 import functools
+import os
 import sys
 from pathlib import Path
 
