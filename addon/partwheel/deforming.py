@@ -150,7 +150,7 @@ class Region:
         self.flat_faces = np.flatnonzero(changes & ~shaded_smooth)
         smooth[surface.triangles[(changes & shaded_smooth)[surface.faces]]] = True
         self.smooth = smooth[self.vertices]
-        self.polygons = bool((mesh_arrays.read(mesh.polygons, "loop_total", np.int32)[changes] > 3).any())
+        self.polygons = bool((mesh_arrays.polygon_sizes(mesh)[1][changes] > 3).any())
 
     def _partners(self, points):
         """(partner (n,): of each vertex the one of the region across the x axis, -1 where there is none; the region's

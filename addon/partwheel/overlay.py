@@ -86,9 +86,7 @@ class Parts:
         mesh = obj.data
         self.hierarchy = hierarchy
         self.positions = mesh_arrays.shown_positions(obj)
-        mesh.calc_loop_triangles()
-        triangles = mesh_arrays.read(mesh.loop_triangles, "vertices", np.int32, 3)
-        faces = mesh_arrays.read(mesh.loop_triangles, "polygon_index", np.int32)
+        triangles, faces = mesh_arrays.triangles(mesh)
         hidden = mesh_arrays.read(mesh.polygons, "hide", bool)
         if hidden.any():
             triangles, faces = triangles[~hidden[faces]], faces[~hidden[faces]]

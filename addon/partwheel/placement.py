@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 
+from . import mesh_arrays
 from .composition import home, update_matrices
 from .mesh_arrays import read
 from .solids import CAP
@@ -33,9 +34,8 @@ def border(obj, near=None):
     caps = np.flatnonzero(read(layer.data, "value", bool))
     if not len(caps):
         return None
-    mesh.calc_loop_triangles()
-    chosen = np.isin(read(mesh.loop_triangles, "polygon_index", np.int32), caps)
-    triangles = read(mesh.loop_triangles, "vertices", np.int32, 3)[chosen]
+    triangles, polygons = mesh_arrays.triangles(mesh)
+    triangles = triangles[np.isin(polygons, caps)]
     matrix = np.array(obj.matrix_world)
     places = read(mesh.vertices, "co", np.float32, 3)
     corners = (places @ matrix[:3, :3].T + matrix[:3, 3])[triangles]

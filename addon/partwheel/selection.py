@@ -44,7 +44,7 @@ class Selection:
         self.visible = ~mesh_arrays.read(mesh.polygons, "hide", bool)
         self.kind = next(kind for kind in KINDS if kind in bm.select_mode)
         if self.kind != "FACE":
-            corners = mesh_arrays.read(mesh.polygons, "loop_total", np.int32)
+            corners = mesh_arrays.polygon_sizes(mesh)[1]
             self.loop_face = np.repeat(np.arange(len(mesh.polygons)), corners)
             index = {"VERT": "vertex_index", "EDGE": "edge_index"}[self.kind]
             self.loop_element = mesh_arrays.read(mesh.loops, index, np.int32)
@@ -189,7 +189,7 @@ def select_outside_edit_mode(mesh, faces, extend=False, deselect=False):
     chosen &= ~mesh_arrays.read(mesh.polygons, "hide", bool)
     before = mesh_arrays.read(mesh.polygons, "select", bool)
     chosen = before & ~chosen if deselect else before | chosen if extend else chosen
-    corners = chosen[np.repeat(np.arange(len(mesh.polygons)), mesh_arrays.read(mesh.polygons, "loop_total", np.int32))]
+    corners = chosen[np.repeat(np.arange(len(mesh.polygons)), mesh_arrays.polygon_sizes(mesh)[1])]
     selected = {}
     for elements, index in (("edges", "edge_index"), ("vertices", "vertex_index")):
         selected[elements] = np.zeros(len(getattr(mesh, elements)), bool)

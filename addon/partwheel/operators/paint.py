@@ -163,7 +163,7 @@ def _part_vertices(mesh, faces):
     """(V,) bool: the vertices of these faces."""
     inside = np.zeros(len(mesh.polygons), bool)
     inside[faces] = True
-    corners = np.repeat(inside, mesh_arrays.read(mesh.polygons, "loop_total", np.int32))
+    corners = np.repeat(inside, mesh_arrays.polygon_sizes(mesh)[1])
     chosen = np.zeros(len(mesh.vertices), bool)
     chosen[mesh_arrays.read(mesh.loops, "vertex_index", np.int32)[corners]] = True
     return chosen
