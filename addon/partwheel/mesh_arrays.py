@@ -50,25 +50,41 @@ def up_to_date(obj):
 # What Blender keeps as a layer since 4.0, and copies from there a hundred times faster: (its name, its field).
 _LAYERS = {"co": ("position", "vector"), "vertex_index": (".corner_vert", "value"),
            "edge_index": (".corner_edge", "value")}
+# What Blender copies as one block, ten times faster, if it is asked for without a sign.
+_UNSIGNED = {"vertex_index", "edge_index", "vertices", "loop_start", "loop_total", "polygon_index"}
 
 
 def read(collection, attribute, dtype, width=1):
     """One attribute of all elements: (n,) or (n, width)."""
     values = np.empty(len(collection) * width, dtype)
-    name, field = _LAYERS.get(attribute, ("", ""))
-    layer = collection.data.attributes.get(name) if name and isinstance(collection.data, bpy.types.Mesh) else None
-    if layer and len(layer.data) == len(collection):  # it has no elements in Edit Mode
+    layer, field = _layer(collection, attribute)
+    if layer:
         layer.data.foreach_get(field, values)
     else:
-        collection.foreach_get(attribute, values)
+        collection.foreach_get(attribute, values.view(np.uint32) if attribute in _UNSIGNED else values)
     return values if width == 1 else values.reshape(-1, width)
+
+
+def write(collection, attribute, values):
+    """Sets one attribute of all elements: values (n,) or (n, width), int32 where they are numbers of elements."""
+    values = np.ascontiguousarray(values).ravel()
+    layer, field = _layer(collection, attribute)
+    if layer:
+        layer.data.foreach_set(field, values)
+    else:
+        collection.foreach_set(attribute, values.view(np.uint32) if attribute in _UNSIGNED else values)
+
+
+def _layer(collection, attribute):
+    """(what Blender keeps this attribute as, its field), or (None, "")."""
+    name, field = _LAYERS.get(attribute, ("", ""))
+    layer = collection.data.attributes.get(name) if name and isinstance(collection.data, bpy.types.Mesh) else None
+    # It has no elements in Edit Mode.
+    return (layer, field) if layer and len(layer.data) == len(collection) else (None, "")
 
 
 def edge_vertices(mesh):
     """(E,2)"""
-    layer = mesh.attributes.get(".edge_verts")
-    if layer and len(layer.data) == len(mesh.edges):
-        return read(layer.data, "value", np.int32, 2)
     return read(mesh.edges, "vertices", np.int32, 2)
 
 

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from . import mesh_arrays
-from .mesh_arrays import read
+from .mesh_arrays import read, write
 
 # Type of an attribute -> (its field, type of its numbers, how many they are, whether a mean has a meaning)
 _TYPES = {
@@ -80,13 +80,13 @@ def assembled(mesh, plan, name):
     for elements, count in ((made.vertices, len(plan.places)), (made.edges, len(ends)), (made.loops, len(plan.corners)),
                             (made.polygons, len(plan.begin))):
         elements.add(count)
-    _write(made.vertices, "co", plan.places)
-    _write(made.edges, "vertices", ends, ".edge_verts")
-    _write(made.loops, "vertex_index", plan.corners, ".corner_vert")
-    _write(made.loops, "edge_index", of_edge, ".corner_edge")
-    made.polygons.foreach_set("loop_start", plan.begin.astype(np.int32))
+    write(made.vertices, "co", plan.places)
+    write(made.edges, "vertices", ends)
+    write(made.loops, "vertex_index", plan.corners.astype(np.int32))
+    write(made.loops, "edge_index", of_edge)
+    write(made.polygons, "loop_start", plan.begin.astype(np.int32))
     if bpy.app.version < (4, 0, 0):
-        made.polygons.foreach_set("loop_total", np.diff(plan.begin, append=len(plan.corners)).astype(np.int32))
+        write(made.polygons, "loop_total", np.diff(plan.begin, append=len(plan.corners)).astype(np.int32))
     twice = {"POINT": plan.vertices, "CORNER": plan.loops, "EDGE": np.repeat(edge_from[:, None], 2, axis=1),
              "FACE": np.repeat(plan.polygons[:, None], 2, axis=1)}
     _copy_attributes(mesh, made, twice)
@@ -144,14 +144,6 @@ def _edges(mesh, plan):
     edge_from[of_edge[plain]] = source[plain]
     edge_from[len(ends) - len(plan.wires):] = plan.wires
     return of_edge, ends.astype(np.int32), edge_from
-
-
-def _write(elements, field, values, layer=None):
-    attribute = elements.data.attributes.get(layer) if layer else None
-    if attribute:
-        attribute.data.foreach_set("value", np.ascontiguousarray(values).ravel())
-    else:
-        elements.foreach_set(field, np.ascontiguousarray(values).ravel())
 
 
 def _picked(values, origins, mean):
