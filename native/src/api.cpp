@@ -36,6 +36,10 @@ struct pw_deformation {
     Deformation deformation;
 };
 
+struct pw_creases {
+    Creases creases;
+};
+
 namespace {
 
 constexpr double smallest_quality = 1.1;
@@ -466,14 +470,25 @@ pw_status pw_surface_distances(const double* vertices, size_t vertex_count, cons
     });
 }
 
-pw_status pw_snapped_border(const double* vertices, size_t vertex_count, const int32_t* triangles,
-                            size_t triangle_count, const int32_t* faces, size_t face_count, const uint8_t* inside,
-                            uint8_t* result) {
+pw_status pw_creases_create(const double* vertices, size_t vertex_count, const int32_t* triangles,
+                            size_t triangle_count, const int32_t* faces, size_t face_count, pw_creases** creases) {
     return guarded([&] {
+        require(creases != nullptr, "creases is null.");
+        *creases = nullptr;
         require(vertices != nullptr || vertex_count == 0, "vertices is null, but vertex_count is not 0.");
         require(triangles != nullptr || triangle_count == 0, "triangles is null, but triangle_count is not 0.");
-        require((inside != nullptr && result != nullptr) || face_count == 0, "inside and result must not be null.");
-        snapped_border({vertices, vertex_count, triangles, triangle_count, faces, face_count}, {inside, face_count},
-                       {result, face_count});
+        *creases = new pw_creases{
+            Creases({vertices, vertex_count, triangles, triangle_count, faces, face_count})};
+    });
+}
+
+void pw_creases_free(pw_creases* creases) { delete creases; }
+
+pw_status pw_creases_snap(const pw_creases* creases, const uint8_t* inside, size_t face_count, uint8_t* result) {
+    return guarded([&] {
+        require(creases != nullptr && inside != nullptr && result != nullptr,
+                "creases, inside and result must not be null.");
+        require(face_count == creases->creases.count(), "face_count is not the number of the surface's faces.");
+        snapped_border(creases->creases, {inside, face_count}, {result, face_count});
     });
 }

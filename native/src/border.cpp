@@ -48,7 +48,7 @@ double length(const Point& p) { return std::sqrt(dot(p, p)); }
 Point operator+(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 Point operator*(double s, const Point& p) { return {s * p[0], s * p[1], s * p[2]}; }
 
-void check(const MeshView& mesh, std::span<const uint8_t> inside) {
+void check(const MeshView& mesh) {
     if (mesh.vertex_count == 0 || mesh.triangle_count == 0 || mesh.face_count == 0)
         throw Error(PW_ERROR_EMPTY, "The mesh has no faces. Choose a mesh object that has some.");
     if (std::max({mesh.vertex_count, mesh.triangle_count, mesh.face_count}) > PW_MAX_COUNT)
@@ -64,160 +64,135 @@ void check(const MeshView& mesh, std::span<const uint8_t> inside) {
     for (size_t t = 0; mesh.faces && t < mesh.triangle_count; ++t)
         if (mesh.faces[t] < 0 || at(mesh.faces[t]) >= mesh.face_count)
             throw Error(PW_ERROR_INDEX, "A triangle names a face that does not exist.");
-    if (std::none_of(inside.begin(), inside.end(), [](uint8_t in) { return in != 0; }))
-        throw Error(PW_ERROR_EMPTY, "The part has no faces: pick one that has some.");
 }
 
-// Faces, and the edges between them.
-class Faces {
-public:
-    // face runs along the edge from begin to end; so does the face on its other side, if against.
-    struct Neighbour {
-        int32_t face, begin, end;
-        bool against;
+size_t face_of(const MeshView& mesh, size_t triangle) { return mesh.faces ? at(mesh.faces[triangle]) : triangle; }
+
+}  // namespace
+
+Creases::Creases(const MeshView& mesh) {
+    check(mesh);
+    centre_.resize(mesh.face_count), normal_.resize(mesh.face_count), area_.resize(mesh.face_count);
+    // A frame around the vertices in use, so that others have no say in how these are rounded.
+    const std::span<const Point> given(reinterpret_cast<const Point*>(mesh.vertices), mesh.vertex_count);
+    std::vector<uint8_t> used(given.size(), 0);
+    for (size_t i = 0; i < 3 * mesh.triangle_count; ++i) used[at(mesh.triangles[i])] = 1;
+    std::vector<Point> in_use;
+    in_use.reserve(given.size());
+    for (size_t v = 0; v < given.size(); ++v)
+        if (used[v]) in_use.push_back(given[v]);
+    const Frame frame = Frame::around(in_use);
+    points_.assign(given.size(), Point{});
+    // Without an extent no face gets an area, and the band is empty.
+    for (size_t v = 0; frame.scale > 0 && v < given.size(); ++v)
+        if (used[v]) points_[v] = frame.to_working(given[v]);
+    measure(mesh);
+    join(mesh);
+}
+
+double Creases::to_middle(size_t face, const Neighbour& edge) const {
+    return length(0.5 * (points_[at(edge.begin)] + points_[at(edge.end)]) - centre_[face]);
+}
+
+double Creases::cost(size_t face, const Neighbour& edge) const {
+    const Point along = points_[at(edge.end)] - points_[at(edge.begin)];
+    const Point &n = normal_[face], &m = normal_[at(edge.face)];
+    const double turn = dot(cross(n, m), along);
+    // Nobody knows the angle where faces wind against each other, more than two meet, or one has no area.
+    if (edge.against || turn == 0 || dot(n, n) == 0 || dot(m, m) == 0) return length(along);
+    const double base = std::max(1 - length(n - m) / 2, 0.0);
+    if ((turn > 0) != inside_out_) return length(along) * base;
+    const double second = base * base, fourth = second * second;
+    return length(along) * fourth * fourth * second;
+}
+
+void Creases::measure(const MeshView& mesh) {
+    std::vector<int32_t> triangles(count(), 0);
+    for (size_t t = 0; t < mesh.triangle_count; ++t) {
+        const size_t face = face_of(mesh, t);
+        const int32_t *v = mesh.triangles + 3 * t, i = v[0], j = v[1], k = v[2];
+        const Point &a = points_[at(i)], &b = points_[at(j)], &c = points_[at(k)];
+        const Point twice = cross(b - a, c - a);
+        normal_[face] = normal_[face] + twice;
+        area_[face] += length(twice) / 2;
+        centre_[face] = centre_[face] + (1.0 / 3) * (a + b + c);
+        volume_ += dot(cross(a, b), c);
+        ++triangles[face];
+    }
+    for (size_t f = 0; f < count(); ++f) {
+        if (triangles[f] > 0) centre_[f] = (1.0 / triangles[f]) * centre_[f];
+        const double size = length(normal_[f]);
+        normal_[f] = size > 0 ? (1 / size) * normal_[f] : Point{};
+    }
+}
+
+void Creases::join(const MeshView& mesh) {
+    // Sides of triangles by their lower vertex, then by the higher one.
+    struct Side {
+        int32_t high, triangle;
+        bool upwards;
     };
-
-    explicit Faces(const MeshView& mesh) : centre_(mesh.face_count), normal_(mesh.face_count), area_(mesh.face_count) {
-        // A frame around the vertices in use, so that others have no say in how these are rounded.
-        const std::span<const Point> given(reinterpret_cast<const Point*>(mesh.vertices), mesh.vertex_count);
-        std::vector<uint8_t> used(given.size(), 0);
-        for (size_t i = 0; i < 3 * mesh.triangle_count; ++i) used[at(mesh.triangles[i])] = 1;
-        std::vector<Point> in_use;
-        in_use.reserve(given.size());
-        for (size_t v = 0; v < given.size(); ++v)
-            if (used[v]) in_use.push_back(given[v]);
-        const Frame frame = Frame::around(in_use);
-        points_.assign(given.size(), Point{});
-        // Without an extent no face gets an area, and the band is empty.
-        for (size_t v = 0; frame.scale > 0 && v < given.size(); ++v)
-            if (used[v]) points_[v] = frame.to_working(given[v]);
-        measure(mesh);
-        join(mesh);
-    }
-
-    size_t count() const { return centre_.size(); }
-    double area(size_t face) const { return area_[face]; }
-    std::span<const Neighbour> around(size_t face) const {
-        return std::span(neighbours_).subspan(first_[face], first_[face + 1] - first_[face]);
-    }
-
-    // From the middle of the edge to the centre of the face on either side.
-    double to_middle(size_t face, const Neighbour& edge) const {
-        return length(0.5 * (points_[at(edge.begin)] + points_[at(edge.end)]) - centre_[face]);
-    }
-
-    // What the border costs along the edge.
-    double cost(size_t face, const Neighbour& edge) const {
-        const Point along = points_[at(edge.end)] - points_[at(edge.begin)];
-        const Point &n = normal_[face], &m = normal_[at(edge.face)];
-        const double turn = dot(cross(n, m), along);
-        // Nobody knows the angle where faces wind against each other, more than two meet, or one has no area.
-        if (edge.against || turn == 0 || dot(n, n) == 0 || dot(m, m) == 0) return length(along);
-        const double base = std::max(1 - length(n - m) / 2, 0.0);
-        if ((turn > 0) != inside_out_) return length(along) * base;
-        const double second = base * base, fourth = second * second;
-        return length(along) * fourth * fourth * second;
-    }
-
-private:
-    static size_t face_of(const MeshView& mesh, size_t triangle) {
-        return mesh.faces ? at(mesh.faces[triangle]) : triangle;
-    }
-    Triangle corners_of(const MeshView& mesh, size_t t) const {
-        return {mesh.triangles[3 * t], mesh.triangles[3 * t + 1], mesh.triangles[3 * t + 2]};
-    }
-
-    void measure(const MeshView& mesh) {
-        std::vector<int32_t> triangles(count(), 0);
-        for (size_t t = 0; t < mesh.triangle_count; ++t) {
-            const size_t face = face_of(mesh, t);
-            const auto [i, j, k] = corners_of(mesh, t);
-            const Point &a = points_[at(i)], &b = points_[at(j)], &c = points_[at(k)];
-            const Point twice = cross(b - a, c - a);
-            normal_[face] = normal_[face] + twice;
-            area_[face] += length(twice) / 2;
-            centre_[face] = centre_[face] + (1.0 / 3) * (a + b + c);
-            volume_ += dot(cross(a, b), c);
-            ++triangles[face];
-        }
-        for (size_t f = 0; f < count(); ++f) {
-            if (triangles[f] > 0) centre_[f] = (1.0 / triangles[f]) * centre_[f];
-            const double size = length(normal_[f]);
-            normal_[f] = size > 0 ? (1 / size) * normal_[f] : Point{};
-        }
-    }
-
-    void join(const MeshView& mesh) {
-        // Sides of triangles by their lower vertex, then by the higher one.
-        struct Side {
-            int32_t high, triangle;
-            bool upwards;
-        };
-        const auto for_sides = [&](const auto& task) {
-            for (size_t t = 0; t < mesh.triangle_count; ++t)
-                for (size_t k = 0; k < 3; ++k) {
-                    const int32_t a = mesh.triangles[3 * t + k], b = mesh.triangles[3 * t + (k + 1) % 3];
-                    task(at(std::min(a, b)), Side{std::max(a, b), static_cast<int32_t>(t), a < b});
-                }
-        };
-        std::vector<size_t> begin(mesh.vertex_count + 2, 0);
-        for_sides([&](size_t low, const Side&) { ++begin[low + 2]; });
-        std::partial_sum(begin.begin(), begin.end(), begin.begin());
-        std::vector<Side> sides(3 * mesh.triangle_count);
-        for_sides([&](size_t low, const Side& side) { sides[begin[low + 1]++] = side; });
-
-        struct Pair {
-            int32_t one, other;
-            Neighbour edge;  // as seen from one
-        };
-        std::vector<Pair> pairs;
-        pairs.reserve(sides.size() / 2);
-        bool closed = true;
-        for (size_t v = 0; v < mesh.vertex_count; ++v) {
-            Side *const first = sides.data() + begin[v], *const last = sides.data() + begin[v + 1];
-            std::sort(first, last, [](const Side& a, const Side& b) {
-                return a.high != b.high ? a.high < b.high : a.triangle < b.triangle;
-            });
-            for (Side* s = first; s != last;) {
-                Side* end = s + 1;
-                while (end != last && end->high == s->high) ++end;
-                const bool plain = end - s == 2 && s->upwards != s[1].upwards;
-                closed = closed && plain;
-                for (; s + 1 != end; ++s) {  // where more than two meet, each with the next
-                    const auto one = static_cast<int32_t>(face_of(mesh, at(s->triangle)));
-                    const auto other = static_cast<int32_t>(face_of(mesh, at(s[1].triangle)));
-                    const auto low = static_cast<int32_t>(v);
-                    if (one != other)
-                        pairs.push_back({one, other,
-                                         {other, s->upwards ? low : s->high, s->upwards ? s->high : low, !plain}});
-                }
-                s = end;
+    const auto for_sides = [&](const auto& task) {
+        for (size_t t = 0; t < mesh.triangle_count; ++t)
+            for (size_t k = 0; k < 3; ++k) {
+                const int32_t a = mesh.triangles[3 * t + k], b = mesh.triangles[3 * t + (k + 1) % 3];
+                task(at(std::min(a, b)), Side{std::max(a, b), static_cast<int32_t>(t), a < b});
             }
-        }
-        inside_out_ = closed && volume_ < 0;
+    };
+    std::vector<size_t> begin(mesh.vertex_count + 2, 0);
+    for_sides([&](size_t low, const Side&) { ++begin[low + 2]; });
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<Side> sides(3 * mesh.triangle_count);
+    for_sides([&](size_t low, const Side& side) { sides[begin[low + 1]++] = side; });
 
-        first_.assign(count() + 2, 0);
-        for (const Pair& pair : pairs) ++first_[at(pair.one) + 2], ++first_[at(pair.other) + 2];
-        std::partial_sum(first_.begin(), first_.end(), first_.begin());
-        neighbours_.resize(2 * pairs.size());
-        for (const auto& [one, other, edge] : pairs) {
-            neighbours_[first_[at(one) + 1]++] = edge;
-            neighbours_[first_[at(other) + 1]++] = {one, edge.end, edge.begin, edge.against};
+    struct Pair {
+        int32_t one, other;
+        Neighbour edge;  // as seen from one
+    };
+    std::vector<Pair> pairs;
+    pairs.reserve(sides.size() / 2);
+    bool closed = true;
+    for (size_t v = 0; v < mesh.vertex_count; ++v) {
+        Side *const first = sides.data() + begin[v], *const last = sides.data() + begin[v + 1];
+        std::sort(first, last, [](const Side& a, const Side& b) {
+            return a.high != b.high ? a.high < b.high : a.triangle < b.triangle;
+        });
+        for (Side* s = first; s != last;) {
+            Side* end = s + 1;
+            while (end != last && end->high == s->high) ++end;
+            const bool plain = end - s == 2 && s->upwards != s[1].upwards;
+            closed = closed && plain;
+            for (; s + 1 != end; ++s) {  // where more than two meet, each with the next
+                const auto one = static_cast<int32_t>(face_of(mesh, at(s->triangle)));
+                const auto other = static_cast<int32_t>(face_of(mesh, at(s[1].triangle)));
+                const auto low = static_cast<int32_t>(v);
+                if (one != other)
+                    pairs.push_back({one, other,
+                                     {other, s->upwards ? low : s->high, s->upwards ? s->high : low, !plain}});
+            }
+            s = end;
         }
     }
+    inside_out_ = closed && volume_ < 0;
 
-    std::vector<Point> points_, centre_, normal_;
-    std::vector<double> area_;
-    double volume_ = 0;
-    bool inside_out_ = false;  // a closed surface that winds the wrong way
-    std::vector<Neighbour> neighbours_;
-    std::vector<size_t> first_;  // of each face, where its neighbours begin
-};
+    first_.assign(count() + 2, 0);
+    for (const Pair& pair : pairs) ++first_[at(pair.one) + 2], ++first_[at(pair.other) + 2];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    neighbours_.resize(2 * pairs.size());
+    for (const auto& [one, other, edge] : pairs) {
+        neighbours_[first_[at(one) + 1]++] = edge;
+        neighbours_[first_[at(other) + 1]++] = {one, edge.end, edge.begin, edge.against};
+    }
+    beside_.reserve(neighbours_.size());
+    for (const Neighbour& edge : neighbours_) beside_.push_back(edge.face);
+}
+
+namespace {
 
 // How deep each face lies on its side of the border: from the border over middles of edges and centres of faces;
 // infinity beyond reach, which is made less where so many faces are within it. (surface_distances() measures all of a
 // surface, and vertices: too slow here.)
-std::vector<double> depths(const Faces& faces, std::span<const uint8_t> inside, double& reach) {
+std::vector<double> depths(const Creases& faces, std::span<const uint8_t> inside, double& reach) {
     std::vector<double> depth(faces.count(), infinite);
     using Reached = std::pair<double, int32_t>;
     std::priority_queue<Reached, std::vector<Reached>, std::greater<>> front;
@@ -226,9 +201,12 @@ std::vector<double> depths(const Faces& faces, std::span<const uint8_t> inside, 
         depth[face] = way;
         front.push({way, static_cast<int32_t>(face)});
     };
-    for (size_t f = 0; f < faces.count(); ++f)
-        for (const Faces::Neighbour& edge : faces.around(f))
-            if (!inside[f] != !inside[at(edge.face)]) come(f, faces.to_middle(f, edge));
+    for (size_t f = 0; f < faces.count(); ++f) {
+        const auto across = [&](int32_t other) { return !inside[f] != !inside[at(other)]; };
+        if (std::ranges::none_of(faces.beside(f), across)) continue;
+        for (const Creases::Neighbour& edge : faces.around(f))
+            if (across(edge.face)) come(f, faces.to_middle(f, edge));
+    }
     for (size_t done = 0; !front.empty();) {
         const auto [way, face] = front.top();
         front.pop();
@@ -240,7 +218,7 @@ std::vector<double> depths(const Faces& faces, std::span<const uint8_t> inside, 
                 if (d > reach) d = infinite;
             break;
         }
-        for (const Faces::Neighbour& edge : faces.around(f))
+        for (const Creases::Neighbour& edge : faces.around(f))
             if (!inside[f] == !inside[at(edge.face)])
                 come(at(edge.face), way + faces.to_middle(f, edge) + faces.to_middle(at(edge.face), edge));
     }
@@ -249,56 +227,66 @@ std::vector<double> depths(const Faces& faces, std::span<const uint8_t> inside, 
 
 // The faces that stay: of each connected piece of the part and of the rest those beyond the band, or its deeper half if
 // it is all in the band; and where these are not connected, the ways between them that keep deepest.
-std::vector<uint8_t> staying(const Faces& faces, std::span<const uint8_t> inside, std::span<const double> depth,
+std::vector<uint8_t> staying(const Creases& faces, std::span<const uint8_t> inside, std::span<const double> depth,
                              double reach) {
     std::vector<uint8_t> stays(faces.count(), 0), known(faces.count(), 0);
-    std::vector<int32_t> from(faces.count(), -1), piece, deep;
-    for (size_t start = 0; start < faces.count(); ++start) {
-        if (known[start]) continue;
-        const auto for_neighbours = [&](int32_t face, const auto& task) {
-            for (const Faces::Neighbour& edge : faces.around(at(face)))
-                if (!inside[at(edge.face)] == !inside[start]) task(edge.face);
-        };
-        piece.assign(1, static_cast<int32_t>(start));
-        known[start] = 1;
+    size_t waiting[2] = {0, 0};  // of the rest and of the part: faces that stay
+    const auto side = [&](int32_t face) { return inside[at(face)] ? size_t{1} : size_t{0}; };
+    const auto stay = [&](int32_t face) { stays[at(face)] = 1, ++waiting[side(face)]; };
+    std::vector<int32_t> piece;  // of the band
+    for (int32_t start = 0; at(start) < faces.count(); ++start) {
+        if (depth[at(start)] == infinite) {
+            stay(start);
+            continue;
+        }
+        if (known[at(start)]) continue;
+        piece.assign(1, start);
+        known[at(start)] = 1;
         double deepest = 0;
         for (size_t i = 0; i < piece.size(); ++i) {
             deepest = std::max(deepest, depth[at(piece[i])]);
-            for_neighbours(piece[i], [&](int32_t next) {
-                if (!known[at(next)]) known[at(next)] = 1, piece.push_back(next);
-            });
+            for (const int32_t next : faces.beside(at(piece[i]))) {
+                if (side(next) != side(start)) continue;
+                if (depth[at(next)] == infinite) deepest = infinite;
+                else if (!known[at(next)]) known[at(next)] = 1, piece.push_back(next);
+            }
         }
         const double least = std::min(reach, deepest / 2) * (1 - same_depth);
-        size_t waiting = 0;
         for (const int32_t f : piece)
-            if (depth[at(f)] >= least) stays[at(f)] = 1, ++waiting;
+            if (depth[at(f)] >= least) stay(f);
+    }
 
-        // Prim's algorithm, the deepest face first.
+    // Prim's algorithm, the deepest face first.
+    std::vector<int32_t> from(faces.count(), -1), deep;
+    for (int32_t start = 0; at(start) < faces.count(); ++start) {
+        size_t& left = waiting[side(start)];
+        if (!stays[at(start)] || from[at(start)] >= 0 || left == 0) continue;
         std::priority_queue<std::pair<double, int32_t>> others;
-        const int32_t first = *std::find_if(piece.begin(), piece.end(), [&](int32_t f) { return stays[at(f)] != 0; });
-        deep.assign(1, first);
-        from[at(first)] = first;
-        --waiting;
-        while (waiting > 0) {
+        deep.assign(1, start);
+        from[at(start)] = start;
+        --left;
+        while (left > 0) {
             int32_t face;
             if (!deep.empty()) {
                 face = deep.back();
                 deep.pop_back();
-            } else {
+            } else if (!others.empty()) {
                 face = others.top().second;
                 others.pop();
+            } else {
+                break;
             }
-            for_neighbours(face, [&](int32_t next) {
-                if (from[at(next)] >= 0) return;
+            for (const int32_t next : faces.beside(at(face))) {
+                if (from[at(next)] >= 0 || side(next) != side(start)) continue;
                 from[at(next)] = face;
                 if (!stays[at(next)]) {
                     others.push({depth[at(next)], next});
-                    return;
+                    continue;
                 }
                 deep.push_back(next);
-                --waiting;
+                --left;
                 for (int32_t way = face; !stays[at(way)]; way = from[at(way)]) stays[at(way)] = 1;
-            });
+            }
         }
     }
     return stays;
@@ -306,9 +294,9 @@ std::vector<uint8_t> staying(const Faces& faces, std::span<const uint8_t> inside
 
 }  // namespace
 
-BorderBand border_band(const MeshView& mesh, std::span<const uint8_t> inside) {
-    check(mesh, inside);
-    const Faces faces(mesh);
+BorderBand border_band(const Creases& faces, std::span<const uint8_t> inside) {
+    if (std::none_of(inside.begin(), inside.end(), [](uint8_t in) { return in != 0; }))
+        throw Error(PW_ERROR_EMPTY, "The part has no faces: pick one that has some.");
     double part = 0, rest = 0;
     for (size_t f = 0; f < faces.count(); ++f) (inside[f] ? part : rest) += faces.area(f);
     double reach = band_reach * std::sqrt(std::min(part, rest));
@@ -327,7 +315,7 @@ BorderBand border_band(const MeshView& mesh, std::span<const uint8_t> inside) {
     band.to_rest.assign(band.faces.size(), 0);
     for (size_t n = 0; n < band.faces.size(); ++n) {
         const size_t f = at(band.faces[n]);
-        for (const Faces::Neighbour& edge : faces.around(f)) {
+        for (const Creases::Neighbour& edge : faces.around(f)) {
             const size_t g = at(edge.face);
             if (number[g] >= 0 && g < f) continue;  // told from the other side
             const bool at_border = !inside[f] != !inside[g];
@@ -404,8 +392,8 @@ std::vector<uint8_t> minimum_cut(const BorderBand& band) {
     return reached;
 }
 
-void snapped_border(const MeshView& mesh, std::span<const uint8_t> inside, std::span<uint8_t> result) {
-    const BorderBand band = border_band(mesh, inside);
+void snapped_border(const Creases& creases, std::span<const uint8_t> inside, std::span<uint8_t> result) {
+    const BorderBand band = border_band(creases, inside);
     const std::vector<uint8_t> side = minimum_cut(band);
     std::transform(inside.begin(), inside.end(), result.begin(), [](uint8_t in) { return in ? 1 : 0; });
     for (size_t n = 0; n < band.faces.size(); ++n) result[at(band.faces[n])] = side[n];

@@ -27,7 +27,7 @@ double length(const Point& p) { return std::sqrt(dot(p, p)); }
 
 Part snap(const TriMesh& mesh, const Part& inside) {
     Part result(mesh.face_count, 7);
-    snapped_border(mesh.view(), inside, result);
+    snapped_border(Creases(mesh.view()), inside, result);
     return result;
 }
 
@@ -165,7 +165,7 @@ TEST(Border, CostsOnAMeshAreThoseDocumentedAndTheirCutTheLeast) {
     for (int round = 0; round < 200; ++round) {
         const Part part = random_part(mesh, random, 1, 0.4 + 0.007 * round);
         if (!both_sides(part)) continue;
-        const BorderBand band = border_band(mesh.view(), part);
+        const BorderBand band = border_band(Creases(mesh.view()), part);
         double inside = 0;
         for (size_t t = 0; t < mesh.triangles.size(); ++t)
             if (const auto [i, j, k] = mesh.triangles[t]; part[at(mesh.face_of(t))])
@@ -311,27 +311,40 @@ TEST(Border, OfTheApi) {
     for (const Triangle& t : rod.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
     std::vector<double> vertices;
     for (const Point& p : rod.vertices) vertices.insert(vertices.end(), p.begin(), p.end());
-    const auto ask = [&](const uint8_t* inside, uint8_t* result, size_t faces) {
-        return pw_snapped_border(vertices.data(), rod.vertices.size(), triangles.data(), rod.triangles.size(),
-                                 rod.face_data(), faces, inside, result);
+    pw_creases* creases = nullptr;
+    const auto create = [&](size_t faces) {
+        return pw_creases_create(vertices.data(), rod.vertices.size(), triangles.data(), rod.triangles.size(),
+                                 rod.face_data(), faces, &creases);
     };
-    EXPECT_EQ(ask(nullptr, part.data(), rod.face_count), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(ask(part.data(), nullptr, rod.face_count), PW_ERROR_ARGUMENT);
-    EXPECT_EQ(ask(part.data(), part.data(), 0), PW_ERROR_EMPTY);
-    EXPECT_EQ(ask(part.data(), part.data(), rod.face_count - 1), PW_ERROR_INDEX);
-    const Part none(rod.face_count, 0), before = part;
-    EXPECT_EQ(ask(none.data(), part.data(), rod.face_count), PW_ERROR_EMPTY);
-    EXPECT_EQ(part, before);
+    EXPECT_EQ(create(0), PW_ERROR_EMPTY);
+    EXPECT_EQ(create(rod.face_count - 1), PW_ERROR_INDEX);
     std::swap(vertices[7], vertices.emplace_back(NAN));
-    EXPECT_EQ(ask(part.data(), part.data(), rod.face_count), PW_ERROR_NOT_FINITE);
+    EXPECT_EQ(create(rod.face_count), PW_ERROR_NOT_FINITE);
     std::swap(vertices[7], vertices.back());
     triangles[4] = -1;
-    EXPECT_EQ(ask(part.data(), part.data(), rod.face_count), PW_ERROR_INDEX);
+    EXPECT_EQ(create(rod.face_count), PW_ERROR_INDEX);
     triangles[4] = rod.triangles[1][1];
-    ASSERT_EQ(ask(part.data(), part.data(), rod.face_count), PW_OK);
-    EXPECT_EQ(part, where(rod, [](const Point& p) { return p[2] < 0; }));
-    EXPECT_EQ(pw_snapped_border(vertices.data(), 3, triangles.data(), 1, nullptr, 2, part.data(), part.data()),
-              PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_creases_create(vertices.data(), 3, triangles.data(), 1, nullptr, 2, &creases), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_creases_create(nullptr, 3, triangles.data(), 1, nullptr, 1, &creases), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_creases_create(vertices.data(), 3, triangles.data(), 1, nullptr, 1, nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(creases, nullptr);
+    ASSERT_EQ(create(rod.face_count), PW_OK);
+    std::fill(vertices.begin(), vertices.end(), 0.0);  // they were copied
+
+    EXPECT_EQ(pw_creases_snap(nullptr, part.data(), rod.face_count, part.data()), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_creases_snap(creases, nullptr, rod.face_count, part.data()), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_creases_snap(creases, part.data(), rod.face_count, nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_creases_snap(creases, part.data(), rod.face_count - 1, part.data()), PW_ERROR_ARGUMENT);
+    const Part none(rod.face_count, 0), before = part;
+    EXPECT_EQ(pw_creases_snap(creases, none.data(), rod.face_count, part.data()), PW_ERROR_EMPTY);
+    EXPECT_EQ(part, before);
+    for (const double z : {0.5, -0.5}) {  // one after the other
+        part = where(rod, [&](const Point& p) { return p[2] < z; });
+        ASSERT_EQ(pw_creases_snap(creases, part.data(), rod.face_count, part.data()), PW_OK);
+        EXPECT_EQ(part, where(rod, [](const Point& p) { return p[2] < 0; }));
+    }
+    pw_creases_free(creases);
+    pw_creases_free(nullptr);
 }
 
 }  // namespace

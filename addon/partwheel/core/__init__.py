@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The native library for Python: numpy arrays in, a Hierarchy out. Nothing here knows Blender."""
 
-from .border import snapped_border
+from .border import Creases, snapped_border
 from .deform import Deformation, surface_distances
 from .hierarchy import Hierarchy, Solid, Summary
 from .library import LibraryError, Mode, PartwheelError, Rung, Stage, Status, version
 from .polygons import Faults, polygon_faults
 
-__all__ = ["Deformation", "Faults", "Hierarchy", "LibraryError", "Mode", "PartwheelError", "Rung", "Solid", "Stage",
+__all__ = ["Creases", "Deformation", "Faults", "Hierarchy", "LibraryError", "Mode", "PartwheelError", "Rung", "Solid", "Stage",
            "Status", "Summary", "polygon_faults", "snapped_border", "surface_distances", "version"]
