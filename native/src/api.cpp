@@ -387,8 +387,7 @@ pw_status pw_hierarchy_save(const pw_hierarchy* hierarchy, uint8_t* bytes, size_
     return guarded([&] {
         require(hierarchy != nullptr, "hierarchy must not be null.");
         require_room(bytes, capacity, count);
-        *count = hierarchy->hierarchy.saved_size();
-        if (capacity >= *count) hand_out<uint8_t>(hierarchy->hierarchy.save(), bytes, capacity, count);
+        hand_out<uint8_t>(hierarchy->hierarchy.save(), bytes, capacity, count);
     });
 }
 

@@ -2,14 +2,12 @@
 #include "hierarchy.h"
 
 #include "hull.h"
+#include "packed.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 namespace partwheel {
@@ -127,20 +125,15 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const Regroupe
     std::vector<int32_t> leaf_of_tet(leaves);
     for (size_t i = 0; i < leaves; ++i) {
         leaf_of_tet[static_cast<size_t>(order[i])] = static_cast<int32_t>(i);
-        const Tetrahedron& t = mesh.tetrahedra[static_cast<size_t>(order[i])];
-        const auto at = [&](size_t k) { return mesh.vertices[static_cast<size_t>(t[k])]; };
-        tetrahedra_.push_back(t);
-        // A sliver's volume may be rounded to less than nothing.
-        const double volume = std::max(0.0, six_volumes(at(0), at(1), at(2), at(3)) / 6);
-        tet_volume_.push_back(frame.volume_to_caller(volume));
+        tetrahedra_.push_back(mesh.tetrahedra[static_cast<size_t>(order[i])]);
     }
     merges_ = tree.merges;
     const auto renumber = [&](int32_t c) {
         return static_cast<size_t>(c) < leaves ? leaf_of_tet[static_cast<size_t>(c)] : c;
     };
     for (Merge& m : merges_)
-        m = {renumber(m.left), renumber(m.right), frame.volume_to_caller(m.concavity),
-             frame.volume_to_caller(m.hull_volume)};
+        m = {renumber(m.left), renumber(m.right), frame.volume_to_caller(m.concavity), 0};
+    if (!merges_.empty()) summary_.hull_volume = frame.volume_to_caller(tree.merges.back().hull_volume);
 
     assign_faces(surface, mesh, leaf_of_tet, leaf_, face_area_);
     for (double& a : face_area_) a = frame.area_to_caller(a);
@@ -157,32 +150,48 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const Regroupe
 
 // Everything that follows from the stored arrays, which are known to be sound.
 void Hierarchy::finish() {
-    const size_t leaves = tetrahedra_.size(), merges = merges_.size(), faces = leaf_.size();
-    const std::vector<uint8_t> kept = prune(merges_, regrouped_merges());
+    const size_t leaves = tetrahedra_.size(), merges = merges_.size(), clusters = leaves + merges;
+    const size_t faces = leaf_.size(), top = clusters - regrouped_merges();
+    frame_ = Frame::around(vertices_);
 
-    // Bottom up over the unpruned tree. Leaves are in depth-first order, so slices are a matter of their ends.
-    std::vector<double> volume = tet_volume_, area(leaves, 0);
-    for (size_t f = 0; f < faces; ++f) area[static_cast<size_t>(leaf_[f])] += face_area_[f];
-    volume.resize(leaves + merges);
-    area.resize(leaves + merges);
-    merge_first_.resize(merges);
-    merge_last_.resize(merges);
-    const auto begin = [&](int32_t c) {
-        return static_cast<size_t>(c) < leaves ? c : merge_first_[static_cast<size_t>(c) - leaves];
-    };
-    const auto end = [&](int32_t c) {
-        return static_cast<size_t>(c) < leaves ? c + 1 : merge_last_[static_cast<size_t>(c) - leaves];
-    };
-    for (size_t m = 0; m < merges; ++m) {
-        const Merge& merge = merges_[m];
+    // By cluster, bottom up over the unpruned tree. Leaves are in depth-first order: a slice is a matter of its ends.
+    std::vector<Point> points;
+    points.reserve(vertices_.size());
+    for (const Point& p : vertices_) points.push_back(frame_.to_working(p));
+    volume_.resize(clusters);
+    area_.resize(clusters);
+    height_.resize(clusters);
+    tet_first_.resize(clusters);
+    tet_last_.resize(clusters);
+    for (size_t l = 0; l < leaves; ++l) {
+        const auto at = [&](size_t k) { return points[static_cast<size_t>(tetrahedra_[l][k])]; };
+        // A sliver's volume may be rounded to less than nothing.
+        volume_[l] = frame_.volume_to_caller(std::max(0.0, six_volumes(at(0), at(1), at(2), at(3)) / 6));
+        tet_first_[l] = static_cast<int32_t>(l);
+        tet_last_[l] = static_cast<int32_t>(l + 1);
+    }
+    for (size_t f = 0; f < faces; ++f) area_[static_cast<size_t>(leaf_[f])] += face_area_[f];
+    merge_pairs_.reserve(2 * merges);
+    for (size_t c = leaves; c < clusters; ++c) {
+        Merge& merge = merges_[c - leaves];
         const auto left = static_cast<size_t>(merge.left), right = static_cast<size_t>(merge.right);
         merge_pairs_.push_back(merge.left);
         merge_pairs_.push_back(merge.right);
-        merge_first_[m] = begin(merge.left);
-        merge_last_[m] = end(merge.right);
-        volume[leaves + m] = volume[left] + volume[right];
-        area[leaves + m] = area[left] + area[right];
+        tet_first_[c] = tet_first_[left];
+        tet_last_[c] = tet_last_[right];
+        volume_[c] = volume_[left] + volume_[right];
+        area_[c] = area_[left] + area_[right];
+        merge.hull_volume = volume_[c] + merge.concavity;
+        height_[c] = merge.concavity;
+        // Joining may make a cluster less concave; a node is never lower than what it is made of.
+        if (c >= top) height_[c] = std::max({height_[c], height_[left], height_[right]});
     }
+    merge_last_.assign(tet_last_.begin() + static_cast<std::ptrdiff_t>(leaves), tet_last_.end());
+    summary_.volume = volume_.back();
+    if (merges_.empty())
+        summary_.hull_volume = summary_.volume;
+    else
+        merges_.back().hull_volume = summary_.hull_volume;
 
     // Faces sorted by leaf; face_begin[l] is where leaf l's start.
     std::vector<int32_t> face_begin(leaves + 1, 0);
@@ -194,53 +203,52 @@ void Hierarchy::finish() {
         order_[static_cast<size_t>(next[static_cast<size_t>(leaf_[f])]++)] = static_cast<int32_t>(f);
 
     // The parts are the clusters that the regrouped merges join, and that are none of them.
-    std::vector<double> score(leaves + merges, 0), height(leaves + merges, 0);
+    score_.resize(clusters);
     if (!scores_.empty()) {
-        const size_t top = leaves + merges - regrouped_merges();
         std::vector<size_t> parts;
-        if (top == leaves + merges) parts.push_back(top - 1);
-        for (size_t c = top; c < leaves + merges; ++c) {
-            score[c] = scores_[c - top + regrouped_merges() + 1];
+        if (top == clusters) parts.push_back(top - 1);
+        for (size_t c = top; c < clusters; ++c) {
+            score_[c] = scores_[c - top + regrouped_merges() + 1];
             for (const int32_t child : {merges_[c - leaves].left, merges_[c - leaves].right})
                 if (static_cast<size_t>(child) < top) parts.push_back(static_cast<size_t>(child));
         }
-        std::sort(parts.begin(), parts.end(), [&](size_t a, size_t b) {
-            return begin(static_cast<int32_t>(a)) < begin(static_cast<int32_t>(b));
-        });
-        for (size_t p = 0; p < parts.size(); ++p) score[parts[p]] = scores_[p];
+        std::sort(parts.begin(), parts.end(), [&](size_t a, size_t b) { return tet_first_[a] < tet_first_[b]; });
+        for (size_t p = 0; p < parts.size(); ++p) score_[parts[p]] = scores_[p];
     }
 
-    // Nodes: all leaves, then the merges that were kept.
-    std::vector<int32_t> node(leaves + merges, -1);
-    size_t nodes = leaves;
-    for (size_t c = 0; c < leaves + merges; ++c) {
-        const bool leaf = c < leaves;
-        if (!leaf && !kept[c - leaves]) continue;
-        node[c] = static_cast<int32_t>(leaf ? c : nodes++);
-        const auto c32 = static_cast<int32_t>(c);
-        tet_first_.push_back(begin(c32));
-        tet_last_.push_back(end(c32));
-        first_.push_back(face_begin[static_cast<size_t>(begin(c32))]);
-        last_.push_back(face_begin[static_cast<size_t>(end(c32))]);
-        volume_.push_back(volume[c]);
-        area_.push_back(area[c]);
-        const double concavity = leaf ? 0 : merges_[c - leaves].concavity;
-        height[c] = concavity;
-        if (c + regrouped_merges() >= leaves + merges)
-            // Joining may make a cluster less concave; a node is never lower than what it is made of.
-            for (const int32_t child : {merges_[c - leaves].left, merges_[c - leaves].right})
-                height[c] = std::max(height[c], height[static_cast<size_t>(child)]);
-        height_.push_back(height[c]);
-        score_.push_back(score[c]);
-        cost_class_.push_back(concavity > 0);
-        double cost = concavity;
-        if (!leaf && concavity == 0) {  // Eq. 2
-            const auto share = [&](int32_t child) { return double(end(child) - begin(child)) / double(leaves); };
-            const double left = share(merges_[c - leaves].left), right = share(merges_[c - leaves].right);
-            cost = left * left + right * right;
+    // Nodes: all leaves, then the merges that were kept; so arrays by cluster become arrays by node where they are.
+    const std::vector<uint8_t> kept = prune(merges_, regrouped_merges());
+    const size_t nodes = leaves + static_cast<size_t>(std::count(kept.begin(), kept.end(), 1));
+    std::vector<int32_t> node(clusters, -1);
+    std::iota(node.begin(), node.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
+    cost_class_.resize(nodes);
+    cost_.resize(nodes);
+    for (size_t c = leaves, n = leaves; c < clusters; ++c) {
+        if (!kept[c - leaves]) continue;
+        const Merge& merge = merges_[c - leaves];
+        node[c] = static_cast<int32_t>(n);
+        cost_class_[n] = merge.concavity > 0;
+        cost_[n] = merge.concavity;
+        tet_first_[n] = tet_first_[c];
+        tet_last_[n] = tet_last_[c];
+        if (merge.concavity == 0) {  // Eq. 2
+            const int32_t middle = static_cast<size_t>(merge.left) < leaves
+                                       ? merge.left + 1
+                                       : merge_last_[static_cast<size_t>(merge.left) - leaves];
+            const double left = double(middle - tet_first_[n]) / double(leaves);
+            const double right = double(tet_last_[n] - middle) / double(leaves);
+            cost_[n] = left * left + right * right;
         }
-        cost_.push_back(cost);
+        for (std::vector<double>* values : {&volume_, &area_, &height_, &score_}) (*values)[n] = (*values)[c];
+        ++n;
     }
+    for (std::vector<double>* values : {&volume_, &area_, &height_, &score_}) values->resize(nodes);
+    tet_first_.resize(nodes);
+    tet_last_.resize(nodes);
+    first_.reserve(nodes);
+    last_.reserve(nodes);
+    for (const int32_t t : tet_first_) first_.push_back(face_begin[static_cast<size_t>(t)]);
+    for (const int32_t t : tet_last_) last_.push_back(face_begin[static_cast<size_t>(t)]);
     parent_.assign(nodes, -1);
     for (size_t m = merges; m-- > 0;) {
         // node[] of a pruned merge becomes the node that its children hang from.
@@ -252,14 +260,6 @@ void Hierarchy::finish() {
                 parent_[static_cast<size_t>(below)] = node[leaves + m];
         }
     }
-
-    if (!scores_.empty()) {
-        cluster_area_ = std::move(area);
-        cluster_score_ = std::move(score);
-    }
-    frame_ = Frame::around(vertices_);
-    summary_.volume = volume.back();
-    summary_.hull_volume = merges_.empty() ? volume.back() : merges_.back().hull_volume;
 }
 
 pw_arrays Hierarchy::arrays() const {
@@ -329,7 +329,16 @@ std::vector<int32_t> Hierarchy::cut_parts(size_t parts) const {
 std::vector<int32_t> Hierarchy::cut_automatic() const {
     constexpr double paper_height = 0.03;  // of the hull's volume
     if (scores_.empty()) return cut_height(paper_height * summary_.hull_volume);
-    return bounds_of(likeliest_cut(merges_, cluster_area_, cluster_score_));
+    // By cluster again; what has been pruned has no score.
+    const size_t leaves = tetrahedra_.size(), clusters = leaves + merges_.size();
+    const std::vector<uint8_t> kept = prune(merges_, regrouped_merges());
+    std::vector<double> areas(clusters, 0), scores(clusters, 0);
+    for (size_t c = 0, n = 0; c < clusters; ++c) {
+        if (c >= leaves && !kept[c - leaves]) continue;
+        areas[c] = area_[n];
+        scores[c] = score_[n++];
+    }
+    return bounds_of(likeliest_cut(merges_, areas, scores));
 }
 
 std::vector<int32_t> Hierarchy::bounds_of(std::span<const int32_t> clusters) const {
@@ -376,67 +385,12 @@ TriangleMesh Hierarchy::solid(size_t tet_first, size_t tet_last,
     return facing_->facets->solid(tetrahedra_, vertices_, tet_first, tet_last, middles);
 }
 
-// ---- Saved form: magic, version, counts, the stored arrays, a hash of all that came before. Little-endian. ----
+// ---- Saved form: a header, the stored arrays packed, a hash. ----
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the saved form is written as memory holds it");
-
 constexpr std::array<char, 8> magic = {'P', 'W', 'H', 'I', 'E', 'R', '\r', '\n'};
-constexpr uint32_t format_version = 4;
-
-// FNV-1a, by words of 8 bytes where they last: any single changed byte changes the hash.
-uint64_t hash(std::span<const uint8_t> bytes) {
-    constexpr uint64_t prime = 0x100000001b3;
-    uint64_t h = 0xcbf29ce484222325;
-    size_t i = 0;
-    for (; i + 8 <= bytes.size(); i += 8) {
-        uint64_t word;
-        std::memcpy(&word, bytes.data() + i, 8);
-        h = std::rotl((h ^ word) * prime, 29);
-    }
-    for (; i < bytes.size(); ++i) h = (h ^ bytes[i]) * prime;
-    return h;
-}
-
-[[noreturn]] void refuse(const char* why) {
-    throw Error(PW_ERROR_DATA, std::string("This is not a hierarchy that can be used: ") + why + ". Build it again.");
-}
-
-class Writer {
-public:
-    template <class T>
-    void put(const T* values, size_t count) {
-        static_assert(std::is_trivially_copyable_v<T>);
-        const auto* p = reinterpret_cast<const uint8_t*>(values);
-        bytes.insert(bytes.end(), p, p + count * sizeof(T));
-    }
-    std::vector<uint8_t> bytes;
-};
-
-class Reader {
-public:
-    explicit Reader(std::span<const uint8_t> bytes) : bytes_(bytes) {}
-
-    template <class T>
-    void get(T* values, size_t count) {
-        static_assert(std::is_trivially_copyable_v<T>);
-        if (count > bytes_.size() / sizeof(T)) refuse("it is cut short");
-        if (count) std::memcpy(values, bytes_.data(), count * sizeof(T));
-        bytes_ = bytes_.subspan(count * sizeof(T));
-    }
-    template <class T>
-    std::vector<T> get_vector(size_t count) {
-        if (count > bytes_.size() / sizeof(T)) refuse("it is cut short");
-        std::vector<T> values(count);
-        get(values.data(), count);
-        return values;
-    }
-    bool at_end() const { return bytes_.empty(); }
-
-private:
-    std::span<const uint8_t> bytes_;
-};
+constexpr uint32_t format_version = 5;
 
 struct Header {
     std::array<char, 8> magic = partwheel::magic;
@@ -444,20 +398,20 @@ struct Header {
     uint32_t rung = 0;
     uint64_t faces = 0, tetrahedra = 0, vertices = 0, components = 0, cavities = 0, added_vertices = 0, account = 0;
     uint64_t outer = 0, scores = 0;
-    double deviation = 0;
+    double deviation = 0, hull_volume = 0;
 };
 
-static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Merge) == 24 && sizeof(Header) == 96);
+static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Header) == 104);
+
+std::span<const double> numbers(const std::vector<Point>& points) {
+    return {points.data()->data(), 3 * points.size()};
+}
+
+std::span<const int32_t> numbers(const std::vector<Tetrahedron>& tetrahedra) {
+    return {tetrahedra.data()->data(), 4 * tetrahedra.size()};
+}
 
 }  // namespace
-
-size_t Hierarchy::saved_size() const {
-    const size_t vertex = sizeof(Point) + sizeof(int32_t), face = sizeof(int32_t) + sizeof(double);
-    const size_t tetrahedron = sizeof(Tetrahedron) + sizeof(double);
-    return sizeof(Header) + vertices_.size() * vertex + tetrahedra_.size() * tetrahedron + leaf_.size() * face +
-           outer_faces_.size() * sizeof(int32_t) + scores_.size() * sizeof(double) +
-           merges_.size() * sizeof(Merge) + account_.size() + sizeof(uint64_t);
-}
 
 std::vector<uint8_t> Hierarchy::save() const {
     Header header;
@@ -472,65 +426,86 @@ std::vector<uint8_t> Hierarchy::save() const {
     header.scores = scores_.size();
     header.rung = summary_.rung;
     header.deviation = summary_.deviation;
-    Writer out;
-    out.bytes.reserve(saved_size());
-    out.put(&header, 1);
-    out.put(vertices_.data(), vertices_.size());
-    out.put(source_.data(), source_.size());
-    out.put(tetrahedra_.data(), tetrahedra_.size());
-    out.put(tet_volume_.data(), tet_volume_.size());
-    out.put(leaf_.data(), leaf_.size());
-    out.put(face_area_.data(), face_area_.size());
-    out.put(outer_faces_.data(), outer_faces_.size());
-    out.put(merges_.data(), merges_.size());
-    out.put(scores_.data(), scores_.size());
-    out.put(account_.data(), account_.size());
-    const uint64_t h = hash(out.bytes);
-    out.put(&h, 1);
-    return std::move(out.bytes);
+    header.hull_volume = summary_.hull_volume;
+    // A merge joins the slices on both sides of a border between two tetrahedra, so that says all of it.
+    std::vector<int32_t> borders;
+    std::vector<double> concavities;
+    for (const Merge& merge : merges_) {
+        const size_t leaves = tetrahedra_.size(), left = static_cast<size_t>(merge.left);
+        borders.push_back(left < leaves ? merge.left + 1 : merge_last_[left - leaves]);
+        concavities.push_back(merge.concavity);
+    }
+    Packer out;
+    out.put(header);
+    out.put_bytes(account_.data(), account_.size());
+    out.put_integers(borders);
+    out.put_doubles(concavities);
+    out.put_doubles(numbers(vertices_));
+    out.put_integers(source_);
+    out.put_integers(numbers(tetrahedra_));
+    out.put_integers(leaf_);
+    out.put_doubles(face_area_);
+    out.put_integers(outer_faces_);
+    out.put_doubles(scores_);
+    return out.finish();
 }
 
 Hierarchy Hierarchy::load(std::span<const uint8_t> bytes) {
-    Reader in(bytes);
-    Header header;
-    in.get(&header, 1);
-    if (header.magic != magic) refuse("it is something else");
-    if (header.version != format_version) refuse("it was written by another version of Partwheel");
-    uint64_t stored_hash;
-    if (bytes.size() < sizeof header + sizeof stored_hash) refuse("it is cut short");
-    std::memcpy(&stored_hash, bytes.data() + bytes.size() - sizeof stored_hash, sizeof stored_hash);
-    bool intact = hash(bytes.first(bytes.size() - sizeof stored_hash)) == stored_hash;
-#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
-    intact = true;  // no fuzzer would guess it
-#endif
-    if (!intact) refuse("it is damaged");
+    if (bytes.size() < magic.size() || !std::equal(magic.begin(), magic.end(), bytes.begin()))
+        refuse_saved("it is something else");
+    Unpacker in(bytes);
+    const auto header = in.get<Header>();
+    if (header.version != format_version) refuse_saved("it was written by another version of Partwheel");
     for (uint64_t n : {header.faces, header.tetrahedra, header.vertices})
-        if (n == 0 || n > PW_MAX_COUNT) refuse("its sizes are impossible");
+        if (n == 0 || n > PW_MAX_COUNT) refuse_saved("its sizes are impossible");
 
     Hierarchy h;
-    h.vertices_ = in.get_vector<Point>(header.vertices);
-    h.source_ = in.get_vector<int32_t>(header.vertices);
-    h.tetrahedra_ = in.get_vector<Tetrahedron>(header.tetrahedra);
-    h.tet_volume_ = in.get_vector<double>(header.tetrahedra);
-    h.leaf_ = in.get_vector<int32_t>(header.faces);
-    h.face_area_ = in.get_vector<double>(header.faces);
-    h.outer_faces_ = in.get_vector<int32_t>(header.outer);
-    h.merges_ = in.get_vector<Merge>(header.tetrahedra - 1);
-    h.scores_ = in.get_vector<double>(header.scores);
+    h.account_ = in.get_text(header.account);
+    const std::vector<int32_t> borders = in.get_integers(header.tetrahedra - 1);
+    h.plant(borders, in.get_doubles(header.tetrahedra - 1));
+    h.vertices_ = in.get_doubles<Point>(header.vertices);
+    h.source_ = in.get_integers(header.vertices);
+    h.tetrahedra_ = in.get_integers<Tetrahedron>(header.tetrahedra);
+    h.leaf_ = in.get_integers(header.faces);
+    h.face_area_ = in.get_doubles(header.faces);
+    h.outer_faces_ = in.get_integers(header.outer);
+    h.scores_ = in.get_doubles(header.scores);
     h.summary_.components = header.components;
     h.summary_.cavities = header.cavities;
     h.summary_.added_vertices = header.added_vertices;
     if (header.rung != PW_RUNG_EXACT && header.rung != PW_RUNG_REPAIRED && header.rung != PW_RUNG_WRAPPED)
-        refuse("its rung is unknown");
+        refuse_saved("its rung is unknown");
     h.summary_.rung = static_cast<pw_rung>(header.rung);
     h.summary_.deviation = header.deviation;
-    const auto account = in.get_vector<char>(header.account);
-    h.account_.assign(account.begin(), account.end());
-    in.get(&stored_hash, 1);
-    if (!in.at_end()) refuse("it goes on after its end");
+    h.summary_.hull_volume = header.hull_volume;
+    if (!in.at_end()) refuse_saved("it goes on after its end");
     h.check_stored();
     h.finish();
+    if (!std::isfinite(h.summary_.volume)) refuse_saved("its measures are impossible");
     return h;
+}
+
+// The merges from the border that each takes away, see save().
+void Hierarchy::plant(std::span<const int32_t> borders, std::span<const double> concavities) {
+    struct Side {
+        int32_t cluster, far;  // which ends or begins at a border, and where its other end is
+    };
+    const auto leaves = static_cast<int32_t>(borders.size() + 1);
+    std::vector<Side> left, right;  // of every border, and of both ends; where it is taken away, no cluster
+    for (int32_t at = 0; at <= leaves; ++at) {
+        left.push_back({at - 1, at - 1});
+        right.push_back({at < leaves ? at : -1, at + 1});
+    }
+    for (size_t m = 0; m < borders.size(); ++m) {
+        if (borders[m] <= 0 || borders[m] >= leaves) refuse_saved("its tree is not a tree");
+        Side &a = left[static_cast<size_t>(borders[m])], &b = right[static_cast<size_t>(borders[m])];
+        if (a.cluster < 0) refuse_saved("its tree is not a tree");
+        merges_.push_back({a.cluster, b.cluster, concavities[m], 0});
+        const auto merged = static_cast<int32_t>(static_cast<size_t>(leaves) + m);
+        right[static_cast<size_t>(a.far)] = {merged, b.far};
+        left[static_cast<size_t>(b.far)] = {merged, a.far};
+        a.cluster = b.cluster = -1;
+    }
 }
 
 // Somewhat more than the caller's may have: a wrap lies round them.
@@ -538,60 +513,48 @@ constexpr double largest_coordinate = 1e101;
 
 // A hash can be forged: what finish() and the questions rely on is checked as well.
 void Hierarchy::check_stored() const {
-    const size_t leaves = tetrahedra_.size(), merges = merges_.size();
+    const size_t leaves = tetrahedra_.size();
     const auto below = [](int32_t i, size_t size) { return i >= 0 && static_cast<size_t>(i) < size; };
     const auto measure = [](double x) { return x >= 0 && std::isfinite(x); };
     for (const Point& p : vertices_)
         for (double c : p)
-            if (!(std::fabs(c) <= largest_coordinate)) refuse("a vertex is out of range");
-    if (Frame::around(vertices_).longest == 0) refuse("its vertices are all at one place");
+            if (!(std::fabs(c) <= largest_coordinate)) refuse_saved("a vertex is out of range");
+    if (Frame::around(vertices_).longest == 0) refuse_saved("its vertices are all at one place");
     for (int32_t s : source_)
-        if (s < -1 || s >= PW_MAX_COUNT) refuse("a vertex has no source");
+        if (s < -1 || s >= PW_MAX_COUNT) refuse_saved("a vertex has no source");
     for (const Tetrahedron& t : tetrahedra_)
         for (int32_t v : t)
-            if (!below(v, vertices_.size())) refuse("a tetrahedron names a missing vertex");
-    for (double v : tet_volume_)
-        if (!measure(v)) refuse("a volume is impossible");
+            if (!below(v, vertices_.size())) refuse_saved("a tetrahedron names a missing vertex");
     for (int32_t l : leaf_)
-        if (!below(l, leaves)) refuse("a face names a missing tetrahedron");
+        if (!below(l, leaves)) refuse_saved("a face names a missing tetrahedron");
     for (double a : face_area_)
-        if (!measure(a)) refuse("an area is impossible");
+        if (!measure(a)) refuse_saved("an area is impossible");
     for (int32_t f : outer_faces_)  // how many there must be shows when a solid is asked for
-        if (f != -1 && !below(f, leaf_.size())) refuse("a facet names a missing face");
+        if (f != -1 && !below(f, leaf_.size())) refuse_saved("a facet names a missing face");
     // Sums of some are finite if that of all is.
     double concavities = 0;
-    for (const Merge& m : merges_) concavities += m.concavity;
-    if (!std::isfinite(std::reduce(tet_volume_.begin(), tet_volume_.end())) || !std::isfinite(concavities) ||
+    for (const Merge& m : merges_) {
+        if (!measure(m.concavity)) refuse_saved("a volume is impossible");
+        concavities += m.concavity;
+    }
+    if (!measure(summary_.hull_volume) || !std::isfinite(concavities) ||
         !std::isfinite(std::reduce(face_area_.begin(), face_area_.end())))
-        refuse("its measures are impossible");
+        refuse_saved("its measures are impossible");
     // One for each part and each merge that joins them; with no parts there is none.
-    if (!scores_.empty() && (scores_.size() % 2 == 0 || scores_.size() > 2 * leaves - 1)) refuse("its scores are odd");
+    if (!scores_.empty() && (scores_.size() % 2 == 0 || scores_.size() > 2 * leaves - 1))
+        refuse_saved("its scores are odd");
     for (double s : scores_)
-        if (!(s >= 0 && s <= 1)) refuse("a score is impossible");
-    if (summary_.components == 0 || summary_.components > leaves) refuse("its counts are impossible");
+        if (!(s >= 0 && s <= 1)) refuse_saved("a score is impossible");
+    if (summary_.components == 0 || summary_.components > leaves) refuse_saved("its counts are impossible");
 
     const auto strangers = static_cast<size_t>(std::count(source_.begin(), source_.end(), -1));
     const bool exact = summary_.rung == PW_RUNG_EXACT;
     if (exact ? summary_.added_vertices != strangers : summary_.added_vertices > strangers)
-        refuse("its counts are impossible");
-    if (!measure(summary_.deviation) || (exact && summary_.deviation != 0)) refuse("its deviation is impossible");
+        refuse_saved("its counts are impossible");
+    if (!measure(summary_.deviation) || (exact && summary_.deviation != 0)) refuse_saved("its deviation is impossible");
     const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
     if (exact != account_.empty() || !std::all_of(account_.begin(), account_.end(), printable))
-        refuse("its account can't be read");
-
-    std::vector<std::pair<int32_t, int32_t>> slice(leaves + merges);
-    std::vector<bool> used(leaves + merges, false);
-    for (size_t i = 0; i < leaves; ++i) slice[i] = {static_cast<int32_t>(i), static_cast<int32_t>(i + 1)};
-    for (size_t m = 0; m < merges; ++m) {
-        for (int32_t child : {merges_[m].left, merges_[m].right}) {
-            if (!below(child, leaves + m) || used[static_cast<size_t>(child)]) refuse("its tree is not a tree");
-            used[static_cast<size_t>(child)] = true;
-        }
-        const auto left = slice[static_cast<size_t>(merges_[m].left)], right = slice[static_cast<size_t>(merges_[m].right)];
-        if (left.second != right.first) refuse("its tree is out of order");
-        slice[leaves + m] = {left.first, right.second};
-        if (!measure(merges_[m].concavity) || !measure(merges_[m].hull_volume)) refuse("a volume is impossible");
-    }
+        refuse_saved("its account can't be read");
 }
 
 }  // namespace partwheel

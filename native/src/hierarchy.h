@@ -26,7 +26,6 @@ public:
     // Throws Error(PW_ERROR_DATA) for anything but what save() makes.
     static Hierarchy load(std::span<const uint8_t> bytes);
     std::vector<uint8_t> save() const;
-    size_t saved_size() const;  // of what save() returns
 
     pw_arrays arrays() const;
     const pw_summary& summary() const { return summary_; }
@@ -48,6 +47,7 @@ public:
 private:
     Hierarchy() = default;
     void check_stored() const;
+    void plant(std::span<const int32_t> borders, std::span<const double> concavities);
     void finish();
     size_t regrouped_merges() const { return scores_.empty() ? 0 : (scores_.size() - 1) / 2; }
     std::vector<int32_t> bounds_of(std::span<const int32_t> clusters) const;
@@ -57,23 +57,21 @@ private:
     std::vector<Point> vertices_;
     std::vector<int32_t> source_;
     std::vector<Tetrahedron> tetrahedra_;
-    std::vector<double> tet_volume_;
     std::vector<int32_t> leaf_;      // of each face
     std::vector<double> face_area_;
     std::vector<int32_t> outer_faces_;  // see Facets
-    std::vector<Merge> merges_;
+    std::vector<Merge> merges_;      // but for their hull volumes, which finish() sets
     std::vector<double> scores_;     // see Regrouped; none: this is the paper's tree
-    pw_summary summary_{};
+    pw_summary summary_{};           // but for volume
     std::string account_;
 
     // Derived by finish().
     Frame frame_;
     std::vector<int32_t> merge_pairs_;
-    std::vector<int32_t> merge_first_, merge_last_;  // each merge's slice of the tetrahedra
+    std::vector<int32_t> merge_last_;  // the end of each merge's slice of the tetrahedra
     std::vector<int32_t> order_, parent_, first_, last_, tet_first_, tet_last_;
     std::vector<uint8_t> cost_class_;
     std::vector<double> cost_, height_, volume_, area_, score_;
-    std::vector<double> cluster_area_, cluster_score_;  // by cluster number, see Merge; none in the paper's tree
 
     // Made when a solid is first asked for, whichever thread asks.
     struct Facing {

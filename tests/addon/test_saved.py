@@ -6,7 +6,6 @@ import io
 import os
 import random
 import tempfile
-import zlib
 from pathlib import Path
 
 import bpy
@@ -104,7 +103,7 @@ class Saved(MeshTest):
         preferences.save_with_file = False
         self.addCleanup(setattr, preferences, "save_with_file", True)
         self.save()
-        self.assertLess(os.path.getsize(self.path), with_it - 100_000)
+        self.assertLess(os.path.getsize(self.path), with_it - 50_000)
         self.assertEqual(self.state(self.open()), self.State.NONE)
 
     def test_cleared_ones_are_not_saved(self):
@@ -203,34 +202,22 @@ class Saved(MeshTest):
         draw = random.Random(3)
         stored = part("stored")
 
-        def unpacked(packed):
-            try:
-                return zlib.decompress(packed[stored.HEADER.size + stored.HASH_SIZE:])
-            except zlib.error:
-                return None
-
         def flipped(packed):
             place = draw.randrange(len(packed))
-            changed = packed[:place] + bytes([packed[place] ^ 1 << draw.randrange(8)]) + packed[place + 1:]
-            # Some bits of a stream say the same either way: where a repetition is copied from.
-            streamed = place >= stored.HEADER.size + stored.HASH_SIZE
-            return flipped(packed) if streamed and unpacked(changed) == unpacked(packed) else changed
+            return packed[:place] + bytes([packed[place] ^ 1 << draw.randrange(8)]) + packed[place + 1:]
 
-        def forged(packed, topology=None, size=None, saved=None):
-            """With a right hash over a wrong header, or a sound stream of other bytes."""
+        def forged(packed, topology=None, saved=None):
+            """With a right hash over a wrong header, or another saved hierarchy."""
             start = stored.HEADER.size + stored.HASH_SIZE
             head = list(stored.HEADER.unpack_from(packed))
-            saved = zlib.decompress(packed[start:]) if saved is None else saved
-            header = stored.HEADER.pack(*head[:2], topology or head[2], head[3], size or len(saved))
-            return header + stored._hash(header) + zlib.compress(saved, 1)
+            header = stored.HEADER.pack(*head[:2], topology or head[2], head[3])
+            return header + stored._hash(header) + (packed[start:] if saved is None else saved)
 
         box = part("core").Hierarchy.build(BOX[0], [t for a, b, c, d in BOX[1] for t in ((a, b, c), (a, c, d))])
         self.assertIsNotNone(self.after_tampering(forged))  # forging alone changes nothing
         for change in (*[flipped] * 20, lambda p: b"", lambda p: p[:30], lambda p: p[:-1], lambda p: p + b"0",
                        lambda p: p[:-4000], lambda p: "text", lambda p: 7, lambda p: [1.5, 2.5], lambda p: {"a": b"b"},
-                       lambda p: p[:8] + b"\2\0\0\0" + p[12:],
-                       lambda p: forged(p, topology=bytes(16)), lambda p: forged(p, size=10),
-                       lambda p: forged(p, size=2**60), lambda p: forged(p, saved=b""),
-                       lambda p: forged(p, saved=box.save()), lambda p: forged(p, saved=bytes(10**7)),
-                       lambda p: forged(p, saved=bytes(10**7), size=1000)):
+                       lambda p: p[:8] + b"\1\0\0\0" + p[12:], lambda p: forged(p, topology=bytes(16)),
+                       lambda p: forged(p, saved=b""), lambda p: forged(p, saved=box.save()),
+                       lambda p: forged(p, saved=bytes(10**7))):
             self.assertIsNone(self.after_tampering(change))

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What wrapping costs: the clean models of the Princeton Segmentation Benchmark, as they are and wrapped all the same.
+
+usage: wrap_cost.py SCORE_PY MESH_DIR SEG_DIR OUT_DIR [--jobs N]
+
+A model is clean if the ladder's first rung takes it. Both hierarchies are made by psb.py with default settings, into
+OUT_DIR/exact and OUT_DIR/wrapped (what is there already is not made again), and scored by the benchmark's score.py. A
+clean model that could not be wrapped counts 0. Prints the models that lose most and the means. Exit code 1 if the wrap
+costs more than 0.03 of "best".
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+import numpy as np
+from table import MEASURES, row
+
+RUNGS = {"exact": 1, "wrapped": 4}
+MOST = 0.03
+WORST = 10  # models to name
+
+
+def build(meshes, out, jobs):
+    """Both hierarchies of each clean model."""
+    def psb(directory, name):
+        subprocess.run([sys.executable, str(Path(__file__).with_name("psb.py")), str(directory), str(out / name),
+                        "--rungs", str(RUNGS[name]), "--jobs", str(jobs)], check=True)
+
+    psb(meshes, "exact")
+    with tempfile.TemporaryDirectory() as clean:
+        for model in (out / "exact").glob("*.npz"):
+            Path(clean, f"{model.stem}.off").symlink_to((meshes / f"{model.stem}.off").resolve())
+        psb(clean, "wrapped")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name in ("score", "meshes", "segmentations", "out"):
+        parser.add_argument(name, type=Path)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    args = parser.parse_args()
+    build(args.meshes, args.out, args.jobs)
+    models = sorted(int(path.stem) for path in (args.out / "exact").glob("*.npz"))
+    with ProcessPoolExecutor(args.jobs) as pool:
+        pending = {(name, model): pool.submit(row, args.score, model, args.meshes, args.segmentations, args.out / name)
+                   for name in RUNGS for model in models}
+        rows = {key: result.result() for key, result in pending.items()}
+    models = [model for model in models if rows["exact", model] is not None]
+    exact, wrapped = (np.array([rows[name, model] for model in models]) for name in RUNGS)
+    cost = exact[:, 0] - wrapped[:, 0]
+    for i in np.argsort(-cost)[:WORST]:
+        print(f"{models[i]}: best {exact[i, 0]:.3f} exact, {wrapped[i, 0]:.3f} wrapped")
+    for i, heading in enumerate(MEASURES.values()):
+        print(f"{heading}: {np.nanmean(exact[:, i]):.4f} exact, {np.nanmean(wrapped[:, i]):.4f} wrapped")
+    print(f"{len(models)} clean models: the wrap costs {cost.mean():.4f} of best (at most {MOST})")
+    sys.exit(not cost.mean() <= MOST)
+
+
+if __name__ == "__main__":
+    main()
