@@ -185,7 +185,8 @@ class Build:
         try:
             built = self.job.result()
         finally:
-            _running = None
+            if _running is self:
+                _running = None
         obj = _user(self._key)
         if obj is None:
             raise Outdated(f"The mesh {self.name} is gone, so its parts were left aside.")
@@ -201,6 +202,14 @@ class Build:
         _unopened.pop(self._key, None)
         _entries[self._key] = Entry(self._built, self._counts, built, seen=now)
         return built
+
+
+def drop_outdated_build():
+    """Cancels the build under way if its mesh is gone, or is another one by now."""
+    if _running:
+        obj = _user(_running._key)
+        if not obj or mesh_arrays.fingerprint(mesh_arrays.up_to_date(obj)).topology != _running._built.topology:
+            _stop()
 
 
 def _user(wanted):

@@ -8,7 +8,7 @@ import numpy as np
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from . import mesh_arrays, pieces, pinches
+from . import mesh_arrays, pieces, pinches, seams
 from .core import polygon_faults
 from .mesh_arrays import read
 
@@ -26,16 +26,21 @@ class NotUnited(Exception):
     """Why meshes can't be united. str() is a sentence for the user."""
 
 
-def unite(target, others):
+def unite(target, others, blend=0.0):
     """Makes the target's mesh the union of it, as it is without modifiers, and of the other objects, with theirs. The
-    others stay. Returns the solver that did it. Raises NotUnited before anything has changed."""
+    others stay. blend: the width of a smooth transition on either side of each seam, times the seam's radius. Returns
+    the solver that did it. Raises NotUnited before anything has changed."""
     slots = []
     base = _input(target, target.data, slots)
     solvers = []
     try:
-        for other in others:
+        if blend > 0:
+            seams.mark(base, 0)
+        for side, other in enumerate(others, 1):
             operand = _evaluated(other, slots)
             try:
+                if blend > 0:
+                    seams.mark(operand, side)
                 operand.transform(target.matrix_world.inverted() @ other.matrix_world)
                 if target.matrix_world.is_negative != other.matrix_world.is_negative:
                     operand.flip_normals()
@@ -45,6 +50,9 @@ def unite(target, others):
             bpy.data.meshes.remove(base)
             base = result
             solvers.append(solver)
+        if blend > 0:
+            seams.blend(base, blend)
+            seams.unmark(base)
     except Exception:
         bpy.data.meshes.remove(base)
         raise

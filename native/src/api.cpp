@@ -3,6 +3,7 @@
 
 #include "border.h"
 #include "deform.h"
+#include "fair.h"
 #include "hierarchy.h"
 #include "ladder.h"
 #include "polygons.h"
@@ -466,6 +467,19 @@ pw_status pw_surface_distances(const double* vertices, size_t vertex_count, cons
         require((start != nullptr && distance != nullptr) || vertex_count == 0, "start and distance must not be null.");
         surface_distances(as_points(vertices, vertex_count), as_triangles(triangles, triangle_count),
                           {start, vertex_count}, {distance, vertex_count});
+    });
+}
+
+pw_status pw_faired(const double* vertices, size_t vertex_count, const int32_t* edges, size_t edge_count,
+                    const uint8_t* free, double* result) {
+    return guarded([&] {
+        require((vertices != nullptr && free != nullptr && result != nullptr) || vertex_count == 0,
+                "vertices, free and result must not be null.");
+        require(edges != nullptr || edge_count == 0, "edges is null, but edge_count is not 0.");
+        const std::vector<Point> places =
+            faired(as_points(vertices, vertex_count),
+                   {reinterpret_cast<const std::array<int32_t, 2>*>(edges), edge_count}, {free, vertex_count});
+        std::copy(places.begin(), places.end(), reinterpret_cast<Point*>(result));
     });
 }
 

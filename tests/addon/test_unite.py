@@ -9,6 +9,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+import bmesh
 import bpy
 import numpy
 from common import part, read_off
@@ -18,6 +19,11 @@ from solid_case import SolidTest, arrays, volume
 COUNT = int(os.environ.get("PARTWHEEL_UNITES") or 20)
 PYTHON = Path(__file__).resolve().parents[2] / "build" / "venv" / "core" / "bin" / "python"
 TOLERANCE = 1e-6
+
+
+def unite(**options):
+    """The operator, but that it does not look for the parts of the result."""
+    return bpy.ops.object.partwheel_unite(build=False, **options)
 
 
 def triangles(obj):
@@ -76,7 +82,7 @@ class Unite(SolidTest):
             other = self.place(target, second,
                                Matrix.Translation(where) @ turn @ Matrix.Scale(rng.uniform(0.3, 1.5), 4))
             pairs.append((triangles(target), triangles(other)))
-            self.assertEqual(bpy.ops.object.partwheel_unite(), {"FINISHED"})
+            self.assertEqual(unite(), {"FINISHED"})
             self.assertSolid(target.data)
             volumes.append(volume(target.data))
             bpy.data.objects.remove(target)
@@ -95,7 +101,7 @@ class Unite(SolidTest):
         other = self.place(first, second, Matrix.Translation((1, 0.9, 0.8)))
         target = bpy.context.view_layer.objects.active
         name = target.data.name
-        self.assertEqual(bpy.ops.object.partwheel_unite(), {"FINISHED"})
+        self.assertEqual(unite(), {"FINISHED"})
         mesh = target.data
         self.assertSolid(mesh)
         self.assertEqual((mesh.name, [m.name for m in mesh.materials]), (name, ["red", "blue", "green"]))
@@ -124,21 +130,21 @@ class Unite(SolidTest):
         target = self.cube()
         mirror = Matrix.Translation((1, 0.5, 0.25)) @ Matrix.Scale(-1, 4, (1, 0, 0))
         self.place(target, self.cube().data.copy(), mirror)
-        bpy.ops.object.partwheel_unite()
+        unite()
         self.assertSolid(target.data)
         self.assertAlmostEqual(volume(target.data), 16 - 1.0 * 1.5 * 1.75, places=5)
         for matrix, expected in ((Matrix.Scale(0.5, 4), 8), (Matrix.Translation((5, 0, 0)), 16),
                                  (Matrix.Scale(2, 4), 64)):
             target = self.cube()
             self.place(target, self.cube().data.copy(), matrix)
-            bpy.ops.object.partwheel_unite()
+            unite()
             self.assertSolid(target.data)
             self.assertAlmostEqual(volume(target.data), expected, places=5)
 
     def test_parts_of_the_union_are_found_at_once(self):
         target = self.cube()
         self.place(target, self.cube().data.copy(), Matrix.Translation((1, 0.9, 0.8)))
-        self.assertEqual(bpy.ops.object.partwheel_unite(build=True), {"FINISHED"})
+        self.assertEqual(bpy.ops.object.partwheel_unite(), {"FINISHED"})
         self.assertEqual(len(part("session").hierarchy(target).order), len(target.data.polygons))
 
     def test_what_belongs_to_the_mesh_stays(self):
@@ -151,7 +157,7 @@ class Unite(SolidTest):
             if shared:
                 twin = self.link(bpy.data.objects.new("twin", mesh))
             self.place(target, self.cube().data.copy(), Matrix.Translation((1, 0.9, 0.8)))
-            self.assertEqual(bpy.ops.object.partwheel_unite(), {"FINISHED"})
+            self.assertEqual(unite(), {"FINISHED"})
             new = target.data
             self.assertSolid(new)
             self.assertAlmostEqual(volume(new), 16 - 1.0 * 1.1 * 1.2, places=5)
@@ -173,7 +179,7 @@ class Unite(SolidTest):
         other = self.place(target, open_mesh, Matrix.Identity(4))
         before = self.everything(target)
         with self.assertRaisesRegex(RuntimeError, "part is no solid: 3 edges"):
-            bpy.ops.object.partwheel_unite()
+            unite()
         self.assertEqual(self.everything(target), before)
         del other
 
@@ -184,7 +190,7 @@ class Unite(SolidTest):
         self.place(target, turned, Matrix.Translation((1, 1, 1)))
         before = self.everything(target)
         with self.assertRaisesRegex(RuntimeError, "inside out"):
-            bpy.ops.object.partwheel_unite()
+            unite()
         self.assertEqual(self.everything(target), before)
 
     def test_faces_that_only_touch(self):
@@ -194,7 +200,7 @@ class Unite(SolidTest):
             self.place(target, self.cube().data.copy(), Matrix.Translation(shift))
             before = self.everything(target)
             try:
-                bpy.ops.object.partwheel_unite()
+                unite()
             except RuntimeError as error:
                 self.assertIn("can't be united", str(error))
                 self.assertEqual(self.everything(target), before)
@@ -205,3 +211,110 @@ class Unite(SolidTest):
     def everything(self, target):
         return (sorted(obj.name for obj in bpy.data.objects), sorted(mesh.name for mesh in bpy.data.meshes),
                 sorted(c.name for c in bpy.data.collections), arrays(target.data)[0].tolist(), arrays(target.data)[1])
+
+
+class Blend(SolidTest):
+    """Two balls united with and without a blend: the same mesh but for the places of vertices near the seam."""
+
+    def united(self, blend, distance=1.3, radius=0.7, prepare=lambda obj: None):
+        made = []
+        for place, size, name in ((0, 1, "red"), (distance, radius, "blue")):
+            bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=32, radius=size, location=(place, 0.05, 0.1))
+            obj = bpy.context.active_object
+            bpy.ops.object.transform_apply()
+            obj.data.materials.append(bpy.data.materials.get(name) or bpy.data.materials.new(name))
+            prepare(obj)
+            made.append(obj)
+        self.ready(*made)
+        self.assertEqual(unite(blend=blend), {"FINISHED"})
+        self.assertSolid(made[0].data)
+        return made[0]
+
+    def steepest(self, mesh):
+        """The largest angle between polygons at an edge, of those that are not tiny."""
+        bm = bmesh.new()
+        bm.from_mesh(mesh)
+        found = max(edge.calc_face_angle() for edge in bm.edges if min(face.calc_area() for face in edge.link_faces)
+                    > 1e-4)
+        bm.free()
+        return found
+
+    # Blender's Boolean gives the same vertices and polygons each time, but in an order of its own.
+
+    def test_moves_only_what_is_near_the_seam(self):
+        plain, blended = self.united(0).data, self.united(0.4).data
+        before, polygons = arrays(plain)
+        self.assertEqual((len(before), len(polygons)), (len(blended.vertices), len(blended.polygons)))
+        kept = numpy.isin(*(numpy.ascontiguousarray(places.round(5)).view("f8,f8,f8").ravel()
+                            for places in (before, arrays(blended)[0])))
+        material = {v: set() for v in range(len(before))}
+        for polygon in plain.polygons:
+            for vertex in polygon.vertices:
+                material[vertex].add(polygon.material_index)
+        seam = before[[vertex for vertex, slots in material.items() if len(slots) == 2]]
+        self.assertGreater(len(seam), 20)
+        radius = numpy.linalg.norm(seam - seam.mean(axis=0), axis=1).mean()
+        from_seam = numpy.linalg.norm(before[:, None] - seam, axis=2).min(axis=1)
+        self.assertTrue(kept[from_seam > 0.45 * radius].all())
+        self.assertFalse(kept[from_seam < 0.2 * radius].any())
+        self.assertGreater((from_seam < 0.2 * radius).sum(), 100)
+        self.assertLess(self.steepest(blended), 0.5 * self.steepest(plain))
+        # A crease gets filled: there is a little more solid now.
+        self.assertGreater(volume(blended), volume(plain) * 1.001)
+        self.assertLess(volume(blended), volume(plain) * 1.05)
+
+    def test_layers_and_materials_stay(self):
+        plain, blended = self.united(0).data, self.united(0.4).data
+        self.assertEqual([layer.name for layer in blended.uv_layers], [layer.name for layer in plain.uv_layers])
+        self.assertNotIn("partwheel_side", blended.attributes)
+        found = []
+        for mesh in (plain, blended):
+            uv = numpy.array([each.uv[:] for each in mesh.uv_layers[0].data])
+            material = numpy.array([polygon.material_index for polygon in mesh.polygons])
+            rows = numpy.column_stack([uv, numpy.repeat(material, [polygon.loop_total for polygon in mesh.polygons])])
+            found.append(rows[numpy.lexsort(rows.round(4).T)])
+        self.assertTrue(numpy.allclose(*found, atol=1e-3))
+
+    def test_a_small_part_does_not_vanish(self):
+        """However wide: what is left of the part beyond the seam keeps half its height."""
+        for width in (1, 10):
+            blended = self.united(width, 1.0, 0.2)
+            places = arrays(blended.data)[0]
+            self.assertAlmostEqual(places[:, 0].max(), 1.2, places=5)
+            self.assertAlmostEqual(places[:, 0].min(), -1, places=5)
+
+    def test_without_a_seam_nothing_moves(self):
+        for distance in (5, 0.05):  # apart; one in the other
+            plain, blended = self.united(0, distance).data, self.united(0.5, distance).data
+            self.assertEqual(*(sorted(map(tuple, arrays(mesh)[0].tolist())) for mesh in (plain, blended)))
+
+    def test_normals_set_by_hand_are_kept_beyond_the_band(self):
+        def upwards(obj):
+            if hasattr(obj.data, "use_auto_smooth"):
+                obj.data.use_auto_smooth = True
+            obj.data.polygons.foreach_set("use_smooth", numpy.ones(len(obj.data.polygons), bool))
+            obj.data.normals_split_custom_set([(0, 0.6, 0.8)] * len(obj.data.loops))
+
+        mesh = self.united(0.3, prepare=upwards).data
+        if mesh.has_custom_normals:  # Blender's Boolean keeps them in some versions
+            normals = part("mesh_arrays").custom_normals(mesh)
+            far = numpy.array([mesh.vertices[loop.vertex_index].co.x < 0 for loop in mesh.loops])
+            self.assertTrue(numpy.allclose(normals[far], (0, 0.6, 0.8), atol=1e-2))
+
+    def test_several_parts_at_once_and_by_script(self):
+        target = self.cubed((0, 0, 0))
+        others = [self.cubed((0.9 * x, 0.2, 0.1)) for x in (-1, 1)]
+        before = arrays(target.data)[0]
+        part("api").unite(target, others, blend=0.3)
+        self.assertSolid(target.data)
+        places = arrays(target.data)[0]
+        self.assertAlmostEqual(numpy.abs(places[:, 0]).max(), 1.4, places=5)
+        self.assertFalse(any(tuple(place) == (0.5, 0.5, 0.5) for place in places) and len(places) == len(before))
+        self.assertGreater(volume(target.data), 1)
+
+    def cubed(self, place):
+        bpy.ops.mesh.primitive_cube_add(size=1, location=place)
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.subdivide(number_cuts=12)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        return bpy.context.active_object

@@ -120,6 +120,7 @@ FUNCTIONS = {
     "pw_hierarchy_solid": (c_int, [c_void_p, c_size_t, c_size_t, c_void_p, c_size_t, POINTER(c_void_p)]),
     "pw_polygon_faults": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_size_t, POINTER(c_size_t),
                                   POINTER(c_size_t), POINTER(c_size_t)]),
+    "pw_faired": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_void_p]),
     "pw_creases_create": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_void_p)]),
     "pw_creases_free": (None, [c_void_p]),
     "pw_creases_snap": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p]),

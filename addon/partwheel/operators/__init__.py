@@ -4,7 +4,7 @@
 
 import bpy
 
-from .build import MESH_OT_partwheel_build, MESH_OT_partwheel_clear
+from .build import MESH_OT_partwheel_build, MESH_OT_partwheel_clear, MESH_OT_partwheel_find
 from .copy_part import MESH_OT_partwheel_copy, MESH_OT_partwheel_remove, MESH_OT_partwheel_split
 from .deform import PARTWHEEL_PG_handle, MESH_OT_partwheel_deform
 from .paint import MESH_OT_partwheel_paint, OBJECT_OT_partwheel_select
@@ -13,7 +13,7 @@ from .select import MESH_OT_partwheel_select
 from .unite import OBJECT_OT_partwheel_unite
 
 CLASSES = (
-    MESH_OT_partwheel_build, MESH_OT_partwheel_clear,
+    MESH_OT_partwheel_build, MESH_OT_partwheel_find, MESH_OT_partwheel_clear,
     MESH_OT_partwheel_select, OBJECT_OT_partwheel_select, MESH_OT_partwheel_paint,
     MESH_OT_partwheel_copy, MESH_OT_partwheel_remove, MESH_OT_partwheel_split,
     OBJECT_OT_partwheel_place, OBJECT_OT_partwheel_unite,

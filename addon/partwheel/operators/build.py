@@ -138,12 +138,8 @@ def idle(cls):
     return True
 
 
-class MESH_OT_partwheel_build(bpy.types.Operator):
-    """Find the parts of the active mesh at all sizes, so that the wheel can step through them"""
-
-    bl_idname = "mesh.partwheel_build"
-    bl_label = "Build Part Hierarchy"
-    bl_options = {"REGISTER"}
+class _Build:
+    """What building and finding have in common."""
 
     quality: bpy.props.FloatProperty(
         name="Quality",
@@ -190,6 +186,22 @@ class MESH_OT_partwheel_build(bpy.types.Operator):
 
     def _start(self, context):
         return start(self, context.active_object, quality=self.quality, open_surfaces=self.open_surfaces)
+
+
+class MESH_OT_partwheel_build(_Build, bpy.types.Operator):
+    """Find the parts of the active mesh at all sizes, so that the wheel can step through them"""
+
+    bl_idname = "mesh.partwheel_build"
+    bl_label = "Build Part Hierarchy"
+    bl_options = {"REGISTER"}
+
+
+class MESH_OT_partwheel_find(_Build, bpy.types.Operator):
+    """The same on behalf of an operator that made the mesh, which stays the last operation, with its panel"""
+
+    bl_idname = "mesh.partwheel_find"
+    bl_label = "Find Parts"
+    bl_options = {"INTERNAL"}
 
 
 class MESH_OT_partwheel_clear(bpy.types.Operator):

@@ -3,7 +3,8 @@
 
 import bpy
 
-from .. import union
+from .. import session, union
+from ..core import PartwheelError
 
 
 class OBJECT_OT_partwheel_unite(bpy.types.Operator):
@@ -13,9 +14,12 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
     bl_label = "Unite Solids"
     bl_options = {"REGISTER", "UNDO"}
 
+    blend: bpy.props.FloatProperty(
+        name="Blend", description="Width of a smooth transition on either side of each seam, times the seam's radius; "
+        "0: the seam stays a crease", default=0, min=0, soft_max=1)
     build: bpy.props.BoolProperty(
         name="Find Parts", description="Find the parts of the united mesh at once, in a process of its own",
-        default=False)
+        default=True)
     keep: bpy.props.BoolProperty(name="Keep Parts", description="Leave the other objects as they are", default=False)
 
     @classmethod
@@ -39,8 +43,8 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
     def execute(self, context):
         target, others = context.active_object, self.others(context)
         try:
-            solver = union.unite(target, others)
-        except union.NotUnited as error:
+            solver = union.unite(target, others, self.blend)
+        except (union.NotUnited, PartwheelError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         if not self.keep:
@@ -50,8 +54,9 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
                 if not mesh.users:
                     bpy.data.meshes.remove(mesh)
         if self.build:
+            session.drop_outdated_build()  # of the union before, when the last operation is repeated with other options
             try:
-                bpy.ops.mesh.partwheel_build("INVOKE_DEFAULT")
+                bpy.ops.mesh.partwheel_find("INVOKE_DEFAULT")
             except RuntimeError as error:  # they are united all the same
                 self.report({"WARNING"}, str(error))
         self.report({"INFO"}, f"{target.name}: {len(target.data.polygons)} faces, closed (solver {solver.title()}).")
