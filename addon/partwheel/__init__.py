@@ -15,6 +15,14 @@ bl_info = {
     "category": "Mesh",
 }
 
+if "register" in globals():
+    # An update was installed over this: Blender before 4.2 reloads this file alone, so the others are forgotten here.
+    import sys
+
+    for name in [name for name in sys.modules if name.startswith(f"{__name__}.")]:
+        del sys.modules[name]
+        globals().pop(name[len(__name__) + 1:], None)
+
 
 def register():
     from . import command, operators, preferences, prepared, session, tools, ui

@@ -11,6 +11,7 @@ import bpy
 import numpy
 
 MODULE = None  # the installed add-on's module name, set by run.py
+ZIP = None  # what it was installed from, likewise
 MESHES = Path(__file__).resolve().parents[2] / "build" / "deps" / "meshes"
 
 

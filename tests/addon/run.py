@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 
 def installed(zip_path):
-    """Installs and enables the add-on the way this Blender's users do: the name of its module."""
+    """Installs and enables the add-on the way this Blender's users do, also over another: the name of its module."""
     if bpy.app.version >= (4, 2, 0):
         module, root = "bl_ext.user_default.partwheel", bpy.utils.user_resource("EXTENSIONS")
         bpy.ops.extensions.package_install_files(filepath=zip_path, repo="user_default", enable_on_install=True)
@@ -61,7 +61,8 @@ def main():
     try:
         import common
 
-        common.MODULE = installed(str(Path(zip_path).resolve()))
+        common.ZIP = str(Path(zip_path).resolve())
+        common.MODULE = installed(common.ZIP)
         suite = unittest.defaultTestLoader.discover(str(Path(__file__).resolve().parent), "test_*.py")
         run = unittest.TextTestRunner(stream=sys.stdout, verbosity=2, resultclass=Timed).run(suite)
         failures = [f"{test.id()}: {text.strip().splitlines()[-1]}" for test, text in run.failures + run.errors]

@@ -5,10 +5,14 @@ import importlib.util
 import inspect
 import os
 import sys
+import tempfile
+import time
 import unittest
+import zipfile
 
 import bpy
 import common
+from run import installed
 
 
 def keymap_items():
@@ -87,6 +91,34 @@ class Registration(unittest.TestCase):
             package.unregister()
             self.assertEqual(everything(), off)
         package.register()
+
+    def test_an_update_is_used_at_once(self):
+        """Installed over the enabled add-on: all its files are the new ones, also deep ones, without a restart."""
+        files = ("partwheel/session.py", "partwheel/core/hierarchy.py", "partwheel/operators/build.py")
+        names = [name[:-len(".py")].replace("/", ".").replace("partwheel", common.MODULE, 1) for name in files]
+        before = everything()
+        with tempfile.TemporaryDirectory() as directory:
+            update = os.path.join(directory, os.path.basename(common.ZIP))
+            with zipfile.ZipFile(common.ZIP) as old, zipfile.ZipFile(update, "w") as new:
+                for name in old.namelist():
+                    new.writestr(name, old.read(name) + (b"\nUPDATED = True\n" if name in files else b""))
+            for path, updated in ((update, True), (common.ZIP, False)):
+                first = sys.modules[common.MODULE].__file__
+                installed_at = os.path.getmtime(first)
+                common.until(lambda: time.time() > installed_at + 0.1)  # or Blender takes the file for the same
+                installed(path)
+                for name in names:
+                    module = importlib.import_module(name)
+                    self.assertEqual(hasattr(module, "UPDATED"), updated, name)
+                self.assertEqual(hasattr(sys.modules[common.MODULE].session, "UPDATED"), updated)
+                self.assertIs(bpy.types.MESH_OT_partwheel_build, getattr(
+                    importlib.import_module(names[2]), "MESH_OT_partwheel_build"))
+                after = everything()
+                self.assertEqual((after[0], after[1], after[2], after[7]), (before[0], before[1], before[2], before[7]))
+                self.assertEqual({name: len(functions) for name, functions in after[3].items()},
+                                 {name: len(functions) for name, functions in before[3].items()})
+                self.assertEqual({name: len(functions) for name, functions in after[4].items()},
+                                 {name: len(functions) for name, functions in before[4].items()})
 
     def test_the_shortcut_is_there_and_was_free(self):
         ours = [item for item in keymap_items() if item[2] == "mesh.partwheel_select"]
