@@ -1,0 +1,57 @@
+"""Blender's own autosave: put off while a part is being picked and not lost by it; it is recovered whole, without a
+trace of ours in it, and parts are built anew."""
+import time
+
+import bpy
+
+MINUTE = 60  # the shortest time that Blender can be told
+
+
+def play(stage):
+    yield from stage.open("hand")
+    aside = stage.file("aside")
+    aside.mkdir()
+    with stage.override():
+        bpy.ops.object.mode_set(mode="OBJECT")
+        stage.object.data.vertices[0].co.z += 1000
+        bpy.ops.ed.undo_push(message="moved")
+        bpy.ops.object.mode_set(mode="EDIT")
+    height = stage.object.data.vertices[0].co.z
+    stage.check(stage.session.hierarchy(stage.object) is not None, "the parts are there before")
+    filepaths = bpy.context.preferences.filepaths
+    filepaths.temporary_directory = str(aside)
+    filepaths.auto_save_time = 1
+    filepaths.use_auto_save_temporary_files = True
+    began = time.monotonic()
+
+    def saved():
+        return list(aside.glob("*autosave.blend"))
+
+    _, stops, start = yield from stage.pick(0.5, 0.9, above=2)
+    yield from stage.until("it is time to save", lambda: time.monotonic() > began + MINUTE + 2, MINUTE + 30)
+    stage.check(not saved(), "Blender saves nothing while a part is being picked")
+    yield from stage.selected(stops[start], "still being picked")
+    stage.mouse.key("RET")
+    yield from stage.until("then it does at once", saved)
+    stage.check(not stage.object.data.keys(), "no bytes of ours are left on the mesh")
+    stage.check(stage.session.state(stage.object.data)[0] != stage.session.State.NONE, "its parts are still there")
+    filepaths.temporary_directory = ""
+    filepaths.auto_save_time = 2
+
+    with stage.override():
+        bpy.ops.wm.recover_auto_save(filepath=str(saved()[0]))
+    yield from stage.drawn()
+    mesh = bpy.data.objects["hand"].data
+    stage.check(abs(mesh.vertices[0].co.z - height) < 1, "the vertex is where it was moved before")
+    stage.check(list(mesh.keys()) == [], "no bytes of ours are on the mesh")
+    stage.check(stage.session.state(mesh)[0] == stage.session.State.NONE, "no parts are claimed that are not there")
+    stage.window.view_layer.objects.active = bpy.data.objects["hand"]
+    with stage.override():
+        mesh.vertices[0].co.z -= 1000
+        bpy.ops.object.mode_set(mode="EDIT")
+    stage.select(())
+    face = 700
+    stops, start = stage.wheels.stops(face)
+    with stage.override():
+        stage.check(bpy.ops.mesh.partwheel_select(face_index=face) == {"FINISHED"}, "parts are built anew")
+    yield from stage.selected(stops[start], "after that")
