@@ -56,6 +56,7 @@ class Plan(NamedTuple):
     corners (L,), begin (P,)        the vertex of each corner, and the first corner of each polygon
     polygons (P,)                   the source's; -1: new, and then flat
     wires (w,), wire_ends (w,2)     the source's edges that have no face, and their vertices
+    alias (V,)                      the source's vertex that each of the source's is taken for; None: itself
     """
 
     places: np.ndarray
@@ -66,6 +67,7 @@ class Plan(NamedTuple):
     polygons: np.ndarray
     wires: np.ndarray
     wire_ends: np.ndarray
+    alias: np.ndarray = None
 
 
 def assembled(mesh, plan, name):
@@ -104,14 +106,16 @@ def _edges(mesh, plan):
     following = np.arange(1, len(plan.corners) + 1)
     following[np.append(plan.begin[1:], len(plan.corners)) - 1] = plan.begin
     low, high = np.minimum(plan.corners, plan.corners[following]), np.maximum(plan.corners, plan.corners[following])
-    # A corner's edge is the source's if the next corner is the source's next one.
+    # A corner's edge is the source's if the next corner is the source's next one, or the one before: then it is the
+    # one before's.
     begin, totals = mesh_arrays.polygon_sizes(mesh)
     after = np.arange(1, len(mesh.loops) + 1, dtype=np.int32)
     after[begin + totals - 1] = begin
     own = plan.loops[:, 0]
     plain = (own >= 0) & (own == plan.loops[:, 1]) & (plan.loops[following, 1] == plan.loops[following, 0])
-    plain &= after[own] == own[following]
-    source = np.where(plain, read(mesh.loops, "edge_index", np.int32)[own], -1)
+    back = plain & (after[own[following]] == own) & (after[own] != own[following])
+    plain &= back | (after[own] == own[following])
+    source = np.where(plain, _edge_numbers(mesh, plan.alias)[np.where(back, own[following], own)], -1)
 
     # Mostly that is one edge here, too: no need to sort.
     example = np.full(len(mesh.edges) + 1, -1)  # the last: where there is no source
@@ -144,6 +148,16 @@ def _edges(mesh, plan):
     edge_from[of_edge[plain]] = source[plain]
     edge_from[len(ends) - len(plan.wires):] = plan.wires
     return of_edge, ends.astype(np.int32), edge_from
+
+
+def _edge_numbers(mesh, alias):
+    """(L,) the edge of each of the mesh's loops; by alias, of several between the same two vertices the first."""
+    edges = read(mesh.loops, "edge_index", np.int32)
+    if alias is None:
+        return edges
+    ends = np.sort(alias[mesh_arrays.edge_vertices(mesh)], axis=1)
+    _, first, which = np.unique(ends, axis=0, return_index=True, return_inverse=True)
+    return first[which.ravel()][edges]
 
 
 def _picked(values, origins, mean):

@@ -2,9 +2,10 @@
 """A part of a Blender mesh as a closed mesh of its own, and the mesh without it: polygons keep all their layers.
 
 On the exact rung the part is core's Solid: the polygons that lie in it whole stay as they are, those that are cut
-become triangles with their attributes, and the caps close it. On the other rungs it is the mesh's own polygons: doubles
-welded, wound alike, set apart where more than two meet at an edge, every border filled. Either way each edge has two
-faces.
+become triangles with their attributes, and the caps close it. On the repaired rung too, where the repair has left all of
+its polygons as they are; what the repair added is a cap then. Else, and on the wrapped rung, it is the mesh's own
+polygons: doubles welded, wound alike, set apart where more than two meet at an edge, every border filled. Either way
+each edge has two faces.
 """
 
 from typing import NamedTuple
@@ -14,6 +15,7 @@ import bpy
 import numpy as np
 
 from . import mesh_arrays, pieces
+from .core import Solid
 from .mesh_arrays import read
 
 CAP = "partwheel_cap"  # the attribute of faces that closes what was cut
@@ -47,9 +49,10 @@ def parts(obj, hierarchy, slices, options=Options()):
     mesh = mesh_arrays.up_to_date(obj)
     exact = hierarchy.summary.rung == "exact"
     if not exact:
-        found = [None] * len(slices)
+        found = _unbroken(mesh, hierarchy, slices, options, alone=True)
     else:
         found = hierarchy.solids(slices) if len(slices) > 1 else [hierarchy.solid_of_slice(*slices[0])]
+        found = [solid and _exactly(mesh, hierarchy, solid, alone=True) for solid in found]
     made = []
     try:
         for each, solid in zip(slices, found):
@@ -75,7 +78,10 @@ def remove(obj, hierarchy, tet_first, tet_last, options=Options()):
            for other in bpy.data.objects):
         raise NotClosed(f"{obj.name} is sculpted in several resolutions, which would be lost. Apply its "
                         "Multiresolution modifier first, or copy the part.")
-    solid = hierarchy.solid_of_slice(tet_last, tet_first) if hierarchy.summary.rung == "exact" else None
+    if hierarchy.summary.rung == "exact":
+        solid = _exactly(target, hierarchy, hierarchy.solid_of_slice(tet_last, tet_first), alone=False)
+    else:
+        solid = _unbroken(target, hierarchy, [(tet_last, tet_first)], options, alone=False)[0]
     made, normals = _carved(target, hierarchy, solid, tet_last, tet_first, options, alone=False)
     if options.material and len(made.materials) > len(target.materials):
         _cap_slot(target)
@@ -87,11 +93,12 @@ def remove(obj, hierarchy, tet_first, tet_last, options=Options()):
 
 
 def _carved(mesh, hierarchy, solid, tet_first, tet_last, options, alone):
-    """(new mesh: what is in the slice, closed; its custom normals (L,3), if the mesh has any). solid: core's Solid of
-    the slice, on the exact rung. alone: without what has no face."""
+    """(new mesh: what is in the slice, closed; its custom normals (L,3), if the mesh has any). solid: the _Fitted of
+    the slice, or None: its polygons alone, closed. alone: without what has no face."""
     exact = solid is not None
+    turned = np.zeros(len(mesh.polygons), bool)
     if exact:
-        plan = _of_solid(mesh, hierarchy, solid, alone, facets=not options.smooth)
+        plan, turned = _of_solid(mesh, solid, alone, facets=not options.smooth), solid.against
     else:
         plan = _of_faces(mesh, hierarchy, tet_first, tet_last, alone)
     normals = mesh_arrays.custom_normals(mesh)
@@ -109,6 +116,7 @@ def _carved(mesh, hierarchy, solid, tet_first, tet_last, options, alone):
         bpy.data.meshes.remove(made)
         raise
     if normals is not None:
+        normals[np.repeat(turned, mesh_arrays.polygon_sizes(mesh)[1])] *= -1
         normals = np.where(loops[:, None] < 0, 0, normals[loops])  # 0: as Blender computes them
     return made, normals
 
@@ -158,12 +166,104 @@ def _mended(bm, loops, mesh, alone):
 # ---- Where each vertex and polygon comes from
 
 
-def _of_solid(mesh, hierarchy, solid, alone, facets):
-    """The pieces.Plan of core's Solid: the polygons that lie in it whole stay, those that are cut become triangles; and
+class _Fitted(NamedTuple):
+    """A core.Solid of which every face is of a polygon of the mesh. between (n,2): the mesh's vertices that each of its
+    is midway between, mostly the same twice; -1: none. alias (V,): the vertex that each of the mesh's is taken for, or
+    None: itself. against (F,): which polygons are wound the other way than the solid."""
+
+    solid: Solid
+    between: np.ndarray
+    alias: np.ndarray
+    against: np.ndarray
+
+
+def _exactly(mesh, hierarchy, solid, alone):
+    """The _Fitted of a Solid of the exact rung."""
+    between = hierarchy.source[solid.ends]
+    corners = between[solid.triangles]
+    plain = (solid.faces >= 0) & (corners[..., 0] == corners[..., 1]).all(axis=1)
+    turned = False
+    if plain.any():  # all are wound alike
+        example = int(plain.argmax())
+        polygon = list(mesh.polygons[solid.faces[example]].vertices)
+        turned = not _ascending(np.array([[polygon.index(vertex) for vertex in corners[example, :, 0]]]))[0]
+    return _turned_like_mesh(_Fitted(solid, between, None, np.full(len(mesh.polygons), turned)), alone)
+
+
+def _unbroken(mesh, hierarchy, slices, options, alone):
+    """For each slice its _Fitted, or None where the repair changed one of its polygons, or where that is of no use. If
+    alone, what the repair added is caps of it; else it is not there."""
+    if hierarchy.summary.rung != "repaired" or options.smooth:
+        return [None] * len(slices)
+    surface = mesh_arrays.surface(mesh)
+    _, first, place = np.unique(surface.vertices, axis=0, return_index=True, return_inverse=True)
+    alias = first[place.ravel()]
+    between = np.where(hierarchy.source < 0, -1, alias[hierarchy.source])
+    triangles = alias[surface.triangles]
+
+    def matched(solid):
+        corners = between[solid.ends[solid.triangles]]
+        corners = np.where((corners[..., 0] == corners[..., 1]) & (solid.beyond < 0)[:, None], corners[..., 0], -1)
+        return _matched(triangles, corners)
+
+    match, turned = matched(hierarchy.solid_of_slice(0, len(hierarchy.tetrahedra)))
+    wanted, there, against = (np.bincount(surface.faces[of], minlength=surface.face_count)
+                              for of in (slice(None), match[match >= 0], match[turned]))
+    lost = (wanted == 0) | (there != wanted) | (against % np.maximum(wanted, 1) != 0)
+    against = against > 0
+    if not alone:  # then the mesh stays wound as it is
+        lost |= against != (2 * against.sum() > len(against))
+    made = []
+    for (tet_first, tet_last), solid in zip(slices, hierarchy.solids(slices)):
+        if solid is None or (lost & _inside(hierarchy, tet_first, tet_last)).any():
+            made.append(None)
+            continue
+        match, _ = matched(solid)
+        faces = np.where(match >= 0, surface.faces[match], -1)
+        faces[(faces >= 0) & lost[faces]] = -1
+        added = (solid.beyond < 0) & (faces < 0)
+        keep = np.ones(len(faces), bool) if alone else ~added
+        solid = Solid(solid.vertices, solid.triangles[keep], solid.ends, faces[keep],
+                      np.where(added, 0, solid.beyond)[keep])
+        made.append(_turned_like_mesh(_Fitted(solid, between[solid.ends], alias, against), alone))
+    return made
+
+
+def _turned_like_mesh(fitted, alone):
+    """What stays of a mesh stays wound as it is, so caps are turned where the mesh is inside out; what is alone has its
+    polygons turned outwards."""
+    if alone or not fitted.against.any():
+        return fitted
+    solid = fitted.solid._replace(triangles=fitted.solid.triangles[:, ::-1])
+    return fitted._replace(solid=solid, against=np.zeros_like(fitted.against))
+
+
+def _matched(own, other):
+    """((S,) which of the triangles own each of the others is, or -1, (S,) whether it is there, wound the other way).
+    One that is in own twice is none of them."""
+    rows = np.sort(np.concatenate([own, other]), axis=1)
+    _, number = np.unique(rows, axis=0, return_inverse=True)
+    number = number.ravel()
+    mine, theirs = number[:len(own)], number[len(own):]
+    at = np.full(number.max() + 1, -1)
+    at[mine] = np.arange(len(own))
+    at[np.bincount(mine, minlength=len(at)) > 1] = -1
+    match = at[theirs]
+    return match, (match >= 0) & (_ascending(own)[match] != _ascending(other))
+
+
+def _ascending(triangles):
+    """(T,) whether the corners' numbers go up, when one begins with the least."""
+    return (triangles < np.roll(triangles, -1, axis=1)).sum(axis=1) == 2
+
+
+def _of_solid(mesh, fitted, alone, facets):
+    """The pieces.Plan of a _Fitted: the polygons that lie in it whole stay, those that are cut become triangles; and
     its caps (if facets)."""
+    solid, between, alias, against = fitted
     own = np.flatnonzero(solid.faces >= 0)
     faces, corners = solid.faces[own], solid.triangles[own]
-    source = np.where(solid.ends[:, 0] == solid.ends[:, 1], hierarchy.source[solid.ends[:, 0]], -1)
+    source = np.where(solid.ends[:, 0] == solid.ends[:, 1], between[:, 0], -1)
 
     # Where the surface is cut apart, one source vertex is several: the first keeps Blender's.
     first = np.full(len(mesh.vertices) + 1, -1)  # the last: of vertices that are no source vertex
@@ -185,24 +285,33 @@ def _of_solid(mesh, hierarchy, solid, alone, facets):
     if not facets:
         caps = caps[:0]
 
+    begin = np.cumsum(totals) - totals
+    polygon = np.repeat(np.arange(len(totals)), totals)
+
+    def outwards(loops):
+        """Loops of whole polygons in turn, those of polygons that are wound against the solid in the other order."""
+        if not against.any():
+            return loops
+        of = polygon[loops]
+        return np.where(against[of], begin[of] + (begin[of] - loops) % totals[of], loops)
+
     # Solid vertices that are not only corners of polygons that stay.
     used = np.unique(np.concatenate([corners[~stays[faces]].ravel(), caps.ravel()]))
-    vertex, keep, loops, wires = _kept(mesh, stays, totals, alone)
+    vertex, keep, loops, wires = _kept(mesh, stays, totals, alone, alias)
     keep[source[used[is_first[used]]]] = True
     kept = np.flatnonzero(keep)
     new = used[~is_first[used]]
-    ends = solid.ends[new]
-    origins = np.concatenate([np.repeat(kept[:, None], 2, axis=1), hierarchy.source[ends]])
+    origins = np.concatenate([np.repeat(kept[:, None], 2, axis=1), between[new]])
     origins[(origins < 0).any(axis=1)] = -1
     places = solid.vertices[new].astype(np.float32)
     number = np.zeros(len(source), np.int32)  # solid vertex -> vertex of the plan
     number[is_first] = (np.cumsum(keep) - 1)[source[is_first]]
     number[new] = len(kept) + np.arange(len(new))
 
+    loops = outwards(loops)
     parts = [_Corners(np.repeat(loops[:, None], 2, axis=1), (np.cumsum(keep) - 1)[vertex[loops]], totals[stays],
                       np.flatnonzero(stays))]
     # The loops of polygons that don't stay, by polygon and vertex.
-    polygon = np.repeat(np.arange(len(totals)), totals)
     theirs = np.flatnonzero((apart | (triangles > 0) & ~whole)[polygon])
     key = polygon[theirs].astype(np.int64) * len(mesh.vertices) + vertex[theirs]
     order = np.argsort(key)
@@ -213,14 +322,14 @@ def _of_solid(mesh, hierarchy, solid, alone, facets):
     replaced, by = _corners_of(faces[apart[faces]], corners[apart[faces]], len(source))
     in_loop = np.zeros(len(vertex), np.int32)
     in_loop[loop_of(replaced, source[by])] = number[by]
-    loops = np.flatnonzero(apart[polygon])
+    loops = outwards(np.flatnonzero(apart[polygon]))
     parts.append(_Corners(np.repeat(loops[:, None], 2, axis=1), in_loop[loops], totals[apart], np.flatnonzero(apart)))
     at = corners[cut].ravel()
-    loops = np.stack([loop_of(np.repeat(faces[cut], 3), hierarchy.source[solid.ends[at, k]]) for k in (0, 1)], axis=1)
+    loops = np.stack([loop_of(np.repeat(faces[cut], 3), between[at, k]) for k in (0, 1)], axis=1)
     parts.append(_Corners(loops, number[at], np.full(cut.sum(), 3), faces[cut]))
     parts.append(_Corners(np.full((caps.size, 2), -1), number[caps.ravel()], np.full(len(caps), 3),
                           np.full(len(caps), -1)))
-    return _plan(mesh, parts, kept, origins, places, wires)
+    return _plan(mesh, parts, kept, origins, places, wires, alias)
 
 
 def _corners_of(faces, corners, count):
@@ -231,9 +340,7 @@ def _corners_of(faces, corners, count):
 
 def _of_faces(mesh, hierarchy, tet_first, tet_last, alone):
     """The pieces.Plan of the slice's polygons alone."""
-    leaf = hierarchy.leaf
-    inside = ((leaf >= tet_first) & (leaf < tet_last) if tet_first < tet_last
-              else (leaf >= tet_first) | (leaf < tet_last))
+    inside = _inside(hierarchy, tet_first, tet_last)
     if not inside.any():
         raise NotClosed("This part has no face of the mesh. Take a larger one.")
     _, totals = mesh_arrays.polygon_sizes(mesh)
@@ -242,6 +349,14 @@ def _of_faces(mesh, hierarchy, tet_first, tet_last, alone):
     part = _Corners(np.repeat(loops[:, None], 2, axis=1), (np.cumsum(keep) - 1)[vertex[loops]], totals[inside],
                     np.flatnonzero(inside))
     return _plan(mesh, [part], kept, np.repeat(kept[:, None], 2, axis=1), np.empty((0, 3), np.float32), wires)
+
+
+def _inside(hierarchy, tet_first, tet_last):
+    """(F,) which faces are of a slice of the tetrahedra, or with the two exchanged of the rest."""
+    leaf = hierarchy.leaf
+    if tet_first < tet_last:
+        return (leaf >= tet_first) & (leaf < tet_last)
+    return (leaf >= tet_first) | (leaf < tet_last)
 
 
 class _Corners(NamedTuple):
@@ -253,10 +368,12 @@ class _Corners(NamedTuple):
     polygons: np.ndarray
 
 
-def _kept(mesh, stays, totals, alone):
-    """((L,) the vertex of each loop, (V,) whether it is of a polygon that stays, or has no face and stays, the loops of
+def _kept(mesh, stays, totals, alone, alias=None):
+    """((L,) the vertex of each loop, by alias if there is one, (V,) whether it is of a polygon that stays, or has no face and stays, the loops of
     polygons that stay, edges without a face that stay). What has no face goes if alone."""
-    vertex = read(mesh.loops, "vertex_index", np.int32)
+    vertex = own = read(mesh.loops, "vertex_index", np.int32)
+    if alias is not None:
+        vertex = alias[own]
     loops = np.flatnonzero(np.repeat(stays, totals))
     keep = np.zeros(len(mesh.vertices), bool)
     keep[vertex[loops]] = True
@@ -265,19 +382,20 @@ def _kept(mesh, stays, totals, alone):
         wires = np.flatnonzero(np.bincount(read(mesh.loops, "edge_index", np.int32), minlength=len(mesh.edges)) == 0)
         ends = mesh_arrays.edge_vertices(mesh)
         loose = np.ones(len(keep), bool)
-        loose[vertex] = loose[ends] = False
+        loose[own] = loose[ends] = False
         keep[ends[wires]] = keep[loose] = True
     return vertex, keep, loops, wires
 
 
-def _plan(mesh, parts, kept, origins, places, wires):
+def _plan(mesh, parts, kept, origins, places, wires, alias=None):
     loops, corners, totals, polygons = (np.concatenate(each) for each in zip(*parts))
     begin = np.cumsum(totals) - totals
     own = read(mesh.vertices, "co", np.float32, 3)
     wire_ends = np.empty((0, 2), np.int64)
     if len(wires):
         wire_ends = np.searchsorted(kept, mesh_arrays.edge_vertices(mesh)[wires])
-    return pieces.Plan(np.concatenate([own[kept], places]), origins, loops, corners, begin, polygons, wires, wire_ends)
+    return pieces.Plan(np.concatenate([own[kept], places]), origins, loops, corners, begin, polygons, wires, wire_ends,
+                       alias)
 
 
 # ---- What closes a border

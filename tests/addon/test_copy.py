@@ -161,6 +161,55 @@ class Copy(SolidTest):
                 self.assertSolid(copy)
                 self.assertEqual((~caps(copy)).sum(), len(hierarchy.faces(node)))
 
+    def test_of_a_repaired_source_it_is_what_its_tetrahedra_fill(self):
+        """With holes, polygons wound anyhow, doubles, inside out: the volume is that of the tetrahedra, not of what
+        some cap over the border leaves; the polygons are the part's own, with their layers."""
+        vertices, polygons = read_off("hand")
+        rng = numpy.random.default_rng(7)
+        apart = [vertex for polygon in polygons for vertex in polygon]
+        turned = [polygon[::-1] if turn else polygon for polygon, turn in zip(polygons, rng.random(len(polygons)) < .3)]
+        for name, places, broken in (
+            ("holes", vertices, [polygon for i, polygon in enumerate(polygons) if i % 800]), ("turned", vertices, turned),
+            ("doubles", [vertices[vertex] for vertex in apart], numpy.arange(len(apart)).reshape(-1, 3).tolist()),
+            ("inside out", vertices, [polygon[::-1] for polygon in polygons[3:]]),
+        ):
+            obj = self.add(places, broken, name)
+            obj.data.uv_layers.new(name="uv").data.foreach_set("uv", rng.random(6 * len(broken)))
+            hierarchy = part("core").Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=3)
+            self.assertEqual(hierarchy.summary.rung, "repaired")
+            at = {frozenset(tuple(obj.data.vertices[v].co) for v in polygon.vertices): polygon
+                  for polygon in obj.data.polygons}
+            for node in self.nodes(hierarchy):
+                tets = slice(int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node]))
+                copy = part("solids").part(obj, hierarchy, tets.start, tets.stop)
+                self.assertSolid(copy)
+                sides = numpy.diff(hierarchy.vertices[hierarchy.tetrahedra[tets]], axis=1)
+                filled = numpy.abs(numpy.linalg.det(sides)).sum() / 6
+                self.assertLess(abs(volume(copy) / filled - 1), 1e-4, name)
+                own = [polygon for polygon, cap in zip(copy.polygons, caps(copy)) if not cap]
+                self.assertEqual(len(own), len(hierarchy.faces(node)))
+                for polygon in own[::7]:
+                    old = at[frozenset(tuple(copy.vertices[v].co) for v in polygon.vertices)]
+                    uv = {tuple(mesh.vertices[mesh.loops[loop].vertex_index].co):
+                          tuple(mesh.uv_layers["uv"].data[loop].uv) for mesh, loops in
+                          ((copy, polygon.loop_indices),) for loop in loops}
+                    for loop in old.loop_indices:
+                        place = tuple(obj.data.vertices[obj.data.loops[loop].vertex_index].co)
+                        self.assertEqual(uv[place], tuple(obj.data.uv_layers["uv"].data[loop].uv))
+
+    def test_of_an_inside_out_source_it_is_outside_out(self):
+        vertices, polygons = read_off("hand")
+        obj = self.add(vertices, [polygon[::-1] for polygon in polygons])
+        hierarchy = part("api").build(obj)
+        self.assertEqual(hierarchy.summary.rung, "exact")
+        for node in self.nodes(hierarchy):
+            copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node)
+            self.assertSolid(copy.data)
+            self.assertGreater(volume(copy.data), 0)
+        self.run_on(obj, bpy.ops.mesh.partwheel_remove, node=node)  # the rest stays as it is wound
+        self.assertSolid(obj.data)
+        self.assertLess(volume(obj.data), 0)
+
     def test_from_edit_mode_and_of_the_picked_part(self):
         obj, hierarchy = self.built()
         self.edit(obj)
@@ -211,6 +260,28 @@ class Remove(SolidTest):
                 self.run_on(rest, bpy.ops.mesh.partwheel_remove, node=node)
                 self.assertSolid(rest.data)
                 self.assertLess(abs(volume(rest.data) + volume(copy.data) - whole), 1e-5 * abs(whole))
+
+    def test_holes_of_a_broken_mesh_stay_and_the_new_one_is_closed(self):
+        vertices, polygons = read_off("hand")
+        obj = self.add(vertices, polygons[3:])
+        hierarchy = part("core").Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=3)
+        self.assertEqual(hierarchy.summary.rung, "repaired")
+
+        def open_edges(mesh):
+            count = numpy.bincount([loop.edge_index for loop in mesh.loops], minlength=len(mesh.edges))
+            return {frozenset(tuple(mesh.vertices[v].co) for v in mesh.edges[edge].vertices)
+                    for edge in numpy.flatnonzero(count != 2)}
+
+        before, total = open_edges(obj.data), len(obj.data.polygons)
+        self.assertGreater(len(before), 2)
+        inside = {face for node in [self.nodes(hierarchy)[-3]] for face in hierarchy.faces(node)}
+        around = {face for face, polygon in enumerate(obj.data.polygons)
+                  if any(frozenset(tuple(vertices[v]) for v in key) in before for key in polygon.edge_keys)}
+        self.assertFalse(inside & around)
+        node = self.nodes(hierarchy)[-3]
+        part("solids").remove(obj, hierarchy, int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node]))
+        self.assertEqual(open_edges(obj.data), before)
+        self.assertEqual((~caps(obj.data)).sum(), total - len(inside))
 
     def test_edit_mode_and_loose_vertices_stay(self):
         vertices, polygons = read_off("dragknob")
