@@ -20,6 +20,7 @@ import numpy
 from mathutils import Vector
 
 from . import composition, deforming, placement, selection, session, solids, union, wheel
+from .core.joint import REACH
 
 
 def build(obj, quality=0.0, open_surfaces=False, mode=None):
@@ -141,6 +142,19 @@ def deform(obj, node, handle_vertices, matrix, rings=0):
         raise ValueError("The handle has no vertices.")
     shape = deforming.AsRigidAsPossible(region, [inside])
     shape.jump([numpy.asarray(matrix, float)])
+    deforming.Pen(obj, region).write(obj, shape.points())
+
+
+def bend(obj, node, rotation, reach=REACH):
+    """Turns a node's part about the joint where it hangs on the rest, the middle of its border, by rotation (3,3) in the
+    object's space. The part keeps its shape, but what is within reach of its border, in radii of that, bends, on either
+    side; all beyond stays. Shape keys and the x axis as for deform(). Raises ValueError if there is no such joint."""
+    region = deforming.Region(obj, faces(obj, node), mirror=obj.data.use_mirror_x, reach=reach)
+    matrix = numpy.eye(4)
+    matrix[:3, :3] = rotation
+    matrix[:3, 3] = region.center - matrix[:3, :3] @ region.center
+    shape = deforming.AtJoint(region)
+    shape.jump([matrix])
     deforming.Pen(obj, region).write(obj, shape.points())
 
 

@@ -7,6 +7,7 @@ to Blender's data is kept, so undo or a mode change can't make it dangle; the ob
 
 import struct
 from collections import deque
+from functools import cached_property
 from itertools import repeat
 
 import bmesh
@@ -14,11 +15,15 @@ import numpy as np
 from mathutils.kdtree import KDTree
 
 from . import mesh_arrays
-from .core.deform import FIXED, FREE, SETTLED, Deformation, part_of_the_way, surface_distances, vertex_normals
+from .core.deform import (
+    FIXED, FREE, SETTLED, STEP_ANGLE, Deformation, part_of_the_way, rotation_angle, surface_distances, vertex_normals,
+)
+from .core.joint import joint
 
 HANDLE_SIZE = 0.25  # of a handle by default: its radius, by the square root of the part's area
 SAME_PLACE = 1e-4  # mirrored vertices are so near to each other, by the mesh's size
 AT_ONCE, MOST_AT_ONCE = 30_000, 5  # iterations at a mouse move: so many vertices' in all; but no more than so many
+TURN = np.radians(30)  # a handle that turns by more at once, as by a typed number, goes there in steps
 WAYS = 32  # matrices between rest and the handle's that a proportional deformation mixes
 MIRROR, ACROSS = np.diag([-1.0, 1, 1, 1]), np.float32([-1, 1, 1])
 
@@ -100,13 +105,18 @@ class Region:
 
     vertices (n,) of the mesh: the part's and those of the faces around it; rest (n,3) where they are, triangles (t,3)
     indices into these two. free (n,) bool: inside the part; its border and all beyond stay, and so does what is hidden.
-    rings: so many rings of faces around the part deform with it. mirror: the same happens across the x axis.
+    rings: so many rings of faces around the part deform with it. mirror: the same happens across the x axis. center
+    (3,) and size: of the part.
+
+    With reach the part is one that turns at its joint (core.joint): what lies within so many radii of its border, on
+    either side, is free as well; limb are the region's vertices of the rest of it; center is the joint's.
+
     moving (m,): the vertices of the mesh that may move, mirrored ones included, before (m,3) where they are. Of the
     polygons that have such a vertex: flat_faces, those shaded flat; smooth (n,) bool, vertices of the others; polygons,
     whether one is no triangle.
     """
 
-    def __init__(self, obj, faces, rings=0, mirror=False):
+    def __init__(self, obj, faces, rings=0, mirror=False, reach=None):
         """Raises Refused."""
         surface = mesh_arrays.surface(mesh_arrays.up_to_date(obj))
         mesh, points = obj.data, mesh_arrays.edited_positions(obj)
@@ -121,13 +131,20 @@ class Region:
         member, border = np.zeros(count, bool), np.zeros(count, bool)
         member[surface.triangles[within]] = True
         border[surface.triangles[~within]] = True
-        free = member & ~border & ~mesh_arrays.read(mesh.vertices, "hide", bool)
+        free, limb = member & ~border, np.zeros(count, bool)
+        hinge = None if reach is None else joint(points.astype(np.float64), surface.triangles, within)
+        if hinge and free.any():
+            roles = hinge.roles(reach)
+            free, limb = roles != FIXED, roles == 0
+            member = free
+        free &= ~mesh_arrays.read(mesh.vertices, "hide", bool)
         near = member[surface.triangles].any(axis=1)
         self.vertices, triangles = np.unique(surface.triangles[near], return_inverse=True)
         self.triangles = triangles.reshape(-1, 3).astype(np.int32)
         self.rest = points[self.vertices].astype(np.float64)
         self.free = free[self.vertices]
-        self.center = self.rest[self.free].mean(axis=0) if self.free.any() else np.zeros(3)
+        self.limb = np.flatnonzero((limb & free)[self.vertices])
+        self.center = hinge.center if hinge else self.rest[self.free].mean(axis=0) if self.free.any() else np.zeros(3)
         corners = points[surface.triangles[within]].astype(np.float64)
         self.size = np.sqrt(np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
                                            axis=1).sum() / 2)
@@ -138,6 +155,7 @@ class Region:
                           "pick a smaller one, or move it as it is.")
         if not self.size > 0:
             raise Refused("The faces of the part have no area: there is nothing to deform.")
+        self._away = None, None
         self.partner, self._sources, images = None, np.empty(0, int), np.empty(0, int)
         if mirror:
             self.partner, self._sources, images = self._partners(points)
@@ -187,16 +205,21 @@ class Region:
 
     def patch(self, index, radius):
         """The region's indices of the free vertices within a radius along the surface, at least the one itself."""
-        distance = surface_distances(self.rest, self.triangles, [index])
-        return np.flatnonzero(self.free & (distance <= radius))
+        return np.flatnonzero(self.free & (self._away_from(index) <= radius))
 
     def usual_radius(self, index):
         """Of a handle at this vertex: a share of the part's size, but its neighbours belong to it at least, for a point
         alone draws out a thorn; and a quarter of the free vertices at most."""
         around = np.unique(self.triangles[(self.triangles == index).any(axis=1)])
-        distance = surface_distances(self.rest, self.triangles, [index])
+        distance = self._away_from(index)
         nearer = np.sort(distance[self.free])
         return float(min(max(HANDLE_SIZE * self.size, 1.01 * distance[around].max()), nearer[len(nearer) // 4]))
+
+    def _away_from(self, index):
+        """(n,) along the surface. The last is kept: 0.1 s for 100,000 vertices."""
+        if self._away[0] != index:
+            self._away = index, surface_distances(self.rest, self.triangles, [index])
+        return self._away[1]
 
     def targets(self, points):
         """(m,3) float32: where the vertices that move go if the region deformed to points (n,3)."""
@@ -229,9 +252,14 @@ class AsRigidAsPossible:
                     self._twins.append(handle)
         if len(np.unique(roles[roles >= 0])) < self._count + len(self._twins):
             raise Refused("One handle covers another: make it smaller, or put it elsewhere.")
-        self.deformation = Deformation(region.rest, region.triangles, roles)
+        self._given = region.rest, region.triangles, roles
         self._at_once = min(max(AT_ONCE // len(roles), 1), MOST_AT_ONCE)
-        self._energy = np.inf
+        self._energy, self._at = np.inf, [np.eye(4)] * self._count
+
+    @cached_property
+    def deformation(self):
+        """Factorizing takes a second for 100,000 vertices: at the first use, in any thread. Raises PartwheelError."""
+        return Deformation(*self._given)
 
     def _all(self, matrices):
         return [*matrices, *(MIRROR @ matrices[handle] @ MIRROR for handle in self._twins)]
@@ -239,10 +267,17 @@ class AsRigidAsPossible:
     def follow(self, matrices):
         """The handles go to their matrices, (4,4) each, and the region most of the way: as much as a mouse move has
         time for."""
-        for handle, matrix in enumerate(self._all(matrices)):
-            self.deformation.move(handle, matrix)
-        self.deformation.iterate(self._at_once)
-        self._energy = np.inf
+        steps = [_step(before, matrix) for before, matrix in zip(self._at, matrices)]
+        turn = max((rotation_angle(step[:3, :3]) for step in steps if step is not None), default=0)
+        count = 1 if turn < TURN else int(np.ceil(turn / STEP_ANGLE))
+        for at in range(1, count + 1):
+            between = matrices if at == count else [
+                matrix if step is None else part_of_the_way(step, at / count) @ before
+                for before, step, matrix in zip(self._at, steps, matrices)]
+            for handle, matrix in enumerate(self._all(between)):
+                self.deformation.move(handle, matrix)
+            self.deformation.iterate(self._at_once)
+        self._energy, self._at = np.inf, matrices
 
     def go_on(self):
         """A little further towards the shape of rest. Whether there is more to do."""
@@ -250,16 +285,38 @@ class AsRigidAsPossible:
         before, self._energy = self._energy, self.deformation.energy()
         return before - self._energy > SETTLED * self._at_once * before
 
-    def settle(self):
-        """All the way to the shape of rest."""
-        self.deformation.settle()
+    def settle(self, stop=None):
+        """All the way to the shape of rest, unless the threading.Event stop is set meanwhile."""
+        self.deformation.settle(stop=stop)
 
-    def jump(self, matrices):
-        """All the way at once."""
-        self.deformation.move_at_once(self._all(matrices))
+    def jump(self, matrices, stop=None):
+        """All the way at once, from rest."""
+        if all((matrix == np.eye(4)).all() for matrix in matrices):
+            self.deformation.reset()  # no rounding either
+        else:
+            self.deformation.move_at_once(self._all(matrices), stop)
+        self._energy, self._at = np.inf, matrices
 
     def points(self):
         return self.deformation.positions()
+
+
+def _step(before, after):
+    """What leads from one matrix to another; None if there is no way back from the first, or nowhere to go."""
+    if not np.linalg.cond(before) < 1e12:
+        return None
+    step = after @ np.linalg.inv(before)
+    return step if np.isfinite(step).all() else None
+
+
+class AtJoint(AsRigidAsPossible):
+    """A limb keeps its shape and turns, moves or grows as a whole; what is near its border bends, as rigidly as
+    possible."""
+
+    def __init__(self, region, _patches=()):
+        if not len(region.limb):
+            raise Refused("No part of this limb is beyond its joint and not hidden: make the joint smaller.")
+        super().__init__(region, [region.limb])
 
 
 class Proportional:
@@ -280,16 +337,17 @@ class Proportional:
         now = np.einsum("nij,nj->ni", matrix[:, :3, :3], self._rest) + matrix[:, :3, 3]
         self._now = np.where(self.weight[:, None] > 0, now, self._rest)
 
-    jump = follow
+    def jump(self, matrices, _stop=None):
+        self.follow(matrices)
 
     def go_on(self):
         return False
 
-    def settle(self):
+    def settle(self, _stop=None):
         pass
 
     def points(self):
         return self._now
 
 
-METHODS = {"RIGID": AsRigidAsPossible, "PROPORTIONAL": Proportional}
+METHODS = {"RIGID": AsRigidAsPossible, "PROPORTIONAL": Proportional, "JOINT": AtJoint}

@@ -50,12 +50,14 @@ DRAG = Key("DRAG", frozenset({"LEFTMOUSE"}), "Drag the Handle, or Put It Elsewhe
 ONE_MORE = Key("ONE_MORE", frozenset(), "One More", ("EVENT_SHIFT", "MOUSE_LMB_DRAG"))
 TRANSFORM = Key("TRANSFORM", frozenset("GRS"), "Move, Rotate, Scale", ("EVENT_G", "EVENT_R", "EVENT_S"))
 HANDLE_SIZE = Key("HANDLE_SIZE", frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE"}), "Handle Size", names="Wheel")
+RECOMPUTE = Key("RECOMPUTE", frozenset("P"), "Confirm, Recompute Parts", ("EVENT_P",))
 AXIS = Key("AXIS", frozenset("XYZ"), "Axis", ("EVENT_X", "EVENT_Y", "EVENT_Z"))
+PLANE = Key("PLANE", frozenset(), "Plane", ("EVENT_SHIFT", "EVENT_X", "EVENT_Y", "EVENT_Z"))
 TYPE = Key("TYPE", frozenset(DIGITS), "Type", names="0-9 . -")
 SNAP = Key("SNAP", frozenset({"LEFT_CTRL", "RIGHT_CTRL"}), "Snap", ("EVENT_CTRL",))
 DONE = Key("DONE", CLICK.events | CONFIRM.events, "Done", ("MOUSE_LMB", "EVENT_RETURN"))
-DEFORMING = (DRAG, ONE_MORE, TRANSFORM, HANDLE_SIZE, CONFIRM, NAVIGATE, CANCEL)
-MOVING = (AXIS, TYPE, SNAP, TRANSFORM, DONE, CANCEL)
+DEFORMING = (DRAG, ONE_MORE, TRANSFORM, HANDLE_SIZE, CONFIRM, RECOMPUTE, NAVIGATE, CANCEL)
+MOVING = (AXIS, PLANE, TYPE, SNAP, TRANSFORM, DONE, CANCEL)
 
 # While a part is placed. SIGNS: of events that come in pairs, which makes more and which less.
 SIZE = Key("SIZE", frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "NUMPAD_PLUS", "NUMPAD_MINUS"}), "Size", names="Wheel")

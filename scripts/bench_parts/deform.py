@@ -51,5 +51,5 @@ def in_blender(blender, given, moves):
     report = json.loads(result.read_text())
     whole, follow, write = (1000 * report[name] for name in ("whole", "follow", "write"))
     print(f"     in Blender {report['blender']}: {whole:.1f} ms a move ({follow:.1f} to follow, {write:.1f} to write), "
-          f"{report['begin']:.2f} s to begin")
+          f"{report['begin']:.2f} s to begin, {report['prepare']:.2f} s in the background")
     return report

@@ -347,6 +347,72 @@ class Deform(MeshTest):
             self.assertGreater(cosine.min(), 0.8 if smooth else 0.99999)
             self.setUp()
 
+    def test_a_part_turned_at_its_joint(self):
+        """The finger keeps its shape, and bends at its root on either side; operator, api and redo are one."""
+        obj, node, faces, free, tip = self.hand()
+        deforming = part("deforming")
+        before = edited(obj)
+        region = deforming.Region(obj, faces, reach=2.0)
+        limb = region.vertices[region.limb]
+        self.assertTrue(set(limb) < set(free) and tip in limb)
+        self.assertTrue(set(region.vertices[region.free]) - set(free))  # the bend has two sides
+        turn = numpy.eye(4)
+        turn[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
+        turn[:3, 3] = region.center - turn[:3, :3] @ region.center
+        self.assertEqual(self.run_operator(method="JOINT", handles=[handle(tip, turn)]), {"FINISHED"})
+        after = edited(obj)
+        numpy.testing.assert_allclose(after[limb], before[limb] @ turn[:3, :3].T + turn[:3, 3], atol=1e-5)
+        still = numpy.setdiff1d(numpy.arange(len(before)), region.vertices[region.free])
+        self.assertTrue((after[still] == before[still]).all())
+        self.assertTrue((after[free] != before[free]).any(axis=1).all())
+        for vertex, point in zip(bmesh.from_edit_mesh(obj.data).verts, before):
+            vertex.co = point
+        part("api").bend(obj, node, turn[:3, :3])
+        numpy.testing.assert_allclose(edited(obj), after, atol=1e-5)  # the operator's matrix has single precision
+
+    def test_a_smaller_joint_and_none(self):
+        obj, node, faces, free, tip = self.hand()
+        deforming = part("deforming")
+        wide, narrow = (deforming.Region(obj, faces, reach=reach) for reach in (2.0, 0.5))
+        self.assertGreater(len(narrow.limb), len(wide.limb))
+        self.assertLess(len(narrow.moving), len(wide.moving))
+        before = edited(obj)
+        root = len(part("session").hierarchy(obj).parent) - 1
+        self.assertIn("whole mesh", self.refusal(method="JOINT", node=root, handles=[handle(tip, shift(1, 0, 0))]))
+        with self.assertRaises(ValueError):
+            part("api").bend(obj, root, numpy.eye(3))
+        self.assertTrue((edited(obj) == before).all())
+
+    def test_a_great_turn_at_once_is_as_one_little_by_little(self):
+        """A typed number takes the handle far in one go: the part must not collapse on the way."""
+        obj, node, faces, free, tip = self.hand()
+        deforming, deform = part("deforming"), part("core.deform")
+        region = deforming.Region(obj, faces, reach=2.0)
+        turn = numpy.eye(4)
+        turn[:3, :3] = [[1, 0, 0], [0, -1, 0], [0, 0, -1]]
+        turn[:3, 3] = region.center - turn[:3, :3] @ region.center
+        turn = deform.part_of_the_way(turn, 120 / 180)
+        far, slowly = (deforming.AtJoint(region) for _ in range(2))
+        far.follow([turn])
+        for step in range(1, 31):
+            slowly.follow([deform.part_of_the_way(turn, step / 30)])
+        for shape in (far, slowly):
+            shape.settle()
+        size = numpy.ptp(region.rest[region.limb], axis=0).max()
+        self.assertLess(numpy.abs(far.points() - slowly.points()).max(), 0.01 * size)
+
+    def test_in_the_background(self):
+        """What runs there can be asked to end; what went wrong is raised when it is fetched."""
+        background = part("background").Background
+        task = background(lambda stop: stop.wait())
+        self.assertTrue(task.running())
+        task.abandon()
+        self.assertFalse(task.running(10))
+        task.finish()
+        task = background(lambda stop: [].pop())
+        self.assertFalse(task.running(10))
+        self.assertRaises(IndexError, task.finish)
+
     def test_no_operator_without_parts(self):
         obj = self.add(*BOX)
         self.edit(obj)

@@ -3,6 +3,7 @@
 
 import heapq
 import math
+import threading
 
 import igl
 import numpy as np
@@ -260,6 +261,17 @@ def test_several_handles_and_components():
     np.testing.assert_allclose(now[2 * count:], moved(far, vertices[2 * count:]), atol=1e-4)
     deformation.reset()
     np.testing.assert_array_equal(deformation.positions(), vertices)
+
+
+def test_asked_to_end():
+    vertices, triangles, roles = limb("hand")
+    deformation, stop = Deformation(vertices, triangles, roles), threading.Event()
+    deformation.move(0, turn((1, 0, 0), 45))
+    start = deformation.positions()
+    stop.set()
+    assert deformation.settle(stop=stop) == 0
+    deformation.move_at_once([turn((1, 0, 0), 90)], stop)
+    np.testing.assert_array_equal(deformation.positions(), start)
 
 
 def test_same_bits_twice():

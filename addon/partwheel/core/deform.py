@@ -73,10 +73,12 @@ class Deformation:
         """Everything back to rest."""
         check(load().pw_deformation_reset(self._handle.address))
 
-    def settle(self, settled=SETTLED, most=MOST_ITERATIONS):
-        """Iterates until little changes. The number of iterations."""
+    def settle(self, settled=SETTLED, most=MOST_ITERATIONS, stop=None):
+        """Iterates until little changes, or the threading.Event stop is set. The number of iterations."""
         before = self.energy()
         for done in range(1, most + 1):
+            if stop and stop.is_set():
+                return done - 1
             self.iterate()
             now = self.energy()
             if before - now <= settled * before:
@@ -84,17 +86,19 @@ class Deformation:
             before = now
         return most
 
-    def move_at_once(self, matrices):
+    def move_at_once(self, matrices, stop=None):
         """Takes every handle all the way to its matrix, (4,4) each, in steps that the surface can follow; then
-        settles."""
+        settles. Ends early if the threading.Event stop is set."""
         matrices = [np.asarray(matrix, np.float64) for matrix in matrices]
         count = max([1, *(math.ceil(rotation_angle(matrix[:3, :3]) / STEP_ANGLE - 1e-9) for matrix in matrices)])
         for step in range(1, count + 1):
+            if stop and stop.is_set():
+                return
             for handle, matrix in enumerate(matrices):
                 self.move(handle, part_of_the_way(matrix, step / count))
             if step < count:
                 self.iterate(STEP_ITERATIONS)
-        self.settle()
+        self.settle(stop=stop)
 
 
 def rotation_angle(linear):

@@ -13,9 +13,12 @@ from bpy_extras.view3d_utils import (
     location_3d_to_region_2d, region_2d_to_location_3d, region_2d_to_origin_3d, region_2d_to_vector_3d,
 )
 from mathutils import Matrix, Vector
+from mathutils.geometry import intersect_line_line, intersect_line_plane
 
 from .. import handle_gizmo, handle_points, keys, session
+from ..background import Background
 from ..core import PartwheelError
+from ..core.joint import REACH
 from ..deforming import METHODS, Pen, Refused, Region
 from ..picking import FaceTree, view_of, view_under
 from ..ui import status
@@ -23,7 +26,9 @@ from ..ui import status
 TICK = 0.03  # seconds
 NOTCH = 1.25  # what a notch of the wheel makes of the handle's size
 STEP_DEGREES, STEP_SCALE = 5.0, 0.1  # what Ctrl snaps to
+GRAZING = 0.1  # cosine: a line seen so much from its end, a plane so much from its edge, gives no place under the mouse
 DIGITS = {**keys.DIGITS, **{f"NUMPAD_{digit}": str(digit) for digit in range(10)}, "PERIOD": ".", "NUMPAD_PERIOD": "."}
+PATIENCE = 0.05  # seconds that Blender waits for what is done in the background, before it goes on meanwhile
 NO_PART = "Pick a part with Select Part by Wheel first."
 
 
@@ -52,10 +57,31 @@ class Stage:
     base: np.ndarray  # the handle's matrix then
     pivot: Vector  # the handle's center then, in the world
     dragging: bool  # ends when the button is released
-    axis: int = None
+    axis: int = None  # along or about which alone; of frame's columns
+    plane: bool = False  # along all but that
+    local: bool = False
+    frame: Matrix = field(default_factory=lambda: Matrix.Identity(3))  # the world's axes, or the object's if local
     typed: str = ""
     turned: float = 0.0  # so far, in radians: full turns count
     angle: float = None  # of the mouse about the pivot, when last looked at
+
+    def constrain(self, axis, plane, matrix_world):
+        """As Blender's transforms: the key of an axis takes the world's, pressed again the object's own, then none."""
+        again = (self.axis, self.plane) == (axis, plane)
+        if again and self.local:
+            axis, plane = None, False
+        self.axis, self.plane, self.local = axis, plane, again and not self.local
+        self.frame = matrix_world.to_3x3().normalized() if self.local else Matrix.Identity(3)
+
+    def free(self):
+        """Of the frame's axes those along which there is movement."""
+        return [k for k in range(3) if self.axis is None or (k == self.axis) != self.plane]
+
+    def told(self):
+        if self.axis is None:
+            return ""
+        which = "local" if self.local else "global"
+        return f" {'in' if self.plane else 'along'} {which} {''.join('XYZ'[k] for k in self.free())}"
 
 
 class MESH_OT_partwheel_deform(bpy.types.Operator):
@@ -72,12 +98,18 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
     method: bpy.props.EnumProperty(
         name="Method",
         items=[("RIGID", "As Rigid as Possible", "The part follows the handle and keeps its details"),
-               ("PROPORTIONAL", "Proportional", "The part moves as a whole, less and less towards its border")],
+               ("PROPORTIONAL", "Proportional", "The part moves as a whole, less and less towards its border"),
+               ("JOINT", "At the Joint", "The part keeps its shape and turns about its border; what is near that, on "
+                                         "either side, bends")],
         default="RIGID", options={"SKIP_SAVE"},
     )
     rings: bpy.props.IntProperty(
         name="Rings", description="So many rings of faces around the part deform with it, for a softer join",
         default=0, min=0, soft_max=10, options={"SKIP_SAVE"},
+    )
+    reach: bpy.props.FloatProperty(
+        name="Joint", description="How far from the part's border it bends, in radii of the border",
+        default=REACH, min=0.1, soft_max=10, options={"SKIP_SAVE"},
     )
     handles: bpy.props.CollectionProperty(type=PARTWHEEL_PG_handle, options={"HIDDEN", "SKIP_SAVE"})
     start: bpy.props.EnumProperty(
@@ -98,14 +130,14 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
 
     def draw(self, _context):
         self.layout.prop(self, "method")
-        self.layout.prop(self, "rings")
+        self.layout.prop(self, "reach" if self.method == "JOINT" else "rings")
 
     # ---- Without a window ------------------------------------------------------------------------------------------
 
     def execute(self, context):
         """The part goes where handles say, at once."""
         obj = context.edit_object
-        first = None
+        regions = []
         try:
             faces = self._faces(obj)
             if not self.handles:
@@ -113,19 +145,27 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             if max(each.vertex for each in self.handles) >= len(obj.data.vertices):
                 raise Refused("A handle is a vertex that the mesh doesn't have.")
             for turn in sorted({each.turn for each in self.handles}):
-                region = Region(obj, faces, self.rings, obj.data.use_mirror_x)
-                first = first or region
+                regions.append(self._region(obj, faces))
                 handles = [each for each in self.handles if each.turn == turn]
-                shape = METHODS[self.method](region, [region.patch(region.nearest_free(each.vertex), each.radius)
-                                                      for each in handles])
+                shape = METHODS[self.method](regions[-1], self._patches(regions[-1], handles))
                 shape.jump([np.array(each.matrix).reshape(4, 4) for each in handles])
-                Pen(obj, region).write(obj, shape.points())
+                Pen(obj, regions[-1]).write(obj, shape.points())
         except (Refused, PartwheelError) as error:
-            if first:
-                Pen(obj, first).restore(obj)
+            _restored(obj, regions)
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         return {"FINISHED"}
+
+    def _region(self, obj, faces):
+        """Raises Refused."""
+        reach = self.reach if self.method == "JOINT" else None
+        return Region(obj, faces, self.rings, obj.data.use_mirror_x, reach)
+
+    def _patches(self, region, handles):
+        """The region's vertices of each handle. Raises Refused."""
+        if self.method == "JOINT":
+            return [region.limb]
+        return [region.patch(region.nearest_free(handle.vertex), handle.radius) for handle in handles]
 
     def _faces(self, obj):
         """The part's faces. Raises Refused."""
@@ -149,9 +189,10 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         try:
             with _waiting(context):
                 self.faces = self._faces(obj)
-                self.region = self.first = Region(obj, self.faces, self.rings, obj.data.use_mirror_x)
+                self.regions = [self._region(obj, self.faces)]
                 picked = session.picked(obj)
                 self.placed = [self._handle_of(obj, picked and picked.face)]
+                self.task, self.confirmed, self.behind, self.settling = None, False, False, False
                 self._hold()
         except (Refused, PartwheelError) as error:
             self.report({"ERROR"}, str(error))
@@ -159,7 +200,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         self.pen = None
         self.object_name, self.stage, self.turns = obj.name_full, None, []
         self.counts = len(obj.data.vertices), len(obj.data.polygons)
-        self.settling, self.changed, self.told = False, False, None
+        self.changed, self.recompute, self.told = False, False, None
         self.timer = context.window_manager.event_timer_add(TICK, window=context.window)
         self.drawing = bpy.types.SpaceView3D.draw_handler_add(self._draw, (), "WINDOW", "POST_VIEW")
         if self.start != "NONE":
@@ -168,10 +209,18 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
+    @property
+    def region(self):
+        """What deforms now: of the last turn."""
+        return self.regions[-1]
+
     def modal(self, context, event):
         """One step; whatever goes wrong in it, the mesh is put back and the tool ends, with a report."""
         try:
             return self._handle(context, event)
+        except PartwheelError as error:  # faces too thin, for instance
+            self.report({"ERROR"}, str(error))
+            return self._cancelled(context)
         except Exception as error:  # any: a tool that dies in the middle leaves the mesh half deformed
             traceback.print_exc()
             self.report({"ERROR"}, f"Partwheel stopped: {error}. The full report is in the system console.")
@@ -186,14 +235,15 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             self.report({"WARNING"}, "Partwheel stopped: the mesh is no longer being edited as it was.")
             self._end(context)
             return {"CANCELLED"}
-        if event.type == "TIMER":
-            self._tick(context)
-            return {"PASS_THROUGH"}
         if event.type in keys.CANCEL.events and event.value == "PRESS":
             return self._cancelled(context)
+        if event.type == "TIMER":
+            return self._tick(context)
         passed = keys.NAVIGATE.events | keys.SYSTEM
         if event.type in (passed - set(DIGITS) if self.stage else passed):
             return {"PASS_THROUGH"}
+        if self.confirmed:
+            return {"RUNNING_MODAL"}
         if self.stage:
             return self._in_stage(context, event)
         return self._between(context, event)
@@ -221,9 +271,12 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
                 return self._confirmed(context)
             if self.method == "RIGID":
                 self._place(context, vertex, event.shift)
-            self._begin(context, event, "G", dragging=True)
+            self._begin(context, event, "R" if self.method == "JOINT" else "G", dragging=True)
         elif event.type in {"G", "R", "S"}:
             self._begin(context, event, event.type)
+        elif event.type in keys.RECOMPUTE.events:
+            self.recompute = True
+            return self._confirmed(context)
         elif event.type in keys.HANDLE_SIZE.events:
             self._resize(context, event.type == "WHEELUPMOUSE")
         self._tell(context)
@@ -246,6 +299,8 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
 
     def _handle_of(self, obj, face):
         """The handle to begin with: at the face that was clicked, or else the part's farthest point from its border."""
+        if self.method == "JOINT":
+            return Handle(int(self.region.vertices[self.region.free][0]), 0.0)
         corners = obj.data.polygons[face].vertices if face is not None else ()
         known = [vertex for vertex in corners if vertex in self.region.vertices]
         if known:
@@ -261,42 +316,88 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         vertex = int(self.region.vertices[self.region.nearest_free(vertex)])
         if vertex in self.region.vertices[self.patches[-1]] and not one_more:
             return
-        radius, before = self.placed[-1].radius, (self.placed, self.region, self.turns)
+        radius, before = self.placed[-1].radius, (self.placed, self.regions, self.turns)
         if one_more:
             self.placed = [*self.placed, Handle(vertex, radius)]
         else:
             if any((handle.matrix != np.eye(4)).any() for handle in self.placed):
                 self.turns = [*self.turns, self.placed]
-                self.region = Region(context.edit_object, self.faces, self.rings, context.edit_object.data.use_mirror_x)
+                self._finish_task(context)  # or the shape so far is not what it will be
+                self.regions = [*self.regions, self._region(context.edit_object, self.faces)]
             self.placed = [Handle(vertex, radius)]
-        self._try(context, *before)
+        self._try(*before)
 
     def _resize(self, context, larger):
-        before = self.placed, self.region, self.turns
-        last = self.placed[-1]
-        radius = last.radius * NOTCH if larger else last.radius / NOTCH
-        self.placed = [*self.placed[:-1], Handle(last.vertex, radius, last.matrix)]
-        self._try(context, *before)
+        factor = NOTCH if larger else 1 / NOTCH
+        before = self.placed, self.regions, self.turns
+        if self.method == "JOINT":
+            self._resize_joint(context, factor)
+        elif self.method == "RIGID":
+            last = self.placed[-1]
+            self.placed = [*self.placed[:-1], Handle(last.vertex, last.radius * factor, last.matrix)]
+            self._try(*before)
 
-    def _try(self, context, placed, region, turns):
+    def _resize_joint(self, context, factor):
+        """Another region bends: from where all was before."""
+        obj, reach = context.edit_object, self.reach
+        if self.changed:
+            self._pen(obj).restore(obj)
+        self.reach = reach * factor
+        try:
+            self.regions = [self._region(obj, self.faces)]
+            self._hold()
+        except Refused as reason:
+            self.reach = reach
+            self.regions = [self._region(obj, self.faces)]
+            self._hold()
+            self.report({"WARNING"}, str(reason))
+
+    def _try(self, placed, regions, turns):
         """Holds the part by the new handles; if that can't be, all is as it was before, and why is reported."""
-        with _waiting(context):
-            try:
-                self._hold()
-            except Refused as reason:
-                self.placed, self.region, self.turns = placed, region, turns
-                self._hold()
-                self.report({"WARNING"}, str(reason))
-            if any((handle.matrix != np.eye(4)).any() for handle in self.placed):
-                self.shape.jump([handle.matrix for handle in self.placed])
-                self._show(context, done=True)
+        try:
+            self._hold()
+        except Refused as reason:
+            self.placed, self.regions, self.turns = placed, regions, turns
+            self._hold()
+            self.report({"WARNING"}, str(reason))
 
     def _hold(self):
-        """Makes ready what follows the handles: for 100,000 vertices that takes a second."""
-        self.patches = [self.region.patch(self.region.nearest_free(handle.vertex), handle.radius)
-                        for handle in self.placed]
-        self.shape = METHODS[self.method](self.region, self.patches)
-        self.shown = self.shape.points()
+        """Makes ready what follows the handles, and brings it to where they are. For 100,000 vertices that takes a
+        second: in the background. Raises Refused."""
+        patches = self._patches(self.region, self.placed)
+        shape = METHODS[self.method](self.region, patches)
+        self.patches, self.shape = patches, shape
+        matrices = [handle.matrix for handle in self.placed]
+        self.shown, self.behind = self.region.rest, False
+        self._start(lambda stop: shape.jump(matrices, stop))
+
+    # ---- In the background
+
+    def _start(self, function):
+        if self.task:
+            self.task.abandon()
+        self.task = Background(function)
+
+    def _ready(self, context, seconds=0):
+        """Whether nothing is done in the background any more, so that the shape may be asked; what was is shown."""
+        if self.task:
+            if self.task.running(seconds):
+                return False
+            self._finish_task(context)
+        return True
+
+    def _finish_task(self, context):
+        """Waits for it, if need be."""
+        if not self.task:
+            return
+        while self.task.running(1):
+            pass
+        task, self.task = self.task, None
+        task.finish()
+        if self.changed or any((handle.matrix != np.eye(4)).any() for handle in self.placed):
+            self._show(context, done=True)
+        if self.behind:
+            self._shape_follows(context)
 
     # ---- During a movement
 
@@ -315,7 +416,9 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         return region, view_of(context.area, region)
 
     def _pivot(self, obj):
-        """The last handle's center, or the whole part's, in the world."""
+        """The last handle's center, or the whole part's, or the joint's, in the world."""
+        if self.method == "JOINT":
+            return obj.matrix_world @ Matrix(self.placed[-1].matrix) @ Vector(self.region.center)
         chosen = self.shown[self.patches[-1] if self.method == "RIGID" else self.region.free]
         return obj.matrix_world @ Vector(chosen.mean(axis=0))
 
@@ -343,8 +446,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         elif event.type in {"G", "R", "S"}:
             self._begin(context, event, event.type)
         elif event.type in {"X", "Y", "Z"}:
-            axis = "XYZ".index(event.type)
-            stage.axis = None if stage.axis == axis else axis
+            stage.constrain("XYZ".index(event.type), event.shift, context.edit_object.matrix_world)
             self._follow(context, event)
         elif event.type in DIGITS:
             stage.typed += DIGITS[event.type]
@@ -372,6 +474,13 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             return
         last = self.placed[-1]
         self.placed = [*self.placed[:-1], Handle(last.vertex, last.radius, matrix)]
+        self.behind = True
+        if self._ready(context) and self.behind:
+            self._shape_follows(context)
+        self._tell(context)
+
+    def _shape_follows(self, context):
+        self.behind = False
         try:
             self.shape.follow([handle.matrix for handle in self.placed])
         except PartwheelError as error:  # a number typed that leads nowhere
@@ -379,7 +488,6 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             return
         self.settling = True
         self._show(context)
-        self._tell(context)
 
     def _typed(self):
         try:
@@ -391,19 +499,33 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         stage = self.stage
         typed = self._typed()
         if typed is not None:
-            shift = Vector(typed if k == (stage.axis or 0) else 0 for k in range(3))
-            return Matrix.Translation(shift)
-        shift = (region_2d_to_location_3d(region, view, mouse, stage.pivot)
-                 - region_2d_to_location_3d(region, view, stage.start, stage.pivot))
-        if stage.axis is not None:
-            shift = Vector(shift[k] if k == stage.axis else 0 for k in range(3))
+            return Matrix.Translation(typed * stage.frame.col[stage.free()[0]])
+        now, before = (self._under(region, view, point) for point in (mouse, stage.start))
+        inverse = stage.frame.transposed()
+        shift = inverse @ (now - before)
+        shift = Vector(shift[k] if k in stage.free() else 0 for k in range(3))
         if snap:
             # A step that shows: the power of ten next to some 20 pixels.
             pixels = (region_2d_to_location_3d(region, view, (stage.start[0] + 20, stage.start[1]), stage.pivot)
                       - region_2d_to_location_3d(region, view, stage.start, stage.pivot)).length
             step = 10 ** round(math.log10(max(pixels, 1e-12)))
             shift = Vector(step * round(value / step) for value in shift)
-        return Matrix.Translation(shift)
+        return Matrix.Translation(stage.frame @ shift)
+
+    def _under(self, region, view, point):
+        """The place under a pixel of the region: on the line or in the plane through the pivot that the movement keeps
+        to, unless that is seen too much from its end or its edge; else as far away as the pivot."""
+        stage = self.stage
+        place = region_2d_to_location_3d(region, view, point, stage.pivot)
+        if stage.axis is None:
+            return place
+        direction, axis = region_2d_to_vector_3d(region, view, point), stage.frame.col[stage.axis]
+        slant = abs(direction.normalized().dot(axis))
+        if stage.plane and slant > GRAZING:
+            return intersect_line_plane(place, place + direction, stage.pivot, axis)
+        if not stage.plane and slant < math.sqrt(1 - GRAZING * GRAZING):
+            return intersect_line_line(stage.pivot, stage.pivot + axis, place, place + direction)[0]
+        return place
 
     def _turn(self, region, view, mouse):
         """Keeps count of how far the mouse went about the pivot."""
@@ -419,7 +541,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
     def _rotated(self, _region, view, _mouse, snap):
         stage, typed = self.stage, self._typed()
         towards_user = view.view_matrix.inverted().to_3x3().col[2]
-        axis = towards_user if stage.axis is None else Vector(float(k == stage.axis) for k in range(3))
+        axis = towards_user if stage.axis is None else stage.frame.col[stage.axis].copy()
         angle = stage.turned if axis.dot(towards_user) >= 0 else -stage.turned
         if typed is not None:
             angle = math.radians(typed)
@@ -435,25 +557,36 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             factor = typed
         elif snap:
             factor = STEP_SCALE * round(factor / STEP_SCALE)
-        factors = [factor if stage.axis in {None, k} else 1 for k in range(3)]
-        return _about(stage.pivot, Matrix.Diagonal((*factors, 1)))
+        scale = Matrix.Diagonal([factor if k in stage.free() else 1 for k in range(3)])
+        return _about(stage.pivot, (stage.frame @ scale @ stage.frame.transposed()).to_4x4())
 
     # ---- What is seen
 
     def _tick(self, context):
         """While the mouse rests the part goes on towards its shape of rest."""
+        if not self._ready(context):
+            self._tell(context)
+            return {"PASS_THROUGH"}
+        if self.confirmed:
+            return self._confirmed(context)
         if self.settling:
             self.settling = self.shape.go_on()
             self._show(context, done=not self.settling)
+        self._tell(context)
+        return {"PASS_THROUGH"}
 
     def _show(self, context, done=False):
         """done: with all that belongs to it, not only what is seen while it moves."""
         self.changed = True
-        if self.pen is None or self.pen.region is not self.region:
-            self.pen = Pen(context.edit_object, self.region)
         self.shown = self.shape.points()
-        (self.pen.write if done else self.pen.draft)(context.edit_object, self.shown)
+        pen = self._pen(context.edit_object)
+        (pen.write if done else pen.draft)(context.edit_object, self.shown)
         context.area.tag_redraw()
+
+    def _pen(self, obj):
+        if self.pen is None or self.pen.region is not self.region:
+            self.pen = Pen(obj, self.region)
+        return self.pen
 
     def _draw(self):
         obj = bpy.data.objects.get(self.object_name)
@@ -461,18 +594,24 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             return
         if self.method == "RIGID":
             handle_points.draw(obj.matrix_world, [self.shown[patch] for patch in self.patches])
+        elif self.method == "JOINT":
+            bending = self.region.free.copy()
+            bending[self.region.limb] = False
+            handle_points.draw(obj.matrix_world, [self.shown[bending]])
         if not self.stage:
             handle_gizmo.draw(self._pivot(obj), bpy.context.region, bpy.context.region_data)
 
     def _tell(self, context):
         stage = self.stage
         count = len(self.patches[-1])
-        what = f"Handle of {count} {'vertex' if count == 1 else 'vertices'}"
+        what = {"RIGID": f"Handle of {count} {'vertex' if count == 1 else 'vertices'}", "PROPORTIONAL": "The Part",
+                "JOINT": f"Joint of {self.reach:.2g} radii"}[self.method]
         if stage:
-            axis = "" if stage.axis is None else f" along {'XYZ'[stage.axis]}"
-            what = {"G": "Move", "R": "Rotate", "S": "Scale"}[stage.kind] + axis
+            what = {"G": "Move", "R": "Rotate", "S": "Scale"}[stage.kind] + stage.told()
             if stage.typed:
                 what += f": {stage.typed}"
+        if self.task:
+            what += ": getting ready" if not self.confirmed else ": settling"
         shown = stage is not None, what
         if shown != self.told:  # both bars are drawn anew each time
             self.told = shown
@@ -482,13 +621,18 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
     # ---- The end
 
     def _confirmed(self, context):
+        """Ends, once the part has its shape of rest."""
+        self.confirmed = True
+        if not self._ready(context, PATIENCE):
+            self._tell(context)
+            return {"RUNNING_MODAL"}
         if not self.changed:
             self._end(context)
             return {"CANCELLED"}
         if self.settling:
-            with _waiting(context):
-                self.shape.settle()
-            self._show(context, done=True)
+            self.settling = False
+            self._start(self.shape.settle)
+            return self._confirmed(context)
         self.handles.clear()
         for turn, placed in enumerate([*self.turns, self.placed]):
             for handle in placed:
@@ -496,12 +640,14 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
                 each.turn, each.vertex, each.radius = turn, handle.vertex, handle.radius
                 each.matrix = handle.matrix.ravel()
         self._end(context)
+        if self.recompute and bpy.ops.mesh.partwheel_build.poll():
+            bpy.ops.mesh.partwheel_build("INVOKE_DEFAULT")
         return {"FINISHED"}
 
     def _cancelled(self, context):
         try:
             if self.changed and self._still_there(context):
-                Pen(context.edit_object, self.first).restore(context.edit_object)
+                _restored(context.edit_object, self.regions)
         finally:
             self._end(context)
         return {"CANCELLED"}
@@ -514,6 +660,9 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         return (len(bm.verts), len(bm.faces)) == self.counts
 
     def _end(self, context):
+        if self.task:
+            self.task.abandon()
+            self.task = None
         if self.timer:
             context.window_manager.event_timer_remove(self.timer)
             bpy.types.SpaceView3D.draw_handler_remove(self.drawing, "WINDOW")
@@ -523,6 +672,12 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         if context.area:
             context.area.header_text_set(None)
             context.area.tag_redraw()
+
+
+def _restored(obj, regions):
+    """Puts the mesh back to before the first of these, made one after the other."""
+    for region in reversed(regions):
+        Pen(obj, region).restore(obj)
 
 
 @contextlib.contextmanager

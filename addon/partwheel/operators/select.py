@@ -29,6 +29,8 @@ class HandOff(NamedTuple):
 
 HANDOFFS = [
     HandOff("D", False, "Drag a Handle", lambda context: bpy.ops.mesh.partwheel_deform("INVOKE_DEFAULT", True)),
+    HandOff("J", False, "Turn at the Joint",
+            lambda context: bpy.ops.mesh.partwheel_deform("INVOKE_DEFAULT", True, method="JOINT")),
     *(HandOff(key, False, f"{label} Proportionally", proportional.around(key), "Transform Proportionally")
       for key, (_, label) in proportional.TRANSFORMS.items()),
     *(HandOff(key, True, f"{label} within the Part", proportional.within(key), "Transform within the Part")

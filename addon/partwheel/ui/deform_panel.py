@@ -18,6 +18,7 @@ class VIEW3D_PT_partwheel_deform(bpy.types.Panel):
         column = self.layout.column(align=True)
         column.operator_context = "INVOKE_REGION_WIN"
         column.operator("mesh.partwheel_deform", text="Drag a Handle")
+        column.operator("mesh.partwheel_deform", text="Turn at the Joint").method = "JOINT"
         column.label(text="Within the part, proportionally:")
         row = column.row(align=True)
         row.operator_context = "INVOKE_REGION_WIN"

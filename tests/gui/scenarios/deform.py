@@ -1,4 +1,5 @@
 """The story of the paper's Figure 7: a click, the wheel, a drag of the handle, for nose, tail, head and legs."""
+import bpy
 import numpy
 
 # What is dragged: where it is as shares of the model's extent, how many faces its part has at least, how far it goes as
@@ -28,6 +29,13 @@ def held(stage, x, y, faces):
     return stops[index], before
 
 
+def confirmed(stage):
+    """Enter, and what is still to be done in the background."""
+    stage.mouse.key("RET")
+    bar = bpy.types.STATUSBAR_HT_header
+    yield from stage.until("Deform has ended", lambda: bar.draw == getattr(bar, "_draw_orig", bar.draw))
+
+
 def play(stage):
     yield from stage.open("dino")
     height = stage.view.region.height
@@ -42,8 +50,7 @@ def play(stage):
         yield from stage.until(f"the {name} follows the mouse",
                                lambda: (stage.coordinates() != before)[free].any(axis=1).mean() > 0.9)
         yield from stage.screenshot(f"{number}-{name}")
-        stage.mouse.key("RET")
-        yield from stage.settle()
+        yield from confirmed(stage)
         after = stage.coordinates()
         moved = (after != before).any(axis=1)
         stage.check(not numpy.delete(moved, free).any(), f"nothing but the {name} has moved")

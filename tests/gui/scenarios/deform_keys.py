@@ -1,7 +1,7 @@
 """The handle turned, scaled and moved by keys: Esc takes all of it back, bit for bit; typed numbers; one undo step."""
 import numpy
 
-from scenarios.deform import held
+from scenarios.deform import confirmed, held
 
 
 def play(stage):
@@ -40,8 +40,7 @@ def play(stage):
         stage.mouse.key(key)
     yield from stage.until("the number moves it", lambda: (stage.coordinates() != before).any())
     stage.mouse.key("RET")
-    yield from stage.settle()
-    stage.mouse.key("RET")
+    yield from confirmed(stage)
     yield from stage.ended()
     after = stage.coordinates()
     matrix = numpy.array(stage.object.matrix_world)[:3, :3]
@@ -52,3 +51,38 @@ def play(stage):
     yield from stage.until("one Ctrl Z takes it back", lambda: (stage.coordinates() == before).all())
     stage.mouse.key("Z", ctrl=True, shift=True)
     yield from stage.until("Shift Ctrl Z does it again", lambda: (stage.coordinates() == after).all())
+
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.until("undone once more", lambda: (stage.coordinates() == before).all())
+
+    # Shift Z: in the plane across Z; Z twice: along the object's own. P ends it and finds the parts of the new shape.
+    part, before = yield from held(stage, 0.16, 0.36, 700)
+    x, y = stage.mouse.x, stage.mouse.y
+    stage.mouse.key("G")
+    stage.mouse.key("Z", shift=True)
+    stage.mouse.move(x + 30, y + 20)
+    yield from stage.until("it follows", lambda: (stage.coordinates() != before).any())
+    stage.mouse.move(x + 60, y + 40)
+    yield from stage.settle()
+    stage.mouse.key("RET")
+    yield from stage.settle()
+    shift = (stage.coordinates() - before) @ matrix.T
+    farthest = shift[numpy.linalg.norm(shift, axis=1).argmax()]
+    stage.check(abs(farthest[2]) < 0.05 * numpy.linalg.norm(farthest) > 0, f"the handle stayed in the plane ({farthest})")
+    stage.mouse.key("ESC")
+    yield from stage.until("Esc puts it back", lambda: (stage.coordinates() == before).all())
+    yield from stage.ended()
+    part, before = yield from held(stage, 0.16, 0.36, 700)
+    for key in ("G", "Z", "Z", "ONE"):
+        stage.mouse.key(key)
+    yield from stage.until("the number moves it", lambda: (stage.coordinates() != before).any())
+    stage.mouse.key("RET")
+    yield from stage.settle()
+    stage.mouse.key("P")
+    yield from stage.until("the parts are found anew",
+                           lambda: stage.session.state(stage.object.data)[0].name == "FITS", 120)
+    yield from stage.ended()
+    shift = stage.coordinates() - before
+    farthest = shift[numpy.linalg.norm(shift, axis=1).argmax()]
+    own = farthest / numpy.linalg.norm(farthest)
+    stage.check(numpy.abs(own - [0, 0, 1]).max() < 0.05, f"along the object's own Z ({own})")

@@ -4,6 +4,8 @@ import numpy
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mathutils import Vector
 
+from scenarios.deform import confirmed
+
 
 def pixel(stage, point):
     """Of the window, for a point of the object's."""
@@ -60,8 +62,7 @@ def play(stage):
     yield from stage.drag("LEFTMOUSE", 0, 60)
     yield from stage.until("the arrow moves it", lambda: (stage.coordinates() != before).any())
     yield from stage.screenshot("mirrored")
-    stage.mouse.key("RET")
-    yield from stage.settle()
+    yield from confirmed(stage)
     after = stage.coordinates()
     shift = after - before
     moved = numpy.flatnonzero((shift != 0).any(axis=1))

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A limb turned at its joint: on real models, on limbs that people marked; where the joint is, on shapes that are known.
+"""
+
+import math
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapes
+from partwheel.core.deform import FIXED, FREE, Deformation, surface_distances
+from partwheel.core.joint import REACH, joint
+from test_deform import cylinder, edges_of, lengths, normals, turn
+
+# A limb is what lies within half of a way along the surface from its tip: (model, the direction in which it ends, that
+# way as a share of the model's diagonal). Away from the joint: farther from its border than 2.5 radii of the limb there.
+AWAY = 2.5
+LIMBS = [("man", (-1, 0, 0), 0.3), ("man", (0, 1, 0), 0.4), ("man", (0, 0, -1), 0.3), ("homer", (1, 0, 0), 0.3),
+         ("elephant", (0, 0, -1), 0.4), ("elephant", (0, 1, 0), 0.3), ("diplodocus", (1, 0, 0), 0.2),
+         ("diplodocus", (-1, 0, 0), 0.3), ("diplodocus", (0, 0, -1), 0.3), ("dino", (-1, 0, 0), 0.3),
+         ("armadillo", (0, 0, 1), 0.3), ("armadillo", (1, 0, 0), 0.3), ("bull", (0, 0, -1), 0.3),
+         ("bull", (0, 1, 0), 0.2), ("camel", (0, -1, 0), 0.2), ("homer", (0, 0, 1), 0.3)]
+PSB = Path(os.environ.get("PARTWHEEL_PSB", ""))
+
+
+def folds(rest, now, triangles):
+    """How many edges were folded over: between two faces less than 90 degrees apart that are more than 150 apart now."""
+    side = np.sort(np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]))
+    order = np.lexsort(side.T[::-1])
+    same = np.flatnonzero((side[order[1:]] == side[order[:-1]]).all(axis=1))
+    one, other = order[same] % len(triangles), order[same + 1] % len(triangles)
+
+    def cosine(points):
+        n = normals(points, triangles)
+        n = n / np.maximum(np.linalg.norm(n, axis=1), 1e-30)[:, None]
+        return (n[one] * n[other]).sum(axis=1)
+
+    return ((cosine(rest) > 0) & (cosine(now) < math.cos(math.radians(150)))).sum()
+
+
+def turned(vertices, triangles, found, degrees):
+    """Where the vertices are after the part was turned at its joint, about an axis across the limb."""
+    roles = found.roles()
+    axis = np.cross(vertices[roles == 0].mean(axis=0) - found.center, (0.3, 0.5, 0.8))
+    deformation = Deformation(vertices, triangles, roles)
+    deformation.move_at_once([turn(axis, degrees, found.center)])
+    return deformation.positions()
+
+
+@pytest.mark.parametrize("name, direction, share", LIMBS)
+def test_a_limb_keeps_its_lengths(name, direction, share):
+    """By 90 degrees: edges away from the joint within 5 %. By 45: no face turned over."""
+    vertices, triangles, *_ = shapes.off(name)
+    length = share * np.linalg.norm(np.ptp(vertices, axis=0))
+    along = surface_distances(vertices, triangles, [(vertices @ np.array(direction, float)).argmax()])
+    at_joint = np.abs(along - length / 2) < 0.05 * length
+    middle = vertices[at_joint].mean(axis=0)
+    radius = np.linalg.norm(vertices[at_joint] - middle, axis=1).mean()
+    found = joint(vertices, triangles, (along[triangles] < length / 2).any(axis=1))
+    assert np.linalg.norm(found.center - middle) < radius
+    assert 0.7 < found.radius / radius < 1.3
+    edges = edges_of(triangles)
+    border = np.intersect1d(triangles[(along[triangles] < length / 2).any(axis=1)],
+                            triangles[(along[triangles] >= length / 2).all(axis=1)])
+    away = (surface_distances(vertices, triangles, border)[edges] > AWAY * radius).all(axis=1)
+    limb = away & (along[edges] < length / 2).all(axis=1)
+    assert limb.sum() > 100
+    now = turned(vertices, triangles, found, 90)
+    change = np.abs(lengths(now, edges) / lengths(vertices, edges) - 1)
+    assert change[away].max() < 0.05
+    assert np.percentile(change[~away], 99.9) > 0.1  # it did bend
+    assert np.linalg.norm(now - vertices, axis=1)[edges[limb]].min() > 0.5 * radius  # and the limb went along
+    assert folds(vertices, turned(vertices, triangles, found, 45), triangles) == 0
+
+
+def test_where_the_joint_of_a_tube_is():
+    vertices, triangles = cylinder()
+    middle = vertices[triangles].mean(axis=1)[:, 2]
+    found = joint(vertices, triangles, middle > 6)
+    np.testing.assert_allclose(found.center, (0, 0, 6), atol=1e-9)
+    assert found.loops == 1
+    assert found.radius == pytest.approx(1, rel=0.02)
+    assert found.depth() == pytest.approx(4, rel=0.01)
+    z, roles = vertices[:, 2], found.roles()
+    assert (roles[z > 6 + REACH + 0.2] == 0).all() and (z[roles == 0] > 6 + REACH - 0.2).all()
+    assert (roles[z < 6 - REACH - 0.2] == FIXED).all() and (z[roles == FIXED] < 6 - REACH + 0.2).all()
+    roles = joint(vertices, triangles, middle > 9).roles(5)  # a stump keeps half of itself, the other side is deep
+    assert (z[roles == 0].min(), z[roles == FREE].min()) == pytest.approx((9.5, 4.5), abs=0.2)
+
+
+def test_several_borders_and_none():
+    vertices, triangles = cylinder()
+    vertices = vertices * np.where(vertices[:, 2:] > 5, [2, 2, 1], 1)
+    middle = vertices[triangles].mean(axis=1)[:, 2]
+    found = joint(vertices, triangles, (middle > 3) & (middle < 7))
+    assert found.loops == 2
+    np.testing.assert_allclose(found.center, (0, 0, 7), atol=1e-9)  # the longer one
+    assert found.radius == pytest.approx(2, rel=0.02)
+    assert joint(vertices, triangles, np.ones(len(triangles), bool)) is None
+    twice = np.vstack([triangles, triangles + len(vertices)])
+    assert joint(np.vstack([vertices, vertices + 9]), twice, np.arange(len(twice)) < len(triangles)) is None
+
+
+@pytest.mark.skipif(not PSB.is_dir() or not str(PSB.name), reason="PARTWHEEL_PSB names no directory with off and seg")
+@pytest.mark.parametrize("first, last", [(1, 20), (121, 140), (281, 300), (381, 400)])
+def test_limbs_that_people_marked(first, last):
+    """Every part with one border that is longer than wide, of the first segmentation of humans, octopuses, armadillos
+    and four-legged animals: lengths at 90 degrees, faces at 45."""
+    tried = 0
+    for path in sorted(PSB.glob("off/*.off")):
+        if not first <= int(path.stem) <= last:
+            continue
+        numbers = path.read_text().split()
+        count, faces = int(numbers[1]), int(numbers[2])
+        vertices = np.array(numbers[4:4 + 3 * count], float).reshape(-1, 3)
+        triangles = np.array(numbers[4 + 3 * count:4 + 3 * count + 4 * faces], int).reshape(-1, 4)[:, 1:]
+        labels = np.loadtxt(min(PSB.glob(f"seg/{path.stem}/*.seg")), int)
+        edges = edges_of(triangles)
+        rest = lengths(vertices, edges)
+        for label in np.unique(labels):
+            found = joint(vertices, triangles, labels == label)
+            if found is None or found.loops > 1 or not 2 * AWAY * found.radius < found.depth():
+                continue
+            tried += 1
+            away = (found.distance[edges] > AWAY * found.radius).all(axis=1) & (rest > 1e-9 * rest.max())
+            change = lengths(turned(vertices, triangles, found, 90), edges)[away] / rest[away] - 1
+            assert np.abs(change).max() < 0.05, (path.stem, label)
+            assert folds(vertices, turned(vertices, triangles, found, 45), triangles) == 0, (path.stem, label)
+    assert tried > 20
