@@ -78,9 +78,10 @@ def play(stage):
     yield from stage.until("the number moves it", lambda: (stage.coordinates() != before).any())
     stage.mouse.key("RET")
     yield from stage.settle()
+    old = stage.session.known(stage.object.data)
     stage.mouse.key("P")
     yield from stage.until("the parts are found anew",
-                           lambda: stage.session.state(stage.object.data)[0].name == "FITS", 120)
+                           lambda: stage.session.known(stage.object.data) is not old, 120)
     yield from stage.ended()
     shift = stage.coordinates() - before
     farthest = shift[numpy.linalg.norm(shift, axis=1).argmax()]
