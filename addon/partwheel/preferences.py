@@ -9,7 +9,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
 
     save_with_file: bpy.props.BoolProperty(
         name="Save Parts in .blend Files",
-        description="Parts that were built are there again when the file is opened. It grows by about 65 bytes a face",
+        description="Parts that were built are there again when the file is opened. It grows by about 40 bytes a face",
         default=True,
     )
     parts: bpy.props.EnumProperty(

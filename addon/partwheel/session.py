@@ -14,7 +14,7 @@ import bmesh
 import bpy
 
 from . import mesh_arrays, stored
-from .core import Hierarchy, Mode
+from .core import Hierarchy, Mode, PartwheelError, Status
 from .core.worker import Job, available_memory
 from .mesh_arrays import Fingerprint
 from .preferences import preferences
@@ -28,6 +28,7 @@ class Entry:
     counts: tuple  # of vertices and polygons then
     hierarchy: Hierarchy
     packed: bytes = None  # for files; made when a file is first saved
+    open_surfaces: bool = False  # the user wants this mesh taken for a thin solid, should it be a sheet
     seen: Fingerprint = None  # the mesh as it was when last looked at,
     sure: bool = True  # and whether it still is, for all that Blender has told since
 
@@ -61,7 +62,9 @@ _entries = {}
 _unopened = {}  # what came with the file, packed
 _running = None  # the Build that has not ended
 _picks = {}  # the part that was confirmed last in each mesh
+_sheets = {}  # how many vertices and polygons a mesh had when it was refused for being a sheet
 _revisions = {}  # how often Blender has told that a mesh's geometry, or what is hidden of it, changed
+_KEPT = _entries, _unopened, _picks, _sheets, _revisions
 _undos = 0
 
 
@@ -119,6 +122,9 @@ def _carried(mesh):
 
 
 def _counts(mesh):
+    if mesh.is_editmode:
+        bm = bmesh.from_edit_mesh(mesh)
+        return len(bm.verts), len(bm.faces)
     return len(mesh.vertices), len(mesh.polygons)
 
 
@@ -163,13 +169,15 @@ class Build:
     """A build of the object's mesh in a process of its own. The mesh is not changed, nor kept from changing."""
 
     def __init__(self, obj, quality=0.0, open_surfaces=False, mode=None):
-        """mode: a core.Mode; None: the preferences'."""
+        """mode: a core.Mode; None: the preferences'. open_surfaces holds for later builds of the mesh too."""
         global _running
         mesh = mesh_arrays.up_to_date(obj)
         self.name = mesh.name
         self._key, self._counts, self._built = key(mesh), _counts(mesh), mesh_arrays.fingerprint(mesh)
+        former = _entries.get(self._key)
+        self._open_surfaces = open_surfaces or (former is not None and former.open_surfaces)
         share, seconds = preferences().memory_share / 100, 60 * preferences().time_limit
-        self.job = Job(*mesh_arrays.surface(mesh), quality=quality, open_surfaces=open_surfaces,
+        self.job = Job(*mesh_arrays.surface(mesh), quality=quality, open_surfaces=self._open_surfaces,
                        mode=Mode[preferences().parts] if mode is None else mode,
                        memory_limit=int(share * available_memory()), time_limit=seconds or None)
         _running = self
@@ -184,6 +192,10 @@ class Build:
         global _running
         try:
             built = self.job.result()
+        except PartwheelError as error:
+            if error.status == Status.NOT_SOLID:
+                _sheets[self._key] = self._counts
+            raise
         finally:
             if _running is self:
                 _running = None
@@ -196,11 +208,12 @@ class Build:
             raise Outdated(f"{mesh.name} was edited while its parts were being built, so they were left aside. Build "
                            "them again when the mesh is as you want it.")
         alive = {key(other) for other in bpy.data.meshes}
-        for kept in (_entries, _unopened, _picks, _revisions):
+        for kept in _KEPT:
             for gone in kept.keys() - alive:
                 del kept[gone]
         _unopened.pop(self._key, None)
-        _entries[self._key] = Entry(self._built, self._counts, built, seen=now)
+        _sheets.pop(self._key, None)
+        _entries[self._key] = Entry(self._built, self._counts, built, open_surfaces=self._open_surfaces, seen=now)
         return built
 
 
@@ -236,14 +249,18 @@ def state(mesh):
         unopened = key(mesh) in _unopened or stored.PROPERTY in mesh
         return (State.UNOPENED if unopened else State.NONE), None
     if mesh.is_editmode:
-        bm = bmesh.from_edit_mesh(mesh)
-        if (len(bm.verts), len(bm.faces)) != entry.counts:
+        if _counts(mesh) != entry.counts:
             return State.CHANGED, entry
     elif not entry.sure:
         entry.look(mesh_arrays.fingerprint(mesh))
     if entry.seen.topology != entry.built.topology:
         return State.CHANGED, entry
     return (State.FITS if entry.seen == entry.built else State.MOVED), entry
+
+
+def refused_as_sheet(mesh):
+    """Whether the last build refused the mesh for being a sheet, as far as the counts tell that it is the same."""
+    return _sheets.get(key(mesh)) == _counts(mesh)
 
 
 def known(mesh):
@@ -312,7 +329,7 @@ def _after_saving(*_):
 def _after_loading(*_):
     """Another file was opened: its meshes are others."""
     _stop()
-    for kept in (_entries, _unopened, _picks, _revisions):
+    for kept in _KEPT:
         kept.clear()
     for mesh in bpy.data.meshes:
         if stored.PROPERTY in mesh and not mesh.library:
@@ -342,5 +359,5 @@ def unregister():
         if hasattr(bpy.app.handlers, name):
             getattr(bpy.app.handlers, name).remove(function)
     _stop()
-    for kept in (_entries, _unopened, _picks, _revisions):
+    for kept in _KEPT:
         kept.clear()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Building for a mesh: the right arrays, nothing changed, named errors."""
 
+import types
 from pathlib import Path
 
 import bpy
@@ -82,6 +83,53 @@ class Build(MeshTest):
         self.assertIsNone(self.kept(obj))
         self.assertEqual(bpy.ops.mesh.partwheel_build(open_surfaces=True), {"FINISHED"})
         self.assertEqual(len(self.kept(obj).order), len(SHEET[1]))
+        self.edit(obj)
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.subdivide()
+        self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=0), {"FINISHED"})  # the choice holds
+        self.assertEqual(len(self.kept(obj).order), 4 * len(SHEET[1]))
+
+    def panel(self):
+        """The operators that the panel offers, with the properties that they are given; and its texts."""
+        offered, texts = {}, []
+
+        class Layout:
+            operator_context = ""
+
+            def operator(self, name, text="", icon=""):
+                return offered.setdefault((name, text), types.SimpleNamespace())
+
+            def label(self, text="", icon=""):
+                texts.append(text)
+
+            def separator(self):
+                pass
+
+            def column(self, **_):
+                return self
+
+            row = column
+
+        panel = types.SimpleNamespace(layout=Layout(), _describe=lambda *_: None)
+        bpy.types.VIEW3D_PT_partwheel.draw(panel, bpy.context)
+        return offered, texts
+
+    def test_the_panel_offers_to_take_a_sheet(self):
+        offer = "mesh.partwheel_build", "Take as Thin Solid"
+        obj = self.add(*SHEET)
+        self.assertNotIn(offer, self.panel()[0])
+        self.assertIn("panel", self.refusal())
+        offered, texts = self.panel()
+        self.assertTrue(offered[offer].open_surfaces)
+        self.assertTrue(any("sheet" in text for text in texts))
+        obj.data.polygons[0].select = True
+        self.edit(obj)
+        self.assertIn(offer, self.panel()[0])
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.extrude_region_move(TRANSFORM_OT_translate={"value": (0, 0, 1)})
+        self.assertNotIn(offer, self.panel()[0])  # another mesh now
+        bpy.ops.mesh.partwheel_build()
+        self.assertNotIn(offer, self.panel()[0])
 
     def test_a_mesh_without_faces(self):
         for vertices in ([], [(0, 0, 0), (1, 0, 0)]):

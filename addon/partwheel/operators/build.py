@@ -10,7 +10,7 @@ import time
 import bpy
 
 from .. import session
-from ..core import LibraryError, PartwheelError
+from ..core import LibraryError, PartwheelError, Status
 
 TICK = 0.1  # seconds between two looks at the worker
 BUSY = "Parts are being built already; Esc over the 3D view stops that"
@@ -107,8 +107,9 @@ class Building:
             self.hierarchy = self.build.finish()
         except PartwheelError as error:
             cancelled = error.name == "cancelled"
+            where = " The panel Partwheel in the sidebar does that." if error.status == Status.NOT_SOLID else ""
             report({"INFO" if cancelled else "ERROR"}, "Cancelled: no parts were built." if cancelled
-                   else f"No parts for {name} ({error.name}): {error}")
+                   else f"No parts for {name} ({error.name}): {error}{where}")
             return
         except session.Outdated as reason:
             report({"WARNING"}, str(reason))

@@ -16,6 +16,7 @@ STATES = {
     State.MOVED: ["Vertices have moved since:", "the parts can be recomputed"],
     State.CHANGED: ["The mesh has changed: its parts", "are built anew at the next use"],
 }
+SHEET = ["A sheet, not a solid: thicken it,", "close it, or have it taken for", "a thin solid"]
 BUILD = {State.FITS: "Recompute", State.MOVED: "Recompute", State.CHANGED: "Recompute"}
 RUNGS = {
     "exact": "From the mesh as it is", "repaired": "From a repaired copy", "wrapped": "From a wrap around it",
@@ -50,6 +51,10 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
         column = layout.column(align=True)
         for line in STATES[state]:
             column.label(text=line)
+        if state in {State.NONE, State.CHANGED} and session.refused_as_sheet(context.active_object.data):
+            for line in SHEET:
+                column.label(text=line)
+            column.operator("mesh.partwheel_build", text="Take as Thin Solid").open_surfaces = True
         row = layout.row(align=True)
         row.operator("mesh.partwheel_build", text=BUILD.get(state, "Build"))
         if state != State.NONE:
