@@ -10,6 +10,7 @@
     api.select(obj, face=42, level=2)  # a click on face 42 and two notches up
     labels = api.cut(obj, parts=8)     # (F,) the part of each face, 0 to 7
     copy = api.copy_part(obj, node)    # the part as a closed solid, a new object
+    api.swap(obj, node, other)         # exchanged for the most compatible part of another object
 
 Nodes are numbers of the object's hierarchy, a core.Hierarchy, which build() returns and hierarchy() finds. The other
 functions build it if there is none. All raise core.PartwheelError, whose text says what is wrong, or ValueError for an
@@ -19,7 +20,7 @@ object that holds no mesh; build() also RuntimeError while another build is unde
 import numpy
 from mathutils import Vector
 
-from . import composition, deforming, placement, selection, session, solids, union, wheel
+from . import composition, deforming, placement, selection, session, solids, swapping, union, wheel
 from .core.joint import REACH
 
 
@@ -120,6 +121,38 @@ def unite(target, others, blend=0.0):
     if any(obj.mode == "EDIT" for obj in (target, *others)):
         raise ValueError("Leave Edit Mode before solids are united by a script.")
     union.unite(target, others, blend)
+
+
+def compatible(obj, node, other):
+    """[(node, score), ...] parts of another mesh object that can stand in for the node, the most compatible first; each
+    clearly another part than those before. score: 1 for the same shape, down to 0. The node is None for the other
+    object itself, if it is a part that was copied as a solid. other may be obj: then parts beside the node.
+    swapping.NotSwapped: the node is the whole, or has no border; or the other has no parts."""
+    return [(offer.node, offer.score) for offer in _place(obj, node, other).offers([other])]
+
+
+def swap(obj, node, other, other_node=None, scale=1.0, angle=0.0, depth=0.0, mirror=False,
+         blend=0.0):
+    """Exchanges the node for a part of another object: what is left without it is united with a copy of the other's
+    part, brought there border to border, of its size, and turned as it fits best. other_node: None for the most compatible
+    one. scale, angle (about the border's normal, radians), depth (radii of the border) change that; mirror takes its
+    mirror image; blend is that of unite(). The other object stays as it is. The node, or None if the other object itself stood in.
+
+    swapping.NotSwapped, solids.NotClosed, union.NotUnited, before anything has changed. Outside Edit Mode only."""
+    place = _place(obj, node, other)
+    if obj.mode == "EDIT":
+        raise ValueError(f"{obj.name} is in Edit Mode. Leave it before a part is exchanged by a script.")
+    offer = place.offers([other])[0] if other_node is None else place.offer(other, other_node)
+    place.swap(offer, swapping.Adjustment(scale, angle, depth, mirror), blend)
+    return offer.node
+
+
+def _place(obj, node, other):
+    built = hierarchy(obj)
+    if other.type == "MESH" and placement.caps(other.data) is None:
+        hierarchy(other)
+    _check(other)
+    return swapping.Place(obj, built, node)
 
 
 def _bounds(built, parts, height):

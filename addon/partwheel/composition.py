@@ -9,11 +9,11 @@ from . import solids
 from .mesh_arrays import read
 
 
-def copied(obj, hierarchy, node, options=solids.Options()):
-    """A new object with the part as a closed mesh, in the place of the part."""
+def copied(obj, hierarchy, node, options=solids.Options(), collection=None):
+    """A new object with the part as a closed mesh, in the place of the part; beside the object, or in a collection."""
     update_matrices()
     mesh = solids.part(obj, hierarchy, *_slice(hierarchy, node), options)
-    return _beside(obj, mesh, f"{obj.name} part")
+    return _beside(obj, mesh, f"{obj.name} part", collection)
 
 
 def removed(obj, hierarchy, node, options=solids.Options()):

@@ -66,6 +66,11 @@ DEPTH = Key("DEPTH", frozenset({"PAGE_UP", "PAGE_DOWN"}), "Depth", names="Page U
 FIT = Key("FIT", frozenset({"F"}), "Fit Border", ("EVENT_F",))
 MIRROR = Key("MIRROR", frozenset({"M"}), "Mirror Copy", ("EVENT_M",))
 SIGNS = {"WHEELUPMOUSE": 1, "NUMPAD_PLUS": 1, "PAGE_UP": 1, "WHEELDOWNMOUSE": -1, "NUMPAD_MINUS": -1, "PAGE_DOWN": -1}
+# While compatible parts are offered: those in pairs as above, with other keys held.
+OFFER = Key("OFFER", frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "UP_ARROW", "DOWN_ARROW"}), "Next, Previous Part",
+            names="Wheel")
+SWAPPING = (OFFER, TURN, SIZE._replace(names="Ctrl Wheel"), DEPTH, MIRROR._replace(label="Mirror"),
+            CLICK._replace(label="Swap"), NAVIGATE, CANCEL)
 PLACING = (SIZE, TURN, DEPTH, FIT, MIRROR, CLICK._replace(label="Confirm"), NAVIGATE, CANCEL)
 
 SCROLL_STEP, DRAG_STEP = 30, 24  # pixels of a trackpad's scroll, and of a drag, that count as a notch

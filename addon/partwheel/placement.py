@@ -9,6 +9,7 @@ from mathutils import Matrix, Quaternion, Vector
 
 from . import mesh_arrays
 from .composition import home, update_matrices
+from .core import compatible
 from .mesh_arrays import read
 from .solids import CAP
 
@@ -25,53 +26,26 @@ class Border(NamedTuple):
     radius: float
 
 
-def border(obj, near=None):
-    """The object's Border; None if its mesh has no caps."""
-    mesh = obj.data
+def caps(mesh):
+    """(F,) bool: the faces that close a mesh where it was cut; None if nothing is marked so."""
     layer = mesh.attributes.get(CAP)
     if not layer or (layer.domain, layer.data_type) != ("FACE", "BOOLEAN"):
         return None
-    caps = np.flatnonzero(read(layer.data, "value", bool))
-    if not len(caps):
+    return read(layer.data, "value", bool)
+
+
+def border(obj, near=None):
+    """The object's Border; None if its mesh has no caps."""
+    marks = caps(obj.data)
+    if marks is None or not marks.any():
         return None
-    triangles, polygons = mesh_arrays.triangles(mesh)
-    triangles = triangles[np.isin(polygons, caps)]
-    matrix = np.array(obj.matrix_world)
-    places = read(mesh.vertices, "co", np.float32, 3)
-    corners = (places @ matrix[:3, :3].T + matrix[:3, 3])[triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
-    if obj.matrix_world.is_negative:
-        normals = -normals
-    areas, middles = np.linalg.norm(normals, axis=1), corners.mean(axis=1)
-    found = []
-    for group in _groups(places[triangles]):
-        area = areas[group].sum()
-        if area > 0:
-            found.append(Border(Vector((areas[group, None] * middles[group]).sum(axis=0) / area),
-                                Vector(normals[group].sum(axis=0)).normalized(), float(np.sqrt(area / np.pi))))
+    triangles, polygons = mesh_arrays.triangles(obj.data)
+    places = read(obj.data.vertices, "co", np.float32, 3).astype(float)
+    found = [Border(Vector(each.middle), Vector(each.normal), each.radius)
+             for each in compatible.borders(places, triangles[marks[polygons]], np.array(obj.matrix_world))]
     if not found:
         return None
-    if near is None:
-        return max(found, key=lambda each: each.radius)
-    return min(found, key=lambda each: (each.middle - near).length)
-
-
-def _groups(corners):
-    """Indices of triangles (T,3,3) in groups that share corners: labels spread until nothing changes. By place: where
-    caps only touch, a part may have two vertices and the rest one, or the other way round."""
-    places, triangles = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
-    triangles = triangles.reshape(-1, 3)
-    label = np.arange(len(places))
-    while True:
-        least = label[triangles].min(axis=1)
-        spread = label.copy()
-        np.minimum.at(spread, triangles.ravel(), np.repeat(least, 3))
-        spread = spread[spread]
-        if np.array_equal(spread, label):
-            break
-        label = spread
-    of = label[triangles[:, 0]]
-    return [np.flatnonzero(of == group) for group in np.unique(of)]
+    return found[0] if near is None else min(found, key=lambda each: (each.middle - near).length)
 
 
 def anchor(obj):

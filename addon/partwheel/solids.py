@@ -74,10 +74,7 @@ def remove(obj, hierarchy, tet_first, tet_last, options=Options()):
     """Takes the part out of the object's mesh, which must not be in Edit Mode, and closes the hole. Raises
     PartwheelError or NotClosed before anything has changed."""
     target = obj.data
-    if any(other.data == target and any(each.type == "MULTIRES" and each.total_levels for each in other.modifiers)
-           for other in bpy.data.objects):
-        raise NotClosed(f"{obj.name} is sculpted in several resolutions, which would be lost. Apply its "
-                        "Multiresolution modifier first, or copy the part.")
+    check_resolution(obj)
     if hierarchy.summary.rung == "exact":
         solid = _exactly(target, hierarchy, hierarchy.solid_of_slice(tet_last, tet_first), alone=False)
     else:
@@ -90,6 +87,14 @@ def remove(obj, hierarchy, tet_first, tet_last, options=Options()):
     if normals is not None:
         mesh_arrays.set_custom_normals(target, normals)
     target.update()
+
+
+def check_resolution(obj):
+    """Raises NotClosed if the object's mesh can't be given other faces without a loss that nobody would expect."""
+    if any(other.data == obj.data and any(each.type == "MULTIRES" and each.total_levels for each in other.modifiers)
+           for other in bpy.data.objects):
+        raise NotClosed(f"{obj.name} is sculpted in several resolutions, which would be lost. Apply its "
+                        "Multiresolution modifier first, or copy the part.")
 
 
 def _carved(mesh, hierarchy, solid, tet_first, tet_last, options, alone):

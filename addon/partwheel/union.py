@@ -26,12 +26,13 @@ class NotUnited(Exception):
     """Why meshes can't be united. str() is a sentence for the user."""
 
 
-def unite(target, others, blend=0.0):
+def unite(target, others, blend=0.0, instead=None):
     """Makes the target's mesh the union of it, as it is without modifiers, and of the other objects, with theirs. The
-    others stay. blend: the width of a smooth transition on either side of each seam, times the seam's radius. Returns
-    the solver that did it. Raises NotUnited before anything has changed."""
+    others stay. blend: the width of a smooth transition on either side of each seam, times the seam's radius. instead:
+    a mesh to be taken for the target's own. Returns the solver that did it. Raises NotUnited before anything has
+    changed."""
     slots = []
-    base = _input(target, target.data, slots)
+    base = _input(target, instead or target.data, slots)
     solvers = []
     try:
         if blend > 0:

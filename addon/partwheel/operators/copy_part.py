@@ -7,19 +7,12 @@ from .. import composition, session, solids
 from ..core import PartwheelError
 
 
-class _AsSolid:
-    """What the three share: caps, Edit Mode, errors."""
+class OnParts:
+    """What operators on an object with parts share: Edit Mode, errors."""
 
     bl_options = {"REGISTER", "UNDO"}
     edits = False  # whether it changes the mesh itself: then Edit Mode goes on afterwards
-
-    smooth: bpy.props.BoolProperty(
-        name="Smooth Caps", description="Close the part with a smooth surface, instead of the flat facets inside the "
-        "solid that divide it from the rest", default=False,
-    )
-    material: bpy.props.BoolProperty(
-        name="Cap Material", description="Give the caps a material of their own", default=False,
-    )
+    refusals = PartwheelError, solids.NotClosed  # with sentences for the user
 
     @classmethod
     def poll(cls, context):
@@ -42,7 +35,7 @@ class _AsSolid:
             self.work(context, obj, hierarchy)
             if was_edited and self.edits:
                 bpy.ops.object.mode_set(mode="EDIT")
-        except (PartwheelError, solids.NotClosed) as error:
+        except self.refusals as error:
             if was_edited and obj.mode != "EDIT":
                 bpy.ops.object.mode_set(mode="EDIT")
             self.report({"ERROR"}, str(error))
@@ -55,12 +48,24 @@ class _AsSolid:
             raise solids.NotClosed(f"{obj.name} has no parts for its mesh as it is now. Build them first.")
         return found
 
+
+class _AsSolid(OnParts):
+    """Makes caps."""
+
+    smooth: bpy.props.BoolProperty(
+        name="Smooth Caps", description="Close the part with a smooth surface, instead of the flat facets inside the "
+        "solid that divide it from the rest", default=False,
+    )
+    material: bpy.props.BoolProperty(
+        name="Cap Material", description="Give the caps a material of their own", default=False,
+    )
+
     def caps(self):
         return solids.Options(self.smooth, self.material)
 
 
-class _OnPart(_AsSolid):
-    """Acts on a node, or on the part that was picked last."""
+class OnPart:
+    """Acts on a node, or on the part that was picked last. Mixed into one of the above."""
 
     node: bpy.props.IntProperty(
         name="Node", description="The part, as a number of the hierarchy; -1: the part that was picked last",
@@ -79,7 +84,7 @@ class _OnPart(_AsSolid):
         return found
 
 
-class MESH_OT_partwheel_copy(_OnPart, bpy.types.Operator):
+class MESH_OT_partwheel_copy(OnPart, _AsSolid, bpy.types.Operator):
     """Copy the picked part as a solid: a new object, closed where it was cut; Ctrl C, Ctrl V take it to other files"""
 
     bl_idname = "mesh.partwheel_copy"
@@ -89,7 +94,7 @@ class MESH_OT_partwheel_copy(_OnPart, bpy.types.Operator):
         only(context, [composition.copied(obj, hierarchy, self.node, self.caps())])
 
 
-class MESH_OT_partwheel_remove(_OnPart, bpy.types.Operator):
+class MESH_OT_partwheel_remove(OnPart, _AsSolid, bpy.types.Operator):
     """Take the picked part out of the mesh and close the hole"""
 
     bl_idname = "mesh.partwheel_remove"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The part of the panel for modelling with parts: copy, remove, split; place, unite."""
+"""The part of the panel for modelling with parts: copy, remove, split; swap, place, unite."""
 
 import bpy
 
@@ -16,9 +16,10 @@ class VIEW3D_PT_partwheel_copy(bpy.types.Panel):
         column.operator("mesh.partwheel_copy")
         column.operator("mesh.partwheel_remove")
         column.operator("mesh.partwheel_split")
+        column = self.layout.column(align=True)
+        column.operator_context = "INVOKE_REGION_WIN"
+        column.operator("mesh.partwheel_swap")
         if context.mode == "OBJECT":
-            column = self.layout.column(align=True)
-            column.operator_context = "INVOKE_REGION_WIN"
             column.operator("object.partwheel_place")
             column.operator("object.partwheel_unite")
 

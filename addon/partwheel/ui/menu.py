@@ -35,14 +35,15 @@ def _entry(text, write):
 def draw_part_mesh(self, _context):
     self.layout.separator()
     self.layout.operator_context = "INVOKE_REGION_WIN"
-    for operator in ("mesh.partwheel_deform", "mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_split"):
+    for operator in ("mesh.partwheel_deform", "mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_split",
+                     "mesh.partwheel_swap"):
         self.layout.operator(operator)
 
 
 def draw_solids_object(self, _context):
     self.layout.separator()
     self.layout.operator_context = "INVOKE_REGION_WIN"
-    for operator in ("mesh.partwheel_split", "object.partwheel_place", "object.partwheel_unite"):
+    for operator in ("mesh.partwheel_split", "mesh.partwheel_swap", "object.partwheel_place", "object.partwheel_unite"):
         self.layout.operator(operator)
 
 

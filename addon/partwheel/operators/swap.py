@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""mesh.partwheel_swap: the picked part is exchanged for a compatible one of another object. The wheel goes through what
+is offered; meanwhile the object shows what would be left of it, and the part offered stands in its place."""
+
+import math
+
+import bpy
+
+from .. import keys, solids, swapping, union
+from ..core import PartwheelError
+from ..ui import status
+from .copy_part import OnPart, OnParts
+from .place import DEPTH_STEP, PASS, SIZE_STEP, TURN_STEP
+
+CONFIRM, CANCEL = keys.CLICK.events | keys.CONFIRM.events, keys.CANCEL.events
+
+
+class MESH_OT_partwheel_swap(OnPart, OnParts, bpy.types.Operator):
+    """Exchange the picked part for one of another object that fits its border; the wheel goes through what there is"""
+
+    bl_idname = "mesh.partwheel_swap"
+    bl_label = "Swap with Compatible Part"
+    refusals = PartwheelError, solids.NotClosed, swapping.NotSwapped, union.NotUnited
+
+    other: bpy.props.StringProperty(
+        name="From", description="The object that the new part comes from; none: those selected, or else all others",
+        options={"SKIP_SAVE"})
+    other_node: bpy.props.IntProperty(
+        name="Part", description="The new part, as a number of that object's hierarchy; -1: the most compatible one",
+        default=-1, min=-1, options={"SKIP_SAVE"})
+    whole: bpy.props.BoolProperty(
+        name="All of It", description="The object is a part itself, copied as a solid before", default=False,
+        options={"SKIP_SAVE", "HIDDEN"})
+    scale: bpy.props.FloatProperty(
+        name="Size", description="Times the size at which the borders fit", default=1, min=1e-4, options={"SKIP_SAVE"})
+    angle: bpy.props.FloatProperty(
+        name="Turn", description="About the border's normal", subtype="ANGLE", default=0, options={"SKIP_SAVE"})
+    depth: bpy.props.FloatProperty(
+        name="Depth", description="How far it is sunk in, times the radius of the border", default=0,
+        options={"SKIP_SAVE"})
+    mirror: bpy.props.BoolProperty(
+        name="Mirror", description="Take the part's mirror image", default=False, options={"SKIP_SAVE"})
+
+    blend: bpy.props.FloatProperty(
+        name="Blend", description="Width of a smooth transition on either side of the seam, times its radius",
+        default=0, min=0, soft_max=1)
+
+    @classmethod
+    def poll(cls, context):
+        if not super().poll(context):
+            return False
+        if context.active_object.library or context.active_object.data.library:
+            cls.poll_message_set("The object or its mesh is linked from another file. Make it local first.")
+            return False
+        return True
+
+    def work(self, context, obj, hierarchy):
+        place = swapping.Place(obj, hierarchy, self.node)
+        self._swap(place, self._chosen(context, place, obj))
+
+    def _chosen(self, context, place, obj):
+        """The Offer that the options name."""
+        other = bpy.data.objects.get(self.other) if self.other else None
+        if self.other and (other is None or other.type != "MESH"):
+            raise swapping.NotSwapped(f"There is no mesh object {self.other}.")
+        if other and (self.whole or self.other_node >= 0):
+            return place.offer(other, None if self.whole else self.other_node)
+        return place.offers([other] if other else swapping.sources(context, obj))[0]
+
+    def _swap(self, place, offer):
+        place.swap(offer, self._adjustment(), self.blend)
+        self.other, self.whole = offer.name, offer.node is None
+        self.other_node = -1 if self.whole else offer.node
+
+    def _adjustment(self):
+        return swapping.Adjustment(self.scale, self.angle, self.depth, self.mirror)
+
+    # ---- With the wheel --------------------------------------------------------------------------------------------
+
+    def invoke(self, context, event):
+        if context.window is None or context.area is None or context.area.type != "VIEW_3D":
+            self.report({"ERROR"}, "Parts are swapped in a 3D view: start this with the mouse over one.")
+            return {"CANCELLED"}
+        obj = context.active_object
+        self.was_edited, self.preview = obj.mode == "EDIT", None
+        context.window.cursor_modal_set("WAIT")
+        try:
+            hierarchy = self.hierarchy(context, obj)
+            other = bpy.data.objects.get(self.other)
+            others = [other] if other else swapping.sources(context, obj)
+            if self.was_edited:
+                bpy.ops.object.mode_set(mode="OBJECT")
+            self.place = swapping.Place(obj, hierarchy, self.node)
+            self.offers, self.index = self.place.offers(others), 0
+            self.preview = Preview(self.place)
+            self._show(context)
+        except self.refusals as error:
+            self.report({"ERROR"}, str(error))
+            return self._end(context, {"CANCELLED"})
+        finally:
+            context.window.cursor_modal_restore()
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        obj = context.active_object
+        if obj is None or obj.name != self.place.name or context.mode != "OBJECT":
+            self.report({"WARNING"}, "Swapping stopped: the object is no longer the active one.")
+            return self._end(context, {"CANCELLED"})
+        if event.type in PASS:
+            return {"PASS_THROUGH"}
+        if event.value not in {"PRESS", "DOUBLE_CLICK"}:
+            return {"RUNNING_MODAL"}
+        if event.type in CANCEL:
+            return self._end(context, {"CANCELLED"})
+        if event.type in CONFIRM:
+            return self._confirmed(context)
+        sign = keys.TURNS.get(event.type, 0)
+        if event.type in keys.DEPTH.events:
+            self.depth -= sign * DEPTH_STEP
+        elif event.type in keys.MIRROR.events:
+            self.mirror = not self.mirror
+        elif event.type in keys.TURN.events and event.shift:
+            self.angle += sign * TURN_STEP
+        elif event.type in keys.SIZE.events and (event.ctrl or event.type not in keys.OFFER.events):
+            self.scale *= SIZE_STEP ** sign
+        elif event.type in keys.OFFER.events:
+            self.index = min(max(self.index + sign, 0), len(self.offers) - 1)
+        else:
+            return {"RUNNING_MODAL"}
+        return self._try(context, lambda: self._show(context))
+
+    def cancel(self, context):
+        """Blender itself ends the tool."""
+        self._end(context, {"CANCELLED"})
+
+    def _show(self, context, problem=""):
+        offer = self.offers[self.index]
+        self.preview.show(offer, self._adjustment())
+        state = [f"{offer.name}, part {self.index + 1} of {len(self.offers)}", f"{offer.score:.0%} alike",
+                 f"size {self.scale:.2f}", f"turn {math.degrees(self.angle):.0f}°", f"depth {self.depth:.2f}"]
+        context.workspace.status_text_set(status.drawer(keys.SWAPPING))
+        context.area.header_text_set(f"Partwheel: {problem or ', '.join(state + ['mirrored'] * self.mirror)}")
+
+    def _try(self, context, step):
+        """One step; what goes wrong in it ends the tool, and all is as before."""
+        try:
+            step()
+        except self.refusals as error:
+            self.report({"ERROR"}, str(error))
+            return self._end(context, {"CANCELLED"})
+        return {"RUNNING_MODAL"}
+
+    def _confirmed(self, context):
+        self.preview.end()
+        if self.was_edited:
+            # Undo steps of Edit Mode hold its mesh alone.
+            bpy.ops.ed.undo_push(message="Leave Edit Mode")
+        try:
+            self._swap(self.place, self.offers[self.index])
+        except self.refusals as error:  # another part may do
+            self.report({"ERROR"}, str(error))
+            self.preview = Preview(self.place)
+            return self._try(context, lambda: self._show(context, str(error)))
+        self.was_edited = False
+        return self._end(context, {"FINISHED"})
+
+    def _end(self, context, result):
+        if self.preview:
+            self.preview.end()
+        if self.was_edited and context.active_object and context.active_object.mode == "OBJECT":
+            bpy.ops.object.mode_set(mode="EDIT")
+        if context.workspace:
+            context.workspace.status_text_set(None)
+        if context.area:
+            context.area.header_text_set(None)
+        return result
+
+
+class Preview:
+    """The object with another mesh, what is left of it without the part; and beside it the parts offered so far, of
+    which one is seen. The object's own mesh is not touched."""
+
+    def __init__(self, place):
+        obj = bpy.data.objects[place.name]
+        self.place, self.shown = place, {}
+        rest = place.rest()
+        self.own, self.rest = obj.data.name, rest.name
+        obj.data = rest
+
+    def show(self, offer, adjustment):
+        wanted = offer.name, offer.node
+        for each, name in self.shown.items():
+            bpy.data.objects[name].hide_viewport = each != wanted
+        if wanted in self.shown:
+            self.place.put(bpy.data.objects[self.shown[wanted]], offer, adjustment)
+        else:
+            self.shown[wanted] = self.place.stand_in(offer, adjustment).name
+
+    def end(self):
+        """All is as it was before; what Blender has let go itself by then is left alone."""
+        obj, own = bpy.data.objects.get(self.place.name), bpy.data.meshes.get(self.own)
+        if obj and own:
+            obj.data = own
+        for name in self.shown.values():
+            if name in bpy.data.objects:
+                swapping.dispose(bpy.data.objects[name])
+        if self.rest in bpy.data.meshes:
+            bpy.data.meshes.remove(bpy.data.meshes[self.rest])
+        self.shown, self.rest = {}, ""

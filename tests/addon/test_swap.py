@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Parts exchanged for compatible ones: known motions are found again, what comes out is closed and of the volume that
+another library says, one operator does it all, and what is refused changes nothing."""
+
+import bpy
+import numpy
+from common import part, read_off
+from mathutils import Matrix
+from solid_case import SolidTest, arrays, volume
+from test_unite import reference, triangles
+
+MOTION = Matrix.Translation((5, -6, 7)) @ Matrix.Rotation(2, 4, (1, 2, 3)) @ Matrix.Scale(0.3, 4)
+
+
+def limb(obj, hierarchy, axis, end, share=0.03):
+    """The part that sticks out: where the wheel stops first with this share of the area, above the face that is
+    farthest along an axis (end: 1), or against it (-1)."""
+    face = max(obj.data.polygons, key=lambda polygon: end * polygon.center[axis]).index
+    stops, _ = hierarchy.wheel(face)
+    return next(int(stop) for stop in stops if hierarchy.area[stop] >= share * hierarchy.area[-1])
+
+
+class Swap(SolidTest):
+    def both(self, one="hand", other="homer"):
+        """Two models with their hierarchies, the first active."""
+        model, parts = self.built(one)
+        giver, others = self.built(other)
+        giver.matrix_world = MOTION
+        bpy.context.view_layer.update()
+        bpy.context.view_layer.objects.active = model
+        return model, parts, giver, others
+
+    def everything(self):
+        """Of the scene, as far as a swap could change it."""
+        meshes = {mesh.name: [each.tolist() if hasattr(each, "tolist") else each for each in arrays(mesh)]
+                  for mesh in bpy.data.meshes}
+        return meshes, {obj.name: (obj.data.name, obj.mode, obj.select_get(), obj.hide_viewport,
+                                   [list(row) for row in obj.matrix_world]) for obj in bpy.data.objects}
+
+    def twin(self, model, matrix):
+        """A duplicate somewhere else."""
+        twin = self.link(bpy.data.objects.new("twin", model.data.copy()))
+        twin.matrix_world = matrix
+        bpy.context.view_layer.update()
+        return twin
+
+    def assertIdentity(self, matrix, tolerance):
+        off = max(abs(a - b) for ours, theirs in zip(matrix, Matrix()) for a, b in zip(ours, theirs))
+        self.assertLess(off, tolerance)
+
+    def test_a_known_motion_is_found_again(self):
+        """A duplicate that was moved, turned and scaled: each part's own twin is its first, and comes to its place."""
+        swapping = part("swapping")
+        model, hierarchy = self.built("hand")
+        twin = self.twin(model, MOTION)
+        for node in {limb(model, hierarchy, 0, end) for end in (-1, 1)}:
+            place = swapping.Place(model, hierarchy, node)
+            first = place.offers([twin])[0]
+            self.assertEqual(first.node, node)
+            self.assertGreater(first.score, 0.99)
+            copy = place.stand_in(first, swapping.Adjustment(depth=-part("placement").SINK))
+            self.assertIdentity(copy.matrix_world, 1e-4 * max(model.dimensions))
+
+    def test_mirror_image_of_a_reflected_twin(self):
+        swapping = part("swapping")
+        model, hierarchy = self.built("hand")
+        twin = self.twin(model, MOTION @ Matrix.Scale(-1, 4, (1, 0, 0)))
+        node = limb(model, hierarchy, 0, 1)
+        place = swapping.Place(model, hierarchy, node)
+        offer = place.offer(twin, node)
+        plain, mirrored = (part("core.compatible").fit(place.shape, offer.shape, mirror) for mirror in (False, True))
+        self.assertLess(mirrored.distance, 0.1 * plain.distance)
+        copy = place.stand_in(offer, swapping.Adjustment(depth=-part("placement").SINK, mirror=True))
+        self.assertIdentity(copy.matrix_world, 1e-4 * max(model.dimensions))
+        swapping.dispose(copy)
+        whole = volume(model.data)
+        self.assertEqual(part("api").swap(model, node, twin, node, mirror=True), node)
+        self.assertSolid(model.data)
+        self.assertLess(abs(volume(model.data) / whole - 1), 0.02)
+
+    def test_volume_by_inclusion_and_exclusion(self):
+        """Limbs of other models: what is left, what was placed and the union, as manifold3d has them."""
+        swapping, pairs, measured = part("swapping"), [], []
+        model, hierarchy, giver, _ = self.both("hand", "homer")
+        before = arrays(giver.data)[0].tolist()
+        for axis, end in ((0, -1), (0, 1)):
+            node = limb(model, hierarchy, axis, end)
+            place = swapping.Place(model, hierarchy, node)
+            for offer in place.offers([giver])[:2]:
+                rest = bpy.data.objects.new("rest", place.rest())
+                new = place.stand_in(offer)
+                bpy.context.view_layer.update()
+                pairs.append((triangles(rest), triangles(new)))
+                bpy.data.objects.remove(rest)
+                swapping.dispose(new)
+                again = self.link(bpy.data.objects.new("again", model.data.copy()))
+                self.assertEqual(part("api").swap(again, node, giver, offer.node), offer.node)
+                self.assertSolid(again.data)
+                measured.append(volume(again.data))
+        self.assertEqual(arrays(giver.data)[0].tolist(), before)
+        for ours, (one, other, common, union) in zip(measured, reference(pairs)):
+            self.assertAlmostEqual(one + other - common, union, delta=1e-6 * union)
+            self.assertAlmostEqual(ours, union, delta=1e-5 * union)
+            self.assertGreater(common, 0)
+
+    def test_legs_of_one_animal(self):
+        """The first that is offered for a leg is a leg, the opposite one is among the first two, and it fits."""
+        api = part("api")
+        model, hierarchy = self.built("triceratops")
+        whole, (low, high) = volume(model.data), numpy.array(model.bound_box)[[0, 6]]
+
+        def middle(node):
+            tetrahedra = hierarchy.tetrahedra[hierarchy.tet_first[node]:hierarchy.tet_last[node]]
+            return (hierarchy.vertices[tetrahedra].mean(axis=(0, 1)) - low) / (high - low)
+
+        for axis, end in ((1, -1), (2, 1)):
+            node = limb(model, hierarchy, axis, end)
+            offered = api.compatible(model, node, model)
+            self.assertEqual(sorted(offered, key=lambda each: -each[1]), offered)
+            first, second = (middle(other) for other, _ in offered[:2])
+            self.assertLess(first[1], 0.25)
+            opposite = middle(node) * [1, 1, -1] + [0, 0, 1]
+            self.assertLess(min(abs(each - opposite).max() for each in (first, second)), 0.1)
+        again = self.link(bpy.data.objects.new("again", model.data.copy()))
+        self.assertEqual(api.swap(again, node, again), offered[0][0])
+        self.assertSolid(again.data)
+        self.assertLess(abs(volume(again.data) / whole - 1), 0.05)
+
+    def test_operator_from_edit_mode_is_one_step(self):
+        model, hierarchy, giver, _ = self.both("hand", "homer")
+        node = limb(model, hierarchy, 0, 1)
+        before = volume(model.data)
+        bpy.ops.object.mode_set(mode="EDIT")
+        self.assertEqual(bpy.ops.mesh.partwheel_swap(node=node), {"FINISHED"})
+        self.assertEqual((model.mode, len(bpy.data.objects), len(bpy.data.meshes)), ("OBJECT", 2, 2))
+        self.assertSolid(model.data)
+        self.assertNotEqual(volume(model.data), before)
+        self.assertEqual(bpy.context.view_layer.objects.active, model)
+
+    def test_a_part_that_was_copied_stands_in_without_its_model(self):
+        """As when it was pasted from another file."""
+        api = part("api")
+        model, hierarchy, giver, others = self.both("hand", "homer")
+        node, arm = limb(model, hierarchy, 0, 1), limb(giver, others, 0, 1)
+        copy = api.copy_part(giver, arm)
+        mesh = copy.data
+        bpy.data.objects.remove(giver)
+        (chosen, score), = api.compatible(model, node, copy)
+        self.assertIsNone(chosen)
+        self.assertTrue(0 < score < 1)
+        count = len(mesh.vertices)
+        bpy.context.view_layer.objects.active = model
+        self.assertEqual(bpy.ops.mesh.partwheel_swap(node=node, other=copy.name, whole=True, angle=1), {"FINISHED"})
+        self.assertSolid(model.data)
+        self.assertEqual(len(mesh.vertices), count)
+
+    def test_what_is_refused_says_why_and_changes_nothing(self):
+        model, hierarchy = self.built("hand")
+        node, whole = limb(model, hierarchy, 0, 1), len(hierarchy.parent) - 1
+        before = self.everything()
+
+        def refused(words, **options):
+            bpy.context.view_layer.objects.active = model
+            with self.assertRaisesRegex(RuntimeError, words):
+                bpy.ops.mesh.partwheel_swap(**options)
+            self.assertEqual(self.everything(), before)
+
+        refused("No other object has parts", node=node)
+        refused("is the whole model", node=whole)
+        refused("No part is picked")
+        refused("There is no part 99999999", node=99999999)
+        refused("There is no mesh object nobody", node=node, other="nobody")
+        other, parts = self.built("dragknob")
+        before = self.everything()
+        refused("has no part 99999999", node=node, other=other.name, other_node=99999999)
+        refused("has no border", node=node, other=other.name, other_node=len(parts.parent) - 1)
+        refused("has no border", node=node, other=other.name, whole=True)
+        self.edit(model)
+        with self.assertRaisesRegex(ValueError, "Edit Mode"):
+            part("api").swap(model, node, other)
+
+    def test_a_piece_of_its_own_has_no_border(self):
+        """Two cubes apart from each other in one mesh."""
+        vertices, polygons = read_off("cube")
+        both = vertices + [(x + 5, y, z) for x, y, z in vertices]
+        model = self.add(both, polygons + [tuple(i + len(vertices) for i in polygon) for polygon in polygons])
+        hierarchy = part("api").build(model)
+        node = int(numpy.flatnonzero(hierarchy.last - hierarchy.first == len(polygons))[0])
+        with self.assertRaisesRegex(part("swapping").NotSwapped, "no border with the rest"):
+            part("api").compatible(model, node, model)
+
+    def test_nothing_changes_where_the_union_fails(self):
+        model, hierarchy, giver, _ = self.both("hand", "homer")
+        union, before = part("union"), self.everything()
+        ways, union.WAYS = union.WAYS, ()
+        try:
+            with self.assertRaises(union.NotUnited):
+                part("api").swap(model, limb(model, hierarchy, 0, 1), giver)
+        finally:
+            union.WAYS = ways
+        self.assertEqual(self.everything(), before)
