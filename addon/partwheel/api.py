@@ -131,12 +131,12 @@ def compatible(obj, node, other):
     return [(offer.node, offer.score) for offer in _place(obj, node, other).offers([other])]
 
 
-def swap(obj, node, other, other_node=None, scale=1.0, angle=0.0, depth=0.0, mirror=False,
-         blend=0.0):
+def swap(obj, node, other, other_node=None, scale=1.0, angle=0.0, depth=0.0, mirror=False, blend=0.0):
     """Exchanges the node for a part of another object: what is left without it is united with a copy of the other's
-    part, brought there border to border, of its size, and turned as it fits best. other_node: None for the most compatible
-    one. scale, angle (about the border's normal, radians), depth (radii of the border) change that; mirror takes its
-    mirror image; blend is that of unite(). The other object stays as it is. The node, or None if the other object itself stood in.
+    part, brought there border to border, of its size, and turned as it fits best. other_node: None for the most
+    compatible one. scale, angle (about the border's normal, radians), depth (radii of the border) change that; mirror
+    takes its mirror image; blend is that of unite(). The other object stays as it is. The other's node that stood in,
+    or None if it was the object itself.
 
     swapping.NotSwapped, solids.NotClosed, union.NotUnited, before anything has changed. Outside Edit Mode only."""
     place = _place(obj, node, other)

@@ -11,6 +11,7 @@ from ..core import PartwheelError
 from ..ui import status
 from .copy_part import OnPart, OnParts
 from .place import DEPTH_STEP, PASS, SIZE_STEP, TURN_STEP
+from .unite import find_parts
 
 CONFIRM, CANCEL = keys.CLICK.events | keys.CONFIRM.events, keys.CANCEL.events
 
@@ -44,6 +45,8 @@ class MESH_OT_partwheel_swap(OnPart, OnParts, bpy.types.Operator):
     blend: bpy.props.FloatProperty(
         name="Blend", description="Width of a smooth transition on either side of the seam, times its radius",
         default=0, min=0, soft_max=1)
+    build: bpy.props.BoolProperty(
+        name="Find Parts", description="Find the parts of the new mesh at once, in a process of its own", default=True)
 
     @classmethod
     def poll(cls, context):
@@ -71,6 +74,8 @@ class MESH_OT_partwheel_swap(OnPart, OnParts, bpy.types.Operator):
         place.swap(offer, self._adjustment(), self.blend)
         self.other, self.whole = offer.name, offer.node is None
         self.other_node = -1 if self.whole else offer.node
+        if self.build:
+            find_parts(self)
 
     def _adjustment(self):
         return swapping.Adjustment(self.scale, self.angle, self.depth, self.mirror)

@@ -7,6 +7,15 @@ from .. import session, union
 from ..core import PartwheelError
 
 
+def find_parts(operator):
+    """Has the parts of the active object found, whose mesh is a union that this operator made."""
+    session.drop_outdated_build()  # of the union before, when the last operation is repeated with other options
+    try:
+        bpy.ops.mesh.partwheel_find("INVOKE_DEFAULT")
+    except RuntimeError as error:  # they are united all the same
+        operator.report({"WARNING"}, str(error))
+
+
 class OBJECT_OT_partwheel_unite(bpy.types.Operator):
     """Unite the other selected solids with the active one into a single closed mesh"""
 
@@ -54,10 +63,6 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
                 if not mesh.users:
                     bpy.data.meshes.remove(mesh)
         if self.build:
-            session.drop_outdated_build()  # of the union before, when the last operation is repeated with other options
-            try:
-                bpy.ops.mesh.partwheel_find("INVOKE_DEFAULT")
-            except RuntimeError as error:  # they are united all the same
-                self.report({"WARNING"}, str(error))
+            find_parts(self)
         self.report({"INFO"}, f"{target.name}: {len(target.data.polygons)} faces, closed (solver {solver.title()}).")
         return {"FINISHED"}

@@ -1,0 +1,97 @@
+"""A part exchanged for a compatible one: Homer's arm for one of the bear's limbs, chosen with the wheel among those that
+are offered. Esc brings everything back to the last bit; a click swaps, as one undo step."""
+import bpy
+import numpy
+from mathutils import Matrix, Quaternion, Vector
+
+from compose import activate, choose, closed, picked_up_to, places, volume
+from stage import VIEWS
+
+
+def play(stage):
+    yield from stage.open("homer")
+    yield from stage.until("Edit Mode", lambda: stage.object.mode == "EDIT")
+    homer = stage.object
+    bear = yield from giver(stage)
+    yield from picked_up_to(stage, 0.02, 0.62, 0.06)
+    stage.mouse.key("RET")
+    yield from stage.settle()
+    picked = stage.selection()
+    yield from stage.screenshot("1-picked")
+
+    before = scene()
+    yield from begun(stage, homer)
+    stage.check(len(bpy.data.objects) == 3 and homer.data.name != "homer", "a part stands in, on what is left")
+    first = shown(homer, bear)
+    yield from stage.screenshot("2-first")
+    stage.mouse.wheel(1)
+    yield from stage.until("the wheel offers another one", lambda: shown(homer, bear) != first)
+    second = shown(homer, bear)
+    where = bpy.data.objects[second].matrix_world.copy()
+    stage.mouse.wheel(2, shift=True)
+    yield from stage.until("Shift turns it", lambda: bpy.data.objects[second].matrix_world != where)
+    stage.mouse.key("M")
+    yield from stage.until("M mirrors it", lambda: bpy.data.objects[second].matrix_world.is_negative)
+    stage.mouse.wheel(-1)
+    yield from stage.until("the wheel goes back to the first", lambda: shown(homer, bear) == first)
+    stage.mouse.key("ESC")
+    yield from stage.until("Esc is Edit Mode again", lambda: homer.mode == "EDIT")
+    stage.check(stage.selection() == picked, "with the part selected")
+    stage.check(scene() == before, "and everything is as it was")
+    yield from stage.ended()
+
+    whole, count = volume(homer), len(homer.data.polygons)
+    yield from begun(stage, homer)
+    stage.mouse.click()
+    yield from stage.until("a click swaps", lambda: len(bpy.data.objects) == 2 and homer.mode == "OBJECT" and
+                           len(bpy.data.objects["homer"].data.polygons) != count)
+    yield from stage.until("its parts are found", lambda: not stage.session.running(), 120)
+    stage.check(closed(homer) and volume(homer) != whole, "the result is closed")
+    stage.check(len(bpy.data.meshes) == 2, "nothing else is left")
+    yield from stage.screenshot("3-swapped")
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.until("one undo step brings the arm back", lambda: len(bpy.data.objects["homer"].data.polygons)
+                           == count and abs(volume(bpy.data.objects["homer"]) - whole) < 1e-6 * whole)
+
+
+def giver(stage):
+    """The bear beside Homer, as large, seen from the front, with its parts."""
+    model, homer = numpy.load(stage.file("bear.npz")), stage.object
+    mesh = bpy.data.meshes.new("bear")
+    mesh.from_pydata(model["vertices"], [], model["triangles"].tolist())
+    bear = bpy.data.objects.new("bear", mesh)
+    stage.window.scene.collection.objects.link(bear)
+    low, high = model["vertices"].min(axis=0), model["vertices"].max(axis=0)
+    view = stage.view_3d.view_rotation
+    turn = view @ Quaternion(VIEWS["bear"]).inverted()
+    bear.matrix_world = (Matrix.Translation(stage.view_3d.view_location + view @ Vector((1.4, 0, 0)))
+                         @ turn.to_matrix().to_4x4() @ Matrix.Scale(2 / (high - low).max(), 4)
+                         @ Matrix.Translation(-(low + high) / 2))
+    with stage.override():
+        bpy.ops.object.mode_set(mode="OBJECT")
+    activate(stage, bear)
+    with stage.override():
+        bpy.ops.mesh.partwheel_build()
+    activate(stage, homer)
+    with stage.override():
+        bpy.ops.object.mode_set(mode="EDIT")
+    yield from stage.drawn()
+    return bear
+
+
+def begun(stage, homer):
+    """The last entry of the menu Mesh, with the mouse in the view."""
+    yield from choose(stage, "VIEW3D_MT_edit_mesh", 0)
+    yield from stage.until("a part stands in", lambda: len(bpy.data.objects) == 3)
+
+
+def shown(*known):
+    """The name of the part that can be seen."""
+    return next(obj.name for obj in bpy.data.objects if obj not in known and not obj.hide_viewport)
+
+
+def scene():
+    """All that the tool could have changed."""
+    return ({mesh.name for mesh in bpy.data.meshes},
+            {obj.name: (places(obj), obj.data.name, obj.select_get(), obj.hide_viewport, tuple(obj.matrix_world.col[3]))
+             for obj in bpy.data.objects})
