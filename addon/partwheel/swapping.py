@@ -30,7 +30,8 @@ class Offer(NamedTuple):
 
 
 class Adjustment(NamedTuple):
-    """What is changed about the place that was found, as in placement.Pose; mirror: the mirror image stands in."""
+    """What is changed about the place that was found, as in placement.Pose; depth: beyond what closes gaps between bent
+    borders; mirror: the mirror image stands in."""
 
     scale: float = 1.0
     angle: float = 0.0
@@ -121,9 +122,10 @@ class Place:
         if known not in self._fits:
             self._fits[known] = compatible.fit(self.shape, offer.shape, adjustment.mirror).matrix
         border = placement.Border(Vector(own.middle), Vector(own.normal), own.radius)
+        depth = adjustment.depth + compatible.gap(self.shape, offer.shape, self._fits[known])
         start = Matrix(self._fits[known]) @ bpy.data.objects[offer.name].matrix_world
         new.matrix_world = placement.matrix(start, border, border.middle, -border.normal, adjustment.scale,
-                                            adjustment.angle, adjustment.depth)
+                                            adjustment.angle, depth)
 
     def swap(self, offer, adjustment=Adjustment(), blend=0.0):
         """Takes the part out of the object's mesh and unites what is left with the one offered; blend: as for

@@ -15,11 +15,14 @@ from typing import NamedTuple
 import numpy as np
 
 SAMPLES, COARSE = 800, 4  # points on the part that stays, and of how many one is looked at on the one that moves
+CAP_SAMPLES = 300
 KEPT = 0.7  # of the pairs of closest points, the nearest: the parts need not be alike everywhere
 STEPS = 12  # of refinement at most
 TURNS = 16  # about the normal that are tried
 TILT = np.cos(np.radians(30))  # the borders' normals stay this near to each other
 ALIKE = 0.3  # of the border's radius: surfaces that are farther apart after refining are not fitted to each other
+BENEATH = 0.15  # of the radius: points of two caps this near to each other across the normal are compared
+DEEPEST = 0.5  # radii that a part is sunk in at most to close gaps
 SMALL_BORDER = 0.25  # of the largest one's radius: those below don't count
 LEAST_SHARE, LARGEST_SHARE = 0.004, 0.7  # of the whole's area that a part offered has
 CUT = 200  # parts, into which the whole is cut to find what the wheel stops at
@@ -111,6 +114,9 @@ class Shape:
         self.borders = [each for each in self.borders if each.radius >= SMALL_BORDER * self.main.radius]
         corners = moved(vertices, matrix)[triangles] - self.main.middle
         self.volume = abs(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
+        cut = corners[caps]
+        self.cap_points = _spread_over(cut, np.linalg.norm(
+            np.cross(cut[:, 1] - cut[:, 0], cut[:, 2] - cut[:, 0]), axis=1), CAP_SAMPLES)[0] + self.main.middle
         outer = corners[~caps]
         normals = np.cross(outer[:, 1] - outer[:, 0], outer[:, 2] - outer[:, 0])
         if np.linalg.det(matrix[:3, :3]) < 0:
@@ -118,7 +124,7 @@ class Shape:
         lengths = np.linalg.norm(normals, axis=1)
         self.area = lengths.sum() / 2
         if self.area > 0:
-            self.points, chosen = _spread_over(outer, lengths)
+            self.points, chosen = _spread_over(outer, lengths, SAMPLES)
             self.points += self.main.middle
             self.normals = normals[chosen] / lengths[chosen, None]
         self.share = self.main.radius / size
@@ -140,7 +146,7 @@ class Shape:
     def reflected(self, flip):
         """The Shape under a reflection (4,4)."""
         turn, image = flip[:3, :3], copy.copy(self)
-        image.points = moved(self.points, flip)
+        image.points, image.cap_points = moved(self.points, flip), moved(self.cap_points, flip)
         image.normals = self.normals @ turn.T
         image.borders = [each._replace(middle=moved(each.middle, flip), normal=turn @ each.normal)
                          for each in self.borders]
@@ -171,11 +177,11 @@ class Shape:
         return self._features
 
 
-def _spread_over(corners, weights):
-    """((SAMPLES,3) points evenly on triangles (T,3,3), (SAMPLES,) which triangle each is on): always the same ones."""
+def _spread_over(corners, weights, count):
+    """((count,3) points evenly on triangles (T,3,3), (count,) which triangle each is on): always the same ones."""
     total = np.cumsum(weights)
-    number = np.arange(SAMPLES)
-    chosen = np.minimum(np.searchsorted(total, (number + 0.5) / SAMPLES * total[-1]), len(corners) - 1)
+    number = np.arange(count)
+    chosen = np.minimum(np.searchsorted(total, (number + 0.5) / count * total[-1]), len(corners) - 1)
     # Of low discrepancy, by the powers of the plastic number; folded into the triangle.
     u, v = (0.5 + number * 0.7548776662466927) % 1, (0.5 + number * 0.5698402909980532) % 1
     beyond = u + v > 1
@@ -215,6 +221,20 @@ def fit(place, part, mirror=False):
         if found[-1].distance < 1e-6:
             break
     return min(found, key=lambda each: each.distance)
+
+
+def gap(place, part, matrix):
+    """How far the Shape part under a similarity (4,4) is to go along the border's normal until its caps leave no gap
+    to what the Shape place was cut off from, in radii of the border. Caps that are flat, or alike, need 0."""
+    frame, own = _frame(place), place.main
+    theirs, ours = (((points - own.middle) / own.radius) @ frame.T
+                    for points in (moved(part.cap_points, matrix), place.cap_points))
+    apart = _distances(ours[:, :2], theirs[:, :2])
+    nearest = apart.argmin(axis=1)
+    beneath = apart[np.arange(len(ours)), nearest] < BENEATH ** 2
+    if not beneath.any():
+        return 0.0
+    return float(np.clip(np.quantile((ours[:, 2] - theirs[nearest, 2])[beneath], 0.95), 0, DEEPEST))
 
 
 def _frame(shape):
