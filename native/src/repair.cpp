@@ -127,6 +127,15 @@ size_t unite(std::vector<CgalMesh>& parts, Progress& progress) {
     return united;
 }
 
+// How far the mesh is from the surface used, of which nothing reaches out by more than near_enough.
+std::string how_far(double deviation) {
+    if (deviation == 0) return "All of the mesh is on the surface used.";
+    if (deviation <= near_enough)
+        return "The surface used is at most " + percent(deviation) + " of the model's size away.";
+    return "The surface used is at most " + percent(near_enough) + " of the model's size away, but up to " +
+           percent(deviation) + " from what of the mesh is now inside.";
+}
+
 }  // namespace
 
 Surface repair(const Surface& source, Progress& progress) {
@@ -154,10 +163,7 @@ Surface repair(const Surface& source, Progress& progress) {
     check_surface(surface, progress);
     if (attach(source, surface, progress).outside > 0) throw_tangled();  // something was lost
     surface.rung = PW_RUNG_REPAIRED;
-    surface.account = "Repaired: " + account.text() + ". " +
-                      (surface.deviation == 0 ? "All of the mesh is on the surface used."
-                                              : "The surface used is at most " + percent(surface.deviation) +
-                                                    " of the model's size away.");
+    surface.account = "Repaired: " + account.text() + ". " + how_far(surface.deviation);
     return surface;
 }
 
