@@ -20,7 +20,7 @@ object that holds no mesh; build() also RuntimeError while another build is unde
 import numpy
 from mathutils import Vector
 
-from . import composition, deforming, placement, selection, session, solids, swapping, union, wheel
+from . import borders, composition, deforming, placement, selection, session, solids, swapping, union, wheel
 from .core.joint import REACH
 
 
@@ -48,22 +48,23 @@ def path(obj, face):
     return hierarchy(obj).path(face)
 
 
-def faces(obj, node):
-    """(n,) the faces of a node: indices of the mesh's polygons, read-only."""
-    return hierarchy(obj).faces(node)
+def faces(obj, node, snap=False):
+    """(n,) the faces of a node: indices of the mesh's polygons, read-only. snap: with its border in the creases nearby.
+    """
+    return borders.faces(obj, hierarchy(obj), node, snap)
 
 
-def select(obj, face, level=0, extend=False):
+def select(obj, face, level=0, extend=False, snap=False):
     """Selects the part that a click on this face takes, after level notches of the wheel (negative: down), and makes it
     the part picked last. With extend the selection before stays too. In Edit Mode as the select mode has it. Hidden
-    faces stay as they are. The node."""
+    faces stay as they are. snap: as for faces(). The node."""
     picked = wheel.pick(hierarchy(obj), face, level)
-    chosen = faces(obj, picked.node)
+    chosen = faces(obj, picked.node, snap)
     if obj.mode == "EDIT":
         selection.Selection(obj, obj.data).select(obj, chosen, picked.face, extend)
     else:
         selection.select_outside_edit_mode(obj.data, chosen, extend)
-    session.remember_pick(obj, picked.face, picked.node)
+    session.remember_pick(obj, picked.face, picked.node, snap)
     return picked.node
 
 
@@ -74,20 +75,21 @@ def cut(obj, parts=None, height=None):
     return built.face_labels(_bounds(built, parts, height))
 
 
-def copy_part(obj, node, smooth=False, material=False):
+def copy_part(obj, node, smooth=False, material=False, snap=False):
     """A new object in the part's place: the node as a closed solid. Its polygons keep all their attributes; the caps
     that close it are marked by the face attribute "partwheel_cap". smooth: caps that go on as the surface does, not the
-    flat facets inside the solid. material: caps get a material of their own. solids.NotClosed: it can't be closed."""
-    return composition.copied(obj, hierarchy(obj), node, solids.Options(smooth, material))
+    flat facets inside the solid. material: caps get a material of their own. snap: its border is moved to the creases
+    nearby, as far as the tetrahedra about it let it be there. solids.NotClosed: it can't be closed."""
+    return composition.copied(obj, hierarchy(obj), node, solids.Options(smooth, material), snap)
 
 
-def remove(obj, node, smooth=False, material=False):
+def remove(obj, node, smooth=False, material=False, snap=False):
     """Takes the node out of the object's mesh, which must not be in Edit Mode, and closes the hole; options as for
     copy_part(). What it removes and what copy_part() gives make the whole."""
     _check(obj)
     if obj.mode == "EDIT":
         raise ValueError(f"{obj.name} is in Edit Mode. Leave it before a part is removed by a script.")
-    composition.removed(obj, hierarchy(obj), node, solids.Options(smooth, material))
+    composition.removed(obj, hierarchy(obj), node, solids.Options(smooth, material), snap)
 
 
 def split(obj, parts=None, height=None, explode=0.0, smooth=False, material=False):

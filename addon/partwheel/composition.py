@@ -5,20 +5,21 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-from . import solids
+from . import borders, solids
 from .mesh_arrays import read
 
 
-def copied(obj, hierarchy, node, options=solids.Options(), collection=None):
-    """A new object with the part as a closed mesh, in the place of the part; beside the object, or in a collection."""
+def copied(obj, hierarchy, node, options=solids.Options(), snap=False, collection=None):
+    """A new object with the part as a closed mesh, in the place of the part; beside the object, or in a collection. snap:
+    with its border in creases, as far as the tetrahedra about it let it be there."""
     update_matrices()
-    mesh = solids.part(obj, hierarchy, *_slice(hierarchy, node), options)
+    mesh = solids.part(obj, hierarchy, *_slice(hierarchy, node), options, _faces(obj, hierarchy, node, snap))
     return _beside(obj, mesh, f"{obj.name} part", collection)
 
 
-def removed(obj, hierarchy, node, options=solids.Options()):
-    """Takes the part out of the object's mesh and closes the hole."""
-    solids.remove(obj, hierarchy, *_slice(hierarchy, node), options)
+def removed(obj, hierarchy, node, options=solids.Options(), snap=False):
+    """Takes the part, as copied() makes it, out of the object's mesh and closes the hole."""
+    solids.remove(obj, hierarchy, *_slice(hierarchy, node), options, _faces(obj, hierarchy, node, snap))
 
 
 def split(obj, hierarchy, bounds, options=solids.Options(), explode=0.0):
@@ -48,6 +49,10 @@ def update_matrices():
 def home(obj):
     """The collection that new objects beside this one go to."""
     return obj.users_collection[0] if obj.users_collection else bpy.context.scene.collection
+
+
+def _faces(obj, hierarchy, node, snap):
+    return borders.inside(obj, hierarchy, node) if snap and len(hierarchy.faces(node)) else None
 
 
 def _slice(hierarchy, node):

@@ -24,6 +24,7 @@ SMALLER = Key("SMALLER", frozenset({"WHEELDOWNMOUSE", "PAGE_DOWN", "NUMPAD_MINUS
 CONFIRM = Key("CONFIRM", frozenset({"RET", "NUMPAD_ENTER"}), "Confirm", ("EVENT_RETURN",))
 CANCEL = Key("CANCEL", frozenset({"RIGHTMOUSE", "ESC"}), "Cancel", ("EVENT_ESC", "MOUSE_RMB"))
 CLICK = Key("CLICK", frozenset({"LEFTMOUSE"}), "Pick a Part", ("MOUSE_LMB",))
+SNAP_BORDER = Key("SNAP_BORDER", frozenset({"TAB"}), "Snap Border", ("EVENT_SHIFT", "EVENT_TAB"))  # with Shift
 ERASE = Key("ERASE", frozenset({"BACK_SPACE"}), "")
 DIGITS = dict(zip(("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE"), "0123456789"))
 NUMBER = Key("NUMBER", frozenset(DIGITS), "Part by Number", names="0-9")
@@ -41,9 +42,9 @@ MOVES = frozenset({"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"})
 TURNS = {**dict.fromkeys(LARGER.events, 1), **dict.fromkeys(SMALLER.events, -1)}
 
 WAITING = (CLICK, NAVIGATE, CANCEL)
-PICKED = (LARGER, SMALLER, NUMBER, CONFIRM, NAVIGATE, CANCEL)
+PICKED = (LARGER, SMALLER, NUMBER, SNAP_BORDER, CONFIRM, NAVIGATE, CANCEL)
 # With the toolbar's tool a click goes on to the next part.
-HELD = (LARGER, SMALLER, NUMBER, CLICK._replace(label="Next Part"), CONFIRM, NAVIGATE, CANCEL)
+HELD = (LARGER, SMALLER, NUMBER, SNAP_BORDER, CLICK._replace(label="Next Part"), CONFIRM, NAVIGATE, CANCEL)
 
 # While a part is deformed: between two movements of the handle, and during one.
 DRAG = Key("DRAG", frozenset({"LEFTMOUSE"}), "Drag the Handle, or Put It Elsewhere", ("MOUSE_LMB_DRAG",))

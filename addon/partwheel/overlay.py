@@ -115,6 +115,17 @@ class Parts:
             self._keep(piece, gpu.types.GPUBatch(type="TRIS", buf=self._buffer, elem=indices))
         return _shader(False), self._batches[piece]
 
+    def of_faces(self, name, faces):
+        """The same of the triangles of any faces, kept under a name."""
+        if name not in self._batches:
+            self._buffer = self._buffer or _vertices(pos=self.positions)
+            chosen = np.zeros(len(self.hierarchy.order), bool)
+            chosen[faces] = True
+            chosen = np.repeat(chosen[self.hierarchy.order], np.diff(self._start))
+            indices = gpu.types.GPUIndexBuf(type="TRIS", seq=self.triangles[chosen])
+            self._keep(name, gpu.types.GPUBatch(type="TRIS", buf=self._buffer, elem=indices))
+        return _shader(False), self._batches[name]
+
     def hull(self, node):
         """The same of a node's convex hull."""
         if node not in self._batches:
@@ -149,28 +160,40 @@ def distinct(labels):
     return np.column_stack([value[:, None] * (0.35 + 0.65 * bow), np.full(len(labels), CUT_OPACITY)])
 
 
-def draw_held(context, obj, parts, node, larger):
-    """The part that is held, what the next notch adds, and what else the preferences want."""
+def draw_held(context, obj, parts, node, larger, snapped):
+    """The part that is held, what the next notch adds, and what else the preferences want. snapped: the part's faces
+    where its border is not the node's own, else None."""
     wanted, layers = preferences(), []
     if wanted.show_cut:
         layers.append((*parts.cut(node), PART, 0.0))
     if wanted.show_next:
-        layers += [(*parts.batch(piece), NEXT, 0.0) for piece in parts.shell(node, larger)]
+        layers += _shell(parts, node, larger, snapped)
     if wanted.show_part:
-        layers += _layer(parts, node, PART)
+        layers += _layer(parts, node, PART, snapped)
     if wanted.show_hull:
         layers.append((*parts.hull(node), GLASS, 1.0))
     _draw(context, obj, layers)
 
 
-def draw_hover(context, obj, parts, node):
+def draw_hover(context, obj, parts, node, snapped):
     """The part that a click would take."""
-    _draw(context, obj, _layer(parts, node, HOVER))
+    _draw(context, obj, _layer(parts, node, HOVER, snapped))
 
 
-def _layer(parts, node, color):
+def _layer(parts, node, color, snapped):
+    if snapped is not None:
+        return [(*parts.of_faces(("snapped", node), snapped), color, 0.0)]
     piece = parts.slice(node)
     return [(*parts.batch(piece), color, 0.0)] if piece[0] < piece[1] else []
+
+
+def _shell(parts, node, larger, snapped):
+    if snapped is None:
+        return [(*parts.batch(piece), NEXT, 0.0) for piece in parts.shell(node, larger)]
+    if node == larger:
+        return []
+    more = np.setdiff1d(parts.hierarchy.faces(larger), snapped)
+    return [(*parts.of_faces(("beyond", node, larger), more), NEXT, 0.0)]
 
 
 def _draw(context, obj, layers):
@@ -218,8 +241,8 @@ class Shown:
     def on(self):
         return self._handler is not None
 
-    def show(self, obj, parts, node, larger):
-        self._what = obj.name, parts, node, larger
+    def show(self, obj, parts, node, larger, snapped):
+        self._what = obj.name, parts, node, larger, snapped
         if not self._handler:
             self._handler = bpy.types.SpaceView3D.draw_handler_add(self._draw, (), "WINDOW", "POST_VIEW")
         redraw()

@@ -37,11 +37,13 @@ class Entry:
 
 
 class Picked(NamedTuple):
-    """A part of a mesh that the user chose: a node of its hierarchy, and the face that was clicked."""
+    """A part of a mesh that the user chose: a node of its hierarchy, and the face that was clicked. snap: whether it was
+    taken with its border in creases."""
 
     node: int
     face: int
     hierarchy: Hierarchy
+    snap: bool
 
 
 class State(Enum):
@@ -131,9 +133,9 @@ def _counts(mesh):
 # ---- The part that was picked last
 
 
-def remember_pick(obj, face, node):
+def remember_pick(obj, face, node, snap=False):
     """The user has chosen this part of the object's mesh, which has a hierarchy."""
-    _picks[key(obj.data)] = Picked(int(node), int(face), _entries[key(obj.data)].hierarchy)
+    _picks[key(obj.data)] = Picked(int(node), int(face), _entries[key(obj.data)].hierarchy, bool(snap))
 
 
 def picked(obj):
@@ -267,6 +269,11 @@ def known(mesh):
     """The hierarchy that was built for the mesh, fitting or not, or None. At once."""
     entry = _entries.get(key(mesh))
     return entry and entry.hierarchy
+
+
+def seen(mesh):
+    """The Fingerprint of a mesh that has a hierarchy, as it was when that was asked for last."""
+    return _entries[key(mesh)].seen
 
 
 def revision(mesh):

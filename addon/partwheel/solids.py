@@ -38,20 +38,21 @@ class NotClosed(Exception):
     """A part that can't be made a solid. str() is a sentence for the user."""
 
 
-def part(obj, hierarchy, tet_first, tet_last, options=Options()):
-    """A new mesh: the part tetrahedra[tet_first:tet_last] of the object's mesh, as it now is. Raises PartwheelError."""
-    return parts(obj, hierarchy, [(tet_first, tet_last)], options)[0]
+def part(obj, hierarchy, tet_first, tet_last, options=Options(), faces=None):
+    """A new mesh: the part tetrahedra[tet_first:tet_last] of the object's mesh, as it now is. faces (F,) bool: the faces
+    that it is to have in place of its own, see core's solid_of_faces(). Raises PartwheelError."""
+    return parts(obj, hierarchy, [(tet_first, tet_last)], options, faces)[0]
 
 
-def parts(obj, hierarchy, slices, options=Options()):
+def parts(obj, hierarchy, slices, options=Options(), faces=None):
     """New meshes, one for each slice (tet_first, tet_last); with caps that match exactly, where they aren't smooth.
-    None for a slice that has no tetrahedron left, unless it is the only one."""
+    None for a slice that has no tetrahedron left, unless it is the only one. faces: as above, for a single slice."""
     mesh = mesh_arrays.up_to_date(obj)
     exact = hierarchy.summary.rung == "exact"
     if not exact:
-        found = _unbroken(mesh, hierarchy, slices, options, alone=True)
+        found = _unbroken(mesh, hierarchy, slices, options, faces, alone=True)
     else:
-        found = hierarchy.solids(slices) if len(slices) > 1 else [hierarchy.solid_of_slice(*slices[0])]
+        found = hierarchy.solids(slices) if len(slices) > 1 else [_solid(hierarchy, *slices[0], faces)]
         found = [solid and _exactly(mesh, hierarchy, solid, alone=True) for solid in found]
     made = []
     try:
@@ -59,7 +60,7 @@ def parts(obj, hierarchy, slices, options=Options()):
             if exact and solid is None:
                 made.append(None)
                 continue
-            new, normals = _carved(mesh, hierarchy, solid, *each, options, alone=True)
+            new, normals = _carved(mesh, hierarchy, solid, *each, options, faces, alone=True)
             made.append(new)
             if normals is not None:
                 mesh_arrays.set_custom_normals(new, normals)
@@ -70,16 +71,22 @@ def parts(obj, hierarchy, slices, options=Options()):
     return made
 
 
-def remove(obj, hierarchy, tet_first, tet_last, options=Options()):
-    """Takes the part out of the object's mesh, which must not be in Edit Mode, and closes the hole. Raises
-    PartwheelError or NotClosed before anything has changed."""
+def _solid(hierarchy, tet_first, tet_last, faces):
+    if faces is None:
+        return hierarchy.solid_of_slice(tet_first, tet_last)
+    return hierarchy.solid_of_faces(tet_first, tet_last, faces)
+
+
+def remove(obj, hierarchy, tet_first, tet_last, options=Options(), faces=None):
+    """Takes the part out of the object's mesh, which must not be in Edit Mode, and closes the hole. faces: as for part().
+    Raises PartwheelError or NotClosed before anything has changed."""
     target = obj.data
     check_resolution(obj)
     if hierarchy.summary.rung == "exact":
-        solid = _exactly(target, hierarchy, hierarchy.solid_of_slice(tet_last, tet_first), alone=False)
+        solid = _exactly(target, hierarchy, _solid(hierarchy, tet_last, tet_first, faces), alone=False)
     else:
-        solid = _unbroken(target, hierarchy, [(tet_last, tet_first)], options, alone=False)[0]
-    made, normals = _carved(target, hierarchy, solid, tet_last, tet_first, options, alone=False)
+        solid = _unbroken(target, hierarchy, [(tet_last, tet_first)], options, faces, alone=False)[0]
+    made, normals = _carved(target, hierarchy, solid, tet_last, tet_first, options, faces, alone=False)
     if options.material and len(made.materials) > len(target.materials):
         _cap_slot(target)
     pieces.replace_geometry(target, made)
@@ -97,7 +104,7 @@ def check_resolution(obj):
                         "Multiresolution modifier first, or copy the part.")
 
 
-def _carved(mesh, hierarchy, solid, tet_first, tet_last, options, alone):
+def _carved(mesh, hierarchy, solid, tet_first, tet_last, options, faces, alone):
     """(new mesh: what is in the slice, closed; its custom normals (L,3), if the mesh has any). solid: the _Fitted of
     the slice, or None: its polygons alone, closed. alone: without what has no face."""
     exact = solid is not None
@@ -105,7 +112,7 @@ def _carved(mesh, hierarchy, solid, tet_first, tet_last, options, alone):
     if exact:
         plan, turned = _of_solid(mesh, solid, alone, facets=not options.smooth), solid.against
     else:
-        plan = _of_faces(mesh, hierarchy, tet_first, tet_last, alone)
+        plan = _of_faces(mesh, hierarchy, tet_first, tet_last, faces, alone)
     normals = mesh_arrays.custom_normals(mesh)
     made, loops = pieces.assembled(mesh, plan, f"{mesh.name} part"), plan.loops[:, 0]
     try:
@@ -195,7 +202,7 @@ def _exactly(mesh, hierarchy, solid, alone):
     return _turned_like_mesh(_Fitted(solid, between, None, np.full(len(mesh.polygons), turned)), alone)
 
 
-def _unbroken(mesh, hierarchy, slices, options, alone):
+def _unbroken(mesh, hierarchy, slices, options, faces, alone):
     """For each slice its _Fitted, or None where the repair changed one of its polygons, or where that is of no use. If
     alone, what the repair added is caps of it; else it is not there."""
     if hierarchy.summary.rung != "repaired" or options.smooth:
@@ -219,16 +226,17 @@ def _unbroken(mesh, hierarchy, slices, options, alone):
     if not alone:  # then the mesh stays wound as it is
         lost |= against != (2 * against.sum() > len(against))
     made = []
-    for (tet_first, tet_last), solid in zip(slices, hierarchy.solids(slices)):
-        if solid is None or (lost & _inside(hierarchy, tet_first, tet_last)).any():
+    found = hierarchy.solids(slices) if faces is None else [_solid(hierarchy, *slices[0], faces)]
+    for (tet_first, tet_last), solid in zip(slices, found):
+        if solid is None or (lost & _inside(hierarchy, tet_first, tet_last, faces)).any():
             made.append(None)
             continue
         match, _ = matched(solid)
-        faces = np.where(match >= 0, surface.faces[match], -1)
-        faces[(faces >= 0) & lost[faces]] = -1
-        added = (solid.beyond < 0) & (faces < 0)
-        keep = np.ones(len(faces), bool) if alone else ~added
-        solid = Solid(solid.vertices, solid.triangles[keep], solid.ends, faces[keep],
+        own = np.where(match >= 0, surface.faces[match], -1)
+        own[(own >= 0) & lost[own]] = -1
+        added = (solid.beyond < 0) & (own < 0)
+        keep = np.ones(len(own), bool) if alone else ~added
+        solid = Solid(solid.vertices, solid.triangles[keep], solid.ends, own[keep],
                       np.where(added, 0, solid.beyond)[keep])
         made.append(_turned_like_mesh(_Fitted(solid, between[solid.ends], alias, against), alone))
     return made
@@ -343,9 +351,9 @@ def _corners_of(faces, corners, count):
     return np.divmod(pairs, count)
 
 
-def _of_faces(mesh, hierarchy, tet_first, tet_last, alone):
-    """The pieces.Plan of the slice's polygons alone."""
-    inside = _inside(hierarchy, tet_first, tet_last)
+def _of_faces(mesh, hierarchy, tet_first, tet_last, faces, alone):
+    """The pieces.Plan of the slice's polygons alone, or of those that it is to have in their place."""
+    inside = _inside(hierarchy, tet_first, tet_last, faces)
     if not inside.any():
         raise NotClosed("This part has no face of the mesh. Take a larger one.")
     _, totals = mesh_arrays.polygon_sizes(mesh)
@@ -356,9 +364,11 @@ def _of_faces(mesh, hierarchy, tet_first, tet_last, alone):
     return _plan(mesh, [part], kept, np.repeat(kept[:, None], 2, axis=1), np.empty((0, 3), np.float32), wires)
 
 
-def _inside(hierarchy, tet_first, tet_last):
-    """(F,) which faces are of a slice of the tetrahedra, or with the two exchanged of the rest."""
+def _inside(hierarchy, tet_first, tet_last, faces=None):
+    """(F,) which faces are of a slice of the tetrahedra, or with the two exchanged of the rest. faces: see part()."""
     leaf = hierarchy.leaf
+    if faces is not None:
+        return faces if tet_first < tet_last else ~faces
     if tet_first < tet_last:
         return (leaf >= tet_first) & (leaf < tet_last)
     return (leaf >= tet_first) | (leaf < tet_last)

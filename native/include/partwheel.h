@@ -271,6 +271,19 @@ PW_API pw_status pw_mesh_arrays(const pw_mesh *mesh, const double **vertices, si
 PW_API pw_status pw_hierarchy_solid(const pw_hierarchy *hierarchy, size_t tet_first, size_t tet_last,
                                     const int32_t *middles, size_t middle_count, pw_mesh **mesh);
 
+/* The same for a part whose faces are others than its own, as after pw_creases_snap. Tetrahedra behind the surface go
+ * with the faces that most of their area there is of: the others of such a face are cut, as above. Which of those inside
+ * go with them, near the ones that change sides, is decided by a minimum cut, so that the caps have the least area.
+ *
+ * Nothing falls into more pieces by that: what would only touch the others, at a vertex or an edge, stays with them, and
+ * some faces near the border may so be on the other side than inside says; fewer of the area than without, or the part is
+ * its own.
+ *
+ * inside  face_count bytes, one for each source face: not 0 for those of the part, also where the slice is the rest.
+ *         With the two exchanged, the rest is all that the part leaves. */
+PW_API pw_status pw_hierarchy_solid_of_faces(const pw_hierarchy *hierarchy, size_t tet_first, size_t tet_last,
+                                             const uint8_t *inside, size_t face_count, pw_mesh **mesh);
+
 /* Where a solid's vertices and triangles come from; all owned by the mesh.
  *
  * ends    vertex_count x 2: the vertex of the hierarchy (pw_arrays.vertices) that each vertex is, twice; or, for one in

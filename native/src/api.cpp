@@ -346,6 +346,20 @@ pw_status pw_hierarchy_solid(const pw_hierarchy* hierarchy, size_t tet_first, si
     });
 }
 
+pw_status pw_hierarchy_solid_of_faces(const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last,
+                                      const uint8_t* inside, size_t face_count, pw_mesh** mesh) {
+    return guarded([&] {
+        require(hierarchy != nullptr && inside != nullptr && mesh != nullptr,
+                "hierarchy, inside and mesh must not be null.");
+        const Hierarchy& it = hierarchy->hierarchy;
+        require(tet_first != tet_last && std::max(tet_first, tet_last) <= it.tetrahedron_count(),
+                "The tetrahedra must be a slice that is not empty: tet_first and tet_last differ and are at most their "
+                "number.");
+        require(face_count == it.face_count(), "face_count is not the number of the hierarchy's source faces.");
+        *mesh = new pw_mesh{it.solid_of_faces(tet_first, tet_last, {inside, face_count})};
+    });
+}
+
 pw_status pw_polygon_faults(const int32_t* corners, size_t corner_count, const int32_t* begin, size_t polygon_count,
                             size_t vertex_count, size_t* open, size_t* against, size_t* touching) {
     return guarded([&] {

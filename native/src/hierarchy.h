@@ -43,6 +43,8 @@ public:
     std::vector<int32_t> cut_automatic() const;             // likewise
     TriangleMesh hull(size_t tet_first, size_t tet_last) const;
     TriangleMesh solid(size_t tet_first, size_t tet_last, std::span<const std::array<int32_t, 2>> middles) const;
+    // inside: of each source face, not 0 for those that the part is to have in place of its own.
+    TriangleMesh solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside) const;
 
 private:
     Hierarchy() = default;
@@ -51,6 +53,7 @@ private:
     void finish();
     size_t regrouped_merges() const { return scores_.empty() ? 0 : (scores_.size() - 1) / 2; }
     std::vector<int32_t> bounds_of(std::span<const int32_t> clusters) const;
+    const Facets& facets() const;
 
     // Stored: all else follows from these. Tetrahedra are in depth-first order, lengths and volumes in the caller's
     // unit.

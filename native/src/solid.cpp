@@ -1,9 +1,11 @@
 // Tetrahedra -> the closed, manifold surface around them: the source's own triangles, and caps where the rest was.
 #include "solid.h"
 
+#include "border.h"
 #include "error.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <set>
 #include <tuple>
@@ -14,6 +16,11 @@ namespace {
 
 // The corners of the facet opposite each corner, counter-clockwise seen from outside the tetrahedron.
 constexpr std::array<std::array<int32_t, 3>, 4> opposite = {{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+// Areas of caps are whole numbers, of so many to the square of the size of what changed sides; none counts for more than
+// the largest.
+constexpr double cap_steps = 1 << 24;
+constexpr double largest_cap = static_cast<double>(int64_t{1} << 36);
 
 size_t at(int32_t i) { return static_cast<size_t>(i); }
 
@@ -128,6 +135,163 @@ std::vector<int32_t> Facets::at_home(size_t first, size_t last) const {
     return tets;
 }
 
+std::vector<int32_t> Facets::pieces(std::span<const uint8_t> in) const {
+    std::vector<int32_t> piece(in.size(), -1), open;
+    int32_t count = 0;
+    for (size_t start = 0; start < in.size(); ++start) {
+        if (piece[start] >= 0) continue;
+        piece[start] = count++;
+        open.assign(1, static_cast<int32_t>(start));
+        while (!open.empty()) {
+            const size_t t = at(open.back());
+            open.pop_back();
+            for (int32_t n : neighbours_[t]) {
+                if (n < 0 || in[at(n)] != in[t] || piece[at(n)] >= 0) continue;
+                piece[at(n)] = piece[t];
+                open.push_back(n);
+            }
+        }
+    }
+    return piece;
+}
+
+void Facets::drop_splinters(std::span<const uint8_t> before, std::vector<uint8_t>& in) const {
+    const std::vector<int32_t> old = pieces(before), now = pieces(in);
+    // What has most tetrahedra in common with a piece that there was goes on as that piece.
+    std::map<std::pair<int32_t, int32_t>, size_t> common;
+    for (size_t t = 0; t < in.size(); ++t)
+        if (in[t] == before[t]) ++common[{old[t], now[t]}];
+    std::map<int32_t, std::pair<size_t, int32_t>> most;
+    for (const auto& [pair, count] : common)
+        if (count > most[pair.first].first) most[pair.first] = {count, pair.second};
+    std::set<int32_t> kept;
+    for (const auto& [piece, best] : most) kept.insert(best.second);
+    for (size_t t = 0; t < in.size(); ++t)
+        if (!kept.contains(now[t])) in[t] = !in[t];
+}
+
+std::vector<int32_t> Facets::with_faces(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
+                                        size_t first, size_t last, std::span<const uint8_t> inside) const {
+    const bool rest = first > last;
+    if (rest) std::swap(first, last);
+    std::vector<uint8_t> in(tetrahedra.size(), 0);
+    for (int32_t t : at_home(first, last)) in[at(t)] = 1;
+    const std::vector<uint8_t> before = in;
+    const auto area = [&](size_t t, size_t corner) {
+        const auto p = [&](size_t k) { return vertices[at(tetrahedra[t][at(opposite[corner][k])])]; };
+        return partwheel::area(p(0), p(1), p(2));
+    };
+
+    std::vector<uint8_t> within(tetrahedra.size(), 1);
+    Point low{}, high{};  // a box around those that change sides
+    bool changed = false;
+    for (size_t t = 0; t < tetrahedra.size(); ++t) {
+        double more = 0;  // on the surface: area of the part's faces, less that of others
+        for (size_t c = 0; c < 4; ++c) {
+            if (neighbours_[t][c] >= 0) continue;
+            within[t] = 0;
+            const int32_t face = faces_[t][c];
+            if (face >= 0) more += inside[at(face)] ? area(t, c) : -area(t, c);
+        }
+        const uint8_t wanted = more > 0 ? 1 : more < 0 ? 0 : in[t];
+        if (wanted == in[t]) continue;
+        in[t] = wanted;
+        for (int32_t v : tetrahedra[t])
+            for (size_t i = 0; i < 3; ++i) {
+                const double x = vertices[at(v)][i];
+                low[i] = changed ? std::min(low[i], x) : x;
+                high[i] = changed ? std::max(high[i], x) : x;
+                changed = true;
+            }
+    }
+    if (const double size = std::sqrt(dot(high - low, high - low)); changed && size > 0) {
+        // Edges of the surface, by the faces of which they are: of the part's, and of all.
+        struct Edge {
+            std::pair<int32_t, int32_t> ends;
+            int in, all;
+        };
+        std::vector<Edge> edges;
+        const auto ends = [&](size_t t, size_t corner, size_t k) -> std::pair<int32_t, int32_t> {
+            const auto& facet = opposite[corner];
+            return std::minmax(tetrahedra[t][at(facet[k])], tetrahedra[t][at(facet[(k + 1) % 3])]);
+        };
+        BorderBand band;
+        std::vector<int32_t> number(tetrahedra.size(), -1);
+        for (size_t t = 0; t < tetrahedra.size(); ++t) {
+            const auto near = [&](int32_t v) {
+                for (size_t i = 0; i < 3; ++i)
+                    if (vertices[at(v)][i] < low[i] - size || vertices[at(v)][i] > high[i] + size) return false;
+                return true;
+            };
+            if (std::ranges::none_of(tetrahedra[t], near)) continue;
+            if (within[t]) {
+                number[t] = static_cast<int32_t>(band.faces.size());
+                band.faces.push_back(static_cast<int32_t>(t));
+                continue;
+            }
+            for (size_t c = 0; c < 4; ++c)
+                for (size_t k = 0; neighbours_[t][c] < 0 && k < 3; ++k) edges.push_back({ends(t, c, k), in[t], 1});
+        }
+        std::ranges::sort(edges, {}, &Edge::ends);
+        size_t count = 0;
+        for (const Edge& edge : edges) {
+            if (count > 0 && edges[count - 1].ends == edge.ends)
+                edges[count - 1].in += edge.in, ++edges[count - 1].all;
+            else
+                edges[count++] = edge;
+        }
+        edges.resize(count);
+        // The facets about an edge between two faces of one side join these: to go through there costs so much more.
+        const auto joins = [&](size_t t, size_t corner) {
+            double sum = 0;
+            for (size_t k = 0; k < 3; ++k) {
+                const auto found = std::ranges::lower_bound(edges, ends(t, corner, k), {}, &Edge::ends);
+                if (found == edges.end() || found->ends != ends(t, corner, k)) continue;
+                if (found->all < 2 || (found->in > 0 && found->in < found->all)) continue;
+                const Point along = vertices[at(found->ends.first)] - vertices[at(found->ends.second)];
+                sum += std::sqrt(dot(along, along));
+            }
+            return sum / size;
+        };
+        band.to_part.assign(band.faces.size(), 0);
+        band.to_rest.assign(band.faces.size(), 0);
+        for (size_t n = 0; n < band.faces.size(); ++n) {
+            const size_t t = at(band.faces[n]);
+            for (size_t c = 0; c < 4; ++c) {
+                const size_t other = at(neighbours_[t][c]);
+                if (number[other] >= 0 && other < t) continue;
+                const auto cost =
+                    1 + static_cast<int64_t>(std::min((area(t, c) / size / size + joins(t, c)) * cap_steps,
+                                                             largest_cap) + 0.5);
+                if (number[other] >= 0)
+                    band.edges.push_back({static_cast<int32_t>(n), number[other], cost});
+                else
+                    (in[other] ? band.to_part : band.to_rest)[n] += cost;
+            }
+        }
+        const std::vector<uint8_t> side = minimum_cut(band);
+        for (size_t n = 0; n < band.faces.size(); ++n) in[at(band.faces[n])] = side[n];
+        drop_splinters(before, in);
+
+        // Where tetrahedra are large beside what moved, the part's own may fit the faces better.
+        const auto wrong = [&](std::span<const uint8_t> sides) {
+            double sum = 0;
+            for (size_t t = 0; t < tetrahedra.size(); ++t)
+                for (size_t c = 0; !within[t] && c < 4; ++c)
+                    if (neighbours_[t][c] < 0 && faces_[t][c] >= 0 && !inside[at(faces_[t][c])] != !sides[t])
+                        sum += area(t, c);
+            return sum;
+        };
+        const auto both = [&] { return std::ranges::find(in, 0) != in.end() && std::ranges::find(in, 1) != in.end(); };
+        if (!both() || wrong(in) >= wrong(before)) in = before;
+    }
+
+    std::vector<int32_t> tets;
+    for (size_t t = 0; t < tetrahedra.size(); ++t)
+        if ((in[t] != 0) != rest) tets.push_back(static_cast<int32_t>(t));
+    return tets;
+}
+
 // Goes from a facet of the surface through the solid, around the edge that lies opposite another corner of its
 // tetrahedron in the facet, to the facet of the surface at the other end.
 Facets::Facet Facets::next_around(std::span<const Tetrahedron> tetrahedra, const std::vector<bool>& inside, Facet facet,
@@ -145,10 +309,10 @@ Facets::Facet Facets::next_around(std::span<const Tetrahedron> tetrahedra, const
     refuse();
 }
 
-TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices, size_t first,
-                           size_t last, std::span<const std::array<int32_t, 2>> middles) const {
+TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
+                           std::span<const int32_t> tets,
+                           std::span<const std::array<int32_t, 2>> middles) const {
     std::vector<bool> inside(tetrahedra.size(), false);
-    const std::vector<int32_t> tets = at_home(first, last);
     if (tets.empty())
         throw Error(PW_ERROR_EMPTY, "This part is no solid: it has no face of the surface. Take a larger one.");
     for (int32_t t : tets) inside[at(t)] = true;

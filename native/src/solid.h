@@ -31,12 +31,24 @@ public:
     // The tetrahedra whose home is in [first, last); if first is the larger, outside [last, first).
     std::vector<int32_t> at_home(size_t first, size_t last) const;
 
-    // The surface around at_home(first, last). Where tetrahedra only touch, at an edge or a vertex, it is cut apart.
+    // The same where other faces are to be the part's, the ones that inside (of each source face) is not 0 for: those of
+    // a border that was moved. A tetrahedron on the surface goes with the faces that most of its area there is of; those
+    // within, near the ones that changed sides, with whom the caps become smallest: a minimum cut. All others stay; and
+    // so do splinters, those that would only touch what they were joined with, and all where that fits better.
+    std::vector<int32_t> with_faces(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
+                                    size_t first, size_t last, std::span<const uint8_t> inside) const;
+
+    // The surface around tetrahedra. Where they only touch, at an edge or a vertex, it is cut apart.
     // middles: edges, as their two vertices, that get a vertex in their middle wherever they are on it.
-    TriangleMesh solid(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices, size_t first,
-                       size_t last, std::span<const std::array<int32_t, 2>> middles) const;
+    TriangleMesh solid(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
+                       std::span<const int32_t> tets, std::span<const std::array<int32_t, 2>> middles) const;
 
 private:
+    // Of each tetrahedron the number of the piece it is in: joined across facets, all on one side.
+    std::vector<int32_t> pieces(std::span<const uint8_t> in) const;
+    // Pieces that only touch the others, and were joined with them before, change sides.
+    void drop_splinters(std::span<const uint8_t> before, std::vector<uint8_t>& in) const;
+
     struct Facet {
         int32_t tet, corner;  // the facet opposite this corner
     };

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The add-on tier: installs the zip into this Blender, then tests what was installed, without a window.
 
-    blender -b --factory-startup --python-exit-code 9 --python tests/addon/run.py -- ZIP RESULT.json
-    build/venv/bpy-X/bin/python tests/addon/run.py -- ZIP RESULT.json
+    blender -b --factory-startup --python-exit-code 9 --python tests/addon/run.py -- ZIP RESULT.json [NAME ...]
+    build/venv/bpy-X/bin/python tests/addon/run.py -- ZIP RESULT.json [NAME ...]
 
-Start it with a HOME of its own: it installs into the user's directories. RESULT.json: {"passed": n, "failed": n,
-"failures": [sentence, ...]}. Exit code: 0 if all passed, 1 if a test failed.
+With names only the tests that have one of them in their own. Start it with a HOME of its own: it installs into the
+user's directories. RESULT.json: {"passed": n, "failed": n, "failures": [sentence, ...]}. Exit code: 0 if all passed, 1
+if a test failed.
 """
 
 import json
@@ -55,7 +56,7 @@ class Timed(unittest.TextTestResult):
 
 
 def main():
-    zip_path, result_path = sys.argv[sys.argv.index("--") + 1:]
+    zip_path, result_path, *names = sys.argv[sys.argv.index("--") + 1:]
     result_path = Path(result_path).resolve()
     result = {"passed": 0, "failed": 1, "failures": []}
     try:
@@ -63,6 +64,7 @@ def main():
 
         common.ZIP = str(Path(zip_path).resolve())
         common.MODULE = installed(common.ZIP)
+        unittest.defaultTestLoader.testNamePatterns = [f"*{name}*" for name in names] or None
         suite = unittest.defaultTestLoader.discover(str(Path(__file__).resolve().parent), "test_*.py")
         run = unittest.TextTestRunner(stream=sys.stdout, verbosity=2, resultclass=Timed).run(suite)
         failures = [f"{test.id()}: {text.strip().splitlines()[-1]}" for test, text in run.failures + run.errors]

@@ -219,6 +219,44 @@ class Copy(SolidTest):
         self.assertEqual((bpy.context.mode, bpy.context.selected_objects), ("OBJECT", [copy]))
         self.assertEqual((~caps(copy.data)).sum(), len(hierarchy.faces(node)))
 
+    def test_its_border_is_in_creases_unless_told_otherwise(self):
+        obj, hierarchy = self.built("hand")
+        whole, api, moved, wrong = volume(obj.data), part("api"), 0, 0
+        place = {tuple(polygon.center): polygon.index for polygon in obj.data.polygons}
+        for node in self.nodes(hierarchy, 12):
+            own, snapped = set(api.faces(obj, node).tolist()), set(api.faces(obj, node, snap=True).tolist())
+            rest = obj.copy()
+            rest.data = obj.data.copy()
+            self.link(rest)
+            copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node, snap=True)
+            self.run_on(rest, bpy.ops.mesh.partwheel_remove, node=node, snap=True)
+            self.assertSolid(copy.data)
+            self.assertSolid(rest.data)
+            self.assertLess(abs(volume(rest.data) + volume(copy.data) - whole), 1e-5 * abs(whole))
+            found = {place[tuple(polygon.center)] for polygon, cap in zip(copy.data.polygons, caps(copy.data))
+                     if not cap and tuple(polygon.center) in place}
+            moved, wrong = moved + len(own ^ snapped), wrong + len(found ^ snapped)
+            self.assertEqual(len(found), (~caps(copy.data)).sum())
+            again = api.copy_part(obj, node, snap=True)
+            self.assertEqual(arrays(again.data)[1], arrays(copy.data)[1])
+            bpy.context.view_layer.objects.active = obj
+            self.assertEqual(bpy.ops.mesh.partwheel_copy(node=node), {"FINISHED"})  # as it is without being told
+            self.assertEqual(arrays(bpy.context.active_object.data)[1], arrays(copy.data)[1])
+        self.assertEqual(len(obj.data.polygons), len(place))
+        self.assertGreater(moved, 15)
+        self.assertLess(wrong, 0.4 * moved)
+
+    def test_a_border_is_snapped_on_a_repaired_mesh_too(self):
+        vertices, polygons = read_off("hand")
+        obj = self.add(vertices, polygons[:-3])  # with a hole
+        hierarchy = part("api").build(obj)
+        self.assertEqual(hierarchy.summary.rung, "repaired")
+        for node in self.nodes(hierarchy, 4):
+            snapped = part("api").faces(obj, node, snap=True)
+            copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node, snap=True).data
+            self.assertSolid(copy)
+            self.assertLess(abs((~caps(copy)).sum() - len(snapped)), 0.2 * len(snapped) + 3)
+
     def test_blenders_clipboard_takes_it_to_another_file(self):
         obj, hierarchy = self.built()
         obj.data.materials.append(bpy.data.materials.new("skin"))

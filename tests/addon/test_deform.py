@@ -64,6 +64,29 @@ class Deform(MeshTest):
             self.run_operator(**arguments)
         return str(refused.exception)
 
+    def test_a_part_picked_with_a_snapped_border_is_deformed_so(self):
+        obj, node, faces, free, tip = self.hand()
+        snapped = part("api").faces(obj, node, snap=True).tolist()
+        self.assertNotEqual(set(snapped), set(faces))
+        before = edited(obj)
+        move = shift(0.1 * numpy.ptp(before, axis=0).max(), 0, 0)
+        start = part("wheel").pick(part("api").hierarchy(obj), FINGER)
+        level = start.stops.index(node) - start.start
+        for picked, arguments, chosen in ((True, {}, snapped), (False, {}, faces), (True, {"snap": False}, faces),
+                                          (False, {"snap": True}, snapped)):
+            part("api").select(obj, FINGER, level, snap=picked)
+            self.assertEqual(self.run_operator(handles=[handle(tip, move, 0)], **arguments), {"FINISHED"})
+            moved = numpy.flatnonzero((edited(obj) != before).any(axis=1))
+            self.assertLessEqual(set(moved.tolist()), set(inner(obj, chosen)))
+            self.assertGreater(len(moved), 0.9 * len(inner(obj, chosen)))
+            self.restore(obj, before)
+
+    def restore(self, obj, positions):
+        bm = bmesh.from_edit_mesh(obj.data)
+        for vertex, place in zip(bm.verts, positions):
+            vertex.co = place
+        bmesh.update_edit_mesh(obj.data)
+
     def test_the_part_follows_and_nothing_else_moves(self):
         obj, node, faces, free, tip = self.hand()
         before = edited(obj)

@@ -8,6 +8,7 @@ import os
 import random
 
 import bpy
+import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from common import part, selected
 from test_modal import FakeContext, Tool, ToolTest, event, view
@@ -21,15 +22,16 @@ DEEP = 25  # undo steps that are gone back at most
 
 
 class Model:
-    """What should be selected, with sets and a list of undo steps. parts(face): (sets growing, index of the first)."""
+    """What should be selected, with sets and a list of undo steps. parts(face): (sets growing, the same with snapped
+    borders, index of the first)."""
 
     def __init__(self, parts):
         self.parts, self.selected, self.held = parts, frozenset(), None
         self.steps, self.at = [self.selected], 0
 
     def click(self, face, how):
-        sets, start = self.parts(face)
-        self.held = dict(sets=sets, index=start, how=how, before=self.selected, typed="")
+        sets, snapped, start = self.parts(face)
+        self.held = dict(sets=sets, others=snapped, index=start, how=how, before=self.selected, typed="")
         self._apply()
 
     def _apply(self):
@@ -43,6 +45,10 @@ class Model:
 
     def turn(self, notches):
         self.go(self.held["index"] + notches)
+
+    def snap(self):
+        self.held["sets"], self.held["others"] = self.held["others"], self.held["sets"]
+        self._apply()
 
     def digit(self, digit):
         typed = self.held["typed"] + str(digit)
@@ -81,8 +87,11 @@ class RandomEvents(ToolTest):
         self.spots = self.find_spots(12)
         bpy.ops.ed.undo_push(message="start")
         stops = {face: self.h.wheel(face) for _, face in self.spots}
-        sets = {face: [frozenset(self.h.faces(node).tolist()) for node in path] for face, (path, _) in stops.items()}
-        self.model = Model(lambda face: (sets[face], stops[face][1]))
+        creases, every = part("core").Creases(*part("mesh_arrays").surface(self.obj.data)), np.arange(2390)
+        sets = {node: self.h.faces(node) for path, _ in stops.values() for node in path.tolist()}
+        snapped = {node: np.flatnonzero(creases.snapped(np.isin(every, faces))) for node, faces in sets.items()}
+        self.model = Model(lambda face: (*([frozenset(each[node].tolist()) for node in stops[face][0].tolist()]
+                                           for each in (sets, snapped)), stops[face][1]))
         self.name, self.random = self.obj.name, random.Random(2008)
         counts = {}
         for number in range(EVENTS):
@@ -93,7 +102,7 @@ class RandomEvents(ToolTest):
             self.assertEqual(selected(self.obj), self.model.selected, f"after event {number}: {action.__name__} {what}")
         print(f"{EVENTS} random events: {counts}")
         self.assertGreater(min(counts.get(name, 0) for name in ("click", "turn", "digit", "confirm", "cancel", "undo",
-                                                                "redo", "next_click", "drag")), 0)
+                                                                "redo", "next_click", "drag", "snap")), 0)
 
     def find_spots(self, count):
         """[(pixel, face)] that are safe to click."""
@@ -111,7 +120,7 @@ class RandomEvents(ToolTest):
     def actions(self):
         if self.model.held:
             return [self.turn] * 6 + [self.digit, self.digit, self.erase, self.drag, self.confirm, self.cancel,
-                                      self.next_click, self.other_key]
+                                      self.next_click, self.other_key, self.snap]
         can = [self.click] * 3 + [self.beside]
         if self.model.at > max(0, len(self.model.steps) - DEEP):
             can += [self.undo]
@@ -156,6 +165,10 @@ class RandomEvents(ToolTest):
         self.send(DIGITS[digit])
         self.model.digit(digit)
         return digit
+
+    def snap(self):
+        self.send("TAB", shift=True)
+        self.model.snap()
 
     def erase(self):
         self.send("BACK_SPACE")

@@ -65,7 +65,7 @@ class FakeContext:
         self.window_manager = types.SimpleNamespace(
             modal_handler_add=self.handlers.append, event_timer_remove=self.timers.remove,
             event_timer_add=lambda seconds, window: self.timers.append(seconds) or seconds)
-        self.workspace = types.SimpleNamespace(status_text_set=self.status.append)
+        self.workspace = types.SimpleNamespace(status_text_set=self.status.append, tools=bpy.context.workspace.tools)
         real = self.area
         self.area = types.SimpleNamespace(type="VIEW_3D", header_text_set=self.header.append, regions=real.regions)
 
@@ -88,7 +88,7 @@ class Tool:
     def __init__(self, operator="select", **properties):
         self.reports = []
         self.operator = operator
-        self.face_index, self.level, self.extend, self.deselect, self.tool = 0, 0, False, False, False
+        self.face_index, self.level, self.extend, self.deselect, self.tool, self.snap = 0, 0, False, False, False, False
         self.quality, self.open_surfaces = 0.0, False
         vars(self).update(properties)
 
@@ -271,6 +271,37 @@ class Modal(ToolTest):
         self.assertEqual(self.tool.reports[-1][0], {"ERROR"})
         self.assertEqual(flags(self.obj), before)
         self.is_over()
+
+    def test_the_border_is_snapped_and_back(self):
+        self.start()
+        point, face = self.centre()
+        self.send("LEFTMOUSE", point)
+        stops, start = self.h.wheel(face)
+        creases = part("core").Creases(*part("mesh_arrays").surface(self.obj.data))
+
+        def snapped(level):
+            return set(np.flatnonzero(creases.snapped(np.isin(np.arange(2390), self.h.faces(stops[start + level])))))
+
+        self.assertTrue(any(snapped(level) != set(self.h.faces(stops[start + level]).tolist()) for level in range(3)))
+        self.send("TAB", point)
+        self.expect(face, 0)  # Shift Tab it is
+        self.send("TAB", point, shift=True)
+        for key, level in ((None, 0), ("WHEELUPMOUSE", 1), ("WHEELUPMOUSE", 2), ("WHEELDOWNMOUSE", 1)):
+            if key:
+                self.send(key, point)
+            self.assertEqual(selected(self.obj), snapped(level))
+            self.assertIn(f"{len(snapped(level)):,} faces", self.context.header[-1])
+            self.assertIn("in creases", self.context.header[-1])
+        self.send("TAB", point, shift=True)
+        self.expect(face, 1)
+        self.assertNotIn("in creases", self.context.header[-1])
+        self.send("TAB", point, shift=True)
+        self.assertEqual(self.send("RET"), {"FINISHED"})
+        self.assertEqual((self.tool.face_index, self.tool.level, self.tool.snap), (face, 1, True))
+        self.assertTrue(part("session").picked(self.obj).snap)
+        bpy.ops.mesh.select_all(action="DESELECT")
+        bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", face_index=face, level=1, snap=True)
+        self.assertEqual(selected(self.obj), snapped(1))
 
     def test_typed_numbers(self):
         self.start()

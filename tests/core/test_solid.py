@@ -12,8 +12,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapes
-from partwheel.core import Hierarchy, PartwheelError, meshes
+from partwheel.core import Creases, Hierarchy, PartwheelError, meshes
 from partwheel.core.hierarchy import Solid
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 from solid_checks import TOLERANCE, check_solid, crossings, tetrahedra_volume, volume
 
 EVERYTHING = os.environ.get("PARTWHEEL_SOLIDS") == "all"
@@ -235,3 +237,43 @@ def test_walls_within_the_solid_are_no_surface_of_it():
     solid = h.solid(len(h.parent) - 1)
     check_solid(solid)
     assert np.isclose(volume(solid.vertices, solid.triangles), 1) and len(faces_of(solid)) == 6
+
+
+@pytest.mark.parametrize("name", ["hand", "elephant", "dragknob"])
+def test_of_snapped_parts(name):
+    """Part and rest are solids that make the whole, in no more pieces than before; and their faces are nearly those of
+    the snapped part."""
+    shape = shapes.off(name)
+    hierarchy, creases = Hierarchy.build(*shape), Creases(*shape)
+    moved = wrong = 0
+    for face in range(0, shape.face_count, shape.face_count // 4):
+        for stop in hierarchy.wheel(face)[0][:-1].tolist():
+            part = np.isin(np.arange(shape.face_count), hierarchy.faces(stop))
+            snapped = creases.snapped(part)
+            first, last = int(hierarchy.tet_first[stop]), int(hierarchy.tet_last[stop])
+            solids = [hierarchy.solid_of_faces(*each, snapped) for each in ((first, last), (last, first))]
+            for solid, before in zip(solids, (hierarchy.solid(stop), hierarchy.rest(stop))):
+                check_solid(solid)
+                assert pieces(solid) <= pieces(before)
+            both = [faces_of(solid) for solid in solids]
+            volumes = [volume(solid.vertices, solid.triangles) for solid in solids]
+            assert abs(sum(volumes) - tetrahedra_volume(hierarchy)) <= TOLERANCE * tetrahedra_volume(hierarchy)
+            differing = len(np.setxor1d(both[0], np.flatnonzero(snapped)))
+            moved, wrong = moved + int((snapped != part).sum()), wrong + differing
+            assert np.array_equal(np.union1d(*both), np.arange(shape.face_count))
+    print(f"{name}: {moved} faces moved, {wrong} otherwise")
+    assert wrong < 0.25 * moved
+
+
+def pieces(solid):
+    sides = np.vstack([solid.triangles[:, :2], solid.triangles[:, 1:]])
+    graph = coo_matrix((np.ones(len(sides)), (sides[:, 0], sides[:, 1])), (len(solid.vertices),) * 2)
+    return connected_components(graph, directed=False)[0]
+
+
+def test_faces_of_others_are_checked():
+    hierarchy = Hierarchy.build(*shapes.cube())
+    with pytest.raises(ValueError, match="shape"):
+        hierarchy.solid_of_faces(0, 1, np.ones(3, bool))
+    with pytest.raises(PartwheelError):
+        hierarchy.solid_of_faces(1, 1, np.ones(len(hierarchy.leaf), bool))

@@ -96,7 +96,7 @@ TEST(Solid, AnySubsetOfTetrahedraHasAClosedManifoldSurface) {
         const std::vector<int32_t> outer(outer_facets(block), -1);
         const Facets facets(block.tetrahedra, outer, {}, false);
         const size_t count = 1 + random() % block.tetrahedra.size();
-        const TriangleMesh mesh = facets.solid(block.tetrahedra, block.vertices, 0, count, {});
+        const TriangleMesh mesh = facets.solid(block.tetrahedra, block.vertices, facets.at_home(0, count), {});
         expect_closed_and_manifold(mesh);
         EXPECT_NEAR(volume(mesh), static_cast<double>(count) / 6, 1e-12 * static_cast<double>(count));
         std::set<std::array<int32_t, 2>> distinct(mesh.ends.begin(), mesh.ends.end());
@@ -133,8 +133,8 @@ TEST(Solid, CapsOfBothSidesAreTheSameTrianglesOnceTheyShareTheirMiddles) {
         const size_t count = 1 + random() % (block.tetrahedra.size() - 1);
         std::vector<std::array<int32_t, 2>> middles;
         const auto solid = [&](bool rest) {
-            return facets.solid(block.tetrahedra, block.vertices, rest ? count : 0,
-                                rest ? block.tetrahedra.size() : count, middles);
+            const size_t last = rest ? block.tetrahedra.size() : count;
+            return facets.solid(block.tetrahedra, block.vertices, facets.at_home(rest ? count : 0, last), middles);
         };
         TriangleMesh part = solid(false), rest = solid(true);
         differed += caps_of(part, false) != caps_of(rest, true);
@@ -168,13 +168,13 @@ TEST(Solid, APolygonTakesTheTetrahedraThatHaveNothingElse) {
     EXPECT_TRUE(polygons.at_home(1, 2).empty());
     EXPECT_EQ(polygons.at_home(1, 6).size(), 4U);
     EXPECT_EQ(polygons.at_home(0, 6).size(), 6U);
-    EXPECT_THROW(polygons.solid(block.tetrahedra, block.vertices, 1, 2, {}), Error);
+    EXPECT_THROW(polygons.solid(block.tetrahedra, block.vertices, polygons.at_home(1, 2), {}), Error);
 }
 
 TEST(Solid, CapsNameTheOtherSide) {
     const Tets block = kuhn_block(2);
     const Facets facets(block.tetrahedra, std::vector<int32_t>(outer_facets(block), 0), std::vector<int32_t>{0}, false);
-    const TriangleMesh low = facets.solid(block.tetrahedra, block.vertices, 0, 20, {});
+    const TriangleMesh low = facets.solid(block.tetrahedra, block.vertices, facets.at_home(0, 20), {});
     size_t caps = 0;
     for (size_t i = 0; i < low.triangles.size(); ++i) {
         const int32_t beyond = low.beyond[i];
@@ -196,7 +196,7 @@ TEST(Solid, TetrahedraThatDoNotFitTogetherAreRefused) {
         try {
             const Facets facets(tets, std::vector<int32_t>(outer, -1), {}, false);
             const std::vector<Point> vertices(6, Point{});
-            for (size_t t = 0; t < tets.size(); ++t) facets.solid(tets, vertices, 0, t + 1, {});
+            for (size_t t = 0; t < tets.size(); ++t) facets.solid(tets, vertices, facets.at_home(0, t + 1), {});
         } catch (const Error& error) {
             return error.status() == PW_ERROR_DATA;
         }

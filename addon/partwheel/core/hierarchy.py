@@ -305,6 +305,15 @@ class Hierarchy:
         tetrahedra[tet_first:] and tetrahedra[:tet_last]."""
         return self._solid(tet_first, tet_last, np.empty((0, 2), np.int32))
 
+    def solid_of_faces(self, tet_first, tet_last, inside):
+        """The same for a part whose faces are others than its own: those where inside, (F,) bool, is True; also where
+        the slice is the rest. See pw_hierarchy_solid_of_faces in partwheel.h."""
+        inside = np.ascontiguousarray(inside, bool)
+        if inside.shape != self.leaf.shape:
+            raise ValueError(f"inside must have the shape {self.leaf.shape}, not {inside.shape}.")
+        return self._as_solid(*self._mesh(load().pw_hierarchy_solid_of_faces, tet_first, tet_last, inside.ctypes.data,
+                                          len(inside)))
+
     def solids(self, slices):
         """The Solids around slices (tet_first, tet_last) that have nothing in common, None for one that has no
         tetrahedron left. A cap between two of them is the same triangle in both: where one has a vertex in the middle
@@ -327,8 +336,10 @@ class Hierarchy:
 
     def _solid(self, tet_first, tet_last, middles):
         middles = np.ascontiguousarray(middles, np.int32)
-        mesh, vertices, triangles = self._mesh(load().pw_hierarchy_solid, tet_first, tet_last, middles.ctypes.data,
-                                               len(middles))
+        return self._as_solid(*self._mesh(load().pw_hierarchy_solid, tet_first, tet_last, middles.ctypes.data,
+                                          len(middles)))
+
+    def _as_solid(self, mesh, vertices, triangles):
         ends, faces, beyond = c_void_p(), c_void_p(), c_void_p()
         check(load().pw_mesh_origins(mesh.address, byref(ends), byref(faces), byref(beyond)))
         return Solid(vertices, triangles, _view(mesh, ends.value, (len(vertices), 2), np.int32),

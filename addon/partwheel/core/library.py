@@ -118,6 +118,7 @@ FUNCTIONS = {
     "pw_hierarchy_cut_automatic": (c_int, [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_hull": (c_int, [c_void_p, c_size_t, c_size_t, POINTER(c_void_p)]),
     "pw_hierarchy_solid": (c_int, [c_void_p, c_size_t, c_size_t, c_void_p, c_size_t, POINTER(c_void_p)]),
+    "pw_hierarchy_solid_of_faces": (c_int, [c_void_p, c_size_t, c_size_t, c_void_p, c_size_t, POINTER(c_void_p)]),
     "pw_polygon_faults": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_size_t, POINTER(c_size_t),
                                   POINTER(c_size_t), POINTER(c_size_t)]),
     "pw_faired": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_void_p]),

@@ -71,6 +71,10 @@ class OnPart:
         name="Node", description="The part, as a number of the hierarchy; -1: the part that was picked last",
         default=-1, min=-1, options={"SKIP_SAVE"},
     )
+    snap: bpy.props.BoolProperty(
+        name="Snap Border", description="Move the border of the part to the creases nearby, as far as the tetrahedra "
+        "about it let it be there", default=True,
+    )
 
     def hierarchy(self, context, obj):
         found = super().hierarchy(context, obj)
@@ -91,7 +95,7 @@ class MESH_OT_partwheel_copy(OnPart, _AsSolid, bpy.types.Operator):
     bl_label = "Copy Part as Solid"
 
     def work(self, context, obj, hierarchy):
-        only(context, [composition.copied(obj, hierarchy, self.node, self.caps())])
+        only(context, [composition.copied(obj, hierarchy, self.node, self.caps(), self.snap)])
 
 
 class MESH_OT_partwheel_remove(OnPart, _AsSolid, bpy.types.Operator):
@@ -111,7 +115,7 @@ class MESH_OT_partwheel_remove(OnPart, _AsSolid, bpy.types.Operator):
         return True
 
     def work(self, context, obj, hierarchy):
-        composition.removed(obj, hierarchy, self.node, self.caps())
+        composition.removed(obj, hierarchy, self.node, self.caps(), self.snap)
 
 
 class MESH_OT_partwheel_split(_AsSolid, bpy.types.Operator):

@@ -15,7 +15,7 @@ from bpy_extras.view3d_utils import (
 from mathutils import Matrix, Vector
 from mathutils.geometry import intersect_line_line, intersect_line_plane
 
-from .. import handle_gizmo, handle_points, keys, session
+from .. import borders, handle_gizmo, handle_points, keys, session
 from ..background import Background
 from ..core import PartwheelError
 from ..core.joint import REACH
@@ -111,6 +111,10 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         name="Joint", description="How far from the part's border it bends, in radii of the border",
         default=REACH, min=0.1, soft_max=10, options={"SKIP_SAVE"},
     )
+    snap: bpy.props.BoolProperty(
+        name="Snap Border", description="Deform the part as far as the creases near its border, not as far as its own "
+        "border; a part that was picked so is", default=False, options={"SKIP_SAVE"},
+    )
     handles: bpy.props.CollectionProperty(type=PARTWHEEL_PG_handle, options={"HIDDEN", "SKIP_SAVE"})
     start: bpy.props.EnumProperty(
         name="Start", description="The movement to start with",
@@ -131,6 +135,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
     def draw(self, _context):
         self.layout.prop(self, "method")
         self.layout.prop(self, "reach" if self.method == "JOINT" else "rings")
+        self.layout.prop(self, "snap")
 
     # ---- Without a window ------------------------------------------------------------------------------------------
 
@@ -174,10 +179,12 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             if not picked:
                 raise Refused(NO_PART)
             self.node = picked.node
+            if not self.properties.is_property_set("snap"):
+                self.snap = picked.snap
         hierarchy = session.hierarchy(obj)
         if not hierarchy or self.node >= len(hierarchy.parent):
             raise Refused(f"There is no part {self.node}. {NO_PART}")
-        return hierarchy.faces(self.node)
+        return borders.faces(obj, hierarchy, self.node, self.snap)
 
     # ---- With the mouse --------------------------------------------------------------------------------------------
 

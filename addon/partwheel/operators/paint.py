@@ -139,7 +139,7 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         return Preview(obj)
 
     def _commit(self, context):
-        return self._write(context, self._object(context), self.hierarchy.faces(self.state.node))
+        return self._write(context, self._object(context), self.faces)
 
     def _write(self, context, obj, faces):
         ways = WAYS[context.mode]

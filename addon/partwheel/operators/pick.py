@@ -9,7 +9,7 @@ import traceback
 
 import bpy
 
-from .. import keys, overlay, picking, session, wheel
+from .. import borders, keys, overlay, picking, session, wheel
 from ..core import PartwheelError
 from ..prepared import prepared
 from ..ui import status
@@ -30,6 +30,10 @@ class PartPicker:
     )
     deselect: bpy.props.BoolProperty(
         name="Deselect", description="Take the part away from what is selected",
+        default=False, options={"SKIP_SAVE"},
+    )
+    snap: bpy.props.BoolProperty(
+        name="Snap Border", description="Move the border of the part to the creases nearby",
         default=False, options={"SKIP_SAVE"},
     )
     tool: bpy.props.BoolProperty(
@@ -77,8 +81,8 @@ class PartPicker:
         except PartwheelError as error:
             self.report({"ERROR"}, f"Face {self.face_index} can't be picked: {error}")
             return {"CANCELLED"}
-        result = self._apply(context, obj, hierarchy.faces(picked.node), picked.face)
-        session.remember_pick(obj, picked.face, picked.node)
+        result = self._apply(context, obj, borders.faces(obj, hierarchy, picked.node, self.snap), picked.face)
+        session.remember_pick(obj, picked.face, picked.node, self.snap)
         return result
 
     # ---- With the mouse
@@ -147,7 +151,7 @@ class PartPicker:
         return self._hold(context, obj, picked)
 
     def _hold(self, context, obj, picked):
-        self.object_name, self.target = obj.name, self._aim(context, obj)
+        self.object_name, self.target, self.shown = obj.name, self._aim(context, obj), None
         return self._show(context, picked)
 
     def _build(self, context, obj, face):
@@ -229,6 +233,10 @@ class PartPicker:
             return self._show(context, self.state.with_digit(keys.DIGITS[event.type]))
         if event.type in keys.ERASE.events:
             return self._show(context, self.state.without_digit())
+        if event.type in keys.SNAP_BORDER.events and event.shift:
+            self.snap = not self.snap
+            self._tool_snaps(context)
+            return self._show(context, self.state)
         if event.type in keys.CONFIRM.events or (event.type == "LEFTMOUSE" and over and not self.tool):
             return self._confirmed(context)
         for each in self.hand_offs:
@@ -250,17 +258,26 @@ class PartPicker:
 
     def _show(self, context, state):
         """Goes to a state with a picked part and selects it."""
-        obj, same = self._object(context), isinstance(self.state, wheel.Picked) and state.node == self.state.node
+        obj = self._object(context)
         self.state = state
-        if not same:
-            self.target.select(obj, self.hierarchy.faces(state.node), state.face, self.extend, self.deselect)
+        if (state.node, self.snap) != self.shown:
+            self.shown = state.node, self.snap
+            self.faces = borders.faces(obj, self.hierarchy, state.node, self.snap)
+            self.target.select(obj, self.faces, state.face, self.extend, self.deselect)
             if not bpy.app.background:
-                overlay.shown.show(obj, prepared(obj).parts(obj), state.node, state.next)
+                overlay.shown.show(obj, prepared(obj).parts(obj), state.node, state.next,
+                                   self.faces if self.snap else None)
         share = self.hierarchy.area[state.node] / self.hierarchy.area[-1]
         number = state.typed + "_" if state.typed else state.index + 1
-        self._tell(context, f"Part {number} of {len(state.stops)}, {len(self.hierarchy.faces(state.node)):,} faces, "
-                            f"{share:.1%} of the area", keys.HELD if self.tool else keys.PICKED)
+        self._tell(context, f"Part {number} of {len(state.stops)}, {len(self.faces):,} faces, {share:.1%} of the area"
+                            + ", border in creases" * self.snap, keys.HELD if self.tool else keys.PICKED)
         return {"RUNNING_MODAL"}
+
+    def _tool_snaps(self, context):
+        """The next clicks of the tool do as this one, and the tool's header says so."""
+        tool = self.tool and context.workspace.tools.from_space_view3d_mode(context.mode)
+        if tool and tool.idname == "partwheel.select":
+            tool.operator_properties(self.bl_idname).snap = self.snap
 
     # ---- Ends
 
@@ -268,7 +285,7 @@ class PartPicker:
         obj = self._object(context)
         # What the panel of the last operation, and Repeat Last, do again.
         self.face_index, self.level = self.state.face, self.state.level
-        session.remember_pick(obj, self.state.face, self.state.node)
+        session.remember_pick(obj, self.state.face, self.state.node, self.snap)
         result = self._commit(context)
         self._end(context)
         return result

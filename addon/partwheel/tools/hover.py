@@ -7,12 +7,13 @@ draws it in every 3D view, for as long as the tool is active and no longer. It n
 
 import bpy
 
-from .. import overlay, picking, wheel
+from .. import borders, overlay, picking, wheel
 from ..prepared import current, prepared
 
 
 class Hover:
-    """What the mouse is over: an object's name, its overlay.Parts and a node, or None."""
+    """What the mouse is over: an object's name, its overlay.Parts, a node, and the faces of it where its border is
+    snapped, else None; or None."""
 
     def __init__(self):
         self.what = None
@@ -20,7 +21,7 @@ class Hover:
     def move(self, context, point):
         """The mouse is at a point of the context's region. Redraws if that changes what is shown."""
         found = self._found(context, point)
-        if found != self.what:
+        if found is not self.what:
             self.what = found
             overlay.redraw()
 
@@ -29,15 +30,26 @@ class Hover:
                  if each.type == "MESH" and each.visible_get(viewport=context.space_data)]
         obj, face = picking.nearest(shown, lambda each: prepared(each).tree, context.region, context.region_data, point)
         parts = prepared(obj).parts(obj) if obj else None
-        return parts and (obj.name, parts, wheel.pick(parts.hierarchy, face).node)
+        if not parts:
+            return None
+        node, snap = wheel.pick(parts.hierarchy, face).node, snaps(context)
+        if self.what and self.what[:3] == (obj.name, parts, node) and snap == (self.what[3] is not None):
+            return self.what
+        return obj.name, parts, node, borders.faces(obj, parts.hierarchy, node, True) if snap else None
 
     def draw(self, context):
         if not self.what or overlay.shown.on:
             return
-        name, parts, node = self.what
+        name, parts, node, snapped = self.what
         obj = bpy.data.objects.get(name)
         if obj and obj.mode == "EDIT" and overlay.visible(context, obj) and current(obj, parts):
-            overlay.draw_hover(context, obj, parts, node)
+            overlay.draw_hover(context, obj, parts, node, snapped)
+
+
+def snaps(context):
+    """Whether the tool is set to snap borders."""
+    tool = context.workspace.tools.from_space_view3d_mode(context.mode)
+    return bool(tool and tool.operator_properties("mesh.partwheel_select").snap)
 
 
 hover = Hover()

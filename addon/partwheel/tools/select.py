@@ -29,11 +29,12 @@ class SelectPart(bpy.types.WorkSpaceTool):
          {"properties": [("tool", True), ("deselect", True)]}),
     )
 
-    def draw_settings(context, layout, _tool):
+    def draw_settings(context, layout, tool):
         obj = context.edit_object
         state = session.state(obj.data)[0] if obj else session.State.NONE
         if state in {session.State.NONE, session.State.CHANGED}:
             layout.label(text="Parts are built at the first click", icon="INFO")
+        layout.prop(tool.operator_properties("mesh.partwheel_select"), "snap")
         layout.popover("VIEW3D_PT_partwheel_overlays", text="Overlay")
 
 

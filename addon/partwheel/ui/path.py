@@ -81,7 +81,7 @@ def draw_path(layout, obj):
         split = column.split(factor=0.62, align=True)
         left = split.split(factor=SMALLEST + (1 - SMALLEST) * bar, align=True)
         button = left.operator("mesh.partwheel_select", text=f"{count:,}", depress=node == pick.node)
-        button.face_index, button.level = pick.face, number - 1 - start
+        button.face_index, button.level, button.snap = pick.face, number - 1 - start, pick.snap
         left.label(text="")
         right = split.row()
         right.label(text=f"{share:.1%}")
