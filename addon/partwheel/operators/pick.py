@@ -102,11 +102,9 @@ class PartPicker:
         return self._guarded(context, lambda: self._handle(context, event))
 
     def cancel(self, context):
-        """Blender itself ends the operator: the window closes or another file opens."""
-        if isinstance(self.state, wheel.Building):
-            self.building.abandon(context)
-        else:
-            self._end(context)
+        """Blender itself ends the operator: the window closes or another file opens. What was not confirmed is taken
+        back, as by Blender's own tools."""
+        self._cancelled(context)
 
     def _guarded(self, context, step):
         """One step; whatever goes wrong in it, the selection is put back and the tool ends, with a report."""

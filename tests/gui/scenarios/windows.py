@@ -1,4 +1,5 @@
-"""Several windows and 3D views: the tool works where the mouse is, shows its part in all; a closed window ends it."""
+"""Several windows and 3D views: the tool works where the mouse is, shows its part in all; a closed window ends it
+and takes back what was not confirmed."""
 import bpy
 from events import DRIVERS
 from view import View
@@ -50,6 +51,7 @@ def play(stage):
         yield from stage.drawn()
     mouse = DRIVERS["simulate"](window)
     for end in ("RET", "close"):
+        stage.select(())
         x, y, face = place(stage, area)
         stops, start = stage.wheels.stops(face)
         mouse.move(x, y)
@@ -65,6 +67,7 @@ def play(stage):
             with bpy.context.temp_override(window=window):
                 bpy.ops.wm.window_close()
             yield from stage.until("the window is closed", lambda: len(manager.windows) == 1)
+            yield from stage.selected((), "what was not confirmed is taken back")
         yield from stage.until(f"the tool is over ({end})", lambda: stage.drawn_things() == 0)
     stage.check(model.mode == "EDIT", "Edit Mode goes on")
     yield from stage.ended()
