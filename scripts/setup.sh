@@ -3,7 +3,7 @@
 # that a second call is quick and needs no network. Debian 12; Ubuntu 24.04 (not tried).
 #
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
-#   setup_core      build/venv/core: Python with numpy, trimesh, pytest, libigl
+#   setup_core      build/venv/core: Python with numpy, trimesh, pytest, libigl, pyfqmr
 #   setup_bench     build/venv/bench: numpy, scipy, matplotlib for the benchmarks; build/venv/peers: what they compare with
 #   setup_bpy       build/venv/bpy-VERSION for each of $bpy_versions
 #   setup_blender   the distribution's Blender
@@ -151,7 +151,7 @@ setup_build() {
 
 setup_core() {
     start_setup && packages python3 python3-venv ca-certificates || return
-    venv core /usr/bin/python3 numpy scipy trimesh pytest libigl manifold3d
+    venv core /usr/bin/python3 numpy scipy trimesh pytest libigl manifold3d pyfqmr
 }
 
 setup_bench() {

@@ -61,9 +61,10 @@ constexpr int smoothing_passes = 4;
 struct Link {
     int32_t a = 0, b = 0;  // parts
     Border border;
-    double cost = 0;
+    double hull = 0;  // volume of the hull of both, or of less than both have become
+    double cost = -std::numeric_limits<double>::infinity();
     bool alive = true;
-    bool stale = false;  // the cost is from before one of the parts grew
+    bool guessed = true;  // the cost; else it was worked out with the hull
 };
 
 struct Part {
@@ -77,6 +78,30 @@ struct Part {
     double own_cost = -largest_cost, worst_cost = -largest_cost;  // of the merge that made it; of any below
     bool alive = true;
 };
+
+// A side of an outer triangle.
+struct Side {
+    int32_t low, high;  // its vertices
+    int32_t triangle;
+    bool forward;  // from low to high
+    auto operator<=>(const Side&) const = default;
+};
+
+// Sorts: by the lower vertex first, which takes no comparisons.
+void sort_by_edge(std::vector<Side>& sides, size_t vertices) {
+    std::vector<size_t> end(vertices + 1, 0);
+    for (const Side& s : sides) ++end[static_cast<size_t>(s.low) + 1];
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    std::vector<Side> sorted(sides.size());
+    for (const Side& s : sides) sorted[end[static_cast<size_t>(s.low)]++] = s;
+    sides.swap(sorted);
+    auto begin = sides.begin();
+    for (size_t v = 0; v < vertices; ++v) {
+        const auto after = sides.begin() + static_cast<std::ptrdiff_t>(end[v]);
+        std::sort(begin, after);
+        begin = after;
+    }
+}
 
 class Regrouping {
 public:
@@ -92,9 +117,11 @@ private:
     Triangle facet(size_t tetrahedron, size_t corner) const;
     void choose_parts();
     void measure();
+    double hull_volume(const Link& link);
+    double cost(const Link& link, double hull, bool exact);
+    void enter(Link& link);
     void price(Link& link);
-    void queue(const Link& link) { queue_.push({link.cost, static_cast<int32_t>(&link - links_.data())}); }
-    std::array<double, pair_measures> measures(const Part& a, const Part& b, const Border& border);
+    std::array<double, pair_measures> measures(const Part& a, const Part& b, const Border& border, double hull) const;
     void join(int32_t a, int32_t b, double cost);
     void join_neighbours();
     void join_components();
@@ -202,14 +229,6 @@ void Regrouping::measure() {
     area_unit_ = length_unit_ * length_unit_;
     volume_unit_ = area_unit_ * length_unit_;
 
-    struct Side {
-        int64_t edge;  // its lower vertex, then its higher one: quicker to sort as one number
-        int32_t triangle;
-        bool forward;
-        auto operator<=>(const Side&) const = default;
-        int32_t low() const { return static_cast<int32_t>(edge >> 32); }
-        int32_t high() const { return static_cast<int32_t>(edge & 0xffffffff); }
-    };
     struct Between {
         int32_t a, b;
         bool facet;
@@ -221,12 +240,14 @@ void Regrouping::measure() {
     std::vector<int32_t> part;  // of each outer triangle
     std::vector<double> curvature(mesh_.vertices.size(), 0), around(mesh_.vertices.size(), 0);
     std::vector<std::vector<int32_t>> corners(fine_);
+    std::vector<int32_t> taken_by(mesh_.vertices.size(), -1);  // of each vertex, the part seen last
     for (size_t t = 0; t < mesh_.tetrahedra.size(); ++t) {
         const Tetrahedron& tet = mesh_.tetrahedra[t];
         const int32_t p = part_of_[t];
         std::vector<int32_t>& mine = corners[static_cast<size_t>(p)];
         if (mine.empty()) at(p).low = static_cast<int32_t>(t);
-        mine.insert(mine.end(), tet.begin(), tet.end());
+        for (const int32_t v : tet)
+            if (std::exchange(taken_by[static_cast<size_t>(v)], p) != p) mine.push_back(v);
         const double six = six_volumes(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3]));
         at(p).volume += std::max(0.0, six / 6) / volume_unit_;
         for (size_t k = 0; k < 4; ++k) {
@@ -249,15 +270,13 @@ void Regrouping::measure() {
             part.push_back(p);
             for (size_t i = 0; i < 3; ++i) {
                 const int32_t v = f[i], w = f[(i + 1) % 3];
-                sides.push_back({int64_t{std::min(v, w)} << 32 | std::max(v, w), number, v < w});
+                sides.push_back({std::min(v, w), std::max(v, w), number, v < w});
                 around[static_cast<size_t>(v)] += size / 3;
             }
         }
     }
     progress_.advance(0.1);
     for (size_t p = 0; p < fine_; ++p) {
-        std::sort(corners[p].begin(), corners[p].end());
-        corners[p].erase(std::unique(corners[p].begin(), corners[p].end()), corners[p].end());
         parts_[p].hull = kernel_.build(corners[p]);
         parts_[p].hull_volume = parts_[p].hull.volume() / volume_unit_;
         volume_ += parts_[p].volume;
@@ -271,16 +290,16 @@ void Regrouping::measure() {
         double length, bend;  // bend: the sine of half the angle, below 0 where concave
     };
     std::vector<Fold> folds;
-    std::sort(sides.begin(), sides.end());
+    sort_by_edge(sides, mesh_.vertices.size());
     for (size_t i = 0; i + 1 < sides.size(); ++i) {
         const Side &x = sides[i], &y = sides[i + 1];
-        if (x.edge != y.edge) continue;
+        if (x.low != y.low || x.high != y.high) continue;
         const Point &m = normals[static_cast<size_t>(x.triangle)], &n = normals[static_cast<size_t>(y.triangle)];
-        const Point along = point(x.high()) - point(x.low());
+        const Point along = point(x.high) - point(x.low);
         const double turn = dot(cross(m, n), along) * (x.forward ? 1 : -1);
         const double bend = std::sqrt(std::max(0.0, (1 - dot(m, n)) / 2)) * (turn < 0 ? -1 : 1);
         const double length = std::sqrt(dot(along, along)) / length_unit_;
-        folds.push_back({x.low(), x.high(), x.triangle, y.triangle, length, bend});
+        folds.push_back({x.low, x.high, x.triangle, y.triangle, length, bend});
         ++i;
     }
     // Mean curvature, smoothed over the surface: it finds creases that many small edges share. Only the quotient
@@ -339,13 +358,12 @@ double share(double part, double whole) { return whole > 0 ? std::clamp(part / w
 double mean(double sum, double length) { return length > 0 ? sum / length : 0; }
 
 // regroup_fitted.h has numbers for just these, in this order. s is the part with the smaller surface, l the larger.
-std::array<double, pair_measures> Regrouping::measures(const Part& a, const Part& b, const Border& border) {
+// hull: the volume of the hull of both.
+std::array<double, pair_measures> Regrouping::measures(const Part& a, const Part& b, const Border& border,
+                                                       double hull) const {
     const auto rough_a = static_cast<float>(a.area), rough_b = static_cast<float>(b.area);
     const bool ordered = rough_a < rough_b || (rough_a == rough_b && a.low < b.low);
     const Part &s = ordered ? a : b, &l = ordered ? b : a;
-    const bool by_facets = a.hull.facet_count() > b.hull.facet_count();
-    const Part &large = by_facets ? a : b, &small = by_facets ? b : a;
-    const double hull = kernel_.united_volume(large.hull, small.hull.vertices()).volume / volume_unit_;
     const double volume = s.volume + l.volume, area = s.area + l.area;
     const double gaps = std::max(0.0, s.hull_volume - s.volume) + std::max(0.0, l.hull_volume - l.volume);
     const double excess = std::max(0.0, hull - volume - gaps);  // the concavity that joining adds
@@ -384,19 +402,44 @@ std::array<double, pair_measures> Regrouping::measures(const Part& a, const Part
             std::clamp(thick_l - size, -8.0, 2.0)};
 }
 
-void Regrouping::price(Link& link) {
+// Of the hull of both parts.
+double Regrouping::hull_volume(const Link& link) {
+    const Part &a = at(link.a), &b = at(link.b);
+    const bool by_facets = a.hull.facet_count() > b.hull.facet_count();
+    const Part &large = by_facets ? a : b, &small = by_facets ? b : a;
+    return kernel_.united_volume(large.hull, small.hull.vertices()).volume / volume_unit_;
+}
+
+// hull: the volume of the hull of both parts, exact or a guess.
+double Regrouping::cost(const Link& link, double hull, bool exact) {
+    const auto inputs = measures(at(link.a), at(link.b), link.border, hull);
+    if (trace_ && exact) trace_->pairs.push_back({link.a, link.b, inputs});
+    // Rounded, so that pairs that cost the same by symmetry tie, whatever rounding errors their measures carry.
+    return static_cast<double>(static_cast<float>(fitted(pair_numbers_, inputs)));
+}
+
+// Enters a pair, new or grown, by what it would cost if its hull were as small as it can be. Pairs seldom get cheaper
+// by growing, or by a larger hull: so the dear ones, which are most, never need their hull.
+void Regrouping::enter(Link& link) {
     const Part &a = at(link.a), &b = at(link.b);
     if (a.area == 0 || b.area == 0) {
         // Without any surface it is no part: it goes first, with the neighbour that it shares most with.
         link.cost = -1e6 - link.border.interface / area_;
-        queue(link);
-        return;
+        link.guessed = false;
+    } else {
+        const double least = std::max(link.hull, a.hull_volume + b.hull_volume);
+        link.cost = std::max(link.cost, cost(link, least, false));
+        link.guessed = true;
     }
-    const auto inputs = measures(a, b, link.border);
-    // Rounded, so that pairs that cost the same by symmetry tie, whatever rounding errors their measures carry.
-    link.cost = static_cast<double>(static_cast<float>(fitted(pair_numbers_, inputs)));
-    queue(link);
-    if (trace_) trace_->pairs.push_back({link.a, link.b, inputs});
+    queue_.push({link.cost, static_cast<int32_t>(&link - links_.data())});
+}
+
+// What it does cost.
+void Regrouping::price(Link& link) {
+    link.hull = hull_volume(link);
+    link.cost = cost(link, link.hull, true);
+    link.guessed = false;
+    queue_.push({link.cost, static_cast<int32_t>(&link - links_.data())});
 }
 
 void Regrouping::join(int32_t ia, int32_t ib, double cost) {
@@ -434,33 +477,33 @@ void Regrouping::join(int32_t ia, int32_t ib, double cost) {
             } else {
                 Link& kept = links_[static_cast<size_t>(twin)];
                 kept.border += link.border;
-                if (link.cost < kept.cost) {
-                    kept.cost = link.cost;
-                    queue(kept);
-                }
+                kept.hull = std::max(kept.hull, link.hull);
+                kept.cost = std::min(kept.cost, link.cost);
                 link.alive = false;
             }
         }
     for (const int32_t l : u.links) {
         Link& link = links_[static_cast<size_t>(l)];
         link_to_[static_cast<size_t>(link.a)] = -1;
-        link.stale = true;
         u.rim += link.border;
     }
+    for (const int32_t l : u.links) enter(links_[static_cast<size_t>(l)]);
     a.alive = b.alive = false;
     a.hull = Hull();
     b.hull = Hull();
 }
 
 void Regrouping::join_neighbours() {
-    for (Link& link : links_) price(link);
+    for (Link& link : links_) enter(link);
+    if (trace_)  // fitting needs to see the dear ones too
+        for (const Link& link : links_)
+            if (link.guessed) cost(link, hull_volume(link), true);
     while (!queue_.empty()) {
         const auto [cost, number] = queue_.top();
         queue_.pop();
         Link& link = links_[static_cast<size_t>(number)];
         if (!link.alive || link.cost != cost) continue;
-        if (link.stale) {  // pairs seldom get cheaper by growing, so the dear ones need not be priced until now
-            link.stale = false;
+        if (link.guessed) {
             price(link);
             continue;
         }

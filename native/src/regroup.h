@@ -1,9 +1,9 @@
 // The top of the tree built anew: a few hundred parts of the paper's tree, joined in the order that people would.
 //
 // Concavity alone joins a leg's two halves late and a cup's handle early. So the paper's tree is cut into some parts,
-// which are joined again bottom-up, the cheapest pair of neighbours first (a pair that has grown is priced again only
-// when it would come next by the price it had); the cost is how unlikely it is that people
-// put both into one part, told from 28 measures of the pair: sizes, convexity, the hull of both, the area of the
+// which are joined again bottom-up, the cheapest pair of neighbours first (a new or grown pair is entered by a guess
+// at the least that it can cost; its hull is only made when it would come next); the cost is how unlikely it is that
+// people put both into one part, told from 28 measures of the pair: sizes, convexity, the hull of both, the area of the
 // facets between them (the cross-section) and the length and the crease of the border on the surface, after the ideas
 // of Golovinskiy and Funkhouser, "Randomized Cuts for 3D Mesh Analysis" (2008). Another such function scores each node
 // of the result. Both were fitted to segmentations made by people (tests/quality/fit.py); their numbers are in
