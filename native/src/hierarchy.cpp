@@ -387,10 +387,10 @@ TriangleMesh Hierarchy::solid_of_faces(size_t tet_first, size_t tet_last, std::s
 }
 
 const Facets& Hierarchy::facets() const {
-    std::call_once(facing_->once, [&] {
+    const std::lock_guard lock(facing_->mutex);
+    if (!facing_->facets)
         facing_->facets =
             std::make_unique<Facets>(tetrahedra_, outer_faces_, leaf_, summary_.rung == PW_RUNG_EXACT);
-    });
     return *facing_->facets;
 }
 

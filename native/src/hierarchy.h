@@ -76,9 +76,10 @@ private:
     std::vector<uint8_t> cost_class_;
     std::vector<double> cost_, height_, volume_, area_, score_;
 
-    // Made when a solid is first asked for, whichever thread asks.
+    // Made when a solid is first asked for, whichever thread asks. Not by std::call_once: an exception would have to
+    // pass through the system's C library, which the C++ runtime that is linked into this library can't do.
     struct Facing {
-        std::once_flag once;
+        std::mutex mutex;
         std::unique_ptr<Facets> facets;
     };
     std::unique_ptr<Facing> facing_ = std::make_unique<Facing>();

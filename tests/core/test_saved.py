@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The saved form: it comes back whole, and nothing damaged comes back at all."""
+"""The saved form: it comes back whole, nothing damaged comes back at all, and nothing forged does harm."""
 
 import numpy as np
 import pytest
@@ -59,3 +59,60 @@ def test_damaged_bytes_are_refused(name, build_shape):
         low, high = np.sort(random.integers(0, len(data) + 1, 2))
         damaged[low:high] = random.integers(0, 256, high - low)
         assert np.array_equal(damaged, data) or refused(damaged)
+
+
+def hash_of(data):
+    """As the saved form ends: FNV-1a by words of 8 bytes, then by bytes, each word's product rotated."""
+    prime, most = 0x100000001B3, 2**64 - 1
+    value, whole = 0xCBF29CE484222325, len(data) // 8 * 8
+    for word in np.frombuffer(data[:whole], "<u8").tolist():
+        value = (value ^ word) * prime & most
+        value = (value << 29 | value >> 35) & most
+    for byte in data[whole:]:
+        value = (value ^ byte) * prime & most
+    return value.to_bytes(8, "little")
+
+
+def ask(h):
+    """What the header promises of any hierarchy."""
+    faces, nodes, tets = len(h.order), len(h.parent), len(h.tetrahedra)
+    assert np.array_equal(np.sort(h.order), np.arange(faces))
+    assert h.parent[-1] == -1 and (h.parent[:-1] > np.arange(nodes - 1)).all() and h.parent.max(initial=-1) < nodes
+    assert (h.first[:-1] >= h.first[h.parent[:-1]]).all() and (h.last[:-1] <= h.last[h.parent[:-1]]).all()
+    assert (h.first[-1], h.last[-1], h.tet_first[-1], h.tet_last[-1]) == (0, faces, 0, tets)
+    for values in (h.cost, h.height, h.volume, h.area, h.score, h.vertices):
+        assert np.isfinite(values).all()
+    stops, start = h.wheel(faces // 2)
+    assert 0 <= start < len(stops) and stops[-1] == nodes - 1
+    for bounds in (h.cut_parts(1), h.cut_parts(tets), h.cut_automatic(), h.cut_height(0)):
+        assert (bounds[0], bounds[-1]) == (0, tets) and (np.diff(bounds) > 0).all()
+    h.hull(nodes - 1)
+    try:
+        h.solid(nodes - 1)
+    except PartwheelError as error:
+        assert error.status in {Status.DATA, Status.EMPTY}
+
+
+@pytest.mark.parametrize("name", ["cube", "L", "three cubes apart", "star"])
+def test_forged_bytes_are_refused_or_harmless(name, build_shape):
+    sound = build_shape(name)[1].save()
+    assert hash_of(sound[:-8]) == sound[-8:]
+    random = np.random.default_rng(5)
+    loaded = 0
+    for _ in range(1500):
+        forged = np.frombuffer(sound[:-8], np.uint8).copy()
+        for place in random.integers(8, len(forged), random.integers(1, 4)):
+            forged[place] = random.choice([random.integers(256), 0, 1, 255, forged[place] ^ 1 << random.integers(8)])
+        if random.random() < 0.2:
+            forged = np.delete(forged, random.integers(8, len(forged), random.integers(1, 9)))
+        forged = forged.tobytes()
+        try:
+            h = Hierarchy.load(forged + hash_of(forged))
+        except PartwheelError as error:
+            assert error.status == Status.DATA
+            continue
+        loaded += 1
+        ask(h)
+        again = h.save()
+        assert Hierarchy.load(again).save() == again
+    assert loaded > 20, "nothing got behind the first checks"
