@@ -16,14 +16,16 @@ from mathutils.kdtree import KDTree
 
 from . import mesh_arrays
 from .core.deform import (
-    FIXED, FREE, SETTLED, STEP_ANGLE, Deformation, part_of_the_way, rotation_angle, surface_distances, vertex_normals,
+    FIXED, FREE, SETTLED, STEP_ANGLE, Deformation, part_of_the_way, rigid_motion, rotation_angle, surface_distances,
+    vertex_normals,
 )
-from .core.joint import joint
+from .core.joint import groups, joint
 
 HANDLE_SIZE = 0.25  # of a handle by default: its radius, by the square root of the part's area
 SAME_PLACE = 1e-4  # mirrored vertices are so near to each other, by the mesh's size
 AT_ONCE, MOST_AT_ONCE = 30_000, 5  # iterations at a mouse move: so many vertices' in all; but no more than so many
 TURN = np.radians(30)  # a handle that turns by more at once, as by a typed number, goes there in steps
+BESIDE = 16  # at least so many vertices of the surface say where a loose piece near them goes
 WAYS = 32  # matrices between rest and the handle's that a proportional deformation mixes
 MIRROR, ACROSS = np.diag([-1.0, 1, 1, 1]), np.float32([-1, 1, 1])
 
@@ -234,7 +236,8 @@ class Region:
 
 
 class AsRigidAsPossible:
-    """The region follows its handles, patches of its vertices, like a soft body: core.deform.Deformation."""
+    """The region follows its handles, patches of its vertices, like a soft body: core.deform.Deformation. Loose pieces in
+    it (eyes, buttons) go with the surface next to them, each as a whole."""
 
     def __init__(self, region, patches):
         """patches: the region's vertices of each handle. Raises Refused or PartwheelError."""
@@ -260,6 +263,25 @@ class AsRigidAsPossible:
     def deformation(self):
         """Factorizing takes a second for 100,000 vertices: at the first use, in any thread. Raises PartwheelError."""
         return Deformation(*self._given)
+
+    @cached_property
+    def _pieces(self):
+        """[(vertices of a loose piece, those of the surface that it goes with)]"""
+        rest, triangles, roles = self._given
+        loose = np.isinf(surface_distances(rest, triangles, roles != FREE))
+        within = triangles[loose[triangles[:, 0]]]
+        if not len(within):
+            return []
+        group = groups(within[:, [[0, 1], [1, 2]]].reshape(-1, 2))[::2]
+        ends = np.flatnonzero(~loose & (roles != FIXED))
+        pieces = []
+        for number in range(group.max() + 1):
+            piece = np.unique(within[group == number])
+            middle = rest[piece].mean(axis=0)
+            away = np.linalg.norm(rest[ends] - middle, axis=1)
+            near = away <= away.min() + np.linalg.norm(rest[piece] - middle, axis=1).max()
+            pieces.append((piece, ends[np.argsort(away, kind="stable")[:max(BESIDE, near.sum())]]))
+        return pieces
 
     def _all(self, matrices):
         return [*matrices, *(MIRROR @ matrices[handle] @ MIRROR for handle in self._twins)]
@@ -295,10 +317,15 @@ class AsRigidAsPossible:
             self.deformation.reset()  # no rounding either
         else:
             self.deformation.move_at_once(self._all(matrices), stop)
+        self._pieces  # found while nobody waits
         self._energy, self._at = np.inf, matrices
 
     def points(self):
-        return self.deformation.positions()
+        points, rest = self.deformation.positions(), self._given[0]
+        for piece, beside in self._pieces:
+            turn, shift = rigid_motion(rest[beside], points[beside])
+            points[piece] = rest[piece] @ turn.T + shift
+        return points
 
 
 def _step(before, after):

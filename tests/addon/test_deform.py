@@ -424,6 +424,40 @@ class Deform(MeshTest):
         size = numpy.ptp(region.rest[region.limb], axis=0).max()
         self.assertLess(numpy.abs(far.points() - slowly.points()).max(), 0.01 * size)
 
+    def test_loose_pieces_go_along(self):
+        """Two beads beside a finger keep their shape and their places beside it; one beside the palm stays."""
+        vertices, polygons = read_off("hand")
+        obj, node, faces, free, tip = self.hand()
+        co = edited(obj)
+        self.setUp()
+        size = 0.02 * numpy.ptp(co, axis=0).max()
+        middle = co[free].mean(axis=0)
+        far = co[int(numpy.linalg.norm(co - middle, axis=1).argmax())]
+        count, bead = len(vertices), numpy.array(BOX[0]) * size
+        for number, place in enumerate((co[tip], middle, far)):
+            vertices = vertices + [tuple(point + place) for point in bead]
+            polygons = polygons + [tuple(count + 8 * number + v for v in polygon) for polygon in BOX[1]]
+        obj = self.add(vertices, polygons)
+        before = stored(obj.data.vertices)
+        faces = faces + list(range(len(polygons) - 18, len(polygons) - 6))
+        deforming = part("deforming")
+        region = deforming.Region(obj, faces)
+        shape = deforming.AsRigidAsPossible(region, [region.patch(region.nearest_free(tip), 4 * size)])
+        turn = part("core.deform").part_of_the_way(numpy.diag([1.0, -1, -1, 1]), 40 / 180)
+        turn[:3, 3] = middle - turn[:3, :3] @ middle
+        shape.jump([turn])
+        deforming.Pen(obj, region).write(obj, shape.points())
+        after = stored(obj.data.vertices)
+        beads, moved = after[count:].reshape(3, 8, 3), numpy.linalg.norm(after - before, axis=1)
+        for each in range(3):
+            for way in (lambda points: points - points[0], lambda points: points[4:] - points[:4]):
+                numpy.testing.assert_allclose(numpy.linalg.norm(way(beads[each]), axis=1),
+                                              numpy.linalg.norm(way(bead), axis=1), atol=1e-5)
+        self.assertGreater(moved[count:count + 8].min(), 2 * size)
+        self.assertLess(numpy.linalg.norm(beads[0][0] - after[tip]), 0.5 * size)
+        self.assertGreater(moved[count + 8:count + 16].max(), 0)
+        self.assertEqual(moved[count + 16:].max(), 0)
+
     def test_in_the_background(self):
         """What runs there can be asked to end; what went wrong is raised when it is fetched."""
         background = part("background").Background

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 import shapes
 from partwheel.core import Hierarchy, PartwheelError, Status
-from partwheel.core.deform import FIXED, FREE, Deformation, part_of_the_way, surface_distances, vertex_normals
+from partwheel.core.deform import FIXED, FREE, Deformation, part_of_the_way, rigid_motion, surface_distances
+from partwheel.core.deform import vertex_normals
 from scipy.spatial import ConvexHull
 
 # Model -> the direction that its limb points in, and the share of the model, along it, that deforms.
@@ -318,6 +319,16 @@ def test_the_unit_and_the_place_do_not_matter():
     other = Deformation(moved(there, vertices), triangles, roles)
     other.move_at_once([there @ matrix @ back])
     np.testing.assert_allclose(moved(back, other.positions()), one.positions(), atol=1e-4 * np.ptp(vertices))
+
+
+def test_rigid_motion():
+    rng = np.random.default_rng(3)
+    points, matrix = rng.normal(size=(30, 3)), turn((1, 2, 3), 130, (4, 5, 6))
+    rotation, shift = rigid_motion(points, moved(matrix, points))
+    np.testing.assert_allclose(rotation, matrix[:3, :3], atol=1e-12)
+    np.testing.assert_allclose(shift, matrix[:3, 3], atol=1e-12)
+    flat = points * [1, 1, 0]  # no mirror image of it either
+    assert np.linalg.det(rigid_motion(flat, flat * [1, -1, 1])[0]) == pytest.approx(1)
 
 
 @pytest.mark.parametrize("share", [0, 0.25, 0.5, 1])

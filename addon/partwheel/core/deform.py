@@ -106,6 +106,14 @@ def rotation_angle(linear):
     return np.linalg.norm(_turn(_rotation(linear)))
 
 
+def rigid_motion(before, after):
+    """(rotation (3,3), shift (3,)): rotation @ p + shift takes points before (n,3) nearest to those after, by the sum of
+    squares (Kabsch 1976)."""
+    middle, goal = before.mean(axis=0), after.mean(axis=0)
+    rotation = _rotation((after - goal).T @ (before - middle))
+    return rotation, goal - rotation @ middle
+
+
 def part_of_the_way(matrix, share):
     """An affine matrix (4,4) between the identity (share 0) and this one (share 1): what it turns is turned by that
     share of the angle, all else is in proportion."""

@@ -55,7 +55,7 @@ def joint(vertices, triangles, inside):
     if not len(border):
         return None
     a, b = vertices[border[:, 0]], vertices[border[:, 1]]
-    loop, length = _loops(border), np.linalg.norm(b - a, axis=1)
+    loop, length = groups(border), np.linalg.norm(b - a, axis=1)
     longest = loop == np.bincount(loop, length).argmax()
     weight = length[longest] if length[longest].sum() > 0 else None
     middle = ((a + b) / 2)[longest]
@@ -65,8 +65,8 @@ def joint(vertices, triangles, inside):
                  member & ~beyond)
 
 
-def _loops(edges):
-    """(n,) for each edge the number of the connected group that it is in. edges (n,2)."""
+def groups(edges):
+    """(n,) for each edge (n,2) the number, from 0, of the connected group that it is in."""
     names, ends = np.unique(edges, return_inverse=True)
     ends, lowest = ends.reshape(-1, 2), np.arange(len(names))
     while True:
