@@ -21,6 +21,8 @@ LIMBS = [("man", (-1, 0, 0), 0.3), ("man", (0, 1, 0), 0.4), ("man", (0, 0, -1), 
          ("diplodocus", (-1, 0, 0), 0.3), ("diplodocus", (0, 0, -1), 0.3), ("dino", (-1, 0, 0), 0.3),
          ("armadillo", (0, 0, 1), 0.3), ("armadillo", (1, 0, 0), 0.3), ("bull", (0, 0, -1), 0.3),
          ("bull", (0, 1, 0), 0.2), ("camel", (0, -1, 0), 0.2), ("homer", (0, 0, 1), 0.3)]
+if "libasan" in os.environ.get("LD_PRELOAD", ""):  # the smaller ones do there
+    LIMBS = LIMBS[3:6]
 PSB = Path(os.environ.get("PARTWHEEL_PSB", ""))
 
 
