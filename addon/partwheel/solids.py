@@ -2,8 +2,8 @@
 """A part of a Blender mesh as a closed mesh of its own, and the mesh without it: polygons keep all their layers.
 
 On the exact rung the part is core's Solid: the polygons that lie in it whole stay as they are, those that are cut
-become triangles with their attributes, and the caps close it. On the repaired rung too, where the repair has left all of
-its polygons as they are; what the repair added is a cap then. Else, and on the wrapped rung, it is the mesh's own
+become triangles with their attributes, and the caps close it. On the repaired rung too, where the repair has left all
+of its polygons as they are; what the repair added is a cap then. Else, and on the wrapped rung, it is the mesh's own
 polygons: doubles welded, wound alike, set apart where more than two meet at an edge, every border filled. Either way
 each edge has two faces.
 """
@@ -384,8 +384,8 @@ class _Corners(NamedTuple):
 
 
 def _kept(mesh, stays, totals, alone, alias=None):
-    """((L,) the vertex of each loop, by alias if there is one, (V,) whether it is of a polygon that stays, or has no face and stays, the loops of
-    polygons that stay, edges without a face that stay). What has no face goes if alone."""
+    """((L,) the vertex of each loop, by alias if there is one, (V,) whether it is of a polygon that stays, or has no
+    face and stays, the loops of polygons that stay, edges without a face that stay). What has no face goes if alone."""
     vertex = own = read(mesh.loops, "vertex_index", np.int32)
     if alias is not None:
         vertex = alias[own]

@@ -306,15 +306,15 @@ PW_API pw_status pw_polygon_faults(const int32_t *corners, size_t corner_count, 
                                    size_t polygon_count, size_t vertex_count, size_t *open, size_t *against,
                                    size_t *touching);
 
-/* The places of a surface's vertices when the free ones lie as smoothly as their surroundings let them: the sum over all
- * vertices of area times squared umbrella is least, the discrete form of a thin plate's bending, so the surface leaves the
- * fixed part as it arrives there (Kobbelt, Campagna, Vorsatz, Seidel, "Interactive Multi-Resolution Modeling on Arbitrary
- * Meshes", 1998). Umbrellas have the weights 1 / length (Desbrun, Meyer, Schroeder, Barr, "Implicit Fairing of Irregular
- * Meshes", 1999), which slivers do not harm, and know edges only: polygons may have any number of corners.
+/* The places of a surface's vertices when the free ones lie as smoothly as their surroundings let them: the sum over
+ * all vertices of area times squared umbrella is least, the discrete form of a thin plate's bending, so the surface
+ * leaves the fixed part as it arrives there (Kobbelt, Campagna, Vorsatz, Seidel, "Interactive Multi-Resolution Modeling
+ * on Arbitrary Meshes", 1998). Umbrellas have the weights 1 / length (Desbrun, Meyer, Schroeder, Barr, "Implicit Fairing
+ * of Irregular Meshes", 1999), which slivers do not harm, and know edges only: polygons may have any number of corners.
  *
  * edges   edge_count x 2 vertices.
- * free    vertex_count bytes: not 0 at the vertices that may move. Those from which no way of free ones leads to a fixed
- *         one stay.
+ * free    vertex_count bytes: not 0 at the vertices that may move. Those from which no way of free ones leads to a
+ *         fixed one stay.
  * result  receives vertex_count x 3; it may be vertices itself.
  *
  * PW_ERROR_INDEX, PW_ERROR_NOT_FINITE; PW_ERROR_INTERNAL: the system has no solution in doubles. */

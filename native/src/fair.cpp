@@ -48,7 +48,8 @@ std::vector<Point> faired(std::span<const Point> vertices, std::span<const std::
             throw Error(PW_ERROR_NOT_FINITE, "A coordinate is not a finite number.");
     for (const auto& edge : edges)
         for (int32_t v : edge)
-            if (v < 0 || at(v) >= vertices.size()) throw Error(PW_ERROR_INDEX, "An edge has a vertex that is not there.");
+            if (v < 0 || at(v) >= vertices.size())
+                throw Error(PW_ERROR_INDEX, "An edge has a vertex that is not there.");
     std::vector<bool> free(vertices.size());
     for (size_t i = 0; i < vertices.size(); ++i) free[i] = wanted[i] != 0;
     fix_islands(edges, free);

@@ -169,7 +169,8 @@ class Copy(SolidTest):
         apart = [vertex for polygon in polygons for vertex in polygon]
         turned = [polygon[::-1] if turn else polygon for polygon, turn in zip(polygons, rng.random(len(polygons)) < .3)]
         for name, places, broken in (
-            ("holes", vertices, [polygon for i, polygon in enumerate(polygons) if i % 800]), ("turned", vertices, turned),
+            ("holes", vertices, [polygon for i, polygon in enumerate(polygons) if i % 800]),
+            ("turned", vertices, turned),
             ("doubles", [vertices[vertex] for vertex in apart], numpy.arange(len(apart)).reshape(-1, 3).tolist()),
             ("inside out", vertices, [polygon[::-1] for polygon in polygons[3:]]),
         ):

@@ -183,6 +183,13 @@ class Unite(SolidTest):
         self.assertEqual(self.everything(target), before)
         del other
 
+    def test_alone_is_refused(self):
+        target = self.cube()
+        before = self.everything(target)
+        with self.assertRaisesRegex(RuntimeError, "Select the parts"):
+            unite()
+        self.assertEqual(self.everything(target), before)
+
     def test_inside_out_is_refused(self):
         target = self.cube()
         turned = self.cube().data.copy()

@@ -33,24 +33,26 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        if context.mode != "OBJECT" or not cls.others(context):
+        # Not that others are selected: afterwards they are gone, and Blender polls before it repeats an operator.
+        target = context.active_object
+        if context.mode != "OBJECT" or target is None or target.type != "MESH":
             cls.poll_message_set("In Object Mode, select the parts and then the mesh object that they are to become "
                                  "part of.")
             return False
-        if context.active_object.data.library:
+        if target.data.library:
             cls.poll_message_set("The active object's mesh is linked from another file. Make it local first.")
             return False
         return True
 
     @staticmethod
     def others(context):
-        target = context.active_object
-        if target is None or target.type != "MESH":
-            return []
-        return [obj for obj in context.selected_objects if obj != target and obj.type == "MESH"]
+        return [obj for obj in context.selected_objects if obj != context.active_object and obj.type == "MESH"]
 
     def execute(self, context):
         target, others = context.active_object, self.others(context)
+        if not others:
+            self.report({"ERROR"}, "Select the parts as well, before the object that they are to become part of.")
+            return {"CANCELLED"}
         try:
             solver = union.unite(target, others, self.blend)
         except (union.NotUnited, PartwheelError) as error:

@@ -1,0 +1,109 @@
+"""The panel's buttons for parts as solids, by real clicks: copy, split and explode, unite with a blend, remove with a
+smooth fill; options changed afterwards, as the panel of the last operation does it."""
+import bpy
+from mathutils import Vector
+
+from compose import activate, caps, closed, volume
+
+# Pixels from the sidebar's top to the middle of the panel's title, and from there to its buttons.
+TITLE = 152
+COPY, REMOVE, SPLIT, UNITE = 31, 51, 71, 118
+
+
+def play(stage):
+    yield from stage.open("hand")
+    stage.area.spaces.active.show_region_ui = True
+    yield from stage.drawn()
+    sidebar = next(region for region in stage.area.regions if region.type == "UI")
+    top = sidebar.y + sidebar.height
+    stage.mouse.move(sidebar.x + sidebar.width - 8, top - 40)
+    for _ in range(6):  # over the tabs, Ctrl and the wheel go from one to the next; ours is the last
+        stage.mouse.wheel(-1, ctrl=True)
+    yield from stage.settle()
+    _, stops, start = yield from stage.pick(0.5, 0.9)
+    wanted = next(i for i, part in enumerate(stops) if len(part) >= 0.05 * len(stage.wheels.triangles))
+    stage.mouse.wheel(wanted - start)
+    yield from stage.selected(stops[wanted], "a finger")
+    stage.mouse.key("RET")
+    yield from stage.ended()
+    stage.mouse.key("TAB")
+    yield from stage.until("Object Mode", lambda: stage.object.mode == "OBJECT")
+    yield from stage.drawn()
+
+    def click(below):
+        stage.mouse.move(sidebar.x + sidebar.width // 2, top - TITLE - below)
+        yield from stage.settle()
+        stage.mouse.click()
+        yield from stage.settle()
+
+    def again(**options):
+        """What the panel of the last operation does when options are changed."""
+        last = bpy.data.window_managers[0].operators[-1]
+        for name, value in options.items():
+            setattr(last.properties, name, value)
+        with stage.override():
+            bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)  # True: with its step in the history
+        yield from stage.settle()
+
+    def objects(name):
+        return [obj for obj in bpy.data.objects if obj.name.startswith(name)]
+
+    yield from click(0)
+    yield from stage.screenshot("1-opened")
+    whole, finger = volume(stage.object), len(stops[wanted])
+    total = len(stage.wheels.triangles)
+    yield from click(COPY)
+    yield from stage.until("the copy is there", lambda: stage.object.name == "hand part")
+    stage.check((~caps(stage.object)).sum() == finger, "with the finger's faces")
+    yield from again(material=True)
+    stage.check([material and material.name for material in stage.object.data.materials][-1] == "Partwheel Cap",
+                "its caps got a material afterwards")
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.until("undone", lambda: not objects("hand part") and stage.object.mode == "OBJECT")
+
+    activate(stage, bpy.data.objects["hand"])
+    yield from stage.drawn()
+    yield from click(SPLIT)
+    yield from stage.until("six parts", lambda: len(objects("hand part")) == 6)
+    stage.check(all(closed(part) for part in objects("hand part")), "each of them closed")
+    stage.check(abs(sum(map(volume, objects("hand part"))) - whole) < 1e-4 * whole, "together they are the hand")
+    middles = [part.matrix_world.translation.copy() for part in objects("hand part")]
+    yield from again(parts=5, explode=0.5)
+    stage.check(len(objects("hand part")) == 5, "five parts, when that is changed")
+    stage.check(any((part.matrix_world.translation - middles[0]).length > 0.01 for part in objects("hand part")),
+                "moved apart")
+    yield from stage.screenshot("2-exploded")
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.until("one undo step takes them away", lambda: not objects("hand part") and stage.object.mode == "OBJECT")
+
+    activate(stage, bpy.data.objects["hand"])
+    yield from stage.drawn()
+    yield from click(COPY)
+    yield from stage.until("the copy is there", lambda: stage.object.name == "hand part")
+    part, hand = stage.object, bpy.data.objects["hand"]
+    part.matrix_world.translation += stage.view_3d.view_rotation @ Vector((0, 0.25, 0.3))
+    activate(stage, hand, part)
+    yield from stage.drawn()
+    yield from click(UNITE)
+    yield from stage.until("they are one", lambda: len(bpy.data.objects) == 1)
+    stage.check(closed(stage.object) and volume(stage.object) > whole, "a closed one, and larger")
+    creased = volume(stage.object)
+    yield from again(blend=0.3)
+    stage.check(len(bpy.data.objects) == 1 and closed(stage.object), "one closed mesh again")
+    stage.check(abs(volume(stage.object) - creased) > 1e-5 * whole, "with another surface along the seam")
+    yield from stage.until("its parts are found beside that", lambda: stage.session.state(stage.object.data)[0] ==
+                           stage.session.State.FITS and not stage.session.running(), 150)
+    yield from stage.screenshot("3-blended")
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.until("undone", lambda: len(bpy.data.objects) == 2)
+
+    activate(stage, bpy.data.objects["hand"])
+    yield from stage.drawn()
+    yield from click(REMOVE)
+    yield from stage.until("the finger is gone", lambda: len(stage.object.data.polygons) != total)
+    stage.check((~caps(stage.object)).sum() == total - finger and closed(stage.object), "the hole is closed")
+    flat = volume(stage.object)
+    yield from again(smooth=True)
+    stage.check((~caps(stage.object)).sum() == total - finger and closed(stage.object), "with a smooth fill as well")
+    stage.check(abs(volume(stage.object) - flat) > 1e-5 * whole, "which is another surface")
+    yield from stage.screenshot("4-removed")
