@@ -60,7 +60,10 @@ class Outdated(Exception):
     """A build ended and its mesh is not there any more, or not as it was. str() is sentences for the user."""
 
 
+RETIRED = 3
+
 _entries = {}
+_retired = []  # of meshes that are gone, or others by now: undo may bring them back; the newest last, so many at most
 _unopened = {}  # what came with the file, packed
 _running = None  # the Build that has not ended
 _picks = {}  # the part that was confirmed last in each mesh
@@ -85,15 +88,29 @@ def hierarchy(obj):
         entry = _twin(now) or (opening or _Opening(mesh)).entry(now) or entry
     if not entry:
         return None
-    _entries[key(mesh)] = entry
+    _keep(key(mesh), entry)
     entry.look(now)
     return entry.hierarchy if entry.built.topology == now.topology else None
 
 
 def _twin(now):
-    """A new entry with the hierarchy of a mesh that is the same in all: the one that was duplicated, for instance."""
-    entry = next((entry for entry in _entries.values() if entry.built == now), None)
+    """A new entry with the hierarchy of a mesh that is the same in all: the one that was duplicated, for instance, or
+    the one that undo has brought back."""
+    entry = next((entry for entry in (*_entries.values(), *reversed(_retired)) if entry.built == now), None)
     return entry and dataclasses.replace(entry)
+
+
+def _keep(mesh, entry):
+    """From now on it is the one of the mesh with this key; one of another topology that was there retires."""
+    before = _entries.get(mesh)
+    if before and before.built.topology != entry.built.topology:
+        _retire(before)
+    _entries[mesh] = entry
+
+
+def _retire(entry):
+    _retired[:] = [other for other in _retired if other.hierarchy is not entry.hierarchy] + [entry]
+    del _retired[:-RETIRED]
 
 
 class _Opening:
@@ -210,12 +227,16 @@ class Build:
             raise Outdated(f"{mesh.name} was edited while its parts were being built, so they were left aside. Build "
                            "them again when the mesh is as you want it.")
         alive = {key(other) for other in bpy.data.meshes}
+        for gone in _entries.keys() - alive:
+            _retire(_entries.pop(gone))
+        retired = {id(entry.hierarchy) for entry in _retired}
         for kept in _KEPT:
             for gone in kept.keys() - alive:
-                del kept[gone]
+                if kept is not _picks or id(kept[gone].hierarchy) not in retired:
+                    del kept[gone]
         _unopened.pop(self._key, None)
         _sheets.pop(self._key, None)
-        _entries[self._key] = Entry(self._built, self._counts, built, open_surfaces=self._open_surfaces, seen=now)
+        _keep(self._key, Entry(self._built, self._counts, built, open_surfaces=self._open_surfaces, seen=now))
         return built
 
 
@@ -256,7 +277,12 @@ def state(mesh):
     elif not entry.sure:
         entry.look(mesh_arrays.fingerprint(mesh))
     if entry.seen.topology != entry.built.topology:
-        return State.CHANGED, entry
+        twin = _twin(entry.seen)
+        if not twin:
+            return State.CHANGED, entry
+        twin.look(entry.seen)
+        _keep(key(mesh), twin)
+        return State.FITS, twin
     return (State.FITS if entry.seen == entry.built else State.MOVED), entry
 
 
@@ -336,7 +362,7 @@ def _after_saving(*_):
 def _after_loading(*_):
     """Another file was opened: its meshes are others."""
     _stop()
-    for kept in _KEPT:
+    for kept in (*_KEPT, _retired):
         kept.clear()
     for mesh in bpy.data.meshes:
         if stored.PROPERTY in mesh and not mesh.library:
@@ -366,5 +392,5 @@ def unregister():
         if hasattr(bpy.app.handlers, name):
             getattr(bpy.app.handlers, name).remove(function)
     _stop()
-    for kept in _KEPT:
+    for kept in (*_KEPT, _retired):
         kept.clear()

@@ -147,6 +147,24 @@ class Unite(SolidTest):
         self.assertEqual(bpy.ops.object.partwheel_unite(), {"FINISHED"})
         self.assertEqual(len(part("session").hierarchy(target).order), len(target.data.polygons))
 
+    def test_undo_brings_the_parts_back_too(self):
+        target = self.cube()
+        hierarchy = part("api").build(target)
+        part("api").select(target, 0)
+        self.place(target, self.cube().data.copy(), Matrix.Translation((1, 0.9, 0.8)))
+        bpy.ops.ed.undo_push(message="before")
+        name = target.name
+        self.assertEqual(bpy.ops.object.partwheel_unite("EXEC_DEFAULT", True), {"FINISHED"})
+        united = part("session").hierarchy(bpy.data.objects[name])
+        self.assertIsNot(united, hierarchy)
+        bpy.ops.ed.undo()
+        target = bpy.data.objects[name]
+        self.assertEqual(len(target.data.polygons), 6)
+        self.assertIs(part("session").hierarchy(target), hierarchy)
+        self.assertIs(part("session").picked(target).hierarchy, hierarchy)
+        bpy.ops.ed.redo()
+        self.assertIs(part("session").hierarchy(bpy.data.objects[name]), united)
+
     def test_what_belongs_to_the_mesh_stays(self):
         """Its settings and properties, whoever else uses it; a fake user, which only the very same mesh can keep."""
         for fake, shared in ((False, False), (True, False), (False, True), (True, True)):
