@@ -165,10 +165,11 @@ class Shape:
             lateral = np.sqrt(np.maximum(np.linalg.eigvalsh(np.cov(across.T))[1:], 1e-9))
             towards = middle @ self.main.normal
             aside = np.linalg.norm(middle - towards * self.main.normal)
-            # Where on the way from the border to the far end it is thick.
-            order = np.argsort(-height)
-            thick = [np.linalg.norm(across[third] - across[third].mean(axis=0), axis=1).mean()
-                     for third in np.array_split(order, 3)]
+            # How thick it is near the border, half way, and near the far end; the same for a part that is nearly flat.
+            along = (height.max() - height) / max(np.ptp(height), 0.1)
+            thick = [np.average(np.linalg.norm(across - np.average(across, axis=0, weights=weight), axis=1),
+                                weights=weight)
+                     for weight in 1e-3 + np.maximum([1 - 2 * along, 1 - abs(2 * along - 1), 2 * along - 1], 0)]
             self._features = np.concatenate([
                 [np.log(self.volume / radius ** 3) / 3, np.log(self.area / radius ** 2) / 2],
                 np.log(axes), np.log(lateral), [np.log(max(height.std(), 1e-9))],
@@ -207,12 +208,12 @@ def fit(place, part, mirror=False):
         return found._replace(matrix=found.matrix @ flip)
     scale = place.main.radius / part.main.radius
     frame, own = _frame(place), _frame(part)
-    moving = ((part.points - part.main.middle) * scale)[::COARSE] @ own.T  # in the border's frame, z along the normal
+    moving = ((part.points - part.main.middle) * scale) @ own.T  # in the border's frame, z along the normal
     staying = (place.points - place.main.middle) @ frame.T
     tries = []
     for angle in _turns(moving, staying, frame, own):
         turn = _about_z(angle)
-        tries.append((_apart(moving[::2] @ turn.T, staying[::3]), angle))
+        tries.append((_apart(moving[::2 * COARSE] @ turn.T, staying[::3]), angle))
     tries.sort()
     found = []
     for _, angle in tries[:2]:
