@@ -71,10 +71,6 @@ class OnPart:
         name="Node", description="The part, as a number of the hierarchy; -1: the part that was picked last",
         default=-1, min=-1, options={"SKIP_SAVE"},
     )
-    snap: bpy.props.BoolProperty(
-        name="Snap Border", description="Move the border of the part to the creases nearby, as far as the tetrahedra "
-        "about it let it be there", default=True,
-    )
 
     def hierarchy(self, context, obj):
         found = super().hierarchy(context, obj)
@@ -88,7 +84,16 @@ class OnPart:
         return found
 
 
-class MESH_OT_partwheel_copy(OnPart, _AsSolid, bpy.types.Operator):
+class _SolidOfPart(OnPart, _AsSolid):
+    """Of a node, whose border may be moved."""
+
+    snap: bpy.props.BoolProperty(
+        name="Snap Border", description="Move the border of the part to the creases nearby, as far as the tetrahedra "
+        "about it let it be there", default=True,
+    )
+
+
+class MESH_OT_partwheel_copy(_SolidOfPart, bpy.types.Operator):
     """Copy the picked part as a solid: a new object, closed where it was cut; Ctrl C, Ctrl V take it to other files"""
 
     bl_idname = "mesh.partwheel_copy"
@@ -98,7 +103,7 @@ class MESH_OT_partwheel_copy(OnPart, _AsSolid, bpy.types.Operator):
         only(context, [composition.copied(obj, hierarchy, self.node, self.caps(), self.snap)])
 
 
-class MESH_OT_partwheel_remove(OnPart, _AsSolid, bpy.types.Operator):
+class MESH_OT_partwheel_remove(_SolidOfPart, bpy.types.Operator):
     """Take the picked part out of the mesh and close the hole"""
 
     bl_idname = "mesh.partwheel_remove"
