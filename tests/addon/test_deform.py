@@ -353,7 +353,9 @@ class Deform(MeshTest):
                 face.smooth = smooth
             deforming = part("deforming")
             region = deforming.Region(obj, faces)
-            shape, pen = deforming.AsRigidAsPossible(region, [[region.nearest_free(tip)]]), deforming.Pen(obj, region)
+            middle = region.nearest_free(tip)  # of a handle as large as users have it: no thorn
+            patch = region.patch(middle, region.usual_radius(middle))
+            shape, pen = deforming.AsRigidAsPossible(region, [patch]), deforming.Pen(obj, region)
             shape.follow([shift(0.05, 0.02, 0)])
 
             def normals(elements):
@@ -367,6 +369,10 @@ class Deform(MeshTest):
             numpy.testing.assert_array_equal(final, normals(bm.verts if smooth else bm.faces))
             cosine = (seen * final).sum(axis=1)
             self.assertGreater(numpy.median(cosine[free] if smooth else cosine[faces]), 0.999)
+            if smooth:  # where faces meet in a spike or are folded, as here and there in this mesh, the weights matter
+                plain = [all(face.normal.dot(vertex.normal) > 0.5 for face in vertex.link_faces) for vertex in bm.verts]
+                self.assertGreater(numpy.mean(plain), 0.9)
+                cosine = cosine[plain]
             self.assertGreater(cosine.min(), 0.8 if smooth else 0.99999)
             self.setUp()
 
