@@ -4,7 +4,9 @@
 #include "progress.h"
 #include "tetrahedra.h"
 
+#include <bit>
 #include <compare>
+#include <cstdint>
 #include <vector>
 
 namespace partwheel {
@@ -32,7 +34,12 @@ struct Cost {
 };
 
 // Eq. 1, rounded to concavity_bits; 0 if convex within convex_tolerance.
-double ranked_concavity(double hull_volume, double volume);
+inline double ranked_concavity(double hull_volume, double volume) {
+    const double concavity = hull_volume - volume;
+    if (!(concavity > convex_tolerance * hull_volume)) return 0;
+    constexpr uint64_t last = uint64_t{1} << (53 - concavity_bits);
+    return std::bit_cast<double>((std::bit_cast<uint64_t>(concavity) + last / 2) & ~(last - 1));
+}
 
 // Merge m joins two clusters: number i < T is the leaf of tetrahedron i, T + j what merge j made.
 struct Merge {

@@ -175,6 +175,11 @@ public:
     Hull build(std::span<const int32_t> vertices);
     Hull unite(const Hull& hull, std::span<const int32_t> points);
     Measure united_volume(const Hull& hull, std::span<const int32_t> points, double enough);
+    void forget() { surveyed_ = nullptr; }
+    void release(Hull& hull) {
+        if (hull.block_) hull.block_->pool = &pool_;
+        hull = {};
+    }
     std::pair<Point, Point> bounds(const Hull& hull) const;
 
 private:
@@ -398,9 +403,12 @@ void HullKernel::Impl::survey(const Hull& hull, std::span<const int32_t> points)
         const Point p = at(v) - h.origin;
         if (h.count >= large_hull)
             if (const size_t f = walk(h, p, start); f != none) {
-                candidates_.push_back({h.side(f, p), v});
                 start = f;
-                continue;
+                // A bound that is negligible says nothing about what the point adds.
+                if (const double bound = h.side(f, p); bound > negligible * hull.volume()) {
+                    candidates_.push_back({bound, v});
+                    continue;
+                }
             }
         const double volume6 = added_volume6(h, p);
         if (volume6 > 0 || !surely_inside(h, p)) candidates_.push_back({volume6, v});
@@ -761,6 +769,8 @@ Hull HullKernel::unite(const Hull& hull, std::span<const int32_t> points) { retu
 HullKernel::Measure HullKernel::united_volume(const Hull& hull, std::span<const int32_t> points, double enough) {
     return impl_->united_volume(hull, points, enough);
 }
+void HullKernel::release(Hull& hull) { impl_->release(hull); }
+void HullKernel::forget() { impl_->forget(); }
 std::pair<Point, Point> HullKernel::bounds(const Hull& hull) const { return impl_->bounds(hull); }
 
 }  // namespace partwheel

@@ -11,6 +11,9 @@ namespace {
 // millisecond, before it goes to sleep: waking it takes longer than most tasks.
 constexpr int patience = 50000;
 
+// So many looks at whether the second thread has done its last task before the system may run it here.
+constexpr int looks_before_yielding = 2000;
+
 void pause() {
 #if defined(__x86_64__)
     __builtin_ia32_pause();
@@ -36,7 +39,8 @@ void PairOfThreads::share(size_t count, const std::function<void(size_t, size_t)
     work(0);
     uint32_t state = offered;
     if (!state_.compare_exchange_strong(state, idle, std::memory_order_acq_rel))
-        while (state_.load(std::memory_order_acquire) != idle) pause();  // its last task is under way
+        for (int looks = 0; state_.load(std::memory_order_acquire) != idle; ++looks)  // its last task is under way
+            looks < looks_before_yielding ? pause() : std::this_thread::yield();
     const auto errors = std::exchange(errors_, {});
     for (const std::exception_ptr& error : errors)
         if (error) std::rethrow_exception(error);

@@ -1,0 +1,521 @@
+// Two threads contract two halves of the dual graph, running ahead of each other; what one thread would have done in
+// another order is taken back.
+//
+// The order to keep is the greedy one: always the cheapest edge of all. A merge that comes cheaper than one that made
+// it possible follows at once, so that the merges' order is that of their stamps: the greatest price below a merge in
+// the tree, its own included, then the number of steps since it was paid. Nobody needs to know the others to know it.
+//
+// Each cluster belongs to one of two domains: at first the half of the mesh it is in, then its larger part's. It is at
+// the border if a neighbour belongs to the other. Work goes in rounds of two steps:
+//
+// 1. Both threads at once merge clusters inside their own domain, not at the border, in the order of their prices,
+//    and leave out all other edges. They may get ahead of each other, and of merges at the border.
+// 2. One thread makes the merges that were left out, in the order of their stamps, up to the first that still has a
+//    merge inside a domain before it.
+//
+// A merge must find what it would have found in its turn. That holds if
+//   (a) no edge of its two clusters comes before it: inside, a queue sees to that, and a merge for which an edge left
+//       out comes first is left out, too;
+//   (b) no neighbour of its two clusters is one that was made after its turn. If there is one, all that its domain has
+//       made after that turn is taken back, latest turns first, to be done again. (A merge that was done after another
+//       with a later turn is no neighbour of that, by (b) again, so that the other can be taken back alone.)
+// Enough, for if edge (x, y) should have been contracted before a merge that has taken x: either y was there when that
+// was done, then (a) would have stopped it; or y was made later, then (b) took it back. A merge at the border is never
+// taken back: nothing that comes before it is left to be done.
+//
+// Prices and hulls depend on the two clusters only, not on when they are worked out. So the tree is the same, bit for
+// bit, as one thread's; only the numbers of the merges must be put in order in the end.
+#include "domains.h"
+
+#include "edge_queue.h"
+
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <limits>
+#include <memory>
+
+namespace partwheel {
+
+namespace {
+
+// With so few clusters left most of them are at the border.
+constexpr size_t few_clusters = 64;
+
+// A round is one merge in each domain for so many clusters: short enough that few are taken back.
+constexpr size_t clusters_a_merge = 1600;
+constexpr size_t least_merges_a_round = 4;
+
+// A thread that is done with its round goes on, rather than wait for the other, until so many rounds' merges might
+// still be taken back.
+constexpr size_t patience = 4;
+
+// One tetrahedron in so many is asked where the middle is.
+constexpr size_t sample = 16;
+
+// When a cluster is made, or an edge contracted.
+struct Stamp {
+    Price price;         // the greatest paid below it, its own included
+    uint32_t steps = 0;  // since that was paid
+
+    bool operator<(const Stamp& other) const {
+        if (price < other.price) return true;
+        return !(other.price < price) && steps < other.steps;
+    }
+};
+
+// An edge that is left out: its turn.
+struct Turn {
+    Stamp stamp;
+    Price price;
+
+    double concavity() const { return price.concavity(); }
+    bool operator<(const Turn& other) const {
+        if (stamp < other.stamp) return true;
+        return !(other.stamp < stamp) && price < other.price;
+    }
+};
+
+enum Home : uint8_t { inside_0, inside_1, left_out_0, left_out_1, across };
+
+class Domains {
+public:
+    Domains(DualGraph& graph, const TetMesh& mesh, std::array<HullKernel*, 2> kernels, PairOfThreads& threads,
+            Progress& progress);
+    std::vector<Merge> run();
+
+private:
+    using Inside = EdgeQueue<Price>;
+    using LeftOut = EdgeQueue<Turn>;
+
+    struct Numbered {
+        Merge merge;
+        Stamp stamp;
+        int32_t number;
+    };
+    struct Done {
+        Contraction contraction;
+        Numbered numbered;
+        Stamp made_stay, made_go;  // as they were
+    };
+
+    // What one thread works with.
+    struct Scratch {
+        HullKernel* kernel = nullptr;
+        std::vector<int32_t> removed;
+    };
+
+    struct Domain {
+        Inside inside;
+        LeftOut left_out;
+        std::deque<std::unique_ptr<Done>> done;    // inside, not yet final: in the order of their stamps
+        std::vector<std::unique_ptr<Done>> spare;  // with their memory
+        std::vector<Numbered> merges;              // final
+        int32_t numbered = 0;                      // also what was taken back
+        size_t merged = 0;                         // in this round
+        std::atomic<bool> finished{false};
+
+        explicit Domain(EdgePlaces& places) : inside(places), left_out(places) {}
+    };
+
+    static std::vector<uint8_t> halves(const TetMesh& mesh);
+    Domain& domain(size_t d) { return d == 0 ? first_ : second_; }
+    Stamp& made(int32_t cluster) { return made_[static_cast<size_t>(cluster)]; }
+    const Stamp& made(int32_t cluster) const { return made_[static_cast<size_t>(cluster)]; }
+    uint8_t& owner(int32_t cluster) { return owner_[static_cast<size_t>(cluster)]; }
+    uint8_t owner(int32_t cluster) const { return owner_[static_cast<size_t>(cluster)]; }
+    char& border(int32_t cluster) { return border_[static_cast<size_t>(cluster)]; }
+    char border(int32_t cluster) const { return border_[static_cast<size_t>(cluster)]; }
+
+    bool at_border(int32_t cluster) const;
+    Home home(int32_t edge) const;
+    Price price(int32_t edge) const { return Price(graph_.cost(graph_.edge(edge))); }
+    Turn turn(int32_t edge) const;
+    LeftOut& left_out(uint8_t home) { return home == across ? across_ : domain(home - left_out_0).left_out; }
+    void remove(int32_t edge);
+    void place(int32_t edge);
+    void evaluate(int32_t edge, double concavity, Scratch& scratch);
+    std::pair<int32_t, Numbered> contract(int32_t edge, const Stamp& stamp, int32_t number, Scratch& scratch,
+                                          Contraction* undo);
+    bool may_merge(int32_t edge, const Turn& turn, const Domain& domain, Scratch& scratch);
+    void advance(size_t d);
+    void merge_inside(size_t d, int32_t edge, const Turn& turn);
+    LeftOut* next_left_out();
+    bool inside_before(const Stamp& stamp) const;
+    bool take_back_after(const Turn& turn, int32_t edge);
+    void take_back(size_t d);
+    void merge_left_out();
+    void merge_at_border(int32_t edge, const Turn& turn);
+    void settle();
+    std::vector<Merge> in_order();
+
+    DualGraph& graph_;
+    PairOfThreads& threads_;
+    Progress& progress_;
+    EdgePlaces places_;
+    Domain first_{places_}, second_{places_};
+    LeftOut across_{places_};
+    std::array<Scratch, 2> scratch_;
+    std::vector<uint8_t> owner_;
+    std::vector<char> border_;  // char, for two threads may write neighbouring ones
+    std::vector<Stamp> made_;
+    std::vector<Numbered> merges_;  // at the border
+    size_t left_;                   // clusters
+    size_t goal_ = 0;               // of the round: merges in each domain;
+    size_t lead_ = 0;               // so many at most that are not final
+};
+
+// The half that each tetrahedron is in, of those made by the plane across an axis that cuts the fewest edges.
+std::vector<uint8_t> Domains::halves(const TetMesh& mesh) {
+    const size_t count = mesh.tetrahedra.size();
+    const auto place = [&](size_t t, size_t axis) {
+        double sum = 0;
+        for (const int32_t v : mesh.tetrahedra[t]) sum += mesh.vertices[static_cast<size_t>(v)][axis];
+        return sum;
+    };
+    size_t best_axis = 0, fewest = std::numeric_limits<size_t>::max();
+    double best_middle = 0;
+    std::vector<double> places;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        places.clear();
+        for (size_t t = 0; t < count; t += sample) places.push_back(place(t, axis));
+        const auto middle = places.begin() + static_cast<std::ptrdiff_t>(places.size() / 2);
+        std::nth_element(places.begin(), middle, places.end());
+        size_t cut = 0;
+        for (size_t t = 0; t < count; t += sample) {
+            const bool side = place(t, axis) < *middle;
+            for (const int32_t n : mesh.neighbours[t])
+                cut += n >= 0 && (place(static_cast<size_t>(n), axis) < *middle) != side;
+        }
+        if (cut < fewest) {
+            fewest = cut;
+            best_axis = axis;
+            best_middle = *middle;
+        }
+    }
+    std::vector<uint8_t> half(count);
+    for (size_t t = 0; t < count; ++t) half[t] = place(t, best_axis) < best_middle ? 0 : 1;
+    return half;
+}
+
+Domains::Domains(DualGraph& graph, const TetMesh& mesh, std::array<HullKernel*, 2> kernels, PairOfThreads& threads,
+                 Progress& progress)
+    : graph_(graph), threads_(threads), progress_(progress), owner_(halves(mesh)),
+      border_(graph.clusters_count(), false), made_(graph.clusters_count()), left_(graph.clusters_count()) {
+    for (size_t d = 0; d < 2; ++d) scratch_[d].kernel = kernels[d];
+    places_.resize(graph.edges_count());
+    for (int32_t c = 0; c < static_cast<int32_t>(graph.clusters_count()); ++c) border(c) = at_border(c);
+    const auto edges = static_cast<int32_t>(graph.edges_count());
+    threads_.share(2, [&](size_t d, size_t) {
+        domain(d).inside.reserve(graph.edges_count() * 5 / 8);
+        for (int32_t e = 0; e < edges; ++e)
+            if (owner(graph.edge(e).a) == d && home(e) == inside_0 + d) {
+                graph.edge(e).home = static_cast<uint8_t>(inside_0 + d);
+                domain(d).inside.append(price(e), e);
+            }
+        domain(d).inside.sort();
+    });
+    for (int32_t e = 0; e < edges; ++e)
+        if (!places_.queued(e)) place(e);
+}
+
+bool Domains::at_border(int32_t cluster) const {
+    const auto& links = graph_.at(cluster).links;
+    return std::any_of(links.begin(), links.end(), [&](const Link& l) { return owner(l.cluster) != owner(cluster); });
+}
+
+Home Domains::home(int32_t edge) const {
+    const auto [a, b] = std::pair(graph_.edge(edge).a, graph_.edge(edge).b);
+    if (owner(a) != owner(b)) return across;
+    return static_cast<Home>((border(a) || border(b) ? left_out_0 : inside_0) + owner(a));
+}
+
+// As far as the edge's price is known.
+Turn Domains::turn(int32_t edge) const {
+    const Stamp &a = made(graph_.edge(edge).a), &b = made(graph_.edge(edge).b), &later = a < b ? b : a;
+    const Price own = price(edge);
+    return {later.price < own ? Stamp{own, 0} : Stamp{later.price, later.steps + 1}, own};
+}
+
+void Domains::remove(int32_t edge) {
+    const uint8_t at = graph_.edge(edge).home;
+    if (at <= inside_1)
+        domain(at).inside.remove(edge);
+    else
+        left_out(at).remove(edge);
+}
+
+// Puts the edge where it belongs now.
+void Domains::place(int32_t edge) {
+    const Home to = home(edge);
+    uint8_t& at = graph_.edge(edge).home;
+    bool queued = places_.queued(edge);
+    if (queued && at != to) {
+        remove(edge);
+        queued = false;
+    }
+    at = to;
+    const auto put = [&](auto& queue, const auto& key) { queued ? queue.update(key, edge) : queue.insert(key, edge); };
+    if (to <= inside_1)
+        put(domain(to).inside, price(edge));
+    else
+        put(left_out(to), turn(edge));
+}
+
+void Domains::evaluate(int32_t edge, double concavity, Scratch& scratch) {
+    DualGraph::Pricing pricing = graph_.pricing(edge, concavity, *scratch.kernel);
+    pricing.work(*scratch.kernel);
+    graph_.priced(edge, pricing);
+    place(edge);
+}
+
+// Contracts an edge that is in no queue any more; returns the cluster.
+std::pair<int32_t, Domains::Numbered> Domains::contract(int32_t edge, const Stamp& stamp, int32_t number,
+                                                        Scratch& scratch, Contraction* undo) {
+    scratch.removed.clear();
+    int32_t merged;
+    const Merge merge = graph_.contract(edge, number, *scratch.kernel, scratch.removed, merged, undo);
+    made(merged) = stamp;
+    for (const int32_t e : scratch.removed) remove(e);
+    for (const Link& link : graph_.at(merged).links) graph_.refresh(link.edge);
+    return {merged, {merge, stamp, number}};
+}
+
+// ---- Inside a domain: each thread in its own -----------------------------------------------------------------------
+
+// (a) and (b) for an edge that is its domain's cheapest inside.
+bool Domains::may_merge(int32_t edge, const Turn& own, const Domain& in, Scratch& scratch) {
+    const bool late = !in.done.empty() && own.stamp < in.done.back()->numbered.stamp;
+    for (const int32_t c : {graph_.edge(edge).a, graph_.edge(edge).b})
+        for (const Link& link : graph_.at(c).links) {
+            if (late && own.stamp < made(link.cluster)) return false;
+            while (graph_.edge(link.edge).home > inside_1 &&
+                   left_out(graph_.edge(link.edge).home).key(link.edge) < own) {
+                if (graph_.edge(link.edge).exact) return false;
+                evaluate(link.edge, dear * own.concavity(), scratch);
+            }
+        }
+    return true;
+}
+
+void Domains::advance(size_t d) {
+    Domain& own = domain(d);
+    const Domain& other = domain(1 - d);
+    Scratch& scratch = scratch_[d];
+    scratch.kernel->forget();
+    for (own.merged = 0; !own.inside.empty();) {
+        // What belongs before or right after the latest merge is not left for later: others would wait for it.
+        const bool may_stop = own.done.empty() || own.done.back()->numbered.stamp.price < own.inside.top();
+        if (may_stop && own.done.size() >= lead_) break;
+        if (may_stop && own.merged >= goal_) {
+            own.finished.store(true, std::memory_order_relaxed);
+            if (other.finished.load(std::memory_order_relaxed)) break;
+        }
+        prefetch_soon(graph_, own.inside);
+        const auto top = own.inside.top();
+        const auto unpriced = [&](const auto& queue) {
+            if (graph_.edge(queue.top().edge).exact) return false;
+            const auto* second = queue.runner_up();
+            evaluate(queue.top().edge,
+                     second ? dear * second->concavity() : std::numeric_limits<double>::infinity(), scratch);
+            return true;
+        };
+        if (!own.left_out.empty() && own.left_out.top().price < top && unpriced(own.left_out)) continue;
+        if (unpriced(own.inside)) continue;
+        const Turn now = turn(top.edge);
+        prefetch_around(graph_, places_, top.edge);
+        if (may_merge(top.edge, now, own, scratch)) {
+            merge_inside(d, top.edge, now);
+        } else {
+            own.inside.remove(top.edge);
+            graph_.edge(top.edge).home = static_cast<uint8_t>(left_out_0 + d);
+            own.left_out.insert(now, top.edge);
+        }
+    }
+    own.finished.store(true, std::memory_order_relaxed);
+}
+
+void Domains::merge_inside(size_t d, int32_t edge, const Turn& now) {
+    Domain& own = domain(d);
+    Scratch& scratch = scratch_[d];
+    own.inside.remove(edge);
+    std::unique_ptr<Done> done;
+    if (own.spare.empty()) {
+        done = std::make_unique<Done>();
+    } else {
+        done = std::move(own.spare.back());
+        own.spare.pop_back();
+        scratch.kernel->release(done->contraction.stayed.hull);
+        scratch.kernel->release(done->contraction.gone.hull);
+    }
+    const auto [a, b] = std::pair(graph_.edge(edge).a, graph_.edge(edge).b);
+    const Stamp made_a = made(a), made_b = made(b);
+    const auto number = static_cast<int32_t>(graph_.clusters_count()) + 3 * own.numbered++ + static_cast<int32_t>(d);
+    const auto [merged, numbered] = contract(edge, now.stamp, number, scratch, &done->contraction);
+    done->numbered = numbered;
+    done->made_stay = merged == a ? made_a : made_b;
+    done->made_go = merged == a ? made_b : made_a;
+    auto place_of = own.done.end();
+    while (place_of != own.done.begin() && now.stamp < (*std::prev(place_of))->numbered.stamp) --place_of;
+    own.done.insert(place_of, std::move(done));
+    ++own.merged;
+    for (const Link& link : graph_.at(merged).links) {
+        if (price(link.edge) < now.price)
+            evaluate(link.edge, dear * now.concavity(), scratch);
+        else
+            place(link.edge);
+    }
+}
+
+// ---- Between the rounds: one thread --------------------------------------------------------------------------------
+
+// The queue whose first edge comes first; null if there is none.
+Domains::LeftOut* Domains::next_left_out() {
+    LeftOut* next = nullptr;
+    for (LeftOut* queue : {&first_.left_out, &second_.left_out, &across_})
+        if (!queue->empty() && (!next || queue->top() < next->top())) next = queue;
+    return next;
+}
+
+// Whether a merge inside a domain may have its turn before that.
+bool Domains::inside_before(const Stamp& stamp) const {
+    for (const Domain* d : {&first_, &second_})
+        if (!d->inside.empty() && !(stamp.price < d->inside.top())) return true;
+    return false;
+}
+
+// Takes back the last merge inside the domain.
+void Domains::take_back(size_t d) {
+    Domain& own = domain(d);
+    Done& last = *own.done.back();
+    Contraction& c = last.contraction;
+    for (const Link& link : graph_.at(c.stay).links) remove(link.edge);
+    graph_.undo(c);
+    made(c.stay) = last.made_stay;
+    made(c.go) = last.made_go;
+    for (const auto& [edge, was] : c.edges) place(edge);
+    own.spare.push_back(std::move(own.done.back()));
+    own.done.pop_back();
+    ++left_;
+}
+
+// (b) for an edge that was left out; whether anything had to be taken back.
+bool Domains::take_back_after(const Turn& now, int32_t edge) {
+    std::array<bool, 2> contradicted = {};
+    for (const int32_t c : {graph_.edge(edge).a, graph_.edge(edge).b})
+        for (const Link& link : graph_.at(c).links)
+            if (now.stamp < made(link.cluster)) contradicted[owner(link.cluster)] = true;
+    for (size_t d = 0; d < 2; ++d)
+        while (contradicted[d] && !domain(d).done.empty() && now.stamp < domain(d).done.back()->numbered.stamp)
+            take_back(d);
+    return contradicted[0] || contradicted[1];
+}
+
+void Domains::merge_left_out() {
+    scratch_[0].kernel->forget();
+    while (LeftOut* queue = next_left_out()) {
+        const auto top = queue->top();
+        if (inside_before(top.stamp)) break;
+        if (!graph_.edge(top.edge).exact) {
+            const auto* second = queue->runner_up();
+            evaluate(top.edge, second ? dear * second->concavity() : std::numeric_limits<double>::infinity(),
+                     scratch_[0]);
+        } else if (!take_back_after(top, top.edge)) {
+            queue->remove(top.edge);
+            merge_at_border(top.edge, top);
+        }
+    }
+}
+
+void Domains::merge_at_border(int32_t edge, const Turn& now) {
+    const auto [a, b] = std::pair(graph_.edge(edge).a, graph_.edge(edge).b);
+    const uint8_t larger = graph_.at(a).size >= graph_.at(b).size ? owner(a) : owner(b);
+    const auto number = static_cast<int32_t>(graph_.clusters_count() + 3 * merges_.size() + 2);
+    const auto [merged, numbered] = contract(edge, now.stamp, number, scratch_[0], nullptr);
+    merges_.push_back(numbered);
+    --left_;
+    owner(merged) = larger;
+    border(merged) = at_border(merged);
+    for (const Link& link : graph_.at(merged).links) {
+        if (price(link.edge) < now.price)
+            evaluate(link.edge, dear * now.concavity(), scratch_[0]);
+        else
+            place(link.edge);
+    }
+    for (const Link& link : graph_.at(merged).links) {
+        const bool was = border(link.cluster), is = at_border(link.cluster);
+        border(link.cluster) = is;
+        if (was != is)
+            for (const Link& other : graph_.at(link.cluster).links) place(other.edge);
+    }
+}
+
+// Forgets how to take back what never will be.
+void Domains::settle() {
+    const LeftOut* next = next_left_out();
+    for (size_t d = 0; d < 2; ++d) {
+        Domain& own = domain(d);
+        const auto final = [&](const Stamp& stamp) {
+            return (!merges_.empty() && stamp < merges_.back().stamp) ||
+                   (!inside_before(stamp) && (!next || stamp < next->top().stamp));
+        };
+        for (; !own.done.empty() && final(own.done.front()->numbered.stamp); own.done.pop_front()) {
+            own.merges.push_back(own.done.front()->numbered);
+            own.spare.push_back(std::move(own.done.front()));
+        }
+    }
+}
+
+// All merges, numbered as one thread does.
+std::vector<Merge> Domains::in_order() {
+    const auto leaves = static_cast<int32_t>(graph_.clusters_count());
+    std::vector<int32_t> number_of(4 * graph_.clusters_count());
+    const auto renumber = [&](int32_t& n) {
+        if (n >= leaves) n = number_of[static_cast<size_t>(n - leaves)];
+    };
+    std::vector<Merge> merges;
+    merges.reserve(static_cast<size_t>(leaves));
+    std::array<std::span<const Numbered>, 3> rest = {first_.merges, second_.merges, merges_};
+    for (;;) {
+        std::span<const Numbered>* next = nullptr;
+        for (auto& list : rest)
+            if (!list.empty() && (!next || list.front().stamp < next->front().stamp)) next = &list;
+        if (!next) break;
+        const auto number = static_cast<size_t>(next->front().number - leaves);
+        if (number >= number_of.size()) number_of.resize(2 * number + 1);
+        number_of[number] = leaves + static_cast<int32_t>(merges.size());
+        Merge merge = next->front().merge;
+        *next = next->subspan(1);
+        renumber(merge.left);
+        renumber(merge.right);
+        merges.push_back(merge);
+    }
+    for (int32_t c = 0; c < leaves; ++c)
+        if (graph_.at(c).size > 0) renumber(graph_.at(c).number);
+    return merges;
+}
+
+std::vector<Merge> Domains::run() {
+    while (left_ > few_clusters && !(first_.inside.empty() && second_.inside.empty())) {
+        goal_ = std::max(left_ / clusters_a_merge, least_merges_a_round);
+        lead_ = patience * goal_;
+        first_.finished = second_.finished = false;
+        threads_.share(2, [this](size_t d, size_t) { advance(d); });
+        left_ -= first_.merged + second_.merged;
+        merge_left_out();
+        settle();
+        progress_.advance(0.1 + 0.9 * (1 - static_cast<double>(left_) / static_cast<double>(graph_.clusters_count())));
+    }
+    for (size_t d = 0; d < 2; ++d)
+        while (!domain(d).done.empty()) take_back(d);
+    return in_order();
+}
+
+}  // namespace
+
+std::vector<Merge> merge_in_domains(DualGraph& graph, const TetMesh& mesh, std::array<HullKernel*, 2> kernels,
+                                    PairOfThreads& threads, Progress& progress) {
+    return Domains(graph, mesh, kernels, threads, progress).run();
+}
+
+}  // namespace partwheel

@@ -1,0 +1,192 @@
+// Clusters and edges: priced by hulls from hulls, contracted.
+#include "dual_graph.h"
+
+#include <algorithm>
+
+namespace partwheel {
+
+namespace {
+
+// So many edges are priced between two looks at whether all is cancelled.
+constexpr size_t edges_a_step = 16384;
+
+}  // namespace
+
+DualGraph::DualGraph(const TetMesh& mesh, Progress& progress, PairOfThreads* threads)
+    : mesh_(mesh), clusters_(mesh.tetrahedra.size()), link_of_(mesh.tetrahedra.size(), -1) {
+    const auto count = static_cast<int32_t>(mesh.tetrahedra.size());
+    for (int32_t t = 0; t < count; ++t) {
+        const Tetrahedron& tet = mesh.tetrahedra[static_cast<size_t>(t)];
+        Cluster& c = at(t);
+        c.volume = c.hull_volume = six_volumes(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3])) / 6;
+        c.low = c.number = t;
+        c.links.reserve(4);
+    }
+    edges_.reserve(2 * mesh.tetrahedra.size());
+    for (int32_t t = 0; t < count; ++t)
+        for (const int32_t other : mesh.neighbours[static_cast<size_t>(t)])
+            if (other > t) add_edge(t, other);
+    for (size_t first = 0; first < edges_.size(); first += edges_a_step) {
+        const size_t last = std::min(first + edges_a_step, edges_.size()), middle = (first + last) / 2;
+        const auto price = [&](size_t i, size_t end) {
+            for (; i < end; ++i) {
+                edges_[i].hull_volume = union_of_neighbours(edges_[i].a, edges_[i].b);
+                edges_[i].exact = true;
+            }
+        };
+        if (threads)
+            threads->share(2, [&](size_t half, size_t) { half == 0 ? price(first, middle) : price(middle, last); });
+        else
+            price(first, last);
+        progress.advance(0.1 * static_cast<double>(last) / static_cast<double>(edges_.size()));
+    }
+}
+
+int32_t DualGraph::add_edge(int32_t a, int32_t b) {
+    const auto edge = static_cast<int32_t>(edges_.size());
+    edges_.push_back({.a = a, .b = b});
+    at(a).links.push_back({b, edge});
+    at(b).links.push_back({a, edge});
+    return edge;
+}
+
+std::span<const int32_t> DualGraph::corners(int32_t c) const {
+    if (at(c).hull) return at(c).hull.vertices();
+    return mesh_.tetrahedra[static_cast<size_t>(at(c).low)];
+}
+
+// The edge's clusters, the one whose hull has more facets first, or the lower one.
+std::pair<int32_t, int32_t> DualGraph::by_size(const DualEdge& e) const {
+    const size_t a = at(e.a).hull.facet_count(), b = at(e.b).hull.facet_count();
+    const bool ordered = a != b ? a > b : at(e.a).low < at(e.b).low;
+    return ordered ? std::pair(e.a, e.b) : std::pair(e.b, e.a);
+}
+
+// The volume of the union of two tetrahedra with a common facet: theirs, and what the far corner of b sees of a.
+double DualGraph::union_of_neighbours(int32_t a, int32_t b) const {
+    constexpr size_t facets[4][3] = {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}};  // opposite each corner, outward
+    const Tetrahedron& s = mesh_.tetrahedra[static_cast<size_t>(a)];
+    const Tetrahedron& t = mesh_.tetrahedra[static_cast<size_t>(b)];
+    const auto& beyond = mesh_.neighbours[static_cast<size_t>(b)];
+    const Point& far = point(t[static_cast<size_t>(std::find(beyond.begin(), beyond.end(), a) - beyond.begin())]);
+    double seen = 0;
+    for (size_t k = 0; k < 4; ++k) {
+        if (mesh_.neighbours[static_cast<size_t>(a)][k] == b) continue;
+        const auto& f = facets[k];
+        seen += std::max(0.0, six_volumes(point(s[f[0]]), point(s[f[1]]), point(s[f[2]]), far));
+    }
+    return at(a).volume + at(b).volume + seen / 6;
+}
+
+// A volume of this edge's union with which it costs more than this concavity.
+double DualGraph::enough(const DualEdge& e, double concavity) const {
+    if (e.tried) return std::numeric_limits<double>::infinity();
+    const double volume = at(e.a).volume + at(e.b).volume;
+    // Rather more than that, for the roundings and the slack.
+    if (concavity == 0) return volume / (1 - convex_tolerance) * (1 + 1e-9);
+    return (volume + concavity * (1 + 1e-8)) * (1 + 1e-10);
+}
+
+DualGraph::Pricing DualGraph::pricing(int32_t edge_number, double concavity, HullKernel& kernel) {
+    const DualEdge& e = edge(edge_number);
+    const auto [large, small] = by_size(e);
+    if (!at(large).hull) at(large).hull = kernel.build(corners(large));
+    return {&at(large).hull, corners(small), enough(e, concavity), {}};
+}
+
+void DualGraph::priced(int32_t edge_number, const Pricing& pricing) {
+    DualEdge& e = edge(edge_number);
+    const auto [volume, exact] = pricing.measure;
+    e.hull_volume = exact ? volume : std::max(e.hull_volume, volume);
+    e.exact = exact;
+    e.tried = true;
+}
+
+Hull DualGraph::unite(const DualEdge& e, HullKernel& kernel) const {
+    const auto [large, small] = by_size(e);
+    if (at(large).hull) return kernel.unite(at(large).hull, corners(small));
+    std::array<int32_t, 8> both;
+    std::copy_n(corners(small).begin(), 4, std::copy_n(corners(large).begin(), 4, both.begin()));
+    return kernel.build(both);
+}
+
+Merge DualGraph::contract(int32_t contracted, int32_t number, HullKernel& kernel, std::vector<int32_t>& removed,
+                          int32_t& merged, Contraction* undo) {
+    const DualEdge& e = edge(contracted);
+    // The cluster with more links stays and takes in the other.
+    const bool stay_a = at(e.a).links.size() >= at(e.b).links.size();
+    const int32_t stay = stay_a ? e.a : e.b, go = stay_a ? e.b : e.a;
+    Cluster &m = at(stay), &g = at(go);
+
+    const bool ordered = m.low < g.low;
+    const Cluster &first = ordered ? m : g, &second = ordered ? g : m;
+    const double volume = first.volume + second.volume;
+    const Merge merge = {first.number, second.number, ranked_concavity(e.hull_volume, volume), e.hull_volume};
+    Hull united = unite(e, kernel);
+    if (undo) {
+        undo->stay = stay;
+        undo->go = go;
+        undo->edges.clear();
+        for (const Cluster* c : {&m, &g})
+            for (const Link& link : c->links) undo->edges.push_back({link.edge, edge(link.edge)});
+        Cluster& was = undo->stayed;
+        was.hull = std::move(m.hull);
+        was.hull_volume = m.hull_volume;
+        was.volume = m.volume;
+        was.size = m.size;
+        was.low = m.low;
+        was.number = m.number;
+        was.links = m.links;
+    }
+    m.hull = std::move(united);
+    m.hull_volume = m.hull.volume();
+    m.volume = volume;
+    m.size += g.size;
+    m.low = std::min(m.low, g.low);
+    m.number = number;
+
+    std::erase_if(m.links, [&](const Link& l) { return l.cluster == go; });
+    for (size_t i = 0; i < m.links.size(); ++i)
+        link_of_[static_cast<size_t>(m.links[i].cluster)] = static_cast<int32_t>(i);
+    for (const Link& link : g.links) {
+        if (link.cluster == stay) continue;
+        Cluster& other = at(link.cluster);
+        DualEdge& moved = edge(link.edge);
+        const auto back = std::find_if(other.links.begin(), other.links.end(),
+                                       [&](const Link& l) { return l.cluster == go; });
+        const int32_t twin = link_of_[static_cast<size_t>(link.cluster)];
+        if (twin < 0) {
+            back->cluster = stay;
+            (moved.a == go ? moved.a : moved.b) = stay;
+            m.links.push_back(link);
+        } else {
+            DualEdge& kept = edge(m.links[static_cast<size_t>(twin)].edge);
+            kept.hull_volume = std::max(kept.hull_volume, moved.hull_volume);
+            removed.push_back(link.edge);
+            other.links.erase(back);
+        }
+    }
+    if (undo) undo->gone = std::move(g);
+    g = Cluster{};
+    g.size = 0;
+    for (const Link& link : m.links) {
+        at(link.cluster).hull.prefetch();
+        link_of_[static_cast<size_t>(link.cluster)] = -1;
+    }
+    merged = stay;
+    return merge;
+}
+
+void DualGraph::undo(Contraction& contraction) {
+    const int32_t stay = contraction.stay, go = contraction.go;
+    for (const Link& link : at(stay).links)
+        std::erase_if(at(link.cluster).links, [&](const Link& l) { return l.cluster == stay; });
+    for (const auto& [number, was] : contraction.edges) edge(number) = was;
+    at(stay) = std::move(contraction.stayed);
+    at(go) = std::move(contraction.gone);
+    for (const int32_t c : {stay, go})
+        for (const Link& link : at(c).links)
+            if (link.cluster != stay && link.cluster != go) at(link.cluster).links.push_back({c, link.edge});
+}
+
+}  // namespace partwheel

@@ -1,0 +1,151 @@
+// The dual graph of a tet mesh while it is contracted: clusters, the edges between them, their prices.
+#pragma once
+
+#include "cluster.h"
+#include "edge_queue.h"
+#include "hull.h"
+#include "pair_of_threads.h"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace partwheel {
+
+// Volumes of hulls that were come by differently agree to far better than this: what a lower bound gives away so that
+// it stays one in spite of rounding.
+inline constexpr double bound_slack = 1e-11;
+
+// An edge that costs more than so many times what the next merges cost is not priced exactly yet.
+inline constexpr double dear = 2;
+
+struct Link {
+    int32_t cluster;  // the neighbour
+    int32_t edge;
+};
+
+struct alignas(64) Cluster {
+    Hull hull;               // none while it is one tetrahedron
+    double hull_volume = 0;
+    double volume = 0;
+    int32_t size = 1;    // in tetrahedra; 0 once it has gone into another
+    int32_t low = 0;     // its lowest tetrahedron
+    int32_t number = 0;  // in the tree, see Merge
+    std::vector<Link> links;
+};
+
+struct DualEdge {
+    int32_t a, b;            // clusters
+    double hull_volume = 0;  // of their union, or a lower bound of it
+    bool exact = false;
+    bool tried = false;  // the bound has been worked out for these clusters
+    uint8_t home = 0;    // for those who keep edges in several queues
+};
+
+// What it takes to take a contraction back.
+struct Contraction {
+    int32_t stay = 0, go = 0;
+    Cluster stayed, gone;                            // as they were
+    std::vector<std::pair<int32_t, DualEdge>> edges;  // theirs, as they were
+};
+
+// Not for several threads at once, but that each may price and contract where no cluster or neighbour of one is
+// another's.
+class DualGraph {
+public:
+    // One tetrahedron a cluster, all edges priced; by both threads if there are two.
+    DualGraph(const TetMesh& mesh, Progress& progress, PairOfThreads* threads);
+
+    size_t clusters_count() const { return clusters_.size(); }  // those that have gone into others included
+    size_t edges_count() const { return edges_.size(); }
+    Cluster& at(int32_t c) { return clusters_[static_cast<size_t>(c)]; }
+    const Cluster& at(int32_t c) const { return clusters_[static_cast<size_t>(c)]; }
+    DualEdge& edge(int32_t e) { return edges_[static_cast<size_t>(e)]; }
+    const DualEdge& edge(int32_t e) const { return edges_[static_cast<size_t>(e)]; }
+
+    int32_t add_edge(int32_t a, int32_t b);
+
+    // The edge's cost as far as its hull volume is known.
+    Cost cost(const DualEdge& e) const {
+        const Cluster &a = at(e.a), &b = at(e.b);
+        const double hull_volume = e.exact ? e.hull_volume : e.hull_volume * (1 - bound_slack);
+        const auto square = [](int32_t n) { return static_cast<double>(n) * static_cast<double>(n); };
+        return {ranked_concavity(hull_volume, a.volume + b.volume), square(a.size) + square(b.size),
+                std::min(a.low, b.low), std::max(a.low, b.low)};
+    }
+
+    // The vertices of a cluster's hull.
+    std::span<const int32_t> corners(int32_t c) const;
+
+    // One price to be worked out. tests is how many of points against facets that takes.
+    struct Pricing {
+        const Hull* hull;
+        std::span<const int32_t> points;
+        double enough;
+        HullKernel::Measure measure;
+
+        size_t tests() const { return hull->facet_count() * points.size(); }
+        void work(HullKernel& kernel) { measure = kernel.united_volume(*hull, points, enough); }
+    };
+
+    // The exact volume of the edge's hull; or, at the first try, only that it costs more than this concavity.
+    Pricing pricing(int32_t edge, double concavity, HullKernel& kernel);
+    void priced(int32_t edge, const Pricing& pricing);
+
+    // Merges the edge's clusters into one of the two, which gets that number, and returns what was merged. The edges
+    // of the other that lead where the merged one leads already are appended to `removed`. Those that stay keep the
+    // better bound of the two: refresh() is up to the caller. `undo`: null, or gets what undo() needs.
+    Merge contract(int32_t edge, int32_t number, HullKernel& kernel, std::vector<int32_t>& removed, int32_t& merged,
+                   Contraction* undo = nullptr);
+
+    // The edge of a cluster just merged: what is known of its price now is a bound.
+    void refresh(int32_t number) {
+        DualEdge& e = edge(number);
+        e.hull_volume = std::max({e.hull_volume, at(e.a).hull_volume, at(e.b).hull_volume});
+        e.exact = e.tried = false;
+    }
+
+    // Takes the contraction back, of those that touched its clusters the last that stands.
+    void undo(Contraction& contraction);
+
+private:
+    const Point& point(int32_t v) const { return mesh_.vertices[static_cast<size_t>(v)]; }
+    std::pair<int32_t, int32_t> by_size(const DualEdge& edge) const;
+    double union_of_neighbours(int32_t a, int32_t b) const;
+    double enough(const DualEdge& edge, double concavity) const;
+    Hull unite(const DualEdge& edge, HullKernel& kernel) const;
+
+    const TetMesh& mesh_;
+    std::vector<Cluster> clusters_;
+    std::vector<DualEdge> edges_;
+    std::vector<int32_t> link_of_;  // scratch of contract(): cluster -> position in the merged links, or -1
+};
+
+// What comes soon in a queue is anywhere in memory: lets it begin, step by step as it rises.
+template <class Queue>
+void prefetch_soon(const DualGraph& graph, const Queue& queue) {
+    for (const auto& item : queue.items(5, 21)) __builtin_prefetch(&graph.edge(item.edge));
+    for (const auto& item : queue.items(1, 5)) {
+        __builtin_prefetch(&graph.at(graph.edge(item.edge).a));
+        __builtin_prefetch(&graph.at(graph.edge(item.edge).b));
+    }
+    if (const auto* second = queue.runner_up())
+        for (const int32_t c : {graph.edge(second->edge).a, graph.edge(second->edge).b}) {
+            graph.at(c).hull.prefetch();
+            __builtin_prefetch(graph.at(c).links.data());
+        }
+}
+
+// The same for the neighbours of an edge that is about to be contracted.
+inline void prefetch_around(const DualGraph& graph, const EdgePlaces& places, int32_t contracted) {
+    for (const int32_t c : {graph.edge(contracted).a, graph.edge(contracted).b})
+        for (const Link& link : graph.at(c).links) {
+            __builtin_prefetch(&graph.at(link.cluster));
+            __builtin_prefetch(&graph.edge(link.edge));
+            places.prefetch(link.edge);
+        }
+}
+
+}  // namespace partwheel
