@@ -343,6 +343,21 @@ class Stage:
         yield from self.selected(stops[start], "after the start")
         return face, stops, start
 
+    def take(self, spot, when, notches=1):
+        """Hover, a click with the tool and notches up take the part at a spot(): (its wheel's stops, the index of the
+        first)."""
+        x, y, face = spot
+        stops, start = self.wheels.stops(face)
+        self.mouse.move(x - 3, y)
+        self.mouse.move(x, y)
+        yield from self.until(f"hover shows the part of a click ({when})", lambda: self.hovered() == stops[start])
+        self.mouse.click()
+        yield from self.selected(stops[start], f"after a click ({when})")
+        if notches:
+            self.mouse.wheel(notches)
+            yield from self.selected(stops[start + notches], f"after notches up: {notches} ({when})")
+        return stops, start
+
     # ---- Waiting and checking -------------------------------------------------------------------------------------
 
     def check(self, truth, what):

@@ -35,15 +35,7 @@ def play(stage):
 
 def pick(stage, name, picture=False):
     """A click on a place takes what is seen there."""
-    x, y, face = stage.spot(0.5, 0.9, above=1)
-    stops, start = stage.wheels.stops(face)
-    stage.mouse.move(x - 3, y)
-    stage.mouse.move(x, y)
-    yield from stage.until(f"hover ({name})", lambda: stage.hovered() == stops[start])
-    stage.mouse.click()
-    yield from stage.selected(stops[start], f"after a click ({name})")
-    stage.mouse.wheel(1)
-    yield from stage.selected(stops[start + 1], f"after a notch ({name})")
+    yield from stage.take(stage.spot(0.5, 0.9, above=1), name)
     if picture:
         yield from stage.screenshot(name.replace(" ", "-"))
     stage.mouse.key("ESC")

@@ -37,13 +37,7 @@ def shown(model):
 
 
 def take(stage, when):
-    x, y, face = stage.spot(0.5, 0.9, above=1)
-    stops, start = stage.wheels.stops(face)
-    stage.mouse.move(x - 3, y)
-    stage.mouse.move(x, y)
-    yield from stage.until(f"hover shows the part of a click ({when})", lambda: stage.hovered() == stops[start])
-    stage.mouse.click()
-    yield from stage.selected(stops[start], f"after a click ({when})")
+    stops, start = yield from stage.take(stage.spot(0.5, 0.9, above=1), when, notches=0)
     made = stage.part("prepared").prepared(stage.object)
     stage.mouse.wheel(1)
     yield from stage.selected(stops[start + 1], f"after a notch ({when})")

@@ -11,18 +11,6 @@ def play(stage):
     yield from local(stage)
 
 
-def take(stage, x, y, face, when):
-    """Hover and a click with the tool take the part of this face."""
-    stops, start = stage.wheels.stops(face)
-    stage.mouse.move(x - 3, y)
-    stage.mouse.move(x, y)
-    yield from stage.until(f"hover shows the part of a click ({when})", lambda: stage.hovered() == stops[start])
-    stage.mouse.click()
-    yield from stage.selected(stops[start], f"after a click ({when})")
-    stage.mouse.wheel(1)
-    yield from stage.selected(stops[start + 1], f"after a notch ({when})")
-
-
 def clipped(stage):
     """The model is cut in the middle; seen from the cut, the mouse reaches what is inside."""
     yield from stage.open("hand")
@@ -49,8 +37,7 @@ def clipped(stage):
         there = whole.face_at(*centers[face].round())
         return there not in stops[start] and len(stops) > start + 1
 
-    x, y, face = view.spot(x, y, uncovered)
-    yield from take(stage, x, y, face, "clipped")
+    yield from stage.take(view.spot(x, y, uncovered), "clipped")
     yield from stage.screenshot("0-clipped")
     stage.mouse.key("RET")
     yield from stage.ended()
@@ -120,9 +107,9 @@ def local(stage):
     stage.mouse.key("TAB")
     yield from stage.until("Edit Mode is there", lambda: model.mode == "EDIT")
     yield from stage.drawn()
-    x, y, face = stage.spot(0.5, 0.9, above=1)
+    spot = stage.spot(0.5, 0.9, above=1)
     stage.use_tool()
-    yield from take(stage, x, y, face, "in the local view")
+    yield from stage.take(spot, "in the local view")
     yield from stage.screenshot("2-local")
     stage.mouse.key("ESC")
     yield from stage.ended()
