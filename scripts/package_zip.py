@@ -30,13 +30,20 @@ def main():
     files["partwheel/LICENSE"] = ROOT / "LICENSE"
     partial = target.with_suffix(".partial")
     with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+        # Blender before 4.2 removes what an update replaces only if the zip names its folder. Else it would write over
+        # the library while that is in use, and crash.
+        archive.writestr(entry("partwheel/", 0o040755), b"")
         for name in sorted(files):
-            entry = zipfile.ZipInfo(name, EPOCH)
-            entry.external_attr = 0o100644 << 16
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(entry, files[name].read_bytes())
+            archive.writestr(entry(name, 0o100644), files[name].read_bytes())
     partial.replace(target)
     print(target)
+
+
+def entry(name, mode):
+    info = zipfile.ZipInfo(name, EPOCH)
+    info.external_attr = mode << 16
+    info.compress_type = zipfile.ZIP_DEFLATED
+    return info
 
 
 def wanted(path):

@@ -93,7 +93,8 @@ class Registration(unittest.TestCase):
         package.register()
 
     def test_an_update_is_used_at_once(self):
-        """Installed over the enabled add-on: all its files are the new ones, also deep ones, without a restart."""
+        """Installed over the enabled add-on: all its files are the new ones, also deep ones, without a restart; and the
+        library in use is not written over, or the next call into it would end Blender."""
         files = ("partwheel/session.py", "partwheel/core/hierarchy.py", "partwheel/operators/build.py")
         names = [name[:-len(".py")].replace("/", ".").replace("partwheel", common.MODULE, 1) for name in files]
         before = everything()
@@ -106,7 +107,9 @@ class Registration(unittest.TestCase):
                 first = sys.modules[common.MODULE].__file__
                 installed_at = os.path.getmtime(first)
                 common.until(lambda: time.time() > installed_at + 0.1)  # or Blender takes the file for the same
-                installed(path)
+                with open(os.path.join(os.path.dirname(first), "core", "libpartwheel.so"), "rb") as in_use:
+                    installed(path)
+                    self.assertEqual(os.fstat(in_use.fileno()).st_nlink, 0, "removed, not written over")
                 for name in names:
                     module = importlib.import_module(name)
                     self.assertEqual(hasattr(module, "UPDATED"), updated, name)
