@@ -24,18 +24,19 @@ struct Soup {
 };
 
 // A wrap of more vertices than this is given up, and begun again half as fine: it would take minutes. So is one of more
-// steps, which would not end.
+// steps, which would not end; real models take about 19 for each vertex.
 constexpr size_t most_vertices = 80000, most_steps = 10000000;
 class TooFine {};
 
 // Told of every step; CGAL offers no other way to stop a wrap.
 class Watcher : public CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
 public:
-    explicit Watcher(Progress& progress) : progress_(progress) {}
+    // done: the steps of earlier wraps of this model, for a progress that goes on.
+    Watcher(size_t& done, Progress& progress) : done_(done), progress_(progress) {}
     template <class Wrapper, class Gate>
     void before_facet_treatment(const Wrapper&, const Gate&) {
         if (++steps_ > most_steps) throw TooFine();
-        if (steps_ % 256 == 0) progress_.advance(0.2 + 0.6 * (1 - std::exp(-static_cast<double>(steps_) / 3e5)));
+        if (++done_ % 256 == 0) progress_.advance(0.2 + 0.6 * (1 - std::exp(-static_cast<double>(done_) / 3e5)));
     }
     template <class Wrapper, class Place>
     void before_Steiner_point_insertion(const Wrapper&, const Place&) {
@@ -43,6 +44,7 @@ public:
     }
 
 private:
+    size_t& done_;
     Progress& progress_;
     size_t steps_ = 0, vertices_ = 0;
 };
@@ -74,10 +76,10 @@ Soup to_soup(const CgalMesh& mesh) {
     return soup;
 }
 
-CgalMesh wrap_soup(const Soup& soup, double alpha, double offset_share, Progress& progress) {
+CgalMesh wrap_soup(const Soup& soup, double alpha, double offset_share, size_t& done, Progress& progress) {
     for (;; alpha *= 2) {
         try {
-            Watcher watcher(progress);
+            Watcher watcher(done, progress);
             CgalMesh wrapped;
             CGAL::alpha_wrap_3(soup.points, soup.triangles, alpha, alpha * offset_share, wrapped,
                                CGAL::parameters::default_values(), CGAL::parameters::visitor(watcher));
@@ -109,8 +111,9 @@ Surface wrap(const Surface& source, bool open_surfaces, double coarseness, Progr
     double alpha = sheet ? coarseness * diagonal * sheet_alpha : std::max(least, coarseness * first);
 
     Surface surface;
+    size_t done = 0;
     for (double hidden = HUGE_VAL;; alpha = std::max(least, alpha / 2)) {
-        Surface closer = to_surface(source, wrap_soup(soup, alpha, sheet ? 0.1 : 1.0 / 30, progress));
+        Surface closer = to_surface(source, wrap_soup(soup, alpha, sheet ? 0.1 : 1.0 / 30, done, progress));
         const double still = attach(source, closer, progress).hidden;
         if (still < gain * hidden) {
             hidden = still;
