@@ -10,7 +10,7 @@ def play(stage):
     yield from stage.open("hand")
     hand = stage.object
     whole = volume(hand)
-    yield from finger(stage, 0.5, 0.9)
+    yield from finger(stage, 0.25, 0.78)
     yield from stage.screenshot("1-picked")
     count = len(stage.selection())
     stage.mouse.key("C")
@@ -27,7 +27,8 @@ def play(stage):
     stage.mouse.key("Z", ctrl=True, shift=True)
     yield from stage.until("and redo brings it again", lambda: stage.object.name == "hand part")
     hand, part = bpy.data.objects["hand"], stage.object
-    stage.check((~caps(part)).sum() == count, "the copy has the part's faces")
+    border = abs((~caps(part)).sum() - count)
+    stage.check(border < 0.25 * count, "the copy has the part's faces, but for its border, which goes to creases")
     stage.check(caps(part).any() and abs(volume(hand) - whole) < 1e-6 * whole, "it is capped; the hand is as it was")
     part.matrix_world.translation += stage.view_3d.view_rotation @ Vector((-0.8, 0.3, 0))
     yield from stage.screenshot("2-copied")
@@ -46,7 +47,8 @@ def play(stage):
     stage.mouse.key("TAB")
     yield from stage.until("Object Mode", lambda: stage.object.mode == "OBJECT")
     hand, part = bpy.data.objects["hand"], bpy.data.objects["hand part"]
-    stage.check((~caps(hand)).sum() == len(stage.wheels.triangles) - gone, "only its faces are gone")
+    border = abs((~caps(hand)).sum() - (len(stage.wheels.triangles) - gone))
+    stage.check(border < 0.25 * gone, "only its faces are gone, but for its border")
     rest = volume(hand)
     stage.check(rest < 0.99 * whole, "the hand has lost a finger")
     yield from stage.screenshot("3-removed")
