@@ -17,15 +17,19 @@ def deforming(stage, before):
     """Picks a horn by a script, starts Deform, and waits for it: what may move."""
     obj = stage.object
     horn = max(obj.data.polygons, key=lambda face: face.center.x).index
+    hierarchy = stage.session.hierarchy(obj)
+    stops, start = hierarchy.wheel(horn)
+
+    def vertices(stop):
+        return sorted({vertex for face in hierarchy.faces(int(stop)) for vertex in obj.data.polygons[face].vertices})
+
+    level = max(level for level, stop in enumerate(stops) if (before[vertices(stop)][:, 0] > 0).all())
     with stage.override():
-        bpy.ops.mesh.partwheel_select(face_index=horn)
-        picked = stage.session.picked(obj)
-        part = stage.session.hierarchy(obj).faces(picked.node)
+        bpy.ops.mesh.partwheel_select(face_index=horn, level=level - start)
         bpy.ops.mesh.partwheel_deform("INVOKE_DEFAULT")
     yield from stage.drawn()
-    inside = {vertex for face in part for vertex in obj.data.polygons[face].vertices}
-    stage.check((before[list(inside)][:, 0] > 0).all(), "the part lies on one side")
-    return inside
+    stage.check(stage.session.picked(obj).node == stops[level], "the largest part on one side is picked")
+    return vertices(stops[level])
 
 
 def play(stage):
@@ -48,7 +52,7 @@ def play(stage):
     yield from stage.drawn()
     before = stage.coordinates()
     inside = yield from deforming(stage, before)
-    free = numpy.array(sorted(inside))
+    free = numpy.array(inside)
 
     # A click elsewhere puts the handle there and moves nothing; the gizmo's blue arrow then moves it along Z alone.
     target = free[numpy.abs(before[free] - [1.6, -0.2, 0]).sum(axis=1).argmin()]
