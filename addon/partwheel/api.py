@@ -115,9 +115,11 @@ def place(part, location, normal=(0, 0, 1), scale=1.0, angle=0.0, depth=0.0, tar
 
 def unite(target, others, blend=0.0):
     """Makes the target's mesh the union of it and the other objects, which stay, by Blender's Boolean: n-gons, layers
-    and materials kept, modifiers of the others applied. blend: the width of a smooth transition on either side of each
-    seam, times the seam's radius; it moves vertices there, and has no more of them than the solids. union.NotUnited, before anything has changed: one of them is
-    not closed, or no solver gave a closed mesh of a possible volume. Outside Edit Mode only."""
+    and materials kept, modifiers of the others applied. Outside Edit Mode only.
+
+    blend: the width of a smooth transition on either side of each seam, times the seam's radius; it moves vertices
+    there, and has no more of them than the solids. union.NotUnited, before anything has changed: one of them is not
+    closed, or no solver gave a closed mesh of a possible volume."""
     for obj in (target, *others):
         _check(obj)
     if any(obj.mode == "EDIT" for obj in (target, *others)):

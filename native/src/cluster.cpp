@@ -197,7 +197,8 @@ void Clustering::join_components() {
 
 BinaryTree Clustering::run() {
     if (workers_.threads)
-        tree_.merges = merge_in_domains(graph_, mesh_, {&workers_.first, &*workers_.second}, *workers_.threads, progress_);
+        tree_.merges =
+            merge_in_domains(graph_, mesh_, {&workers_.first, &*workers_.second}, *workers_.threads, progress_);
     queue_edges();
     contract_all();
     tree_.components = graph_.clusters_count() - tree_.merges.size();

@@ -150,7 +150,8 @@ class Swap(SolidTest):
         self.assertTrue(0 < score < 1)
         count = len(mesh.vertices)
         bpy.context.view_layer.objects.active = model
-        self.assertEqual(bpy.ops.mesh.partwheel_swap(node=node, other=copy.name, whole=True, angle=1, build=False), {"FINISHED"})
+        done = bpy.ops.mesh.partwheel_swap(node=node, other=copy.name, whole=True, angle=1, build=False)
+        self.assertEqual(done, {"FINISHED"})
         self.assertSolid(model.data)
         self.assertEqual(len(mesh.vertices), count)
 

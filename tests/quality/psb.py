@@ -4,9 +4,9 @@
 usage: psb.py MESH_DIR OUT_DIR [--mode paper] [--sdf PROGRAM] [--rungs N] [--jobs N] [--again]
 
 MESH_DIR/<id>.off -> OUT_DIR/<id>.npz: order, first, last, parent, leaf, start, counts, cuts, auto, as the benchmark's
-score.py documents them. Through the public Python API, one process a core, with default settings. A mesh that can't be built
-is named and gets no file: the score counts it as a failure. Meshes that have a file already are passed over, unless
---again.
+score.py documents them. Through the public Python API, one process a core, with default settings. A mesh that can't be
+built is named and gets no file: the score counts it as a failure. Meshes that have a file already are passed over,
+unless --again.
 
 --mode paper: the paper's tree, with wheel and cuts by concavity alone.
 --rungs: the rungs of the ladder that are allowed. 4, the wrap alone, beside the default shows what the wrap costs.

@@ -186,7 +186,8 @@ class Hierarchy:
             "order": (faces,), "leaf": (faces,), "vertices": (vertices, 3), "source": (vertices,),
             "tetrahedra": (tets, 4), "merges": (tets - 1, 2),
         }
-        dtypes = {"cost_class": np.uint8, **dict.fromkeys(("cost", "height", "volume", "area", "vertices", "score"), np.float64)}
+        dtypes = {"cost_class": np.uint8,
+                  **dict.fromkeys(("cost", "height", "volume", "area", "vertices", "score"), np.float64)}
         for name in Arrays.POINTERS:
             setattr(self, name, _view(self._handle, getattr(raw, name), shapes.get(name, (nodes,)),
                                       dtypes.get(name, np.int32)))

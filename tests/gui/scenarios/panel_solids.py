@@ -75,7 +75,8 @@ def play(stage):
                 "moved apart")
     yield from stage.screenshot("2-exploded")
     stage.mouse.key("Z", ctrl=True)
-    yield from stage.until("one undo step takes them away", lambda: not objects("hand part") and stage.object.mode == "OBJECT")
+    yield from stage.until("one undo step takes them away",
+                           lambda: not objects("hand part") and stage.object.mode == "OBJECT")
 
     activate(stage, bpy.data.objects["hand"])
     yield from stage.drawn()
