@@ -12,7 +12,7 @@ def play(stage):
         return [getattr(settings, name) for name in dir(settings) if "proportional" in name]
 
     users = proportional()
-    x, y, face = stage.spot(0.05, 0.55)
+    x, y, face = stage.spot(0.25, 0.84)
     stops, start = stage.wheels.stops(face)
     part = stops[start]
     before = stage.coordinates()
