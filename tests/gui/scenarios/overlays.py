@@ -2,15 +2,19 @@
 import numpy
 from view import picture
 
+ENOUGH = 10  # faces to look at
+
 
 def play(stage):
     yield from stage.open("homer")
     settings = stage.part("preferences").preferences()
     plain = picture((yield from stage.screenshot("0-plain")))
     _, stops, start = yield from stage.pick(0.95, 0.6, above=2)
-    stage.mouse.wheel(2)
-    part, larger = stops[start + 2], stops[min(start + 3, len(stops) - 1)]
-    yield from stage.selected(part, "after two notches")
+    level = next(level for level in range(start + 1, len(stops) - 1)
+                 if min(len(seen(stage, faces)) for faces in (stops[level], stops[level + 1] - stops[level])) > ENOUGH)
+    stage.mouse.wheel(level - start)
+    part, larger = stops[level], stops[level + 1]
+    yield from stage.selected(part, f"after {level - start} notches")
     settings.show_part = False
     yield from tinted(stage, plain, larger - part, "1-next", lambda change: change[2] - change[0] > 0.05)
     settings.show_next = False
@@ -39,11 +43,15 @@ def play(stage):
     stage.check(numpy.abs(rest).mean() < 0.02, "the model looks as before")
 
 
+def seen(stage, faces):
+    """(n,2) the pixels of the centers of the faces that can be seen, or of some of them."""
+    faces = sorted(faces)
+    return stage.view.shown(faces[::len(faces) // 150 + 1]).round().astype(int)
+
+
 def inside(stage, pixels, faces):
     """(n,3) colours at the centers of the faces that can be seen."""
-    faces = sorted(faces)
-    centers = stage.view.shown(faces[::len(faces) // 150 + 1]).round().astype(int)
-    stage.check(len(centers) > 10, "enough faces can be seen")
+    centers = seen(stage, faces)
     return pixels[centers[:, 1], centers[:, 0], :3]
 
 
