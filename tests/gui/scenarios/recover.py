@@ -28,7 +28,7 @@ def play(stage):
     height = stage.object.data.vertices[0].co.z
     path = stage.file("hand.blend")
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    aside = path.parent / "aside"
+    aside = path.parent / "recover"
     aside.mkdir()
 
     log = path.parent / "other.log"
