@@ -16,13 +16,13 @@ class Paint(MeshTest):
         h = self.hierarchy(self.obj)
         bpy.ops.object.mode_set(mode=mode)
         self.faces, self.vertices = [], []
-        for face in (700, 100):
+        for face in (900, 1100):
             stops, start = h.wheel(face)
             chosen = set(h.faces(stops[start]).tolist())
             self.faces.append(chosen)
             self.vertices.append({v for index in chosen for v in self.obj.data.polygons[index].vertices})
 
-    def paint(self, face=700, **more):
+    def paint(self, face=900, **more):
         self.assertEqual(bpy.ops.mesh.partwheel_paint(face_index=face, **more), {"FINISHED"})
 
     def sets(self):
@@ -43,7 +43,7 @@ class Paint(MeshTest):
     def test_face_sets(self):
         self.begin("SCULPT")
         self.paint()
-        self.paint(100)
+        self.paint(1100)
         self.assertEqual(self.obj.mode, "SCULPT")
         found = self.sets()
         first, second = self.faces
@@ -52,13 +52,13 @@ class Paint(MeshTest):
         rest = set(range(2390)) - first - second
         self.assertEqual(len({found[index] for index in rest}), 1)
         self.assertEqual(len(set(found)), 3)
-        self.assertEqual(part("session").picked(self.obj).face, 100)
+        self.assertEqual(part("session").picked(self.obj).face, 1100)
 
     def test_mask(self):
         self.begin("SCULPT")
         self.paint(write="MASK")
         self.assertEqual(self.masked(), self.vertices[0])
-        self.paint(100, write="MASK", extend=True)
+        self.paint(1100, write="MASK", extend=True)
         self.assertEqual(self.masked(), self.vertices[0] | self.vertices[1])
         self.paint(write="MASK", deselect=True)
         self.assertEqual(self.masked(), self.vertices[1] - self.vertices[0])
@@ -72,11 +72,11 @@ class Paint(MeshTest):
 
         self.paint()
         self.assertEqual(group(), self.vertices[0])
-        self.paint(100)
+        self.paint(1100)
         self.assertEqual((group(), len(self.obj.vertex_groups)), (self.vertices[1], 1))
         self.paint(extend=True)
         self.assertEqual(group(), self.vertices[0] | self.vertices[1])
-        self.paint(100, deselect=True)
+        self.paint(1100, deselect=True)
         self.assertEqual(group(), self.vertices[0] - self.vertices[1])
 
     def test_paint_mask(self):
@@ -95,7 +95,7 @@ class Paint(MeshTest):
     def test_refusals(self):
         self.begin("VERTEX_PAINT")
         with self.assertRaisesRegex(RuntimeError, "no mask in this mode"):
-            bpy.ops.mesh.partwheel_paint(face_index=700, write="MASK")
+            bpy.ops.mesh.partwheel_paint(face_index=900, write="MASK")
         with self.assertRaisesRegex(RuntimeError, "Face 5000"):
             bpy.ops.mesh.partwheel_paint(face_index=5000)
         bpy.ops.object.mode_set(mode="OBJECT")

@@ -37,7 +37,7 @@ class Select(MeshTest):
         self.edit(obj)
         found = []
         for level in (-1, 0, 1, 2, 1, 0):
-            self.pick(700, level)
+            self.pick(900, level)
             found.append(selected(obj))
         self.assertEqual(found[4:], [found[2], found[1]])
         self.assertTrue(found[0] < found[1] < found[2] < found[3])
