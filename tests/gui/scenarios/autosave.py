@@ -4,6 +4,8 @@ import time
 
 import bpy
 
+from scenarios.recover import recovered
+
 MINUTE = 60  # the shortest time that Blender can be told
 
 
@@ -40,18 +42,4 @@ def play(stage):
 
     with stage.override():
         bpy.ops.wm.recover_auto_save(filepath=str(saved()[0]))
-    yield from stage.drawn()
-    mesh = bpy.data.objects["hand"].data
-    stage.check(abs(mesh.vertices[0].co.z - height) < 1, "the vertex is where it was moved before")
-    stage.check(list(mesh.keys()) == [], "no bytes of ours are on the mesh")
-    stage.check(stage.session.state(mesh)[0] == stage.session.State.NONE, "no parts are claimed that are not there")
-    stage.window.view_layer.objects.active = bpy.data.objects["hand"]
-    with stage.override():
-        mesh.vertices[0].co.z -= 1000
-        bpy.ops.object.mode_set(mode="EDIT")
-    stage.select(())
-    face = 700
-    stops, start = stage.wheels.stops(face)
-    with stage.override():
-        stage.check(bpy.ops.mesh.partwheel_select(face_index=face) == {"FINISHED"}, "parts are built anew")
-    yield from stage.selected(stops[start], "after that")
+    yield from recovered(stage, height)
