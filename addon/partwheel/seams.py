@@ -8,6 +8,7 @@ import numpy as np
 
 from . import mesh_arrays
 from .core import faired, surface_distances
+from .core.joint import groups
 from .mesh_arrays import read
 
 SIDE = "partwheel_side"  # while a union is made: the number of the solid that each face came from
@@ -79,14 +80,5 @@ def _seams(mesh, of_corner):
     np.minimum.at(low, edge, of_corner)
     np.maximum.at(high, edge, of_corner)
     edges = edges[low < high]
-    vertices, ends = np.unique(edges, return_inverse=True)
-    ends = ends.reshape(-1, 2)
-    label = np.arange(len(vertices))
-    while True:  # labels spread until nothing changes
-        least = label[ends].min(axis=1)
-        spread = label.copy()
-        np.minimum.at(spread, ends.ravel(), np.repeat(least, 2))
-        spread = spread[spread]
-        if np.array_equal(spread, label):
-            return [vertices[label == group] for group in np.unique(label)]
-        label = spread
+    group = groups(edges)
+    return [np.unique(edges[group == each]) for each in np.unique(group)]
