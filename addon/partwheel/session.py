@@ -241,10 +241,10 @@ class Build:
 
 
 def drop_outdated_build():
-    """Cancels the build under way if its mesh is gone, or is another one by now."""
+    """Cancels the build under way if its mesh is gone, or is another one by now, be it only by places of vertices."""
     if _running:
         obj = _user(_running._key)
-        if not obj or mesh_arrays.fingerprint(mesh_arrays.up_to_date(obj)).topology != _running._built.topology:
+        if not obj or mesh_arrays.fingerprint(mesh_arrays.up_to_date(obj)) != _running._built:
             _stop()
 
 

@@ -150,6 +150,19 @@ def test_a_worker_that_can_not_be_started(monkeypatch):
     assert failed.value.name == "worker"
 
 
+def test_the_worker_is_started_by_the_caller_itself(monkeypatch):
+    """A thread with much Python to run is a danger to Blender: see Job."""
+    starters, popen = [], subprocess.Popen
+
+    def noted(*arguments, **options):
+        starters.append(threading.current_thread())
+        return popen(*arguments, **options)
+
+    monkeypatch.setattr(subprocess, "Popen", noted)
+    Job(*shapes.cube(), **UNLIMITED).result()
+    assert starters == [threading.current_thread()]
+
+
 # ---- Harm
 
 if LINUX and PLAIN:

@@ -5,8 +5,8 @@
 Every file of scenarios/ is one scenario and runs in a Blender process and an X server (Xvfb, software GL) of its own,
 with the add-on installed from ZIP into a home directory of its own (Blender saves preferences when it quits). A
 scenario passes if it reports no failure and at least one check, Blender quits without a crash, and the log holds no
-traceback. Screenshots and logs go to build/gui. RESULT.json: {"passed": n, "failed": n, "failures": [sentence, ...]}.
-Exit code: 0 if all passed.
+traceback. Screenshots and logs go to build/gui, and so does Blender's own report of a crash, which is printed as well.
+RESULT.json: {"passed": n, "failed": n, "failures": [sentence, ...]}. Exit code: 0 if all passed.
 
 PARTWHEEL_BLENDER names another Blender than the one on the PATH.
 """
@@ -150,6 +150,9 @@ def run_scenario(name, driver, work, environment):
                                   timeout=limit).returncode
         except subprocess.TimeoutExpired:
             return f"Blender was still running after {limit} s, see {log_path}", 0
+    for report in (work / "tmp").glob("*.crash.txt"):
+        print(report.read_text(errors="replace"), flush=True)
+        report.rename(OUTPUT / f"{title}.crash.txt")
     result = json.loads(result_path.read_text()) if result_path.exists() else None
     if "Traceback" in log_path.read_text(errors="replace"):
         return f"a traceback in {log_path}", 0

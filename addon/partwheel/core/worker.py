@@ -68,7 +68,11 @@ class Job:
         self._process = None
         self._cancelled = False
         self._hierarchy = self._error = None
-        self._thread = threading.Thread(target=self._run, name="partwheel-job", daemon=True)
+        # Not in the thread, which so has little Python left to run: with Python up to 3.11 Blender takes any thread's
+        # hold of the interpreter for its own, and may crash (seen in 3.4) where a script calls an operator under
+        # temp_override() that starts a build.
+        launched = self._launch()
+        self._thread = threading.Thread(target=self._run, args=[launched], name="partwheel-job", daemon=True)
         self._thread.start()
 
     def poll(self):
@@ -104,30 +108,11 @@ class Job:
         """Of the worker that runs now, or ran last; None before the first."""
         return self._process and self._process.pid
 
-    # ---- In the job's thread ---------------------------------------------------------------------------------------
-
-    def _run(self):
-        try:
-            rungs = self._rungs
-            while rungs:
-                self._rung = rungs & -rungs  # the first
-                try:
-                    self._hierarchy = self._attempt(rungs)
-                    return
-                except WorkerError as error:
-                    self.failures.append(error)
-                    if error.name == "worker":
-                        break
-                rungs &= -2 * self._rung  # those after it
-            self._error = self.failures[-1]
-        except Exception as error:  # whatever it is, result() raises it
-            self._error = error
-
-    def _attempt(self, rungs):
-        """One worker process from start to end: the Hierarchy, or raises PartwheelError."""
+    def _launch(self):
+        """Starts a worker process: a function that gives it, or raises why there is none."""
         with self._lock:
             if self._cancelled:
-                raise PartwheelError(Status.CANCELLED, "The build was cancelled.")
+                return _raising(PartwheelError(Status.CANCELLED, "The build was cancelled."))
             try:
                 # -I: nothing of this process's Python, such as Blender's paths, reaches the worker. -S, -B: it starts
                 # faster, and writes no bytecode.
@@ -135,7 +120,32 @@ class Job:
                     [sys.executable, "-I", "-S", "-B", str(ENTRY)], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                     creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0))
             except OSError as error:
-                raise WorkerError("worker", f"The worker process could not be started: {error}.") from error
+                return _raising(WorkerError("worker", f"The worker process could not be started: {error}."))
+        return lambda: process
+
+    # ---- In the job's thread ---------------------------------------------------------------------------------------
+
+    def _run(self, launched):
+        try:
+            rungs = self._rungs
+            while rungs:
+                self._rung = rungs & -rungs  # the first
+                try:
+                    self._hierarchy = self._attempt(launched or self._launch(), rungs)
+                    return
+                except WorkerError as error:
+                    self.failures.append(error)
+                    if error.name == "worker":
+                        break
+                launched = None
+                rungs &= -2 * self._rung  # those after it
+            self._error = self.failures[-1]
+        except Exception as error:  # whatever it is, result() raises it
+            self._error = error
+
+    def _attempt(self, launched, rungs):
+        """One worker process from start to end: the Hierarchy, or raises PartwheelError."""
+        process = launched()
         self._work, self._seen_working = 0.0, time.monotonic()
         over, late = threading.Event(), []
 

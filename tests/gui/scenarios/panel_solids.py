@@ -41,8 +41,8 @@ def play(stage):
         last = bpy.data.window_managers[0].operators[-1]
         for name, value in options.items():
             setattr(last.properties, name, value)
-        with stage.override():
-            bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)  # True: with its step in the history
+        # Not under temp_override(): it starts a build, see core/worker.py. True: with its step in the history.
+        bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)
         yield from stage.settle()
 
     def objects(name):
