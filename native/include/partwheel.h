@@ -87,7 +87,8 @@ typedef struct pw_build_options {
     size_t struct_size;
     /* 0: no points are added inside the solid (the paper's choice; TetGen may still need a few to mesh it at all).
      * 1.1 or more: points are added inside until every tetrahedron's circumradius is at most this many times its
-     * shortest edge, away from the surface, which never changes (the paper's Figure 9). 1.4 is usual. */
+     * shortest edge, away from the surface, which never changes (the paper's Figure 9). 1.4 is usual. But for
+     * PW_MODE_PAPER the parts are those that the solid has without such points. */
     double quality;
     /* The rungs allowed: a sum of pw_rung; 0 means all. With PW_RUNG_EXACT alone nothing is repaired, and the status
      * names what is wrong with the surface. */
@@ -118,9 +119,10 @@ typedef struct pw_hierarchy pw_hierarchy;
  *
  * A surface that is closed, manifold, consistently oriented and free of self-intersection is used as it is: no vertex
  * is moved and none is added to it (PW_RUNG_EXACT). Any number of components and cavities is fine; a region is solid
- * where the winding number of the surface about it is not 0. Any other surface is repaired or wrapped, as
- * options->rungs allows, and every source face goes with the part of the surface used that is nearest to it:
- * pw_summary and pw_hierarchy_account() say what was done. The caller's mesh is never changed.
+ * where the winding number of the surface about it is not 0. Any other surface is repaired (where only vertices touch,
+ * these are set apart; where it is rough all over, as with noise, it is smoothed until it no longer passes through
+ * itself) or wrapped, as options->rungs allows, and every source face goes with the part of the surface used that is
+ * nearest to it: pw_summary and pw_hierarchy_account() say what was done. The caller's mesh is never changed.
  *
  * The result does not depend on the order of the vertices or triangles, nor on the corner a triangle starts with. Any
  * thread may build; several at once take turns in TetGen, which keeps global state.

@@ -2,6 +2,7 @@
 #include "partwheel.h"
 
 #include "border.h"
+#include "carried.h"
 #include "deform.h"
 #include "fair.h"
 #include "hierarchy.h"
@@ -113,10 +114,14 @@ int threads_to_use(int32_t asked) {
 
 Hierarchy build(const MeshView& mesh, const LadderOptions& options, int threads, int32_t mode, Progress& progress) {
     const Solid solid = climb(mesh, options, progress);
+    std::optional<TetMesh> plain;
+    if (mode != PW_MODE_PAPER) plain = plain_filling(solid, options.quality > 0, progress);
+    const TetMesh& mesh_of_parts = plain ? *plain : solid.mesh;
     progress.enter(PW_STAGE_CLUSTER);
-    const BinaryTree tree = cluster(solid.mesh, progress, threads);
+    Regrouped regrouped{cluster(mesh_of_parts, progress, threads), {}};
     progress.enter(PW_STAGE_DENDROGRAM);
-    const Regrouped regrouped = mode == PW_MODE_PAPER ? Regrouped{tree, {}} : regroup(solid.mesh, tree, progress);
+    if (mode != PW_MODE_PAPER) regrouped = regroup(mesh_of_parts, regrouped.tree, progress);
+    if (plain) regrouped = carried(*plain, regrouped, solid, progress, threads);
     progress.enter(PW_STAGE_HIERARCHY);
     Hierarchy hierarchy(solid.surface, solid.mesh, regrouped, mesh.vertices);
     progress.advance(1);

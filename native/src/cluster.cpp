@@ -42,6 +42,7 @@ struct Workers {
         }
     }
     PairOfThreads* pair() { return threads ? &*threads : nullptr; }
+    bool two() const { return threads && threads->pays(); }
 };
 
 class Clustering {
@@ -93,7 +94,7 @@ void Clustering::evaluate(std::span<const int32_t> edges, double concavity) {
         pricings_.push_back(graph_.pricing(edge, concavity, workers_.first));
         tests += pricings_.back().tests();
     }
-    if (workers_.threads && edges.size() > 1 && tests >= worth_sharing)
+    if (edges.size() > 1 && tests >= worth_sharing && workers_.two())
         workers_.threads->share(edges.size(), [&](size_t i, size_t thread) {
             pricings_[i].work(thread == 0 ? workers_.first : *workers_.second);
         });
@@ -109,7 +110,7 @@ void Clustering::evaluate(std::span<const int32_t> edges, double concavity) {
 std::span<const int32_t> Clustering::first_unpriced() {
     unpriced_.clear();
     const auto items = queue_.top_items();
-    for (const Queue::Item& item : items.first(workers_.threads ? items.size() : 1))
+    for (const Queue::Item& item : items.first(workers_.two() ? items.size() : 1))
         if (!graph_.edge(item.edge).exact) unpriced_.push_back(item.edge);
     return unpriced_;
 }
@@ -144,10 +145,12 @@ void Clustering::contract(int32_t contracted) {
     for (const Link& link : graph_.at(merged).links) {
         graph_.refresh(link.edge);
         const Price bound(graph_.cost(graph_.edge(link.edge)));
-        if (bound < price)
+        if (bound < price) {
+            graph_.prefetch(link.edge, merged);
             unpriced_.push_back(link.edge);
-        else
+        } else {
             queue_.update(bound, link.edge);
+        }
     }
     evaluate(unpriced_, dear * price.concavity());
 }
@@ -159,7 +162,7 @@ void Clustering::join_components() {
         if (graph_.at(c).size > 0) rest.push_back(c);
     std::sort(rest.begin(), rest.end(), [&](int32_t a, int32_t b) { return graph_.at(a).low < graph_.at(b).low; });
     for (const int32_t c : rest)
-        if (!graph_.at(c).hull) graph_.at(c).hull = workers_.first.build(graph_.corners(c));
+        if (!graph_.at(c).hull) graph_.set_hull(c, workers_.first.build(graph_.corners(c)));
     std::vector<int32_t> edges;
     const auto join = [&](int32_t i, int32_t j) {
         edges.push_back(graph_.add_edge(rest[static_cast<size_t>(i)], rest[static_cast<size_t>(j)]));

@@ -277,7 +277,10 @@ std::pair<int32_t, Domains::Numbered> Domains::contract(int32_t edge, const Stam
     const Merge merge = graph_.contract(edge, number, *scratch.kernel, scratch.removed, merged, undo);
     made(merged) = stamp;
     for (const int32_t e : scratch.removed) remove(e);
-    for (const Link& link : graph_.at(merged).links) graph_.refresh(link.edge);
+    for (const Link& link : graph_.at(merged).links) {
+        graph_.prefetch(link.edge, merged);
+        graph_.refresh(link.edge);
+    }
     return {merged, {merge, stamp, number}};
 }
 
@@ -496,7 +499,7 @@ std::vector<Merge> Domains::in_order() {
 }
 
 std::vector<Merge> Domains::run() {
-    while (left_ > few_clusters && !(first_.inside.empty() && second_.inside.empty())) {
+    while (left_ > few_clusters && threads_.pays() && !(first_.inside.empty() && second_.inside.empty())) {
         goal_ = std::max(left_ / clusters_a_merge, least_merges_a_round);
         lead_ = patience * goal_;
         first_.finished = second_.finished = false;

@@ -10,8 +10,8 @@
 
 namespace partwheel {
 
-// Contracts the dual graph's edges, cheapest first, until some hundreds of clusters are left, or no edge; returns the
-// merges in their order. Threads and kernels belong together.
+// Contracts the dual graph's edges, cheapest first, until some hundreds of clusters are left, or no edge, or until two
+// threads don't pay any more; returns the merges in their order. Threads and kernels belong together.
 std::vector<Merge> merge_in_domains(DualGraph& graph, const TetMesh& mesh, std::array<HullKernel*, 2> kernels,
                                     PairOfThreads& threads, Progress& progress);
 

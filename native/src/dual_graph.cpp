@@ -57,7 +57,7 @@ std::span<const int32_t> DualGraph::corners(int32_t c) const {
 
 // The edge's clusters, the one whose hull has more facets first, or the lower one.
 std::pair<int32_t, int32_t> DualGraph::by_size(const DualEdge& e) const {
-    const size_t a = at(e.a).hull.facet_count(), b = at(e.b).hull.facet_count();
+    const uint32_t a = at(e.a).facets, b = at(e.b).facets;
     const bool ordered = a != b ? a > b : at(e.a).low < at(e.b).low;
     return ordered ? std::pair(e.a, e.b) : std::pair(e.b, e.a);
 }
@@ -90,7 +90,7 @@ double DualGraph::enough(const DualEdge& e, double concavity) const {
 DualGraph::Pricing DualGraph::pricing(int32_t edge_number, double concavity, HullKernel& kernel) {
     const DualEdge& e = edge(edge_number);
     const auto [large, small] = by_size(e);
-    if (!at(large).hull) at(large).hull = kernel.build(corners(large));
+    if (!at(large).hull) set_hull(large, kernel.build(corners(large)));
     return {&at(large).hull, corners(small), enough(e, concavity), {}};
 }
 
@@ -122,6 +122,7 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, HullKernel& kernel
     const Cluster &first = ordered ? m : g, &second = ordered ? g : m;
     const double volume = first.volume + second.volume;
     const Merge merge = {first.number, second.number, ranked_concavity(e.hull_volume, volume), e.hull_volume};
+    for (const Link& link : g.links) __builtin_prefetch(at(link.cluster).links.data());
     Hull united = unite(e, kernel);
     if (undo) {
         undo->stay = stay;
@@ -132,13 +133,14 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, HullKernel& kernel
         Cluster& was = undo->stayed;
         was.hull = std::move(m.hull);
         was.hull_volume = m.hull_volume;
+        was.facets = m.facets;
         was.volume = m.volume;
         was.size = m.size;
         was.low = m.low;
         was.number = m.number;
         was.links = m.links;
     }
-    m.hull = std::move(united);
+    set_hull(stay, std::move(united));
     m.hull_volume = m.hull.volume();
     m.volume = volume;
     m.size += g.size;
@@ -169,10 +171,7 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, HullKernel& kernel
     if (undo) undo->gone = std::move(g);
     g = Cluster{};
     g.size = 0;
-    for (const Link& link : m.links) {
-        at(link.cluster).hull.prefetch();
-        link_of_[static_cast<size_t>(link.cluster)] = -1;
-    }
+    for (const Link& link : m.links) link_of_[static_cast<size_t>(link.cluster)] = -1;
     merged = stay;
     return merge;
 }

@@ -4,6 +4,7 @@
 #include "cluster.h"
 #include "edge_queue.h"
 #include "hull.h"
+#include "large_pages.h"
 #include "pair_of_threads.h"
 
 #include <algorithm>
@@ -29,6 +30,7 @@ struct Link {
 struct alignas(64) Cluster {
     Hull hull;               // none while it is one tetrahedron
     double hull_volume = 0;
+    uint32_t facets = 0;     // of the hull: here, for most who ask have no other need to fetch that
     double volume = 0;
     int32_t size = 1;    // in tetrahedra; 0 once it has gone into another
     int32_t low = 0;     // its lowest tetrahedron
@@ -66,6 +68,10 @@ public:
     const DualEdge& edge(int32_t e) const { return edges_[static_cast<size_t>(e)]; }
 
     int32_t add_edge(int32_t a, int32_t b);
+    void set_hull(int32_t c, Hull hull) {
+        at(c).facets = static_cast<uint32_t>(hull.facet_count());
+        at(c).hull = std::move(hull);
+    }
 
     // The edge's cost as far as its hull volume is known.
     Cost cost(const DualEdge& e) const {
@@ -89,6 +95,12 @@ public:
         size_t tests() const { return hull->facet_count() * points.size(); }
         void work(HullKernel& kernel) { measure = kernel.united_volume(*hull, points, enough); }
     };
+
+    // Asks memory for what pricing and working out that price reads first, but for this cluster's, ahead of that.
+    void prefetch(int32_t edge, int32_t but) const {
+        const DualEdge& e = this->edge(edge);
+        at(e.a == but ? e.b : e.a).hull.prefetch();
+    }
 
     // The exact volume of the edge's hull; or, at the first try, only that it costs more than this concavity.
     Pricing pricing(int32_t edge, double concavity, HullKernel& kernel);
@@ -118,9 +130,9 @@ private:
     Hull unite(const DualEdge& edge, HullKernel& kernel) const;
 
     const TetMesh& mesh_;
-    std::vector<Cluster> clusters_;
-    std::vector<DualEdge> edges_;
-    std::vector<int32_t> link_of_;  // scratch of contract(): cluster -> position in the merged links, or -1
+    LargeVector<Cluster> clusters_;
+    LargeVector<DualEdge> edges_;
+    LargeVector<int32_t> link_of_;  // scratch of contract(): cluster -> position in the merged links, or -1
 };
 
 // What comes soon in a queue is anywhere in memory: lets it begin, step by step as it rises.

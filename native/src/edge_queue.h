@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cluster.h"
+#include "large_pages.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,7 +10,6 @@
 #include <span>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 namespace partwheel {
 
@@ -49,7 +49,7 @@ public:
     void prefetch(int32_t edge) const { __builtin_prefetch(&places_[static_cast<size_t>(edge)]); }
 
 private:
-    std::vector<uint32_t> places_;
+    LargeVector<uint32_t> places_;
 };
 
 // A heap with four children a node that knows where each edge is, so that keys change in place.
@@ -65,31 +65,31 @@ public:
 
     explicit EdgeQueue(EdgePlaces& places) : place_(places) {}
 
-    void reserve(size_t edges) { heap_.reserve(edges); }
+    void reserve(size_t edges) { heap_.reserve(before + edges); }
 
     // Without restoring the order, see sort().
     void append(const Key& key, int32_t edge) {
         heap_.emplace_back();
-        put(heap_.size() - 1, {key, edge});
+        put(size() - 1, {key, edge});
     }
 
     void sort() {
-        for (size_t i = heap_.size() / children + 1; i-- > 0;)
-            if (i < heap_.size()) sink(i, Item(heap_[i]));
+        for (size_t i = size() / children + 1; i-- > 0;)
+            if (i < size()) sink(i, Item(at(i)));
     }
 
     void insert(const Key& key, int32_t edge) {
         heap_.emplace_back();
-        settle(heap_.size() - 1, {key, edge});
+        settle(size() - 1, {key, edge});
     }
 
-    bool empty() const { return heap_.empty(); }
-    size_t size() const { return heap_.size(); }
-    const Item& top() const { return heap_[0]; }
-    const Key& key(int32_t edge) const { return heap_[place_[edge]]; }
+    bool empty() const { return size() == 0; }
+    size_t size() const { return heap_.size() - before; }
+    const Item& top() const { return at(0); }
+    const Key& key(int32_t edge) const { return at(place_[edge]); }
 
     // The top one and some that come soon after it.
-    std::span<const Item> top_items() const { return {heap_.data(), std::min(children + 1, heap_.size())}; }
+    std::span<const Item> top_items() const { return items(0, children + 1); }
 
     // What comes after the top one; null if there is nothing.
     const Item* runner_up() const {
@@ -99,7 +99,7 @@ public:
 
     // Some of those that come after the top one: the items at these places of the heap.
     std::span<const Item> items(size_t first, size_t last) const {
-        return {heap_.data() + std::min(first, heap_.size()), heap_.data() + std::min(last, heap_.size())};
+        return {&at(std::min(first, size())), &at(std::min(last, size()))};
     }
 
     void update(const Key& key, int32_t edge) { settle(place_[edge], {key, edge}); }
@@ -108,21 +108,27 @@ public:
         const size_t i = std::exchange(place_[edge], EdgePlaces::absent);
         const Item last = heap_.back();
         heap_.pop_back();
-        if (i < heap_.size()) settle(i, last);
+        if (i < size()) settle(i, last);
     }
 
 private:
     static constexpr size_t children = 4;
 
+    // Unused places, with which the children of each are as near in memory as can be: in whole cache lines.
+    static constexpr size_t before = children - 1;
+
+    Item& at(size_t i) { return *(heap_.data() + before + i); }
+    const Item& at(size_t i) const { return *(heap_.data() + before + i); }
+
     void put(size_t i, const Item& item) {
-        heap_[i] = item;
+        at(i) = item;
         place_[item.edge] = static_cast<uint32_t>(i);
     }
 
     // Puts the item where it belongs, above or below the gap at i.
     void settle(size_t i, const Item& item) {
-        while (i > 0 && item < heap_[(i - 1) / children]) {
-            put(i, heap_[(i - 1) / children]);
+        while (i > 0 && item < at((i - 1) / children)) {
+            put(i, at((i - 1) / children));
             i = (i - 1) / children;
         }
         sink(i, item);
@@ -130,18 +136,18 @@ private:
 
     void sink(size_t i, const Item& item) {
         for (;;) {
-            const size_t first = children * i + 1, end = std::min(first + children, heap_.size());
+            const size_t first = children * i + 1, end = std::min(first + children, size());
             if (first >= end) break;
             size_t least = first;
-            for (size_t c = first + 1; c < end; ++c) least = heap_[c] < heap_[least] ? c : least;
-            if (!(heap_[least] < item)) break;
-            put(i, heap_[least]);
+            for (size_t c = first + 1; c < end; ++c) least = at(c) < at(least) ? c : least;
+            if (!(at(least) < item)) break;
+            put(i, at(least));
             i = least;
         }
         put(i, item);
     }
 
-    std::vector<Item> heap_;
+    LargeVector<Item> heap_{before};
     EdgePlaces& place_;
 };
 

@@ -552,8 +552,8 @@ void Hierarchy::check_stored() const {
     // One for each part and each merge that joins them; with no parts there is none.
     if (!scores_.empty() && (scores_.size() % 2 == 0 || scores_.size() > 2 * leaves - 1))
         refuse_saved("its scores are odd");
-    for (double s : scores_)
-        if (!(s >= 0 && s <= 1)) refuse_saved("a score is impossible");
+    for (double s : scores_)  // 0 is for what is below the parts
+        if (!(s > 0 && s <= 1)) refuse_saved("a score is impossible");
     if (summary_.components == 0 || summary_.components > leaves) refuse_saved("its counts are impossible");
 
     const auto strangers = static_cast<size_t>(std::count(source_.begin(), source_.end(), -1));

@@ -10,6 +10,7 @@
 // foreseen, so the inner loops don't branch on it.
 #include "hull.h"
 
+#include "large_pages.h"
 #include "predicates.h"
 
 #include <algorithm>
@@ -101,9 +102,9 @@ size_t Hull::Block::bytes(size_t vertices, size_t facets) {
     return sizeof(Block) + facets * (plane_numbers * sizeof(double) + sizeof(HullFacet)) +
            whole_fours(vertices) * sizeof(int32_t);
 }
-double* Hull::Block::planes() { return reinterpret_cast<double*>(this + 1); }
+int32_t* Hull::Block::vertices() { return reinterpret_cast<int32_t*>(this + 1); }
+double* Hull::Block::planes() { return reinterpret_cast<double*>(vertices() + whole_fours(vertex_count)); }
 HullFacet* Hull::Block::facets() { return reinterpret_cast<HullFacet*>(planes() + plane_numbers * facet_count); }
-int32_t* Hull::Block::vertices() { return reinterpret_cast<int32_t*>(facets() + facet_count); }
 
 // Free blocks in lists by size; what is larger comes from the system.
 class Hull::Pool {
@@ -112,7 +113,8 @@ public:
     Pool(const Pool&) = delete;
     Pool& operator=(const Pool&) = delete;
     ~Pool() {
-        for (void* chunk : chunks_) ::operator delete(chunk, std::align_val_t{unit});
+        ::operator delete(first_chunk_, std::align_val_t{unit});
+        for (void* chunk : chunks_) free_large(chunk);
     }
 
     void* allocate(size_t bytes) {
@@ -123,9 +125,7 @@ public:
             return head;
         }
         if (left_ < units * unit) {
-            chunks_.push_back(::operator new(chunk_bytes, std::align_val_t{unit}));
-            next_ = static_cast<std::byte*>(chunks_.back());
-            left_ = chunk_bytes;
+            add_chunk();
         }
         left_ -= units * unit;
         return std::exchange(next_, next_ + units * unit);
@@ -140,11 +140,24 @@ public:
     }
 
 private:
-    static constexpr size_t unit = 64, classes = 128, chunk_bytes = size_t{1} << 20;
+    void add_chunk() {
+        if (!first_chunk_) {  // in small pages: there may be no need for a large one
+            left_ = large_page / 4;
+            next_ = static_cast<std::byte*>(first_chunk_ = ::operator new(left_, std::align_val_t{unit}));
+        } else {
+            chunks_.reserve(chunks_.size() + 1);
+            chunks_.push_back(allocate_large(large_page));
+            next_ = static_cast<std::byte*>(chunks_.back());
+            left_ = large_page;
+        }
+    }
+
+    static constexpr size_t unit = 64, classes = 128;
     struct Free {
         Free* next;
     };
     Free* free_[classes] = {};
+    void* first_chunk_ = nullptr;
     std::vector<void*> chunks_;
     std::byte* next_ = nullptr;
     size_t left_ = 0;
@@ -190,6 +203,7 @@ private:
         size_t count;
         Point origin;
         double reach;
+        bool centred;
 
         double side(size_t f, const Point& p) const { return x[f] * p[0] + y[f] * p[1] + z[f] * p[2] - offset[f]; }
         Pair sides(size_t f, const Point& p) const {
@@ -204,6 +218,7 @@ private:
     struct Candidate {
         double volume6 = 0;  // six times what it alone adds to the hull, to rounding; on a large hull a lower bound
         int32_t vertex = 0;
+        uint32_t facet = 0;  // on a large hull, one that sees it, if known
     };
 
     struct RimEdge {
@@ -211,7 +226,7 @@ private:
         int32_t beyond;  // the facet that stays
     };
 
-    static constexpr size_t none = ~size_t{0};
+    static constexpr size_t none = ~size_t{0}, inside = none - 1;  // in place of a facet
 
     const Point& at(int32_t v) const { return points_[static_cast<size_t>(v)]; }
     static View view(const Hull& hull);
@@ -219,13 +234,18 @@ private:
 
     int exact_side(const View& h, size_t f, int32_t vertex) const;
     size_t walk(const View& h, const Point& p, size_t start);
+    static bool surely_best(const View& h, size_t f, const Point& p);
     size_t find_seen(const View& h, const Point& p, int32_t vertex, size_t start);
     double flood(const View& h, size_t f, const Point& p, int32_t vertex);
-    static double added_volume6(const View& h, const Point& p);
+    static std::array<double, 2> added_volumes6(const View& h, const Point& p, const Point& q);
     static bool surely_inside(const View& h, const Point& p);
     void survey(const Hull& hull, std::span<const int32_t> points);
 
-    void reserve(size_t facets);
+    void reserve(size_t facets) {
+        if (facets_.size() < 3 * facets + 3) [[unlikely]]
+            make_room(facets);
+    }
+    void make_room(size_t facets);
     void load(const Hull& hull);
     Plane plane(const Triangle& corners) const;
     void set_plane(size_t f, const Plane& plane);
@@ -235,7 +255,7 @@ private:
     void insert(int32_t vertex);
     void make_facets(std::span<const RimEdge> rim, const Point& p, int32_t vertex);
     void close_gaps();
-    Hull unload();
+    Hull unload(std::span<const int32_t> some, std::span<const int32_t> others);
     Hull allocate(std::span<const int32_t> vertices, size_t facets);
     bool load_simplex(std::span<const int32_t> vertices);
 
@@ -250,6 +270,7 @@ private:
     size_t latest_ = 0;  // one of them: the newest, if any has been made
     Point origin_{};
     double reach_ = 0;
+    bool centred_ = false;
     double volume6_ = 0;
 
     // What the last survey found, of these arguments, those that add most first. The first inserted_ are in the hull at
@@ -257,6 +278,7 @@ private:
     const Hull::Block* surveyed_ = nullptr;
     const int32_t* surveyed_points_ = nullptr;
     std::vector<Candidate> candidates_;
+    std::vector<int32_t> others_;  // scratch of survey()
     size_t inserted_ = 0;
     bool loaded_ = false;
 
@@ -266,21 +288,23 @@ private:
     std::vector<RimEdge> rim_;          // the edges around them
     std::vector<uint32_t> facet_mark_;  // facet_mark_[f] == facet_stamp_: f is one of those in question
     uint32_t facet_stamp_ = 0;
-    std::vector<uint32_t> mark_;  // of vertices, in the same manner
+    LargeVector<uint32_t> mark_;  // of vertices, in the same manner
     uint32_t stamp_ = 0;
-    std::vector<int32_t> facet_from_;  // the new facet whose rim edge starts at a vertex
+    LargeVector<int32_t> facet_from_;  // the new facet whose rim edge starts at a vertex
     std::vector<int32_t> vertices_;
+    std::vector<int32_t> unloaded_;
 };
 
 HullKernel::Impl::View HullKernel::Impl::view(const Hull& hull) {
     Hull::Block& b = *hull.block_;
     const size_t n = b.facet_count;
     const double* p = b.planes();
-    return {p, p + n, p + 2 * n, p + 3 * n, p + 4 * n, b.facets(), n, b.origin, b.reach};
+    return {p, p + n, p + 2 * n, p + 3 * n, p + 4 * n, b.facets(), n, b.origin, b.reach, b.centred};
 }
 
 HullKernel::Impl::View HullKernel::Impl::view() const {
-    return {x_.data(), y_.data(), z_.data(), offset_.data(), size_.data(), facets_.data(), count_, origin_, reach_};
+    return {x_.data(),    y_.data(),      z_.data(), offset_.data(), size_.data(),
+            facets_.data(), count_, origin_, reach_, centred_};
 }
 
 // 1: the vertex is outside the facet, 0: in its plane.
@@ -289,8 +313,8 @@ int HullKernel::Impl::exact_side(const View& h, size_t f, int32_t vertex) const 
     return orientation(at(t[0]), at(t[1]), at(t[2]), at(vertex));
 }
 
-// Looks for a facet that surely sees p by going to better and better neighbours. None if it finds none: p may be
-// outside all the same.
+// Looks for a facet that surely sees p by going to better and better neighbours; `inside` if p surely is. None if it
+// finds neither.
 //
 // Better is what the ray from the origin to p meets later, relative to its length: that is a linear function of the
 // facets' polar points, and these are the corners of a convex polytope, so that with exact numbers no facet but the
@@ -311,18 +335,36 @@ size_t HullKernel::Impl::walk(const View& h, const Point& p, size_t start) {
             best = rated > there ? g : best;
             there = std::max(there, rated);
         }
-        if (!(there >= here - equal)) return none;
+        if (!(there >= here - equal)) return h.centred && surely_best(h, f, p) ? inside : none;
         f = best;
         here = there;
     }
     return f;
 }
 
+// Whether, with exact numbers, p is inside of facet f, and f better than each of its neighbours in the sense of walk():
+// then it is better than all others, for only facets with no coplanar neighbour can be, and their polar points have
+// just three edges; and p is inside of all.
+bool HullKernel::Impl::surely_best(const View& h, size_t f, const Point& p) {
+    constexpr double rounding = 1 + 1e-14;  // more than that of the products
+    const double factor = h.error_factor(p);
+    const double error = factor * h.size[f], side = h.side(f, p);
+    if (!(side + error < 0 && h.offset[f] > error)) return false;
+    for (const int32_t n : h.facets[f].neighbours) {
+        const auto g = static_cast<size_t>(n);
+        const double error_g = factor * h.size[g], side_g = h.side(g, p);
+        if (!(side_g + error_g < 0 && h.offset[g] > error_g)) return false;
+        if (!((side_g + error_g) * (h.offset[f] - error) < (side - error) * (h.offset[g] + error_g) * rounding))
+            return false;
+    }
+    return true;
+}
+
 // Some facet that the vertex is strictly outside of; none if it is in the hull. p is the vertex relative to the origin,
 // start a facet near it, if one is known.
 size_t HullKernel::Impl::find_seen(const View& h, const Point& p, int32_t vertex, size_t start) {
     if (h.count >= large_hull)
-        if (const size_t f = walk(h, p, start); f != none) return f;
+        if (const size_t f = walk(h, p, start); f != none) return f == inside ? none : f;
     const double factor = h.error_factor(p);
     bool doubtful = false;
     for (size_t f = 0; f < h.count; f += 2) {
@@ -372,11 +414,14 @@ double HullKernel::Impl::flood(const View& h, size_t f, const Point& p, int32_t 
     return volume / 2;
 }
 
-// Six times what the point adds to the hull, to rounding.
-double HullKernel::Impl::added_volume6(const View& h, const Point& p) {
-    Pair sum = {0, 0};
-    for (size_t f = 0; f < h.count; f += 2) sum += positive(h.sides(f, p));
-    return sum[0] + sum[1];
+// Six times what each of the points alone adds to the hull, to rounding.
+std::array<double, 2> HullKernel::Impl::added_volumes6(const View& h, const Point& p, const Point& q) {
+    Pair sum_p = {0, 0}, sum_q = {0, 0};
+    for (size_t f = 0; f < h.count; f += 2) {
+        sum_p += positive(h.sides(f, p));
+        sum_q += positive(h.sides(f, q));
+    }
+    return {sum_p[0] + sum_p[1], sum_q[0] + sum_q[1]};
 }
 
 // As far as rounded numbers tell.
@@ -397,21 +442,33 @@ void HullKernel::Impl::survey(const Hull& hull, std::span<const int32_t> points)
     reserve(h.count);
     const std::span<const int32_t> own = hull.vertices();
     constexpr size_t few = 64;
-    size_t start = 0;
+    // Those that remain to be tested against all facets. What is written past their end is no harm.
+    others_.resize(points.size());
+    size_t others = 0, start = 0;
     for (const int32_t v : points) {
-        if (own.size() > few ? std::binary_search(own.begin(), own.end(), v) : contains(own, v)) continue;
-        const Point p = at(v) - h.origin;
-        if (h.count >= large_hull)
-            if (const size_t f = walk(h, p, start); f != none) {
+        others_[others] = v;
+        const bool is_own = own.size() > few ? std::binary_search(own.begin(), own.end(), v) : contains(own, v);
+        if (h.count >= large_hull && !is_own) {
+            const Point p = at(v) - h.origin;
+            const size_t f = walk(h, p, start);
+            if (f == inside) continue;
+            if (f != none) {
                 start = f;
                 // A bound that is negligible says nothing about what the point adds.
                 if (const double bound = h.side(f, p); bound > negligible * hull.volume()) {
-                    candidates_.push_back({bound, v});
+                    candidates_.push_back({bound, v, static_cast<uint32_t>(f)});
                     continue;
                 }
             }
-        const double volume6 = added_volume6(h, p);
-        if (volume6 > 0 || !surely_inside(h, p)) candidates_.push_back({volume6, v});
+        }
+        others += !is_own;
+    }
+    for (size_t i = 0; i < others; i += 2) {
+        const std::array<int32_t, 2> v = {others_[i], others_[std::min(i + 1, others - 1)]};
+        const std::array<Point, 2> p = {at(v[0]) - h.origin, at(v[1]) - h.origin};
+        const auto volumes6 = added_volumes6(h, p[0], p[1]);
+        for (size_t k = 0; k < 2 && i + k < others; ++k)
+            if (volumes6[k] > 0 || !surely_inside(h, p[k])) candidates_.push_back({volumes6[k], v[k]});
     }
     std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
         return a.volume6 != b.volume6 ? a.volume6 > b.volume6 : a.vertex < b.vertex;
@@ -419,8 +476,7 @@ void HullKernel::Impl::survey(const Hull& hull, std::span<const int32_t> points)
 }
 
 // Makes room for work on a hull of so many facets, and for one point more.
-void HullKernel::Impl::reserve(size_t facets) {
-    if (facets_.size() >= 3 * facets + 3) return;
+void HullKernel::Impl::make_room(size_t facets) {
     const size_t room = 6 * facets + 6;
     for (auto* numbers : {&x_, &y_, &z_, &offset_, &size_}) numbers->resize(room);
     facets_.resize(room);
@@ -432,16 +488,18 @@ void HullKernel::Impl::reserve(size_t facets) {
 void HullKernel::Impl::load(const Hull& hull) {
     const View h = view(hull);
     count_ = h.count;
-    std::copy_n(h.x, count_, x_.data());
-    std::copy_n(h.y, count_, y_.data());
-    std::copy_n(h.z, count_, z_.data());
-    std::copy_n(h.offset, count_, offset_.data());
-    std::copy_n(h.size, count_, size_.data());
-    std::copy_n(h.facets, count_, facets_.data());
+    // One loop for all, for they are short and their length can't be foreseen.
+    const double* const from[] = {h.x, h.y, h.z, h.offset, h.size};
+    double* const to[] = {x_.data(), y_.data(), z_.data(), offset_.data(), size_.data()};
+    for (size_t f = 0; f < count_; f += 2) {
+        for (size_t k = 0; k < plane_numbers; ++k) std::memcpy(to[k] + f, from[k] + f, sizeof(Pair));
+        std::memcpy(&facets_[f], &h.facets[f], 2 * sizeof(HullFacet));
+    }
     gaps_.clear();
     latest_ = 0;
     origin_ = h.origin;
     reach_ = h.reach;
+    centred_ = h.centred;
     volume6_ = 6 * hull.volume();
     loaded_ = true;
 }
@@ -599,22 +657,41 @@ void HullKernel::Impl::close_gaps() {
     gaps_.clear();
 }
 
-Hull HullKernel::Impl::unload() {
+// The hull at work; its vertices are among these, which are in rising order both.
+Hull HullKernel::Impl::unload(std::span<const int32_t> some, std::span<const int32_t> others) {
     close_gaps();
-    vertices_.clear();
     ++stamp_;
     for (size_t f = 0; f < count_; ++f)
-        for (const int32_t v : facets_[f].corners)
-            if (std::exchange(mark_[static_cast<size_t>(v)], stamp_) != stamp_) vertices_.push_back(v);
-    std::sort(vertices_.begin(), vertices_.end());
+        for (const int32_t v : facets_[f].corners) mark_[static_cast<size_t>(v)] = stamp_;
+    // Both lists merged, without a branch on what can't be foreseen.
+    unloaded_.resize(some.size() + others.size() + 1);
+    size_t vertices = 0;
+    const auto take = [&](int32_t v) {
+        unloaded_[vertices] = v;
+        vertices += mark_[static_cast<size_t>(v)] == stamp_;
+    };
+    size_t i = 0, j = 0;
+    while (i < some.size() && j < others.size()) {
+        const int32_t a = some[i], b = others[j];
+        take(std::min(a, b));
+        i += a <= b;
+        j += b <= a;
+    }
+    while (i < some.size()) take(some[i++]);
+    while (j < others.size()) take(others[j++]);
 
-    Hull hull = allocate(vertices_, count_);
+    Hull hull = allocate({unloaded_.data(), vertices}, count_);
     Hull::Block& block = *hull.block_;
-    double* to = block.planes();
-    for (const auto* numbers : {&x_, &y_, &z_, &offset_, &size_}) to = std::copy_n(numbers->data(), count_, to);
-    std::copy_n(facets_.data(), count_, block.facets());
+    double* const to = block.planes();
+    HullFacet* const facets = block.facets();
+    const double* const from[] = {x_.data(), y_.data(), z_.data(), offset_.data(), size_.data()};
+    for (size_t f = 0; f < count_; f += 2) {
+        for (size_t k = 0; k < plane_numbers; ++k) std::memcpy(to + k * count_ + f, from[k] + f, sizeof(Pair));
+        std::memcpy(&facets[f], &facets_[f], 2 * sizeof(HullFacet));
+    }
     block.origin = origin_;
     block.reach = reach_;
+    block.centred = centred_;
     // Measured anew, so that rounding doesn't pile up over a long chain of unions.
     Pair sum = {0, 0};
     for (size_t f = 0; f < count_; f += 2) sum += vector_at<Pair>(&offset_[f]);
@@ -673,6 +750,9 @@ bool HullKernel::Impl::load_simplex(std::span<const int32_t> vertices) {
         facets_[f] = facets[f];
         set_plane(f, plane(facets[f].corners));
     }
+    // Once it is inside it stays there.
+    centred_ = true;
+    for (size_t f = 0; f < 4; ++f) centred_ &= offset_[f] > side_error * reach_ * size_[f];
     volume6_ = six_volumes(at(t[0]), at(t[1]), at(t[2]), at(t[3]));
     return true;
 }
@@ -703,7 +783,9 @@ Hull HullKernel::Impl::build(std::span<const int32_t> vertices) {
         for (const int32_t v : facets_[f].corners) mark_[static_cast<size_t>(v)] = stamp_;
     for (const int32_t v : order)
         if (std::exchange(mark_[static_cast<size_t>(v)], stamp_) != stamp_) insert(v);
-    return unload();
+    std::sort(order.begin(), order.end());
+    order.erase(std::unique(order.begin(), order.end()), order.end());
+    return unload(order, {});
 }
 
 Hull HullKernel::Impl::unite(const Hull& hull, std::span<const int32_t> points) {
@@ -717,7 +799,10 @@ Hull HullKernel::Impl::unite(const Hull& hull, std::span<const int32_t> points) 
     surveyed_ = nullptr;
     if (!loaded_) load(hull);
     while (inserted_ < candidates_.size()) insert(candidates_[inserted_++].vertex);
-    return unload();
+    vertices_.clear();
+    for (const Candidate& c : candidates_) vertices_.push_back(c.vertex);
+    std::sort(vertices_.begin(), vertices_.end());
+    return unload(hull.vertices(), vertices_);
 }
 
 HullKernel::Measure HullKernel::Impl::united_volume(const Hull& hull, std::span<const int32_t> points, double enough) {
@@ -729,7 +814,7 @@ HullKernel::Measure HullKernel::Impl::united_volume(const Hull& hull, std::span<
     if (hull.facet_count() >= large_hull) {
         const View h = view(hull);
         const Point p = at(first.vertex) - h.origin;
-        const size_t f = find_seen(h, p, first.vertex, 0);
+        const size_t f = find_seen(h, p, first.vertex, first.facet);
         first.volume6 = f == none ? 0 : flood(h, f, p, first.vertex);
     }
     const double with_first = volume + first.volume6 / 6;

@@ -36,19 +36,20 @@ private:
     friend class HullKernel;
     class Pool;
 
-    // The head of one block of memory: after it come the planes, five numbers a facet, each an array; the facets; and
-    // the vertices, filled up to whole fours.
+    // The head of one block of memory: after it come the vertices, filled up to whole fours; the planes, five numbers a
+    // facet, each an array; and the facets.
     struct alignas(64) Block {
         uint32_t vertex_count, facet_count;
         double volume;
         Point origin;  // a point inside, near which the numbers of the planes are small
         double reach;  // of the vertices, from there
+        bool centred;  // the origin is surely inside
         Pool* pool;
 
         static size_t bytes(size_t vertices, size_t facets);
+        int32_t* vertices();
         double* planes();
         HullFacet* facets();
-        int32_t* vertices();
     };
     struct Release {
         void operator()(Block* block) const;

@@ -1,6 +1,7 @@
 // The ladder from the caller's mesh to a filled solid.
 #include "ladder.h"
 
+#include "displaced.h"
 #include "repair.h"
 #include "wrap.h"
 
@@ -32,7 +33,10 @@ Solid step(const Surface& source, pw_rung rung, double coarseness, const LadderO
     progress.enter(PW_STAGE_REPAIR);
     try {
         if (rung == PW_RUNG_EXACT) solid.surface = source;
-        if (rung == PW_RUNG_REPAIRED) solid.surface = repair(source, progress);
+        if (rung == PW_RUNG_REPAIRED) {
+            std::optional<Surface> moved = displaced(source, progress);
+            solid.surface = moved ? std::move(*moved) : repair(source, progress);
+        }
         if (rung == PW_RUNG_WRAPPED) solid.surface = wrap(source, options.open_surfaces, coarseness, progress);
     } catch (const std::logic_error&) {  // an assertion of CGAL's, or of what it uses
         throw Error(PW_ERROR_SELF_INTERSECTION,

@@ -53,27 +53,26 @@ public:
         return value;
     }
     std::string get_text(size_t length);
-    std::vector<int32_t> get_integers(size_t count) { return get_integers<int32_t>(count); }
-    std::vector<double> get_doubles(size_t count) { return get_doubles<double>(count); }
 
-    // The same as so many T, which are arrays of such numbers.
-    template <class T>
+    // So many T, which are numbers or arrays of them.
+    template <class T = int32_t>
     std::vector<T> get_integers(size_t count) {
-        expect(count, sizeof(T));
-        std::vector<T> values(count);
-        read({reinterpret_cast<int32_t*>(values.data()), count * (sizeof(T) / sizeof(int32_t))});
-        return values;
+        return get_numbers<int32_t, T>(count);
     }
-    template <class T>
+    template <class T = double>
     std::vector<T> get_doubles(size_t count) {
-        expect(count, sizeof(T));
-        std::vector<T> values(count);
-        read({reinterpret_cast<double*>(values.data()), count * (sizeof(T) / sizeof(double))});
-        return values;
+        return get_numbers<double, T>(count);
     }
     bool at_end() const { return bytes_.empty(); }
 
 private:
+    template <class Number, class T>
+    std::vector<T> get_numbers(size_t count) {
+        expect(count, sizeof(T));
+        std::vector<T> values(count);
+        read({reinterpret_cast<Number*>(values.data()), count * (sizeof(T) / sizeof(Number))});
+        return values;
+    }
     void expect(size_t count, size_t size) const;
     std::span<const uint8_t> take(size_t count);
     void read(std::span<int32_t> numbers);

@@ -7,12 +7,17 @@ namespace partwheel {
 
 namespace {
 
+// Each thread looks out for the other so many times, some 50 microseconds, before the system may run others in its
+// place, that other one among them.
+constexpr int looks_before_yielding = 2000;
+
 // Offers come every few microseconds, so the second thread looks out for the next one this many times, about a
 // millisecond, before it goes to sleep: waking it takes longer than most tasks.
-constexpr int patience = 50000;
+constexpr int looks_before_sleeping = 4000;
 
-// So many looks at whether the second thread has done its last task before the system may run it here.
-constexpr int looks_before_yielding = 2000;
+// Two threads pay while the caller has been alone for no more than this part of its time, and these seconds, about what
+// a system gives to another program at a time.
+constexpr double tolerated_part = 1.0 / 24, tolerated_seconds = 4e-3;
 
 void pause() {
 #if defined(__x86_64__)
@@ -36,14 +41,32 @@ void PairOfThreads::share(size_t count, const std::function<void(size_t, size_t)
     next_.store(0, std::memory_order_relaxed);
     state_.store(offered, std::memory_order_release);
     state_.notify_one();
+    const auto begun = Clock::now();
     work(0);
     uint32_t state = offered;
     if (!state_.compare_exchange_strong(state, idle, std::memory_order_acq_rel))
-        for (int looks = 0; state_.load(std::memory_order_acquire) != idle; ++looks)  // its last task is under way
-            looks < looks_before_yielding ? pause() : std::this_thread::yield();
+        wait_for_second();
+    else if (count > 1)
+        alone_ += (Clock::now() - begun) / 2;
     const auto errors = std::exchange(errors_, {});
     for (const std::exception_ptr& error : errors)
         if (error) std::rethrow_exception(error);
+}
+
+// Its last task is under way.
+void PairOfThreads::wait_for_second() {
+    for (int looks = 0; looks < looks_before_yielding; ++looks) {
+        if (state_.load(std::memory_order_acquire) == idle) return;
+        pause();
+    }
+    const auto begun = Clock::now();
+    while (state_.load(std::memory_order_acquire) != idle) std::this_thread::yield();
+    alone_ += Clock::now() - begun;
+}
+
+bool PairOfThreads::pays() const {
+    const auto seconds = [](Clock::duration d) { return std::chrono::duration<double>(d).count(); };
+    return seconds(alone_) <= tolerated_seconds + tolerated_part * seconds(Clock::now() - made_);
 }
 
 void PairOfThreads::work(size_t thread) noexcept {
@@ -63,11 +86,11 @@ void PairOfThreads::serve() {
             work(1);
             state_.store(idle, std::memory_order_release);
             looks = 0;
-        } else if (looks > patience) {
+        } else if (looks > looks_before_sleeping) {
             state_.wait(state, std::memory_order_acquire);
             looks = 0;
         } else {
-            pause();
+            looks < looks_before_yielding ? pause() : std::this_thread::yield();
         }
     }
 }

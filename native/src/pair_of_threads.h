@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -22,10 +23,17 @@ public:
     // A second thread that is slow to begin is not waited for. If a task throws, some others may not be called.
     void share(size_t count, const std::function<void(size_t, size_t)>& task);
 
+    // Whether the second thread has been there when there was work for two: on a crowded machine it often isn't, and
+    // one thread is then faster than two that wait for each other.
+    bool pays() const;
+
 private:
+    using Clock = std::chrono::steady_clock;
+
     enum State : uint32_t { idle, offered, taken, ended };
 
     void work(size_t thread) noexcept;
+    void wait_for_second();
     void serve();
 
     std::atomic<uint32_t> state_{idle};
@@ -33,6 +41,8 @@ private:
     size_t count_ = 0;
     const std::function<void(size_t, size_t)>* task_ = nullptr;
     std::array<std::exception_ptr, 2> errors_;
+    const Clock::time_point made_ = Clock::now();
+    Clock::duration alone_{};  // how long the caller had work for two and was the only one to do it, or waited
     std::thread second_;  // last, so that all else is there when it begins
 };
 

@@ -249,7 +249,7 @@ void Regrouping::measure() {
         for (const int32_t v : tet)
             if (std::exchange(taken_by[static_cast<size_t>(v)], p) != p) mine.push_back(v);
         const double six = six_volumes(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3]));
-        at(p).volume += std::max(0.0, six / 6) / volume_unit_;
+        at(p).volume += six / 6 / volume_unit_;
         for (size_t k = 0; k < 4; ++k) {
             const int32_t other = mesh_.neighbours[t][k];
             const int32_t q = other < 0 ? -1 : part_of_[static_cast<size_t>(other)];
@@ -277,6 +277,7 @@ void Regrouping::measure() {
     }
     progress_.advance(0.1);
     for (size_t p = 0; p < fine_; ++p) {
+        parts_[p].volume = std::max(0.0, parts_[p].volume);
         parts_[p].hull = kernel_.build(corners[p]);
         parts_[p].hull_volume = parts_[p].hull.volume() / volume_unit_;
         volume_ += parts_[p].volume;
@@ -655,7 +656,8 @@ double fitted(std::span<const double> numbers, std::span<const double> inputs) {
 Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, Progress& progress,
                   std::span<const double> pair_numbers, RegroupTrace* trace) {
     if (tree.merges.empty()) return {tree, {1.0}};
-    return Regrouping(mesh, tree, progress, pair_numbers.empty() ? fitted_pair_numbers : pair_numbers, trace).run();
+    const std::span<const double> numbers = pair_numbers.empty() ? fitted_pair_numbers : pair_numbers;
+    return Regrouping(mesh, tree, progress, numbers, trace).run();
 }
 
 }  // namespace partwheel

@@ -85,18 +85,18 @@ std::vector<std::array<int32_t, 4>> neighbours_of(std::span<const Tetrahedron> t
 // The corners that are joined with each other, as one number each: union-find.
 class Joined {
 public:
-    explicit Joined(size_t size) : up_(size) { std::iota(up_.begin(), up_.end(), size_t{0}); }
+    explicit Joined(size_t size) : up_(size) { std::iota(up_.begin(), up_.end(), 0); }
     size_t find(size_t i) {
-        while (up_[i] != i) i = up_[i] = up_[up_[i]];
+        while (at(up_[i]) != i) i = at(up_[i] = up_[at(up_[i])]);
         return i;
     }
     void join(size_t a, size_t b) {
         a = find(a), b = find(b);
-        up_[std::max(a, b)] = std::min(a, b);
+        up_[std::max(a, b)] = static_cast<int32_t>(std::min(a, b));
     }
 
 private:
-    std::vector<size_t> up_;
+    std::vector<int32_t> up_;
 };
 
 }  // namespace
@@ -294,7 +294,7 @@ std::vector<int32_t> Facets::with_faces(std::span<const Tetrahedron> tetrahedra,
 
 // Goes from a facet of the surface through the solid, around the edge that lies opposite another corner of its
 // tetrahedron in the facet, to the facet of the surface at the other end.
-Facets::Facet Facets::next_around(std::span<const Tetrahedron> tetrahedra, const std::vector<bool>& inside, Facet facet,
+Facets::Facet Facets::next_around(std::span<const Tetrahedron> tetrahedra, std::span<const uint8_t> inside, Facet facet,
                                   int32_t edge) const {
     int32_t t = facet.tet, kept = facet.corner, out = edge;
     for (size_t steps = 0; steps <= tetrahedra.size(); ++steps) {
@@ -312,10 +312,10 @@ Facets::Facet Facets::next_around(std::span<const Tetrahedron> tetrahedra, const
 TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
                            std::span<const int32_t> tets,
                            std::span<const std::array<int32_t, 2>> middles) const {
-    std::vector<bool> inside(tetrahedra.size(), false);
+    std::vector<uint8_t> inside(tetrahedra.size(), 0);
     if (tets.empty())
         throw Error(PW_ERROR_EMPTY, "This part is no solid: it has no face of the surface. Take a larger one.");
-    for (int32_t t : tets) inside[at(t)] = true;
+    for (int32_t t : tets) inside[at(t)] = 1;
 
     std::vector<Facet> surface;
     std::vector<std::array<int32_t, 4>> number(tetrahedra.size());  // of each facet in surface
@@ -333,17 +333,20 @@ TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<co
         const Facet& facet = surface[f];
         return tetrahedra[at(facet.tet)][at(opposite[at(facet.corner)][k % 3])];
     };
-    std::vector<std::array<size_t, 3>> across(surface.size());  // 3 * triangle + edge
+    constexpr int32_t unknown = -1;
+    std::vector<std::array<int32_t, 3>> across(surface.size(), {unknown, unknown, unknown});  // 3 * triangle + edge
     Joined umbrellas(3 * surface.size());
     for (size_t f = 0; f < surface.size(); ++f)
         for (size_t k = 0; k < 3; ++k) {
+            if (across[f][k] != unknown) continue;  // seen from the other side
             const Facet& facet = surface[f];
             const Facet other = next_around(tetrahedra, inside, facet, opposite[at(facet.corner)][(k + 2) % 3]);
             const size_t g = at(number[at(other.tet)][at(other.corner)]);
             size_t j = 0;
             while (j < 3 && vertex(g, j) != vertex(f, k + 1)) ++j;
-            if (j == 3 || vertex(g, j + 1) != vertex(f, k)) refuse();
-            across[f][k] = 3 * g + j;
+            if (j == 3 || vertex(g, j + 1) != vertex(f, k) || across[g][j] != unknown) refuse();
+            across[f][k] = static_cast<int32_t>(3 * g + j);
+            across[g][j] = static_cast<int32_t>(3 * f + k);
             umbrellas.join(3 * f + k, 3 * g + (j + 1) % 3);
             umbrellas.join(3 * f + (k + 1) % 3, 3 * g + j);
         }
@@ -370,34 +373,45 @@ TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<co
     std::set<std::pair<int32_t, int32_t>> wanted;
     for (const auto& [a, b] : middles) wanted.insert(std::minmax(a, b));
     struct Pair {
-        int32_t low, high;
-        int own;  // triangles that are the source's
-        size_t edge;
+        int32_t high, edge;
     };
-    std::vector<Pair> pairs;
-    for (size_t f = 0; f < surface.size(); ++f)
-        for (size_t k = 0; k < 3; ++k) {
-            const size_t edge = 3 * f + k, back = across[f][k];
-            if (edge > back) continue;
-            const auto [low, high] = std::minmax(of_corner[edge], of_corner[3 * f + (k + 1) % 3]);
-            const auto own = [&](size_t e) {
-                const Facet& facet = surface[e / 3];
-                return neighbours_[at(facet.tet)][at(facet.corner)] < 0 ? 1 : 0;
-            };
-            pairs.push_back({low, high, own(edge) + own(back), edge});
-        }
-    std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
-        return std::tuple(a.low, a.high, -a.own, a.edge) < std::tuple(b.low, b.high, -b.own, b.edge);
-    });
+    const auto back_of = [&](size_t edge) { return at(across[edge / 3][edge % 3]); };
+    const auto ends_of = [&](size_t edge) -> std::pair<int32_t, int32_t> {
+        return std::minmax(of_corner[edge], of_corner[edge % 3 == 2 ? edge - 2 : edge + 1]);
+    };
+    std::vector<size_t> begin(mesh.vertices.size() + 2, 0);  // of the pairs by their lower vertex: each has few
+    for (size_t edge = 0; edge < of_corner.size(); ++edge)
+        if (edge <= back_of(edge)) ++begin[at(ends_of(edge).first) + 2];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<Pair> pairs(begin.back());
+    for (size_t edge = 0; edge < of_corner.size(); ++edge) {
+        if (edge > back_of(edge)) continue;
+        const auto [low, high] = ends_of(edge);
+        pairs[begin[at(low) + 1]++] = {high, static_cast<int32_t>(edge)};
+    }
+    const auto own = [&](int32_t edge) {  // of the two triangles at it, how many are the source's
+        const auto outer = [&](size_t e) {
+            const Facet& facet = surface[e / 3];
+            return neighbours_[at(facet.tet)][at(facet.corner)] < 0 ? 1 : 0;
+        };
+        return outer(at(edge)) + outer(back_of(at(edge)));
+    };
     std::vector<std::array<int32_t, 3>> middle(surface.size(), {-1, -1, -1});
-    for (size_t i = 0; i < pairs.size(); ++i) {
-        const size_t edge = pairs[i].edge, back = across[edge / 3][edge % 3];
-        const bool again = i > 0 && pairs[i].low == pairs[i - 1].low && pairs[i].high == pairs[i - 1].high;
-        if (!again && (wanted.empty() || !wanted.contains(std::minmax(vertex(edge / 3, edge % 3),
-                                                                      vertex(edge / 3, edge % 3 + 1)))))
-            continue;
-        const int32_t m = add_vertex(vertex(edge / 3, edge % 3), vertex(edge / 3, edge % 3 + 1));
-        middle[edge / 3][edge % 3] = middle[back / 3][back % 3] = m;
+    for (size_t low = 0; low + 2 < begin.size(); ++low) {
+        const auto here = std::span(pairs).subspan(begin[low], begin[low + 1] - begin[low]);
+        std::ranges::sort(here, [&](const Pair& a, const Pair& b) {
+            if (a.high != b.high) return a.high < b.high;
+            return std::pair(-own(a.edge), a.edge) < std::pair(-own(b.edge), b.edge);
+        });
+        for (size_t i = 0; i < here.size(); ++i) {
+            const size_t edge = at(here[i].edge), back = back_of(edge);
+            const bool again = i > 0 && here[i].high == here[i - 1].high;
+            if (!again && (wanted.empty() || !wanted.contains(std::minmax(vertex(edge / 3, edge % 3),
+                                                                          vertex(edge / 3, edge % 3 + 1)))))
+                continue;
+            const int32_t m = add_vertex(vertex(edge / 3, edge % 3), vertex(edge / 3, edge % 3 + 1));
+            middle[edge / 3][edge % 3] = middle[back / 3][back % 3] = m;
+        }
     }
 
     for (size_t f = 0; f < surface.size(); ++f) {

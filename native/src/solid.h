@@ -52,7 +52,7 @@ private:
     struct Facet {
         int32_t tet, corner;  // the facet opposite this corner
     };
-    Facet next_around(std::span<const Tetrahedron> tetrahedra, const std::vector<bool>& inside, Facet facet,
+    Facet next_around(std::span<const Tetrahedron> tetrahedra, std::span<const uint8_t> inside, Facet facet,
                       int32_t edge) const;
 
     std::vector<std::array<int32_t, 4>> neighbours_;  // across the facet opposite each corner; -1: none

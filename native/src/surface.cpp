@@ -79,7 +79,7 @@ struct Finding {
         ++count;
         face = std::min(face, at);
     }
-    std::string where() const { return count == 1 ? "at face " + std::to_string(face) : "the first at face " + std::to_string(face); }
+    std::string where() const { return (count == 1 ? "at face " : "the first at face ") + std::to_string(face); }
 };
 
 void check_degenerate(const Surface& surface) {

@@ -49,16 +49,19 @@ private:
     size_t steps_ = 0, vertices_ = 0;
 };
 
-// A wrap has about 3 faces for each alpha^2 of area: alpha for so many of them.
+// A wrap has about 3 faces for each alpha^2 of area.
+double faces_for(double alpha, double area) { return 3 * area / (alpha * alpha); }
 double alpha_for(double faces, double area) { return std::sqrt(3 * area / faces); }
 
 // How closely to wrap. First with a few faces for each of the source's, within these bounds: a wrap of a large model
 // gets as many for its thin limbs as a body does, and that of a small one is quick. Gaps narrower than alpha are not
 // entered, so where too much of the source is hidden it is done again with half of alpha, down to the least. What then
-// is hidden still lies inside the solid.
+// is hidden still lies inside the solid. A few large triangles that cross hide something in the creases between them
+// however fine the wrap, so the more faces it is to have for each of theirs, the more must be hidden.
 constexpr double faces_for_each = 4, least_faces = 3000, usual_faces = 30000, most_faces = 40000;
 constexpr double least_alpha = 1.0 / 400;  // relative to the diagonal
-constexpr double much_hidden = 0.01;       // a share of the area
+constexpr double much_hidden = 0.01;       // a share of the area, for a wrap of
+constexpr double ample_for_each = 50;      // faces for each of the source's, or fewer; for one of more in proportion
 constexpr double worth_while = 1.5;        // a wrap this much finer than the last, or none
 constexpr double gain = 0.8;               // with more than this still hidden the coarser wrap is kept
 
@@ -105,21 +108,24 @@ Surface wrap(const Surface& source, bool open_surfaces, double coarseness, Progr
     const double diagonal = std::hypot(box.x_span(), box.y_span(), box.z_span());
     const double area = CGAL::Polygon_mesh_processing::area(mended.mesh);
     const bool sheet = mended.solids == 0;
-    const double wanted = faces_for_each * static_cast<double>(soup.triangles.size());
+    const auto count = static_cast<double>(soup.triangles.size());
     const double least = coarseness * std::max(diagonal * least_alpha, alpha_for(most_faces, area));
-    const double first = alpha_for(std::clamp(wanted, least_faces, usual_faces), area);
+    const double first = alpha_for(std::clamp(faces_for_each * count, least_faces, usual_faces), area);
     double alpha = sheet ? coarseness * diagonal * sheet_alpha : std::max(least, coarseness * first);
 
     Surface surface;
     size_t done = 0;
-    for (double hidden = HUGE_VAL;; alpha = std::max(least, alpha / 2)) {
+    for (double hidden = HUGE_VAL;;) {
         Surface closer = to_surface(source, wrap_soup(soup, alpha, sheet ? 0.1 : 1.0 / 30, done, progress));
         const double still = attach(source, closer, progress).hidden;
         if (still < gain * hidden) {
             hidden = still;
             surface = std::move(closer);
         }
-        if (sheet || hidden < much_hidden || alpha < worth_while * least) break;
+        const double finer = std::max(least, alpha / 2);
+        const double much = much_hidden * std::max(1.0, faces_for(finer, area) / (ample_for_each * count));
+        if (sheet || hidden < much || alpha < worth_while * least) break;
+        alpha = finer;
     }
     surface.rung = PW_RUNG_WRAPPED;
     Account account;

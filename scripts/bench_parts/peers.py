@@ -54,4 +54,5 @@ def medians(rows, name):
     if not done:
         return {"done": 0}
     return {"done": len(done), "wall": median(r["seconds"][0] for r in done),
-            "cpu": median(r["seconds"][1] for r in done), "peak": median(r["peak"] for r in done), "parts": median(r.get("parts", 0) for r in done)}
+            "cpu": median(r["seconds"][1] for r in done), "peak": median(r["peak"] for r in done),
+             "parts": median(r.get("parts", 0) for r in done)}

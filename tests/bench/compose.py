@@ -72,6 +72,15 @@ def measure(directory):
         bpy.context.collection.objects.link(obj)
         return obj
 
+    def weigh(obj, vertices):
+        """Three vertex groups that overlap along x, as of a rigged limb: most vertices are in two of them."""
+        along = (vertices[:, 0] - vertices[:, 0].min()) / np.ptp(vertices[:, 0])
+        for number in range(3):
+            group = obj.vertex_groups.new(name=f"bone {number}")
+            weights = np.clip(1.2 - 2.2 * abs(along - number / 2), 0, 1)
+            for vertex in np.flatnonzero(weights > 0).tolist():
+                group.add([vertex], float(weights[vertex]), "REPLACE")
+
     clear()
     bear = np.load(directory / "bear.npz")
     obj = add(bear["vertices"], bear["triangles"])
@@ -82,6 +91,8 @@ def measure(directory):
     slices = [(int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])) for node in nodes]
     slices.append(slices[0][::-1])  # and all but the small one
     copies = [seconds(lambda ends=ends: lambda: solids.part(obj, hierarchy, *ends)) for ends in slices]
+    weigh(obj, bear["vertices"])
+    weighed = [seconds(lambda ends=ends: lambda: solids.part(obj, hierarchy, *ends)) for ends in slices]
     clear()
 
     vertices, triangles = read("armadillo.off")
@@ -114,7 +125,8 @@ def measure(directory):
         return lambda: union.unite(target, [other])
 
     times = seconds(own), seconds(ours)
-    print(f"| {bpy.app.version_string} | {', '.join(f'{each:.3f}' for each in copies)} | ≤ 0.2 | {times[1]:.2f} | "
+    plain, grouped = (", ".join(f"{each:.3f}" for each in of) for of in (copies, weighed))
+    print(f"| {bpy.app.version_string} | {plain} | {grouped} | ≤ 0.2 | {times[1]:.2f} | "
           f"{times[0]:.2f} ({solver.title()}) | {times[1] / times[0]:.2f} | ≤ 1.2 |")
 
 

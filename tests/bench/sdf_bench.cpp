@@ -2,7 +2,8 @@
 //
 //   sdf_bench MODEL.off [LABELS]
 //
-// LABELS receives each face's segment, one a line. `parts` are the segments it finds with its defaults; `seconds` are [wall, cpu], the reading of the file not counted.
+// LABELS receives each face's segment, one a line. `parts` are the segments it finds with its defaults; `seconds` are
+// [wall, cpu], the reading of the file not counted.
 #include "measured.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

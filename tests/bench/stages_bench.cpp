@@ -89,8 +89,8 @@ int main(int argc, char** argv) {
         const size_t start = peak_memory();
         const Repetition first = run(model, quality);
         std::printf("{\"faces\": %zu, \"tets\": %zu, \"saved\": %zu, \"tetgen_calls\": %zu,\n "
-                    "\"peak\": {\"start\": %zu, \"tetgen\": %zu", model.triangle_count(), first.tets, first.bytes, first.tetgen.calls, start,
-                    first.tetgen.peak_memory);
+                    "\"peak\": {\"start\": %zu, \"tetgen\": %zu",
+                    model.triangle_count(), first.tets, first.bytes, first.tetgen.calls, start, first.tetgen.peak_memory);
         for (const Stage& stage : first.stages) std::printf(", \"%s\": %zu", stage.name, stage.peak);
         std::printf("},\n \"seconds\": [");
         print(first);

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -125,6 +126,31 @@ TEST(Ladder, PartsThatOnlyTouchAreSetApart) {
     }
 }
 
+// Two vertices at one place, as what is left has where a part was cut off: nothing else is moved, every face stays.
+TEST(Ladder, VerticesAtOnePlaceAreSetApart) {
+    const TriMesh mesh = together("corner to corner", cube(), moved(cube(), {1, 1, 1}));
+    ASSERT_EQ(expected_status(mesh), PW_ERROR_SELF_INTERSECTION);
+    const Solid solid = climbed(mesh);
+    expect_sound(solid, mesh, PW_RUNG_REPAIRED);
+    EXPECT_EQ(solid.surface.triangles.size(), mesh.triangles.size());
+    EXPECT_EQ(std::count(solid.surface.source_vertex.begin(), solid.surface.source_vertex.end(), -1), 2);
+    EXPECT_NEAR(used_volume(solid), 2 * std::fabs(enclosed_volume(cube())), 0.01);
+}
+
+// Noise makes neighbouring triangles of a fine mesh pass through each other.
+TEST(Ladder, NoiseIsSmoothed) {
+    const TriMesh clean = without_faces(torus(90, 40, 2, 0.5));
+    const TriMesh mesh = named(perturbed(clean, 0.06, 7), "noisy torus");
+    ASSERT_EQ(expected_status(mesh), PW_ERROR_SELF_INTERSECTION);
+    const Solid solid = climbed(mesh);
+    expect_sound(solid, mesh, PW_RUNG_REPAIRED);
+    ASSERT_EQ(solid.surface.triangles.size(), mesh.triangles.size());
+    for (const Piece& piece : solid.surface.pieces) EXPECT_GT(piece.area, 0);
+    EXPECT_GT(solid.surface.deviation, 0);
+    EXPECT_LT(solid.surface.deviation, 0.06 * std::sqrt(3.0) / 5);
+    EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(clean)), 0.02 * std::fabs(enclosed_volume(clean)));
+}
+
 TEST(Ladder, AWrapHoldsAllOfTheSource) {
     std::vector<TriMesh> meshes{cube()};
     if (!light()) meshes.push_back(together("apart", cube(), moved(cube(), {3, 0, 0})));
@@ -155,6 +181,32 @@ TEST(Ladder, AWrapThatHidesMuchIsDoneFiner) {
     const Solid solid = climbed(mesh, PW_RUNG_WRAPPED);
     EXPECT_LT(solid.surface.deviation, 0.02);
     EXPECT_LT(used_volume(solid), 1.1 * enclosed_volume(mesh));
+}
+
+// Large triangles that cross hide some of their area in creases, however fine a wrap is; the fuzzer found these.
+TEST(Ladder, AFewTrianglesThatCrossGetASmallWrap) {
+    TriMesh mesh;
+    mesh.name = "crossing";
+    mesh.vertices = {{-120, -120, 119}, {119, 119, 119}, {119, 119, -120},
+                     {-112, -120, -120}, {119, -120, -120}, {-120, 119, -120}};
+    mesh.triangles = {{0, 1, 2}, {3, 2, 1}, {0, 3, 4}, {0, 4, 2}, {3, 5, 4}, {4, 5, 2},
+                      {3, 0, 5}, {2, 5, 3}, {2, 3, 0}, {1, 0, 3}, {3, 4, 2}, {0, 4, 1}};
+    mesh = without_faces(std::move(mesh));
+    const Solid solid = climbed(mesh);
+    expect_sound(solid, mesh, PW_RUNG_WRAPPED);
+    EXPECT_LT(solid.surface.triangles.size(), 4000U);
+}
+
+// Of few triangles, too, a wrap keeps what is thin, and what is between.
+TEST(Ladder, AWrapKeepsThinLimbs) {
+    Cells cells = block({0, 0, 0}, {5, 2, 1});
+    for (const int x : {0, 2, 4}) cells = cells + block({x, 0, 1}, {x + 1, 1, 2});
+    const TriMesh fork = without_faces(surface_of("fork", cells, {1, 1, 40}));
+    ASSERT_LT(fork.triangles.size(), 100U);
+    const Solid solid = climbed(fork, PW_RUNG_WRAPPED);
+    expect_sound(solid, fork, PW_RUNG_WRAPPED);
+    EXPECT_LT(solid.surface.deviation, 0.02);
+    EXPECT_LT(used_volume(solid), 1.3 * enclosed_volume(fork));
 }
 
 TEST(Ladder, HolesAreFilledBeforeAWrap) {

@@ -57,6 +57,21 @@ TEST(PairOfThreads, ASleepingSecondIsWoken) {
     EXPECT_EQ(done.load(), 2);
 }
 
+TEST(PairOfThreads, ASecondThatKeepsTheCallerWaitingDoesNotPay) {
+    PairOfThreads threads;
+    EXPECT_TRUE(threads.pays());
+    std::atomic<bool> begun{false};
+    threads.share(2, [&](size_t, size_t thread) {
+        if (thread == 0) {
+            while (!begun.load()) std::this_thread::yield();
+        } else {
+            begun = true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(200));  // as if another program had its core
+        }
+    });
+    EXPECT_FALSE(threads.pays());
+}
+
 TEST(PairOfThreads, ErrorsComeHome) {
     PairOfThreads threads;
     for (size_t bad = 0; bad < 8; ++bad) {
