@@ -119,7 +119,8 @@ def addon():
         shutil.rmtree(home, ignore_errors=True)
         home.mkdir(parents=True)
         clean = {"PATH": os.environ["PATH"], "HOME": str(home), "LANG": "C.UTF-8"}
-        clean |= {name: value for name, value in os.environ.items() if name in {"PARTWHEEL_UNITES", "PARTWHEEL_EVENTS"}}
+        clean |= {name: value for name, value in os.environ.items()
+                  if name in {"PARTWHEEL_UNITES", "PARTWHEEL_UNITES_SEED", "PARTWHEEL_EVENTS"}}
         return own_runner(f"addon-{name}", [*interpreters[name], package], clean)
 
     result = Result()

@@ -135,15 +135,16 @@ def compatible(obj, node, other):
     return [(offer.node, offer.score) for offer in _place(obj, node, other).offers([other])]
 
 
-def swap(obj, node, other, other_node=None, scale=1.0, angle=0.0, depth=0.0, mirror=False, blend=0.0):
+def swap(obj, node, other, other_node=None, scale=1.0, angle=0.0, depth=0.0, mirror=False, blend=0.0,
+         snap=False):
     """Exchanges the node for a part of another object: what is left without it is united with a copy of the other's
     part, brought there border to border, of its size, and turned as it fits best. other_node: None for the most
     compatible one. scale, angle (about the border's normal, radians), depth (radii of the border) change that; mirror
-    takes its mirror image; blend is that of unite(). The other object stays as it is. The other's node that stood in,
-    or None if it was the object itself.
+    takes its mirror image; blend is that of unite(); snap moves both parts' borders to the creases nearby. The other
+    object stays as it is. The other's node that stood in, or None if it was the object itself.
 
     swapping.NotSwapped, solids.NotClosed, union.NotUnited, before anything has changed. Outside Edit Mode only."""
-    place = _place(obj, node, other)
+    place = _place(obj, node, other, snap)
     if obj.mode == "EDIT":
         raise ValueError(f"{obj.name} is in Edit Mode. Leave it before a part is exchanged by a script.")
     offer = place.offers([other])[0] if other_node is None else place.offer(other, other_node)
@@ -151,12 +152,12 @@ def swap(obj, node, other, other_node=None, scale=1.0, angle=0.0, depth=0.0, mir
     return offer.node
 
 
-def _place(obj, node, other):
+def _place(obj, node, other, snap=False):
     built = hierarchy(obj)
     if other.type == "MESH" and placement.caps(other.data) is None:
         hierarchy(other)
     _check(other)
-    return swapping.Place(obj, built, node)
+    return swapping.Place(obj, built, node, snap)
 
 
 def _bounds(built, parts, height):

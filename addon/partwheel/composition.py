@@ -13,13 +13,22 @@ def copied(obj, hierarchy, node, options=solids.Options(), snap=False, collectio
     """A new object with the part as a closed mesh, in the place of the part; beside the object, or in a collection. snap:
     with its border in creases, as far as the tetrahedra about it let it be there."""
     update_matrices()
-    mesh = solids.part(obj, hierarchy, *_slice(hierarchy, node), options, _faces(obj, hierarchy, node, snap))
+    first, last = _slice(hierarchy, node)
+    mesh = solids.part(obj, hierarchy, first, last, options, moved_faces(obj, hierarchy, node, snap))
     return _beside(obj, mesh, f"{obj.name} part", collection)
 
 
 def removed(obj, hierarchy, node, options=solids.Options(), snap=False):
     """Takes the part, as copied() makes it, out of the object's mesh and closes the hole."""
-    solids.remove(obj, hierarchy, *_slice(hierarchy, node), options, _faces(obj, hierarchy, node, snap))
+    first, last = _slice(hierarchy, node)
+    solids.remove(obj, hierarchy, first, last, options, moved_faces(obj, hierarchy, node, snap))
+
+
+def rest(obj, hierarchy, node, snap=False):
+    """A new mesh: the object's without the part, as removed() leaves it, but for what has no face."""
+    solids.check_resolution(obj)
+    first, last = _slice(hierarchy, node)
+    return solids.part(obj, hierarchy, last, first, faces=moved_faces(obj, hierarchy, node, snap))
 
 
 def split(obj, hierarchy, bounds, options=solids.Options(), explode=0.0):
@@ -51,7 +60,8 @@ def home(obj):
     return obj.users_collection[0] if obj.users_collection else bpy.context.scene.collection
 
 
-def _faces(obj, hierarchy, node, snap):
+def moved_faces(obj, hierarchy, node, snap):
+    """(F,) bool: the faces of a node with its border in creases; None for its own: if not snap, or if it has none."""
     return borders.inside(obj, hierarchy, node) if snap and len(hierarchy.faces(node)) else None
 
 

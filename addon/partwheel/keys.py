@@ -18,7 +18,8 @@ class Key(NamedTuple):
     names: str = ""
 
 
-LARGER = Key("LARGER", frozenset({"WHEELUPMOUSE", "PAGE_UP", "NUMPAD_PLUS", "UP_ARROW"}), "Larger", names="Wheel Up, ↑")
+LARGER = Key("LARGER", frozenset({"WHEELUPMOUSE", "PAGE_UP", "NUMPAD_PLUS", "UP_ARROW"}), "Larger",
+             names="Wheel Up, ↑")
 SMALLER = Key("SMALLER", frozenset({"WHEELDOWNMOUSE", "PAGE_DOWN", "NUMPAD_MINUS", "DOWN_ARROW"}), "Smaller",
               names="Wheel Down, ↓")
 CONFIRM = Key("CONFIRM", frozenset({"RET", "NUMPAD_ENTER"}), "Confirm", ("EVENT_RETURN",))
@@ -55,10 +56,11 @@ RECOMPUTE = Key("RECOMPUTE", frozenset("P"), "Confirm, Recompute Parts", ("EVENT
 AXIS = Key("AXIS", frozenset("XYZ"), "Axis", ("EVENT_X", "EVENT_Y", "EVENT_Z"))
 PLANE = Key("PLANE", frozenset(), "Plane", ("EVENT_SHIFT", "EVENT_X", "EVENT_Y", "EVENT_Z"))
 TYPE = Key("TYPE", frozenset(DIGITS), "Type", names="0-9 . -")
-SNAP = Key("SNAP", frozenset({"LEFT_CTRL", "RIGHT_CTRL"}), "Snap", ("EVENT_CTRL",))
+STEPS = Key("STEPS", frozenset({"LEFT_CTRL", "RIGHT_CTRL"}), "Snap", ("EVENT_CTRL",))
+FINE = Key("FINE", frozenset({"LEFT_SHIFT", "RIGHT_SHIFT"}), "Precise", ("EVENT_SHIFT",))
 DONE = Key("DONE", CLICK.events | CONFIRM.events, "Done", ("MOUSE_LMB", "EVENT_RETURN"))
 DEFORMING = (DRAG, ONE_MORE, TRANSFORM, HANDLE_SIZE, CONFIRM, RECOMPUTE, NAVIGATE, CANCEL)
-MOVING = (AXIS, PLANE, TYPE, SNAP, TRANSFORM, DONE, CANCEL)
+MOVING = (AXIS, PLANE, TYPE, STEPS, FINE, TRANSFORM, DONE, CANCEL)
 
 # While a part is placed. SIGNS: of events that come in pairs, which makes more and which less.
 SIZE = Key("SIZE", frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "NUMPAD_PLUS", "NUMPAD_MINUS"}), "Size", names="Wheel")

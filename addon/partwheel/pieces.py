@@ -22,6 +22,7 @@ _TYPES = {
     "FLOAT4X4": ("value", np.float32, 16, False),
 }
 _SHAPE = {"position", ".edge_verts", ".corner_vert", ".corner_edge", ".corner_normal"}
+_SELECTION = {".select_vert", ".select_edge", ".select_poly"}
 # What was no attribute but a property of the elements, in Blenders that had it so.
 _MARKS = {"vertices": [], "edges": [], "polygons": []}
 if bpy.app.version < (5, 0, 0):
@@ -48,30 +49,45 @@ if bpy.app.version >= (4, 0, 0):  # the others are attributes
     _OWN_LAYERS = {"skin_vertices": _OWN_LAYERS["skin_vertices"]}
 
 
+_NONE = np.empty(0, np.int64)
+
+
+class Origins(NamedTuple):
+    """Where n elements come from: first (n,) the source's that each is, -1 for new ones; but those at (k,) are midway
+    between that one and other (k,)."""
+
+    first: np.ndarray
+    at: np.ndarray = _NONE
+    other: np.ndarray = _NONE
+
+
 class Plan(NamedTuple):
     """A mesh of n vertices, L corners and P polygons, and where each comes from:
 
     places (n,3)
-    vertices (n,2), loops (L,2)     the source's two in whose middle each is; mostly the same twice; -1: new
+    vertices, loops: Origins        of the vertices and of the corners
     corners (L,), begin (P,)        the vertex of each corner, and the first corner of each polygon
     polygons (P,)                   the source's; -1: new, and then flat
-    wires (w,), wire_ends (w,2)     the source's edges that have no face, and their vertices
+    whole                           so many polygons at the beginning are the source's own, corner for corner
+    wires (w,)                      the source's edges that have no face
+    number (V,)                     the vertex that each of the source's is, where those polygons or edges have it
     alias (V,)                      the source's vertex that each of the source's is taken for; None: itself
     """
 
     places: np.ndarray
-    vertices: np.ndarray
-    loops: np.ndarray
+    vertices: Origins
+    loops: Origins
     corners: np.ndarray
     begin: np.ndarray
     polygons: np.ndarray
+    whole: int
     wires: np.ndarray
-    wire_ends: np.ndarray
+    number: np.ndarray
     alias: np.ndarray = None
 
 
-def assembled(mesh, plan, name):
-    """A new mesh: materials, settings and properties are the source's."""
+def assembled(mesh, plan, name, selection):
+    """A new mesh: materials, settings and properties are the source's; and what is selected, if selection."""
     made = mesh.copy()
     made.name = name
     if made.shape_keys:
@@ -79,8 +95,9 @@ def assembled(mesh, plan, name):
     made.clear_geometry()
     _make_own_layers(mesh, made)
     of_edge, ends, edge_from = _edges(mesh, plan)
-    for elements, count in ((made.vertices, len(plan.places)), (made.edges, len(ends)), (made.loops, len(plan.corners)),
-                            (made.polygons, len(plan.begin))):
+    made.vertices.add(len(plan.places))
+    _copy_groups(mesh, made, plan.vertices)
+    for elements, count in ((made.edges, len(ends)), (made.loops, len(plan.corners)), (made.polygons, len(plan.begin))):
         elements.add(count)
     write(made.vertices, "co", plan.places)
     write(made.edges, "vertices", ends)
@@ -89,13 +106,11 @@ def assembled(mesh, plan, name):
     write(made.polygons, "loop_start", plan.begin.astype(np.int32))
     if bpy.app.version < (4, 0, 0):
         write(made.polygons, "loop_total", np.diff(plan.begin, append=len(plan.corners)).astype(np.int32))
-    twice = {"POINT": plan.vertices, "CORNER": plan.loops, "EDGE": np.repeat(edge_from[:, None], 2, axis=1),
-             "FACE": np.repeat(plan.polygons[:, None], 2, axis=1)}
-    _copy_attributes(mesh, made, twice)
-    first = {"vertices": plan.vertices[:, 0], "edges": edge_from, "polygons": plan.polygons}
+    origins = {"POINT": plan.vertices, "CORNER": plan.loops, "EDGE": Origins(edge_from), "FACE": Origins(plan.polygons)}
+    _copy_attributes(mesh, made, origins, _SHAPE if selection else _SHAPE | _SELECTION)
+    first = {"vertices": plan.vertices.first, "edges": edge_from, "polygons": plan.polygons}
     _copy_marks(mesh, made, first)
     _copy_own_layers(mesh, made, first)
-    _copy_groups(mesh, made, plan.vertices)
     _copy_keys(mesh, made, plan)
     made.update()
     return made
@@ -103,50 +118,54 @@ def assembled(mesh, plan, name):
 
 def _edges(mesh, plan):
     """((L,) the edge from each corner to the next, (m,2) the edges' vertices, (m,) the source edge of each, or -1)"""
-    following = np.arange(1, len(plan.corners) + 1)
-    following[np.append(plan.begin[1:], len(plan.corners)) - 1] = plan.begin
-    low, high = np.minimum(plan.corners, plan.corners[following]), np.maximum(plan.corners, plan.corners[following])
-    # A corner's edge is the source's if the next corner is the source's next one, or the one before: then it is the
+    own, count = plan.loops.first, len(plan.corners)
+    numbers, all_ends = _edge_numbers(mesh, plan.alias), mesh_arrays.edge_vertices(mesh)
+    # Of whole polygons they are the source's.
+    rest = int(plan.begin[plan.whole]) if plan.whole < len(plan.begin) else count
+    of_edge = np.empty(count, np.int32)
+    source = numbers[own[:rest]]
+    there = np.zeros(len(all_ends), bool)
+    there[source] = True
+    used = np.flatnonzero(there)
+    place = np.empty(len(all_ends), np.int32)
+    place[used] = np.arange(len(used))
+    of_edge[:rest] = place[source]
+    ends = all_ends[used] if plan.alias is None else plan.alias[all_ends[used]]
+    ends = plan.number[ends]
+
+    # Of the others it is the source's if the next corner is the source's next one, or the one before: then it is the
     # one before's.
+    following = np.arange(rest + 1, count + 1)
+    following[np.append(plan.begin[plan.whole + 1:], count)[:len(plan.begin) - plan.whole] - 1 - rest] = (
+        plan.begin[plan.whole:])
     begin, totals = mesh_arrays.polygon_sizes(mesh)
     after = np.arange(1, len(mesh.loops) + 1, dtype=np.int32)
     after[begin + totals - 1] = begin
-    own = plan.loops[:, 0]
-    plain = (own >= 0) & (own == plan.loops[:, 1]) & (plan.loops[following, 1] == plan.loops[following, 0])
-    back = plain & (after[own[following]] == own) & (after[own] != own[following])
-    plain &= back | (after[own] == own[following])
-    source = np.where(plain, _edge_numbers(mesh, plan.alias)[np.where(back, own[following], own)], -1)
+    single = own >= 0
+    single[plan.loops.at] = False
+    here, beyond = own[rest:], own[following]
+    plain = single[rest:] & single[following]
+    back = plain & (after[beyond] == here) & (after[here] != beyond)
+    plain &= back | (after[here] == beyond)
+    source = np.where(plain, numbers[np.where(back, beyond, here)], -1)
 
-    # Mostly that is one edge here, too: no need to sort.
-    example = np.full(len(mesh.edges) + 1, -1)  # the last: where there is no source
-    example[source] = np.arange(len(source))
-    example[-1] = -1
-    of = example[source]
-    alike = plain & (low[of] == low) & (high[of] == high)
-    used = np.flatnonzero(example >= 0)
-    number = np.zeros(len(example), np.int32)
-    number[used] = np.arange(len(used))
-    of_edge = number[source]
-    ends = np.stack([low[example[used]], high[example[used]]], axis=1)
-
-    # The others, among which an edge may be one that is already there.
-    others = np.flatnonzero(~alike)
+    # Among them an edge may be one that is already there.
+    low, high = (each(plan.corners[rest:], plan.corners[following]) for each in (np.minimum, np.maximum))
     touched = np.zeros(len(plan.places), bool)
-    touched[low[others]] = touched[high[others]] = True
-    near = np.flatnonzero(touched[ends].all(axis=1))
-    key = np.concatenate([ends[near], np.stack([low[others], high[others]], axis=1)]).astype(np.int64)
+    touched[low] = touched[high] = True
+    near = np.flatnonzero(touched[ends[:, 0]] & touched[ends[:, 1]])
+    key = np.concatenate([np.sort(ends[near], axis=1), np.stack([low, high], axis=1)]).astype(np.int64)
     unique, which = np.unique(key[:, 0] * len(plan.places) + key[:, 1], return_inverse=True)
     which = which.ravel()
     edge = np.full(len(unique), -1)
     edge[which[:len(near)]] = near
     new = np.flatnonzero(edge < 0)
     edge[new] = len(ends) + np.arange(len(new))
-    of_edge[others] = edge[which[len(near):]]
-    ends = np.concatenate([ends, np.stack(np.divmod(unique[new], len(plan.places)), axis=1), plan.wire_ends])
-    edge_from = np.full(len(ends), -1)
-    edge_from[of_edge] = source
-    edge_from[of_edge[plain]] = source[plain]
-    edge_from[len(ends) - len(plan.wires):] = plan.wires
+    of_edge[rest:] = edge[which[len(near):]]
+    edge_from = np.concatenate([used, np.full(len(new), -1), plan.wires])
+    edge_from[of_edge[rest:][plain]] = source[plain]
+    ends = np.concatenate([ends, np.stack(np.divmod(unique[new], len(plan.places)), axis=1),
+                           plan.number[all_ends[plan.wires]]])
     return of_edge, ends.astype(np.int32), edge_from
 
 
@@ -161,34 +180,33 @@ def _edge_numbers(mesh, alias):
 
 
 def _picked(values, origins, mean):
-    """values (n,) or (n, width) at origins (m,2): their mean, or the first's; 0 where there is none."""
-    at = origins[:, 0]
-    taken = values[np.maximum(at, 0)]
-    taken[at < 0] = 0
-    between = (origins[:, 1] != at) & (at >= 0)
-    if mean and between.any():
-        taken[between] = (taken[between] + values[origins[between, 1]]) / 2
+    """values (n,) or (n, width) at Origins: their mean, or the first's; 0 where there is none."""
+    taken = values[origins.first]
+    taken[origins.first < 0] = 0
+    if mean and len(origins.at):
+        taken[origins.at] = (taken[origins.at] + values[origins.other]) / 2
     return taken
 
 
-def _copy_attributes(mesh, made, origins):
-    layers = [(each.name, each.data_type, each.domain) for each in mesh.attributes if each.name not in _SHAPE]
+def _copy_attributes(mesh, made, origins, but):
+    layers = [(each.name, each.data_type, each.domain) for each in mesh.attributes if each.name not in but]
     for name, kind, domain in layers:
         of = origins[domain]
         old, new = mesh.attributes[name], made.attributes.get(name) or made.attributes.new(name, kind, domain)
         if (new.data_type, new.domain) != (kind, domain):
             continue  # one that Blender itself keeps otherwise: from_pydata() of 5.0 spoils .select_edge
         if kind == "STRING":
-            for item, at in zip(new.data, of[:, 0].tolist()):
+            for item, at in zip(new.data, of.first.tolist()):
                 item.value = old.data[at].value if at >= 0 else ""
             continue
         field, dtype, width, mean = _TYPES[kind]
         taken = _picked(read(old.data, field, dtype, width), of, mean)
         if name == "sharp_face":
-            taken[of[:, 0] < 0] = True
+            taken[of.first < 0] = True
         new.data.foreach_set(field, taken.ravel())
-    if bpy.app.version >= (4, 0, 0) and "sharp_face" not in mesh.attributes and (origins["FACE"] < 0).any():
-        made.attributes.new("sharp_face", "BOOLEAN", "FACE").data.foreach_set("value", origins["FACE"][:, 0] < 0)
+    caps = origins["FACE"].first < 0
+    if bpy.app.version >= (4, 0, 0) and "sharp_face" not in mesh.attributes and caps.any():
+        made.attributes.new("sharp_face", "BOOLEAN", "FACE").data.foreach_set("value", caps)
     for uv in mesh.uv_layers:
         if uv.name not in made.uv_layers:
             made.uv_layers.new(name=uv.name, do_init=False)
@@ -242,29 +260,58 @@ def _held(mesh):
 
 
 def _copy_groups(mesh, made, origins):
+    """made has its vertices, and nothing else yet: so a bmesh, which copies a vertex's weights as one, costs little."""
+    if not _name_groups(mesh, made):
+        return
+    bare = _vertices_alone(mesh)
+    olds, news = bmesh.new(), bmesh.new()
+    try:
+        olds.from_mesh(bare)
+        layer = olds.verts.layers.deform.active
+        if layer is None:  # nothing is in a group
+            return
+        news.from_mesh(made)
+        own = news.verts.layers.deform.verify()
+        sources, verts = list(olds.verts), list(news.verts)
+        for vert, first in zip(verts, origins.first.tolist()):
+            if first >= 0:
+                vert[own] = sources[first][layer]
+        for at, other in zip(origins.at.tolist(), origins.other.tolist()):
+            weights, beyond = verts[at][own], sources[other][layer]
+            for group in {*weights.keys(), *beyond.keys()}:
+                weights[group] = (weights.get(group, 0) + beyond.get(group, 0)) / 2
+        news.to_mesh(made)
+    finally:
+        olds.free()
+        news.free()
+        bpy.data.meshes.remove(bare)
+
+
+def _name_groups(mesh, made):
+    """Gives made groups of the same names; whether there are any."""
     old, new = _held(mesh), _held(made)
     try:
-        names = [group.name for group in old.vertex_groups]
-        if not names:
-            return
         new.vertex_groups.clear()
-        groups = [new.vertex_groups.new(name=name) for name in names]
-        alike = {}  # (group, weight) -> vertices: one call for all of them
-        for vertex, (one, other) in enumerate(origins.tolist()):
-            if one < 0:
-                continue
-            weights = {each.group: each.weight for each in mesh.vertices[one].groups}
-            if other != one:
-                beyond = {each.group: each.weight for each in mesh.vertices[other].groups}
-                weights = {group: (weights.get(group, 0) + beyond.get(group, 0)) / 2 for group in {*weights, *beyond}}
-            for group, weight in weights.items():
-                alike.setdefault((group, weight), []).append(vertex)
-        for (group, weight), vertices in alike.items():
-            if group < len(groups):
-                groups[group].add(vertices, weight, "REPLACE")
+        for group in old.vertex_groups:
+            new.vertex_groups.new(name=group.name).lock_weight = group.lock_weight
+        return len(old.vertex_groups) > 0
     finally:
         bpy.data.objects.remove(old)
         bpy.data.objects.remove(new)
+
+
+def _vertices_alone(mesh):
+    """A new mesh: the vertices with their layers, and nothing else. Nothing but Blender's own validation takes faces
+    away quickly: those, and edges, whose corners are all one vertex."""
+    bare = mesh.copy()
+    if bare.shape_keys:
+        _clear_keys(bare)
+    write(bare.loops, "vertex_index", np.zeros(len(bare.loops), np.int32))
+    write(bare.edges, "vertices", np.zeros(2 * len(bare.edges), np.int32))
+    if bpy.app.version < (4, 0, 0):
+        write(bare.polygons, "loop_total", np.zeros(len(bare.polygons), np.int32))
+    bare.validate()
+    return bare
 
 
 def _clear_keys(mesh):
@@ -281,7 +328,7 @@ def _copy_keys(mesh, made, plan):
         for old in mesh.shape_keys.key_blocks:
             new = holder.shape_key_add(name=old.name, from_mix=False)
             places = plan.places.copy()
-            own = plan.vertices[:, 0] >= 0
+            own = plan.vertices.first >= 0
             old_places = read(old.data, "co", np.float32, 3)
             places[own] = _picked(old_places, plan.vertices, True)[own]
             new.data.foreach_set("co", places.ravel())

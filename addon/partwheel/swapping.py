@@ -40,17 +40,19 @@ class Adjustment(NamedTuple):
 
 
 class Place:
-    """A part of an object that is to be exchanged."""
+    """A part of an object that is to be exchanged. snap: its border, and that of the part that stands in, are moved to
+    the creases nearby."""
 
-    def __init__(self, obj, hierarchy, node):
+    def __init__(self, obj, hierarchy, node, snap=False):
         """Raises NotSwapped, or PartwheelError."""
         if node == len(hierarchy.parent) - 1:
             raise NotSwapped("The part is the whole model: nothing would be left to put another part on. Pick a "
                              "smaller one.")
         composition.update_matrices()
-        self.name, self.hierarchy, self.node = obj.name, hierarchy, node
+        self.name, self.hierarchy, self.node, self.snap = obj.name, hierarchy, node, snap
         self._fits = {}  # (name, node, mirrored) -> matrix, of what was offered
-        self.shape = dict(_shapes(obj, hierarchy, [node])).get(node)
+        self._cut = {}  # (name, node) -> Shape, of what was put here
+        self.shape = dict(_shapes(obj, hierarchy, [node], snap)).get(node)
         if self.shape is None or not self.shape.usable:
             raise NotSwapped("The part has no border with the rest of the model, so there is nothing to fit another "
                              "part to. Pick one that was grown from the model, not a piece of its own.")
@@ -72,7 +74,8 @@ class Place:
             shapes = dict(parts)
             for match in compatible.ranked(self.shape, parts, lambda one, two: _same(hierarchy, one, two)):
                 found.append(Offer(other.name, match.key, match.score, shapes[match.key]))
-                self._fits[other.name, match.key, False] = match.matrix
+                if not self.snap:
+                    self._fits[other.name, match.key, False] = match.matrix
         if not having:
             raise NotSwapped("No other object has parts. Build the parts of the one that the new part comes from, and "
                              "select it too; or paste a part that was copied as a solid.")
@@ -92,14 +95,13 @@ class Place:
         if shape is None or not shape.usable:
             raise NotSwapped(f"That part of {other.name} has no border that could be fitted to this one's.")
         match = compatible.ranked(self.shape, [(node, shape)])[0]
-        self._fits[other.name, node, False] = match.matrix
+        if not self.snap:
+            self._fits[other.name, node, False] = match.matrix
         return Offer(other.name, node, match.score, shape)
 
     def rest(self):
         """A new mesh: the object's without the part, closed. Raises NotSwapped or PartwheelError."""
-        obj, hierarchy, node = bpy.data.objects[self.name], self.hierarchy, self.node
-        solids.check_resolution(obj)
-        return solids.part(obj, hierarchy, int(hierarchy.tet_last[node]), int(hierarchy.tet_first[node]))
+        return composition.rest(bpy.data.objects[self.name], self.hierarchy, self.node, self.snap)
 
     def stand_in(self, offer, adjustment=Adjustment()):
         """A new object beside this part's: the one offered, in this part's place."""
@@ -109,23 +111,33 @@ class Place:
             new = bpy.data.objects.new(source.name, source.data.copy())
             composition.home(obj).objects.link(new)
         else:
-            hierarchy = session.hierarchy(source)
-            if not hierarchy or offer.node >= len(hierarchy.parent):
-                raise NotSwapped(f"{source.name} was changed and has other parts now. Start again.")
-            new = composition.copied(source, hierarchy, offer.node, collection=composition.home(obj))
+            new = composition.copied(source, _hierarchy_of(offer), offer.node, snap=self.snap,
+                                     collection=composition.home(obj))
         self.put(new, offer, adjustment)
         return new
 
     def put(self, new, offer, adjustment):
         """Moves an object that stand_in() made."""
         own, known = self.shape.main, (offer.name, offer.node, adjustment.mirror)
+        shape = self._shape_of(offer)
         if known not in self._fits:
-            self._fits[known] = compatible.fit(self.shape, offer.shape, adjustment.mirror).matrix
+            self._fits[known] = compatible.fit(self.shape, shape, adjustment.mirror).matrix
         border = placement.Border(Vector(own.middle), Vector(own.normal), own.radius)
-        depth = adjustment.depth + compatible.gap(self.shape, offer.shape, self._fits[known])
+        depth = adjustment.depth + compatible.gap(self.shape, shape, self._fits[known])
         start = Matrix(self._fits[known]) @ bpy.data.objects[offer.name].matrix_world
         new.matrix_world = placement.matrix(start, border, border.middle, -border.normal, adjustment.scale,
                                             adjustment.angle, depth)
+
+    def _shape_of(self, offer):
+        """As it is cut out. Parts are ranked by their own borders: to move those of all would take long."""
+        if not self.snap or offer.node is None:
+            return offer.shape
+        known = offer.name, offer.node
+        if known not in self._cut:
+            moved = dict(_shapes(bpy.data.objects[offer.name], _hierarchy_of(offer), [offer.node], snap=True))
+            shape = moved.get(offer.node)
+            self._cut[known] = shape if shape and shape.usable else offer.shape
+        return self._cut[known]
 
     def swap(self, offer, adjustment=Adjustment(), blend=0.0):
         """Takes the part out of the object's mesh and unites what is left with the one offered; blend: as for
@@ -139,6 +151,14 @@ class Place:
             bpy.data.meshes.remove(rest)
             if new:
                 dispose(new)
+
+
+def _hierarchy_of(offer):
+    """Of the object that the offer's node is of. Raises NotSwapped."""
+    hierarchy = session.hierarchy(bpy.data.objects[offer.name])
+    if not hierarchy or offer.node >= len(hierarchy.parent):
+        raise NotSwapped(f"{offer.name} was changed and has other parts now. Start again.")
+    return hierarchy
 
 
 def dispose(obj):
@@ -169,14 +189,16 @@ def _parts(obj):
     return hierarchy, parts + (_shapes(obj, hierarchy, compatible.parts_offered(hierarchy)) if hierarchy else [])
 
 
-def _shapes(obj, hierarchy, nodes):
+def _shapes(obj, hierarchy, nodes, snap=False):
     """[(node, Shape), ...] in the world, of the mesh as it is now. A node of which nothing can be cut out is left out.
-    """
+    snap: with their borders in creases."""
     positions = np.array(hierarchy.vertices)
     known = hierarchy.source >= 0
     positions[known] = read(mesh_arrays.up_to_date(obj).vertices, "co", np.float32, 3)[hierarchy.source[known]]
     matrix = np.array(obj.matrix_world)
-    shapes = [(node, compatible.shape(hierarchy, node, positions, matrix, _size(positions, matrix))) for node in nodes]
+    size = _size(positions, matrix)
+    shapes = [(node, compatible.shape(hierarchy, node, positions, matrix, size,
+                                      composition.moved_faces(obj, hierarchy, node, snap))) for node in nodes]
     return [(node, shape) for node, shape in shapes if shape]
 
 

@@ -198,6 +198,36 @@ class Copy(SolidTest):
                         place = tuple(obj.data.vertices[obj.data.loops[loop].vertex_index].co)
                         self.assertEqual(uv[place], tuple(obj.data.uv_layers["uv"].data[loop].uv))
 
+    def test_of_a_wrapped_source_it_is_nearly_what_its_tetrahedra_fill(self):
+        """Of a scan with a dozen holes: the part's own polygons, and caps that follow the facets inside the wrap."""
+        vertices, polygons = read_off("hand")
+        places = numpy.array(vertices)
+        centers = places[numpy.array(polygons)].mean(axis=1)
+        rng = numpy.random.default_rng(3)
+        holes = centers[rng.integers(len(centers), size=12)]
+        apart = numpy.linalg.norm(centers[:, None] - holes, axis=2).min(axis=1)
+        kept = [polygon for polygon, far in zip(polygons, apart > 0.03 * numpy.ptp(places, axis=0).max()) if far]
+        obj = self.add(vertices, kept)
+        obj.shape_key_add(name="Basis")
+        obj.shape_key_add(name="Key")
+        hierarchy = part("core").Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=4)
+        share = hierarchy.area / hierarchy.area[-1]
+        filled = []
+        for node in rng.choice(numpy.flatnonzero((share > 0.01) & (share < 0.8)), 12, replace=False).tolist():
+            ends = int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])
+            copy = part("solids").part(obj, hierarchy, *ends)
+            self.assertSolid(copy)
+            self.assertEqual((~caps(copy)).sum(), len(hierarchy.faces(node)))
+            sides = numpy.diff(hierarchy.vertices[hierarchy.tetrahedra[slice(*ends)]], axis=1)
+            filled.append(volume(copy) / (numpy.abs(numpy.linalg.det(sides)).sum() / 6))
+            for key in copy.shape_keys.key_blocks:
+                for point, vertex in zip(key.data, copy.vertices):
+                    self.assertEqual(tuple(point.co), tuple(vertex.co))
+        print("volume by that of the tetrahedra:", numpy.round(sorted(filled), 3))
+        self.assertLess(abs(numpy.median(filled) - 1), 0.05)
+        self.assertGreater(numpy.mean(numpy.abs(numpy.array(filled) - 1) < 0.1), 0.75)
+        self.assertGreater(min(filled), 0)
+
     def test_of_an_inside_out_source_it_is_outside_out(self):
         vertices, polygons = read_off("hand")
         obj = self.add(vertices, [polygon[::-1] for polygon in polygons])

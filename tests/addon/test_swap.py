@@ -103,6 +103,35 @@ class Swap(SolidTest):
             self.assertAlmostEqual(ours, union, delta=1e-5 * union)
             self.assertGreater(common, 0)
 
+    def test_borders_are_in_creases(self):
+        """Rest and part are those that removing and copying with snapped borders give, and the union is theirs; the
+        border that the part was fitted by is the one that it was cut out with."""
+        swapping, api = part("swapping"), part("api")
+        model, hierarchy, giver, others = self.both("hand", "homer")
+        node = next(node for node in self.nodes(hierarchy, 40)[::-1]
+                    if set(api.faces(model, node).tolist()) != set(api.faces(model, node, snap=True).tolist()))
+        places = {snap: swapping.Place(model, hierarchy, node, snap) for snap in (False, True)}
+        offer = places[True].offers([giver])[0]
+        pairs = []
+        for snap, place in places.items():
+            rest = place.rest()
+            expected = self.link(bpy.data.objects.new("expected", model.data.copy()))
+            self.run_on(expected, bpy.ops.mesh.partwheel_remove, node=node, snap=snap)
+            self.assertEqual(arrays(rest)[1], arrays(expected.data)[1])
+            new = place.stand_in(offer)
+            copy = api.copy_part(giver, offer.node, snap=snap)
+            self.assertEqual(arrays(new.data)[1], arrays(copy.data)[1])
+            bpy.context.view_layer.update()
+            pairs.append((triangles(bpy.data.objects.new("rest", rest)), triangles(new)))
+        again = self.link(bpy.data.objects.new("again", model.data.copy()))
+        bpy.context.view_layer.objects.active = again
+        done = bpy.ops.mesh.partwheel_swap(node=node, other=giver.name, other_node=offer.node, build=False)
+        self.assertEqual(done, {"FINISHED"})  # snapped, without being told
+        self.assertSolid(again.data)
+        united = reference(pairs)[:, 3]
+        self.assertGreater(abs(united[0] / united[1] - 1), 1e-4)
+        self.assertAlmostEqual(volume(again.data), united[1], delta=1e-5 * united[1])
+
     def test_legs_of_one_animal(self):
         """The first that is offered for a leg is a leg, the opposite one is among the first two, and it fits."""
         api = part("api")

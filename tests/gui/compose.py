@@ -146,7 +146,7 @@ def picked_up_to(stage, x, y, share):
     px, py, _ = view.spot(*(low + (high - low) * [x, y]))
     stage.mouse.move(px, py)
     stage.shortcut("mesh.partwheel_select")
-    yield from stage.until("a part is picked", lambda: stage.selection())
+    yield from stage.until("a part is picked", lambda: stage.selection(), 120)  # its parts may have to be found first
     while len(stage.selection()) < share * len(mesh.polygons):
         before = len(stage.selection())
         stage.mouse.wheel(1)

@@ -14,6 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .joint import groups
+
 SAMPLES, COARSE = 800, 4  # points on the part that stays, and of how many one is looked at on the one that moves
 CAP_SAMPLES = 300
 KEPT = 0.7  # of the pairs of closest points, the nearest: the parts need not be alike everywhere
@@ -79,20 +81,11 @@ def borders(vertices, triangles, matrix):
 
 
 def _groups(corners):
-    """Indices of triangles (T,3,3) in groups that share corners: labels spread until nothing changes."""
-    places, triangles = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    """Indices of triangles (T,3,3) in groups that share corners."""
+    _, triangles = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
     triangles = triangles.reshape(-1, 3)
-    label = np.arange(len(places))
-    while True:
-        least = label[triangles].min(axis=1)
-        spread = label.copy()
-        np.minimum.at(spread, triangles.ravel(), np.repeat(least, 3))
-        spread = spread[spread]
-        if np.array_equal(spread, label):
-            break
-        label = spread
-    of = label[triangles[:, 0]]
-    return [np.flatnonzero(of == group) for group in np.unique(of)]
+    of = groups(triangles[:, [[0, 1], [1, 2]]].reshape(-1, 2))[::2]
+    return [np.flatnonzero(of == group) for group in range(of.max() + 1)]
 
 
 def moved(points, matrix):
@@ -398,11 +391,12 @@ def overlap(hierarchy, one, other):
     return float(hierarchy.area[other] / hierarchy.area[one])
 
 
-def shape(hierarchy, node, positions, matrix, size):
+def shape(hierarchy, node, positions, matrix, size, faces=None):
     """The Shape of a node, or None if it has nothing left where polygons are cut. positions (V,3) of the hierarchy's
-    vertices; matrix (4,4) from there to where parts are compared; size: as in Shape."""
-    slices = [(int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node]))]
-    solid = hierarchy.solids(slices)[0]
+    vertices; matrix (4,4) from there to where parts are compared; size: as in Shape. faces (F,) bool: those that it has
+    in place of its own, see solid_of_faces()."""
+    ends = int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])
+    solid = hierarchy.solids([ends])[0] if faces is None else hierarchy.solid_of_faces(*ends, faces)
     if solid is None:
         return None
     return Shape(positions[solid.ends].mean(axis=1), solid.triangles, solid.beyond >= 0, matrix, size)

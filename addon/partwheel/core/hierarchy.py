@@ -205,7 +205,7 @@ class Hierarchy:
         vertices (V,3) coordinates; triangles (T,3) indices, counter-clockwise from outside; faces (T,) the source face
         of each triangle (None: every triangle is one); face_count how many there are (None: the largest + 1).
         quality: 0 adds no points inside; 1.1 or more (1.4 is usual) bounds the tetrahedra's circumradius to shortest
-        edge (the paper's Figure 9).
+        edge (the paper's Figure 9); but for Mode.PAPER the parts stay those without such points.
         rungs: the ways allowed to a surface that can be filled, a sum of Rung (0: all); the first that works is taken.
         open_surfaces: wrap a sheet (plane, cloth, car door) as a thin solid, instead of refusing it with NOT_SOLID.
         threads: 0 as many as help, else at most so many; the result is the same.

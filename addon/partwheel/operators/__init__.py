@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators: build, clear, select by wheel, the same outside Edit Mode; copy, remove, split, place, unite, swap; deform.
-"""
+"""The operators: build, clear, select by wheel, the same outside Edit Mode; copy, remove, split, place, unite, swap;
+deform."""
 
 import bpy
 

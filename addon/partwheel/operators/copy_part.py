@@ -84,13 +84,17 @@ class OnPart:
         return found
 
 
-class _SolidOfPart(OnPart, _AsSolid):
-    """Of a node, whose border may be moved."""
+class Snaps:
+    """Cuts parts out, whose borders may be moved. Mixed into an operator."""
 
     snap: bpy.props.BoolProperty(
         name="Snap Border", description="Move the border of the part to the creases nearby, as far as the tetrahedra "
         "about it let it be there", default=True,
     )
+
+
+class _SolidOfPart(Snaps, OnPart, _AsSolid):
+    """Of a node."""
 
 
 class MESH_OT_partwheel_copy(_SolidOfPart, bpy.types.Operator):

@@ -2,32 +2,26 @@
 """mesh.partwheel_deform: a picked part follows a handle that is dragged, turned and scaled; all beyond it stays."""
 
 import contextlib
-import math
 import traceback
 from dataclasses import dataclass, field
 
 import bmesh
 import bpy
 import numpy as np
-from bpy_extras.view3d_utils import (
-    location_3d_to_region_2d, region_2d_to_location_3d, region_2d_to_origin_3d, region_2d_to_vector_3d,
-)
+from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 from mathutils import Matrix, Vector
-from mathutils.geometry import intersect_line_line, intersect_line_plane
 
 from .. import borders, handle_gizmo, handle_points, keys, session
 from ..background import Background
 from ..core import PartwheelError
 from ..core.joint import REACH
 from ..deforming import METHODS, Pen, Refused, Region
+from ..movement import DIGITS, Movement
 from ..picking import FaceTree, view_of, view_under
 from ..ui import status
 
 TICK = 0.03  # seconds
 NOTCH = 1.25  # what a notch of the wheel makes of the handle's size
-STEP_DEGREES, STEP_SCALE = 5.0, 0.1  # what Ctrl snaps to
-GRAZING = 0.1  # cosine: a line seen so much from its end, a plane so much from its edge, gives no place under the mouse
-DIGITS = {**keys.DIGITS, **{f"NUMPAD_{digit}": str(digit) for digit in range(10)}, "PERIOD": ".", "NUMPAD_PERIOD": "."}
 PATIENCE = 0.05  # seconds that Blender waits for what is done in the background, before it goes on meanwhile
 NO_PART = "Pick a part with Select Part by Wheel first."
 
@@ -46,42 +40,6 @@ class Handle:
     vertex: int  # of the mesh
     radius: float
     matrix: np.ndarray = field(default_factory=lambda: np.eye(4))  # in the object's space
-
-
-@dataclass
-class Stage:
-    """One movement of the handle that is under way."""
-
-    kind: str  # G, R or S
-    start: tuple  # the mouse then, in pixels of the region
-    base: np.ndarray  # the handle's matrix then
-    pivot: Vector  # the handle's center then, in the world
-    dragging: bool  # ends when the button is released
-    axis: int = None  # along or about which alone; of frame's columns
-    plane: bool = False  # along all but that
-    local: bool = False
-    frame: Matrix = field(default_factory=lambda: Matrix.Identity(3))  # the world's axes, or the object's if local
-    typed: str = ""
-    turned: float = 0.0  # so far, in radians: full turns count
-    angle: float = None  # of the mouse about the pivot, when last looked at
-
-    def constrain(self, axis, plane, matrix_world):
-        """As Blender's transforms: the key of an axis takes the world's, pressed again the object's own, then none."""
-        again = (self.axis, self.plane) == (axis, plane)
-        if again and self.local:
-            axis, plane = None, False
-        self.axis, self.plane, self.local = axis, plane, again and not self.local
-        self.frame = matrix_world.to_3x3().normalized() if self.local else Matrix.Identity(3)
-
-    def free(self):
-        """Of the frame's axes those along which there is movement."""
-        return [k for k in range(3) if self.axis is None or (k == self.axis) != self.plane]
-
-    def told(self):
-        if self.axis is None:
-            return ""
-        which = "local" if self.local else "global"
-        return f" {'in' if self.plane else 'along'} {which} {''.join('XYZ'[k] for k in self.free())}"
 
 
 class MESH_OT_partwheel_deform(bpy.types.Operator):
@@ -205,7 +163,8 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         self.pen = None
-        self.object_name, self.stage, self.turns = obj.name_full, None, []
+        self.object_name, self.turns = obj.name_full, []
+        self.movement, self.base = None, None  # that is under way; the last handle's matrix when it began
         self.counts = len(obj.data.vertices), len(obj.data.polygons)
         self.changed, self.recompute, self.told = False, False, None
         self.timer = context.window_manager.event_timer_add(TICK, window=context.window)
@@ -247,12 +206,12 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         if event.type == "TIMER":
             return self._tick(context)
         passed = keys.NAVIGATE.events | keys.SYSTEM
-        if event.type in (passed - set(DIGITS) if self.stage else passed):
+        if event.type in (passed - set(DIGITS) if self.movement else passed):
             return {"PASS_THROUGH"}
         if self.confirmed:
             return {"RUNNING_MODAL"}
-        if self.stage:
-            return self._in_stage(context, event)
+        if self.movement:
+            return self._during(context, event)
         return self._between(context, event)
 
     # ---- Between two movements
@@ -409,11 +368,9 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
     # ---- During a movement
 
     def _begin(self, context, event, kind, dragging=False, axis=None):
-        self.stage = None
-        region, view = self._view(context)
-        start = event.mouse_x - region.x, event.mouse_y - region.y
-        self.stage = Stage(kind, start, self.placed[-1].matrix, self._pivot(context.edit_object), dragging, axis)
-        self._turn(region, view, start)
+        self.movement = Movement(kind, self._pivot(context.edit_object), dragging, axis)
+        self.base = self.placed[-1].matrix
+        self._track(context, event)
 
     def _view(self, context):
         """(region, RegionView3D) that the tool was started in, also where it was started from a panel of that view."""
@@ -429,54 +386,48 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         chosen = self.shown[self.patches[-1] if self.method == "RIGID" else self.region.free]
         return obj.matrix_world @ Vector(chosen.mean(axis=0))
 
-    def _in_stage(self, context, event):
-        stage = self.stage
-        if event.type == "INBETWEEN_MOUSEMOVE":  # there is a later one: not worth a step, but full turns count
-            region, view = self._view(context)
-            self._turn(region, view, (event.mouse_x - region.x, event.mouse_y - region.y))
+    def _during(self, context, event):
+        movement = self.movement
+        if event.type == "INBETWEEN_MOUSEMOVE":  # there is a later one: not worth a step
+            self._track(context, event)
             return {"RUNNING_MODAL"}
-        if event.type in {"MOUSEMOVE", "LEFT_CTRL", "RIGHT_CTRL"}:
+        if event.type in keys.MOVES | keys.STEPS.events | keys.FINE.events:
             self._follow(context, event)
             return {"RUNNING_MODAL"}
-        if stage.dragging and (event.type, event.value) == ("LEFTMOUSE", "RELEASE"):
+        if movement.dragging and (event.type, event.value) == ("LEFTMOUSE", "RELEASE"):
             self._follow(context, event)
-            self.stage = None
+            self.movement = None
             self._tell(context)
             return {"RUNNING_MODAL"}
         if event.value not in {"PRESS", "DOUBLE_CLICK"}:
             return {"RUNNING_MODAL"}
         if event.type in keys.CONFIRM.events or event.type == "LEFTMOUSE":
             self._follow(context, event)
-            self.stage = None
+            self.movement = None
             if self.start != "NONE":  # it was started for this movement
                 return self._confirmed(context)
         elif event.type in {"G", "R", "S"}:
             self._begin(context, event, event.type)
         elif event.type in {"X", "Y", "Z"}:
-            stage.constrain("XYZ".index(event.type), event.shift, context.edit_object.matrix_world)
+            movement.constrain("XYZ".index(event.type), event.shift, context.edit_object.matrix_world)
             self._follow(context, event)
-        elif event.type in DIGITS:
-            stage.typed += DIGITS[event.type]
-            self._follow(context, event)
-        elif event.type in {"MINUS", "NUMPAD_MINUS"}:
-            stage.typed = stage.typed[1:] if stage.typed.startswith("-") else "-" + stage.typed
-            self._follow(context, event)
-        elif event.type == "BACK_SPACE":
-            stage.typed = stage.typed[:-1]
+        elif movement.type(event.type):
             self._follow(context, event)
         self._tell(context)
         return {"RUNNING_MODAL"}
 
+    def _track(self, context, event):
+        """(region, RegionView3D) in which the movement was told where the mouse is."""
+        region, view = self._view(context)
+        self.movement.track(region, view, (event.mouse_x - region.x, event.mouse_y - region.y), event.shift)
+        return region, view
+
     def _follow(self, context, event):
         """The handle goes where the mouse, or the number typed, says; the part follows."""
-        region, view = self._view(context)
-        mouse = event.mouse_x - region.x, event.mouse_y - region.y
-        self._turn(region, view, mouse)
-        world = {"G": self._moved, "R": self._rotated, "S": self._scaled}[self.stage.kind](region, view, mouse,
-                                                                                          event.ctrl)
+        region, view = self._track(context, event)
+        world = self.movement.matrix(region, view, event.ctrl)
         to_world = context.edit_object.matrix_world
-        local = np.array(to_world.inverted_safe() @ world @ to_world)
-        matrix = local @ self.stage.base
+        matrix = np.array(to_world.inverted_safe() @ world @ to_world) @ self.base
         if (matrix == self.placed[-1].matrix).all():
             return
         last = self.placed[-1]
@@ -495,77 +446,6 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             return
         self.settling = True
         self._show(context)
-
-    def _typed(self):
-        try:
-            return float(self.stage.typed)
-        except ValueError:  # nothing yet, or only a sign
-            return None
-
-    def _moved(self, region, view, mouse, snap):
-        stage = self.stage
-        typed = self._typed()
-        if typed is not None:
-            return Matrix.Translation(typed * stage.frame.col[stage.free()[0]])
-        now, before = (self._under(region, view, point) for point in (mouse, stage.start))
-        inverse = stage.frame.transposed()
-        shift = inverse @ (now - before)
-        shift = Vector(shift[k] if k in stage.free() else 0 for k in range(3))
-        if snap:
-            # A step that shows: the power of ten next to some 20 pixels.
-            pixels = (region_2d_to_location_3d(region, view, (stage.start[0] + 20, stage.start[1]), stage.pivot)
-                      - region_2d_to_location_3d(region, view, stage.start, stage.pivot)).length
-            step = 10 ** round(math.log10(max(pixels, 1e-12)))
-            shift = Vector(step * round(value / step) for value in shift)
-        return Matrix.Translation(stage.frame @ shift)
-
-    def _under(self, region, view, point):
-        """The place under a pixel of the region: on the line or in the plane through the pivot that the movement keeps
-        to, unless that is seen too much from its end or its edge; else as far away as the pivot."""
-        stage = self.stage
-        place = region_2d_to_location_3d(region, view, point, stage.pivot)
-        if stage.axis is None:
-            return place
-        direction, axis = region_2d_to_vector_3d(region, view, point), stage.frame.col[stage.axis]
-        slant = abs(direction.normalized().dot(axis))
-        if stage.plane and slant > GRAZING:
-            return intersect_line_plane(place, place + direction, stage.pivot, axis)
-        if not stage.plane and slant < math.sqrt(1 - GRAZING * GRAZING):
-            return intersect_line_line(stage.pivot, stage.pivot + axis, place, place + direction)[0]
-        return place
-
-    def _turn(self, region, view, mouse):
-        """Keeps count of how far the mouse went about the pivot."""
-        center = location_3d_to_region_2d(region, view, self.stage.pivot) or Vector(self.stage.start)
-        x, y = mouse[0] - center[0], mouse[1] - center[1]
-        if math.hypot(x, y) < 1:
-            return
-        angle = math.atan2(y, x)
-        if self.stage.angle is not None:
-            self.stage.turned += (angle - self.stage.angle + math.pi) % (2 * math.pi) - math.pi
-        self.stage.angle = angle
-
-    def _rotated(self, _region, view, _mouse, snap):
-        stage, typed = self.stage, self._typed()
-        towards_user = view.view_matrix.inverted().to_3x3().col[2]
-        axis = towards_user if stage.axis is None else stage.frame.col[stage.axis].copy()
-        angle = stage.turned if axis.dot(towards_user) >= 0 else -stage.turned
-        if typed is not None:
-            angle = math.radians(typed)
-        elif snap:
-            angle = math.radians(STEP_DEGREES * round(math.degrees(angle) / STEP_DEGREES))
-        return _about(stage.pivot, Matrix.Rotation(angle, 4, axis))
-
-    def _scaled(self, region, view, mouse, snap):
-        stage, typed = self.stage, self._typed()
-        center = location_3d_to_region_2d(region, view, stage.pivot) or Vector(stage.start)
-        factor = ((Vector(mouse) - center).length / max((Vector(stage.start) - center).length, 1))
-        if typed is not None:
-            factor = typed
-        elif snap:
-            factor = STEP_SCALE * round(factor / STEP_SCALE)
-        scale = Matrix.Diagonal([factor if k in stage.free() else 1 for k in range(3)])
-        return _about(stage.pivot, (stage.frame @ scale @ stage.frame.transposed()).to_4x4())
 
     # ---- What is seen
 
@@ -605,24 +485,21 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             bending = self.region.free.copy()
             bending[self.region.limb] = False
             handle_points.draw(obj.matrix_world, [self.shown[bending]])
-        if not self.stage:
+        if not self.movement:
             handle_gizmo.draw(self._pivot(obj), bpy.context.region, bpy.context.region_data)
 
     def _tell(self, context):
-        stage = self.stage
         count = len(self.patches[-1])
         what = {"RIGID": f"Handle of {count} {'vertex' if count == 1 else 'vertices'}", "PROPORTIONAL": "The Part",
                 "JOINT": f"Joint of {self.reach:.2g} radii"}[self.method]
-        if stage:
-            what = {"G": "Move", "R": "Rotate", "S": "Scale"}[stage.kind] + stage.told()
-            if stage.typed:
-                what += f": {stage.typed}"
+        if self.movement:
+            what = self.movement.told()
         if self.task:
             what += ": getting ready" if not self.confirmed else ": settling"
-        shown = stage is not None, what
+        shown = self.movement is not None, what
         if shown != self.told:  # both bars are drawn anew each time
             self.told = shown
-            context.workspace.status_text_set(status.drawer(keys.MOVING if stage else keys.DEFORMING))
+            context.workspace.status_text_set(status.drawer(keys.MOVING if self.movement else keys.DEFORMING))
             context.area.header_text_set(f"Partwheel: {what}")
 
     # ---- The end
@@ -695,7 +572,3 @@ def _waiting(context):
         yield
     finally:
         context.window.cursor_modal_restore()
-
-
-def _about(pivot, matrix):
-    return Matrix.Translation(pivot) @ matrix @ Matrix.Translation(-pivot)

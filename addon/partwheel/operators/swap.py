@@ -9,14 +9,14 @@ import bpy
 from .. import keys, solids, swapping, union
 from ..core import PartwheelError
 from ..ui import status
-from .copy_part import OnPart, OnParts
+from .copy_part import OnPart, OnParts, Snaps
 from .place import DEPTH_STEP, PASS, SIZE_STEP, TURN_STEP
 from .unite import find_parts
 
 CONFIRM, CANCEL = keys.CLICK.events | keys.CONFIRM.events, keys.CANCEL.events
 
 
-class MESH_OT_partwheel_swap(OnPart, OnParts, bpy.types.Operator):
+class MESH_OT_partwheel_swap(Snaps, OnPart, OnParts, bpy.types.Operator):
     """Exchange the picked part for one of another object that fits its border; the wheel goes through what there is"""
 
     bl_idname = "mesh.partwheel_swap"
@@ -58,7 +58,7 @@ class MESH_OT_partwheel_swap(OnPart, OnParts, bpy.types.Operator):
         return True
 
     def work(self, context, obj, hierarchy):
-        place = swapping.Place(obj, hierarchy, self.node)
+        place = swapping.Place(obj, hierarchy, self.node, self.snap)
         self._swap(place, self._chosen(context, place, obj))
 
     def _chosen(self, context, place, obj):
@@ -95,7 +95,7 @@ class MESH_OT_partwheel_swap(OnPart, OnParts, bpy.types.Operator):
             others = [other] if other else swapping.sources(context, obj)
             if self.was_edited:
                 bpy.ops.object.mode_set(mode="OBJECT")
-            self.place = swapping.Place(obj, hierarchy, self.node)
+            self.place = swapping.Place(obj, hierarchy, self.node, self.snap)
             self.offers, self.index = self.place.offers(others), 0
             self.preview = Preview(self.place)
             self._show(context)

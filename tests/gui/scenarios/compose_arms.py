@@ -19,7 +19,7 @@ def play(stage):
 
     yield from stage.open("homer")
     homer = stage.object
-    whole = volume(homer)
+    whole, width = volume(homer), homer.dimensions.x
     for side in (0.02, 0.98):
         yield from picked_up_to(stage, side, 0.62, 0.06)
         before = len(homer.data.polygons)
@@ -29,6 +29,7 @@ def play(stage):
     stage.mouse.key("TAB")
     yield from stage.until("Object Mode", lambda: homer.mode == "OBJECT")
     stage.check(closed(homer) and volume(homer) < whole, "what is left is closed and smaller")
+    stage.check(homer.dimensions.x < 0.6 * width, f"nothing of either arm is left ({homer.dimensions.x} of {width})")
     rest = volume(homer)
     yield from stage.screenshot("3-removed")
 

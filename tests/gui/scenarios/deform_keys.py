@@ -1,4 +1,5 @@
-"""The handle turned, scaled and moved by keys: Esc takes all of it back, bit for bit; typed numbers; one undo step."""
+"""The handle turned, scaled and moved by keys: Esc takes all of it back, bit for bit; typed numbers; one undo step; Shift
+moves it finely."""
 import numpy
 
 from scenarios.deform import confirmed, held
@@ -68,10 +69,30 @@ def play(stage):
     yield from stage.settle()
     shift = (stage.coordinates() - before) @ matrix.T
     farthest = shift[numpy.linalg.norm(shift, axis=1).argmax()]
-    stage.check(abs(farthest[2]) < 0.05 * numpy.linalg.norm(farthest) > 0, f"the handle stayed in the plane ({farthest})")
+    length = numpy.linalg.norm(farthest)
+    stage.check(abs(farthest[2]) < 0.05 * length > 0, f"the handle stayed in the plane ({farthest})")
     stage.mouse.key("ESC")
     yield from stage.until("Esc puts it back", lambda: (stage.coordinates() == before).all())
     yield from stage.ended()
+
+    # Shift, held on the way: a tenth of it, and no jump where it is let go.
+    ways = []
+    for fine in (False, True):
+        part, before = yield from held(stage, 0.16, 0.36, 700)
+        x, y = stage.mouse.x, stage.mouse.y
+        stage.mouse.key("G")
+        stage.mouse.move(x + 20, y, shift=fine)
+        stage.mouse.move(x + 60, y, shift=fine)
+        stage.mouse.move(x + 60, y)
+        yield from stage.until("it follows", lambda: (stage.coordinates() != before).any())
+        yield from stage.settle()
+        stage.mouse.key("RET")
+        yield from stage.settle()
+        ways.append(numpy.linalg.norm(stage.coordinates() - before, axis=1).max())
+        stage.mouse.key("ESC")
+        yield from stage.until("Esc puts it back", lambda: (stage.coordinates() == before).all())
+        yield from stage.ended()
+    stage.check(abs(ways[1] / ways[0] - 0.1) < 0.01, f"Shift makes a tenth of the way ({ways})")
     part, before = yield from held(stage, 0.16, 0.36, 700)
     for key in ("G", "Z", "Z", "ONE"):
         stage.mouse.key(key)

@@ -1,7 +1,8 @@
 """What a notch, a hover and a start cost of the add-on's own time, on 89,000 faces: the table of scripts/bench_felt.
 
-Processor time of Blender's main thread, which other programs don't interrupt meanwhile if we may ask for that. Tests have no graphics card: what the drawing itself takes there, in software,
-is told apart. It is no time of the add-on's: with a card the call comes back at once.
+Processor time of Blender's main thread, which other programs don't interrupt meanwhile if we may ask for that. Tests have
+no graphics card: what the drawing itself takes there, in software, is told apart. It is no time of the add-on's: with a
+card the call comes back at once.
 """
 import contextlib
 import os

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Caps for a part of a mesh that had to be wrapped: the facets that divide the wrap inside. They end on the wrap, near
+the borders of the mesh's own polygons, and strips of triangles join the two."""
+
+import bmesh
+import numpy as np
+
+from . import closing
+
+NEAR = 1.0  # of a border's radius: borders are joined if they are no farther apart, in the mean, from either side
+MOST = 0.5  # of the length of its borders that is to be joined, for a group of facets to be of use
+
+
+def bridge(bm, facets):
+    """Adds facets, (vertices (n,3), triangles (m,3) wound outwards), to a bmesh: each group of them of which most of the
+    border has one of the bmesh's own to itself nearby. What its polygons there are a part of is turned as the facets
+    are. The new faces. Other borders stay open: those of holes that only the wrap closes are there, too."""
+    own = closing.borders(bm, {edge for edge in bm.edges if edge.is_boundary})
+    places, triangles = facets
+    if not own or not len(triangles):
+        return []
+    groups = _groups(bm, places, triangles)
+    rings = [(group, ring) for group, (_, borders) in enumerate(groups) for ring in borders]
+    pairs = _pairs([_places(ring) for _, ring in rings], [_places(ring) for ring in own])
+    joints, lengths = [[] for _ in groups], np.zeros((len(groups), 2))
+    for (group, ring), border in zip(rings, pairs):
+        lengths[group] += np.array([1, border is not None]) * _length(ring)
+        if border is not None:
+            joints[group].append((ring, own[border]))
+    used = lengths[:, 1] > MOST * lengths[:, 0]
+    _turn_pieces([joint for each, use in zip(joints, used) if use for joint in each])
+    caps = []
+    for (faces, _), each, use in zip(groups, joints, used):
+        if not use or any(_run_alike(*joint) for joint in each):
+            bmesh.ops.delete(bm, geom=list({vert for face in faces for vert in face.verts}), context="VERTS")
+            continue
+        caps += faces
+        for ring, border in each:
+            caps += _strip(bm, border, ring[::-1])
+    return caps
+
+
+def _turn_pieces(joints):
+    """Turns those pieces of the mesh of which most borders run as the facets' do: two that a strip can join never do.
+    The borders, lists of vertices, are turned too."""
+    pieces = {}  # the number of the first border of each piece -> (its faces, borders, votes)
+    of = {}
+    for number, (ring, border) in enumerate(joints):
+        if border[0] not in of:
+            faces = _piece(border[0])
+            pieces[number] = faces, [], []
+            of.update((vert, number) for face in faces for vert in face.verts)
+        _, borders, votes = pieces[of[border[0]]]
+        borders.append(border)
+        votes.append(len(border) if _run_alike(ring, border) else -len(border))
+    for faces, borders, votes in pieces.values():
+        if sum(votes) > 0:
+            for face in faces:
+                face.normal_flip()
+            for border in borders:
+                border.reverse()
+
+
+def _groups(bm, places, triangles):
+    """[(faces, borders), ...] of the new faces, those that are joined across edges together."""
+    used, triangles = np.unique(triangles, return_inverse=True)
+    verts = [closing.new_vert(bm, place) for place in places[used].tolist()]
+    new = {bm.faces.new([verts[k] for k in triangle]) for triangle in triangles.reshape(-1, 3).tolist()}
+    closing.set_apart(bm)
+    groups = []
+    while new:
+        faces = _piece(next(iter(new)).verts[0])
+        new.difference_update(faces)
+        edges = {edge for face in faces for edge in face.edges if edge.is_boundary}
+        groups.append((faces, closing.borders(bm, edges)))
+    return groups
+
+
+def _piece(vert):
+    """The faces that are joined with a vertex, by steps across edges and vertices."""
+    seen, todo = set(vert.link_faces), list(vert.link_faces)
+    while todo:
+        for corner in todo.pop().verts:
+            beyond = [face for face in corner.link_faces if face not in seen]
+            seen.update(beyond)
+            todo += beyond
+    return list(seen)
+
+
+def _places(ring):
+    return np.array([vert.co[:] for vert in ring])
+
+
+def _length(ring):
+    places = _places(ring)
+    return np.linalg.norm(places - np.roll(places, 1, axis=0), axis=1).sum()
+
+
+def _pairs(rings, own):
+    """For each ring (n,3) which of the others it is to be joined with, or None; none with two."""
+    chosen = []
+    for ring in rings:
+        apart = [_apart(ring, other) for other in own]
+        best = int(np.argmin(apart))
+        chosen.append(best if apart[best] < NEAR else None)
+    return [None if choice is None or chosen.count(choice) > 1 else choice for choice in chosen]
+
+
+def _apart(one, other):
+    """Mean distance from each point of either to the nearest of the other, whichever is more, by the first's radius."""
+    radius = np.linalg.norm(one - one.mean(axis=0), axis=1).mean()
+    distance = np.linalg.norm(one[:, None] - other[None], axis=2)
+    return max(distance.min(axis=0).mean(), distance.min(axis=1).mean()) / max(radius, 1e-30)
+
+
+def _run_alike(one, other):
+    """Whether two rings of vertices run the same way."""
+    one, other = _places(one), _places(other)
+    nearest = np.linalg.norm(one[:, None] - other[None], axis=2).argmin(axis=1)
+    ahead, beyond = (np.roll(ring, -1, axis=0) - np.roll(ring, 1, axis=0) for ring in (one, other))
+    return float(np.einsum("ij,ij->", ahead, beyond[nearest])) > 0
+
+
+def _strip(bm, one, other):
+    """Triangles between two rings of vertices that run the same way, along the first: always across the shorter of the
+    next two diagonals."""
+    a, b = _places(one), _places(other)
+    start = np.unravel_index(np.linalg.norm(a[:, None] - b[None], axis=2).argmin(), (len(a), len(b)))
+    one, other = ([*ring[at:], *ring[:at], ring[at]] for ring, at in zip((one, other), start))
+    n, m = len(a), len(b)
+    faces, i, j, across = [], 0, 0, {(0, 0)}
+    while (i, j) != (n, m):
+        # No edge across is there twice, though both rings end where they began.
+        first, second = i < n and (i + 1, j), j < m and (i, j + 1)
+        may_first, may_second = (each and (each == (n, m) or (each[0] % n, each[1] % m) not in across)
+                                 for each in (first, second))
+        if may_first and (not may_second or (one[i + 1].co - other[j].co).length
+                          <= (one[i].co - other[j + 1].co).length):
+            faces.append(bm.faces.new((one[i], one[i + 1], other[j])))
+            i, j = first
+        else:
+            faces.append(bm.faces.new((one[i], other[j + 1], other[j])))
+            i, j = second
+        across.add((i % n, j % m))
+    return faces

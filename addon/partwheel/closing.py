@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Borders of a bmesh closed by faces, flat or going on as the surface about them does."""
+
+import bmesh
+import numpy as np
+
+RINGS = 4  # of faces in a smooth cap, between its border and its middle
+STEPS = 200  # of fairing
+
+
+def set_apart(bm):
+    """Afterwards at most two faces meet at each edge, wound alike, and the faces about each vertex are one fan."""
+    bad = [edge for edge in bm.edges
+           if len(edge.link_faces) > 2 or (len(edge.link_faces) == 2 and not edge.is_contiguous)]
+    if bad:
+        bmesh.ops.split_edges(bm, edges=bad)
+    for vert in [vert for vert in bm.verts if vert.is_boundary]:
+        fans = _fans(vert)
+        for fan in fans[1:]:
+            bmesh.utils.vert_separate(vert, [edge for edge in fan if edge.is_boundary])
+
+
+def _fans(vert):
+    """The edges about a vertex in groups that are joined by faces."""
+    fans, left = [], {edge for edge in vert.link_edges if edge.link_faces}
+    while left:
+        fan, todo = set(), [left.pop()]
+        while todo:
+            edge = todo.pop()
+            fan.add(edge)
+            for face in edge.link_faces:
+                for other in face.edges:
+                    if other in left and vert in other.verts:
+                        left.remove(other)
+                        todo.append(other)
+        fans.append(fan)
+    return fans
+
+
+def fill(bm, smooth, open_before):
+    """Closes every other border by rings of faces around a new vertex in its middle; smooth: relaxed so that they go on
+    as the surface about them does. The new faces."""
+    caps = []
+    for border in borders(bm, {edge for edge in bm.edges if edge.is_boundary} - open_before):
+        caps += _fill_border(bm, border, RINGS if smooth else 0)
+    return caps
+
+
+def borders(bm, edges):
+    """The borders that these edges make, each as its vertices in the order that new faces run along it."""
+    found, left = [], set(edges)
+    while left:
+        border = _border(left.pop(), left)
+        if border:
+            found.append(border)
+    return found
+
+
+def _border(edge, left):
+    """The vertices of a border in the order that new faces run along it: against its own faces."""
+    loop = edge.link_loops[0]
+    start, vert = loop.link_loop_next.vert, loop.vert
+    border = [start]
+    while vert != start:
+        border.append(vert)
+        edge = next((other for other in vert.link_edges if other in left), None)
+        if edge is None:
+            return []
+        left.remove(edge)
+        vert = edge.other_vert(vert)
+    return border
+
+
+def _fill_border(bm, border, rings):
+    middle = sum((vert.co for vert in border[1:]), border[0].co.copy()) / len(border)
+    rows, caps = [border], []
+    for ring in range(rings):
+        share = (ring + 1) / (rings + 1)
+        rows.append([new_vert(bm, vert.co.lerp(middle, share)) for vert in border])
+    top = new_vert(bm, middle)
+    count = len(border)
+    for outer, inner in zip(rows, rows[1:]):
+        caps += [bm.faces.new((outer[i], outer[(i + 1) % count], inner[(i + 1) % count], inner[i]))
+                 for i in range(count)]
+    caps += [bm.faces.new((rows[-1][i], rows[-1][(i + 1) % count], top)) for i in range(count)]
+    for face in caps:
+        face.smooth = rings > 0
+    if rings:
+        _fair(rows, top)
+    return caps
+
+
+def new_vert(bm, place):
+    """There in all shape keys."""
+    vert = bm.verts.new(place)
+    for key in bm.verts.layers.shape.values():
+        vert[key] = vert.co
+    return vert
+
+
+def _fair(rows, top):
+    """Moves the new vertices until the discrete bi-Laplacian vanishes (Kobbelt et al. 1998), so that the cap leaves the
+    border as the surface arrives there. Rows of vertices from the border inwards; the border and what lies outside it
+    stay."""
+    border = rows[0]
+    count = len(border)
+    inside = np.array([[vert.co[:] for vert in row] for row in rows[1:]])
+    fixed = np.array([vert.co[:] for vert in border])
+    # One row outside the border: where the surface comes from.
+    new = {vert for row in rows[1:] for vert in row} | {top}
+    beside = []
+    for vert in border:
+        around = [edge.other_vert(vert).co for edge in vert.link_edges
+                  if edge.other_vert(vert) not in new and edge.other_vert(vert) not in border]
+        beside.append(sum(around[1:], around[0].copy()) / len(around) if around else vert.co)
+    beside = np.array([co[:] for co in beside])
+    size = np.linalg.norm(inside[0] - fixed, axis=1).mean()
+    away = beside - fixed
+    length = np.linalg.norm(away, axis=1, keepdims=True)
+    beside = fixed + away * (size / np.maximum(length, 1e-30))
+    grid = np.concatenate([beside[None], fixed[None], inside])
+    peak = np.array(top.co[:])
+    for _ in range(STEPS):
+        full = np.concatenate([grid, np.broadcast_to(peak, (1, count, 3))])
+        umbrella = np.zeros_like(full)
+        umbrella[1:-1] = (full[:-2] + full[2:] + np.roll(full[1:-1], 1, axis=1) + np.roll(full[1:-1], -1, axis=1)
+                          ) / 4 - full[1:-1]
+        umbrella[-1] = grid[-1].mean(axis=0) - peak
+        second = np.zeros_like(full)
+        second[2:-1] = (umbrella[1:-2] + umbrella[3:] + np.roll(umbrella[2:-1], 1, axis=1)
+                        + np.roll(umbrella[2:-1], -1, axis=1)) / 4 - umbrella[2:-1]
+        grid[2:] -= 0.4 * second[2:-1]
+        peak = peak - 0.4 * (umbrella[-2].mean(axis=0) - umbrella[-1][0])
+    for row, places in zip(rows[1:], grid[2:]):
+        for vert, place in zip(row, places):
+            vert.co = place
+    top.co = peak
