@@ -122,7 +122,7 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, HullKernel& kernel
     const Cluster &first = ordered ? m : g, &second = ordered ? g : m;
     const double volume = first.volume + second.volume;
     const Merge merge = {first.number, second.number, ranked_concavity(e.hull_volume, volume), e.hull_volume};
-    for (const Link& link : g.links) __builtin_prefetch(at(link.cluster).links.data());
+    for (const Link& link : g.links) prefetch_line(at(link.cluster).links.data());
     Hull united = unite(e, kernel);
     if (undo) {
         undo->stay = stay;

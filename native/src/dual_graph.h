@@ -6,6 +6,7 @@
 #include "hull.h"
 #include "large_pages.h"
 #include "pair_of_threads.h"
+#include "prefetch.h"
 
 #include <algorithm>
 #include <limits>
@@ -138,15 +139,15 @@ private:
 // What comes soon in a queue is anywhere in memory: lets it begin, step by step as it rises.
 template <class Queue>
 void prefetch_soon(const DualGraph& graph, const Queue& queue) {
-    for (const auto& item : queue.items(5, 21)) __builtin_prefetch(&graph.edge(item.edge));
+    for (const auto& item : queue.items(5, 21)) prefetch_line(&graph.edge(item.edge));
     for (const auto& item : queue.items(1, 5)) {
-        __builtin_prefetch(&graph.at(graph.edge(item.edge).a));
-        __builtin_prefetch(&graph.at(graph.edge(item.edge).b));
+        prefetch_line(&graph.at(graph.edge(item.edge).a));
+        prefetch_line(&graph.at(graph.edge(item.edge).b));
     }
     if (const auto* second = queue.runner_up())
         for (const int32_t c : {graph.edge(second->edge).a, graph.edge(second->edge).b}) {
             graph.at(c).hull.prefetch();
-            __builtin_prefetch(graph.at(c).links.data());
+            prefetch_line(graph.at(c).links.data());
         }
 }
 
@@ -154,8 +155,8 @@ void prefetch_soon(const DualGraph& graph, const Queue& queue) {
 inline void prefetch_around(const DualGraph& graph, const EdgePlaces& places, int32_t contracted) {
     for (const int32_t c : {graph.edge(contracted).a, graph.edge(contracted).b})
         for (const Link& link : graph.at(c).links) {
-            __builtin_prefetch(&graph.at(link.cluster));
-            __builtin_prefetch(&graph.edge(link.edge));
+            prefetch_line(&graph.at(link.cluster));
+            prefetch_line(&graph.edge(link.edge));
             places.prefetch(link.edge);
         }
 }

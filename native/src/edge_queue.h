@@ -3,6 +3,7 @@
 
 #include "cluster.h"
 #include "large_pages.h"
+#include "prefetch.h"
 
 #include <algorithm>
 #include <bit>
@@ -46,7 +47,7 @@ public:
     void reserve(size_t edges) { places_.reserve(edges); }
     uint32_t& operator[](int32_t edge) { return places_[static_cast<size_t>(edge)]; }
     bool queued(int32_t edge) const { return places_[static_cast<size_t>(edge)] != absent; }
-    void prefetch(int32_t edge) const { __builtin_prefetch(&places_[static_cast<size_t>(edge)]); }
+    void prefetch(int32_t edge) const { prefetch_line(&places_[static_cast<size_t>(edge)]); }
 
 private:
     LargeVector<uint32_t> places_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry.h"
+#include "prefetch.h"
 
 #include <cstdint>
 #include <limits>
@@ -25,10 +26,10 @@ public:
     std::span<const int32_t> vertices() const;  // in rising order
     std::span<const HullFacet> facets() const;
     size_t facet_count() const { return block_ ? block_->facet_count : 0; }
-    // Asks memory for its first part, ahead of use. An address may lie beyond the block: it is never read.
+    // Its first part, ahead of use; it may be shorter.
     void prefetch() const {
         const auto begin = reinterpret_cast<uintptr_t>(block_.get());
-        for (uintptr_t i = 0; i < 512; i += 64) __builtin_prefetch(reinterpret_cast<const void*>(begin + i));
+        for (uintptr_t i = 0; i < 512; i += 64) prefetch_line(reinterpret_cast<const void*>(begin + i));
     }
     double volume() const { return block_ ? block_->volume : 0; }
 
