@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace partwheel {
 
@@ -46,6 +48,7 @@ public:
     void resize(size_t edges) { places_.resize(edges, absent); }
     void reserve(size_t edges) { places_.reserve(edges); }
     uint32_t& operator[](int32_t edge) { return places_[static_cast<size_t>(edge)]; }
+    uint32_t operator[](int32_t edge) const { return places_[static_cast<size_t>(edge)]; }
     bool queued(int32_t edge) const { return places_[static_cast<size_t>(edge)] != absent; }
     void prefetch(int32_t edge) const { prefetch_line(&places_[static_cast<size_t>(edge)]); }
 
@@ -53,7 +56,10 @@ private:
     LargeVector<uint32_t> places_;
 };
 
-// A heap with four children a node that knows where each edge is, so that keys change in place.
+// Those up to some key are in a heap, small enough to stay in a cache; the later ones lie in no order until that runs
+// out. Most edges become dearer several times before they come near the top, if they ever do.
+//
+// The heap has four children a node. Each edge's place is known, so that keys change in place.
 template <class Key>
 class EdgeQueue {
 public:
@@ -66,28 +72,32 @@ public:
 
     explicit EdgeQueue(EdgePlaces& places) : place_(places) {}
 
-    void reserve(size_t edges) { heap_.reserve(before + edges); }
+    void reserve(size_t edges) { later_.reserve(edges); }
 
-    // Without restoring the order, see sort().
+    // Fills an empty queue; sort() then brings it in order.
     void append(const Key& key, int32_t edge) {
-        heap_.emplace_back();
-        put(size() - 1, {key, edge});
+        ++size_;
+        put_later({key, edge});
     }
 
-    void sort() {
-        for (size_t i = size() / children + 1; i-- > 0;)
-            if (i < size()) sink(i, Item(at(i)));
-    }
+    void sort() { refill(); }
 
     void insert(const Key& key, int32_t edge) {
-        heap_.emplace_back();
-        settle(size() - 1, {key, edge});
+        ++size_;
+        if (horizon_ < key)
+            put_later({key, edge});
+        else
+            put_soon({key, edge});
+        refill();
     }
 
-    bool empty() const { return size() == 0; }
-    size_t size() const { return heap_.size() - before; }
+    bool empty() const { return size_ == 0; }
+    size_t size() const { return size_; }
     const Item& top() const { return at(0); }
-    const Key& key(int32_t edge) const { return at(place_[edge]); }
+    const Key& key(int32_t edge) const {
+        const uint32_t place = place_[edge];
+        return place & later ? later_[place & ~later] : at(place);
+    }
 
     // The top one and some that come soon after it.
     std::span<const Item> top_items() const { return items(0, children + 1); }
@@ -100,16 +110,38 @@ public:
 
     // Some of those that come after the top one: the items at these places of the heap.
     std::span<const Item> items(size_t first, size_t last) const {
-        return {&at(std::min(first, size())), &at(std::min(last, size()))};
+        return {&at(std::min(first, soon())), &at(std::min(last, soon()))};
     }
 
-    void update(const Key& key, int32_t edge) { settle(place_[edge], {key, edge}); }
+    void update(const Key& key, int32_t edge) {
+        const uint32_t place = place_[edge];
+        const bool is_later = horizon_ < key;
+        if (place & later) {
+            Item& item = later_[place & ~later];
+            if (is_later) {
+                item = {key, edge};
+            } else {
+                item.edge = gone;
+                put_soon({key, edge});
+            }
+        } else if (is_later) {
+            take_out(place);
+            put_later({key, edge});
+            refill();
+        } else {
+            settle(place, {key, edge});
+        }
+    }
 
     void remove(int32_t edge) {
-        const size_t i = std::exchange(place_[edge], EdgePlaces::absent);
-        const Item last = heap_.back();
-        heap_.pop_back();
-        if (i < size()) settle(i, last);
+        --size_;
+        const uint32_t place = std::exchange(place_[edge], EdgePlaces::absent);
+        if (place & later) {
+            later_[place & ~later].edge = gone;
+        } else {
+            take_out(place);
+            refill();
+        }
     }
 
 private:
@@ -118,12 +150,83 @@ private:
     // Unused places, with which the children of each are as near in memory as can be: in whole cache lines.
     static constexpr size_t before = children - 1;
 
+    // This bit of a place says that it is not one in the heap.
+    static constexpr uint32_t later = uint32_t{1} << 31;
+
+    // In place of an edge that is not there any more.
+    static constexpr int32_t gone = -1;
+
+    // The heap holds at least so many, if there are as many: what comes soon is to be found there.
+    static constexpr size_t least_soon = 32;
+
+    // When it runs out it gets one in so many of the later ones, the first as far as a sample tells.
+    static constexpr size_t share = 8, sample = 16 * share;
+
+    size_t soon() const { return heap_.size() - before; }
     Item& at(size_t i) { return *(heap_.data() + before + i); }
     const Item& at(size_t i) const { return *(heap_.data() + before + i); }
 
     void put(size_t i, const Item& item) {
         at(i) = item;
         place_[item.edge] = static_cast<uint32_t>(i);
+    }
+
+    void put_soon(const Item& item) {
+        heap_.emplace_back();
+        settle(soon() - 1, item);
+    }
+
+    void put_later(const Item& item) {
+        place_[item.edge] = static_cast<uint32_t>(later_.size()) | later;
+        later_.push_back(item);
+    }
+
+    void take_out(size_t i) {
+        const Item last = heap_.back();
+        heap_.pop_back();
+        if (i < soon()) settle(i, last);
+    }
+
+    // Keeps the heap from running out, and the gaps among the later ones from becoming too many.
+    void refill() {
+        while ((soon() < least_soon && soon() < size_) || later_.size() > 2 * size_ + least_soon) [[unlikely]]
+            fetch();
+    }
+
+    // Moves the horizon, and the items up to it to the heap. Gaps among the later ones are filled from their end.
+    void fetch() {
+        if (soon() == size_) return later_.clear();
+        horizon_ = next_horizon();
+        for (size_t i = 0; i < later_.size();) {
+            const Item item = later_[i];
+            if (item.edge != gone && horizon_ < item) {
+                ++i;
+                continue;
+            }
+            if (item.edge != gone) {
+                heap_.emplace_back();
+                put(soon() - 1, item);
+            }
+            const Item last = later_.back();
+            later_.pop_back();
+            if (i == later_.size()) break;
+            later_[i] = last;
+            if (last.edge != gone) place_[last.edge] = static_cast<uint32_t>(i) | later;
+        }
+        for (size_t i = soon() / children + 1; i-- > 0;)
+            if (i < soon()) sink(i, Item(at(i)));
+    }
+
+    // Among the later ones; if they are few it is the last, so that all are fetched.
+    Key next_horizon() const {
+        const bool few = size_ - soon() <= 4 * least_soon;
+        std::vector<Key> keys;
+        for (size_t stride = few ? 1 : later_.size() / sample + 1; keys.empty(); stride = 1)  // a sample may miss all
+            for (size_t i = 0; i < later_.size(); i += stride)
+                if (later_[i].edge != gone) keys.push_back(later_[i]);
+        const auto next = keys.begin() + static_cast<std::ptrdiff_t>(few ? keys.size() - 1 : keys.size() / share);
+        std::nth_element(keys.begin(), next, keys.end());
+        return *next;
     }
 
     // Puts the item where it belongs, above or below the gap at i.
@@ -137,7 +240,7 @@ private:
 
     void sink(size_t i, const Item& item) {
         for (;;) {
-            const size_t first = children * i + 1, end = std::min(first + children, size());
+            const size_t first = children * i + 1, end = std::min(first + children, soon());
             if (first >= end) break;
             size_t least = first;
             for (size_t c = first + 1; c < end; ++c) least = at(c) < at(least) ? c : least;
@@ -149,6 +252,9 @@ private:
     }
 
     LargeVector<Item> heap_{before};
+    LargeVector<Item> later_;
+    size_t size_ = 0;
+    Key horizon_{};  // the heap has what doesn't come after it
     EdgePlaces& place_;
 };
 

@@ -1,0 +1,183 @@
+// EdgeQueue: whatever is done to it, the order that a sorted set has.
+#include "edge_queue.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iterator>
+#include <random>
+#include <set>
+#include <vector>
+
+namespace partwheel::test {
+namespace {
+
+constexpr int32_t edges = 3000;
+
+using Queue = EdgeQueue<Price>;
+
+struct Entry {
+    Price price;
+    int32_t edge;
+    bool operator<(const Entry& other) const { return price < other.price; }
+};
+
+// Prices as the clustering's: many ties in the concavity, none in all.
+class Prices {
+public:
+    explicit Prices(unsigned seed) : random_(seed) {}
+    Price operator()(int32_t edge, double least = 0) {
+        const double spread = std::uniform_real_distribution<>(0, 1)(random_);
+        const double concavity = spread < 0.3 ? least : least + spread * spread * spread;
+        return Price(Cost{concavity, static_cast<double>(random_() % 5), edge, edge + 1});
+    }
+    size_t below(size_t n) { return random_() % n; }
+
+private:
+    std::mt19937 random_;
+};
+
+// The queue and a sorted set, with the same edges in both.
+struct Both {
+    EdgePlaces places;
+    Queue queue{places};
+    std::set<Entry> sorted;
+    std::vector<Price> price = std::vector<Price>(edges);
+    std::vector<int32_t> queued;
+
+    Both() { places.resize(edges); }
+
+    void insert(int32_t edge, const Price& key) {
+        queue.insert(key, edge);
+        note(edge, key);
+    }
+    void note(int32_t edge, const Price& key) {
+        sorted.insert({key, edge});
+        price[static_cast<size_t>(edge)] = key;
+        queued.push_back(edge);
+    }
+    void update(int32_t edge, const Price& key) {
+        queue.update(key, edge);
+        sorted.erase({price[static_cast<size_t>(edge)], edge});
+        sorted.insert({key, edge});
+        price[static_cast<size_t>(edge)] = key;
+    }
+    void remove(size_t i) {
+        const int32_t edge = queued[i];
+        queued[i] = queued.back();
+        queued.pop_back();
+        queue.remove(edge);
+        sorted.erase({price[static_cast<size_t>(edge)], edge});
+    }
+    void compare() {
+        ASSERT_EQ(queue.size(), sorted.size());
+        ASSERT_EQ(queue.empty(), sorted.empty());
+        if (sorted.empty()) return;
+        ASSERT_EQ(queue.top().edge, sorted.begin()->edge);
+        const auto* second = queue.runner_up();
+        ASSERT_EQ(second != nullptr, sorted.size() > 1);
+        if (second) {
+            ASSERT_EQ(second->edge, std::next(sorted.begin())->edge);
+        }
+    }
+    void compare_key(int32_t edge) {
+        const Price &is = queue.key(edge), &should = price[static_cast<size_t>(edge)];
+        ASSERT_TRUE(places.queued(edge) && !(is < should) && !(should < is));
+    }
+};
+
+// All that is in it, cheapest first, each found where it is said to be.
+void expect_drained(Both& both) {
+    while (!both.sorted.empty()) {
+        ASSERT_NO_FATAL_FAILURE(both.compare());
+        const int32_t top = both.queue.top().edge;
+        both.queue.remove(top);
+        both.sorted.erase(both.sorted.begin());
+        ASSERT_FALSE(both.places.queued(top));
+    }
+    ASSERT_NO_FATAL_FAILURE(both.compare());
+}
+
+TEST(EdgeQueue, SortsWhatIsAppended) {
+    for (const int32_t count : {0, 1, 2, 5, 31, 33, 127, 129, 200, edges}) {
+        Prices prices(static_cast<unsigned>(count));
+        Both both;
+        for (int32_t e = 0; e < count; ++e) {
+            const Price price = prices(e);
+            both.queue.append(price, e);
+            both.note(e, price);
+        }
+        both.queue.sort();
+        ASSERT_NO_FATAL_FAILURE(expect_drained(both)) << count;
+    }
+}
+
+TEST(EdgeQueue, KeepsItsOrderUnderAnyChange) {
+    for (unsigned seed = 0; seed < 6; ++seed) {
+        Prices prices(seed);
+        Both both;
+        int32_t next = 0;
+        // It grows, is changed, and shrinks; seeds differ in how much of each.
+        for (int step = 0; step < 40000; ++step) {
+            const size_t dice = prices.below(10 + seed);
+            if (next < edges && (dice < 2 || both.queued.empty())) {
+                both.insert(next, prices(next));
+                ++next;
+            } else if (!both.queued.empty() && dice < 3) {
+                both.remove(prices.below(both.queued.size()));
+            } else if (!both.queued.empty()) {
+                const int32_t edge = both.queued[prices.below(both.queued.size())];
+                ASSERT_NO_FATAL_FAILURE(both.compare_key(edge));
+                both.update(edge, prices(edge));
+            }
+            ASSERT_NO_FATAL_FAILURE(both.compare()) << seed << " " << step;
+        }
+        ASSERT_NO_FATAL_FAILURE(expect_drained(both));
+    }
+}
+
+// What the clustering does: the top one goes or becomes dearer, some others become dearer, few cheaper.
+TEST(EdgeQueue, KeepsItsOrderWhilePricesRise) {
+    Prices prices(1);
+    Both both;
+    for (int32_t e = 0; e < edges; ++e) {
+        const Price price = prices(e);
+        both.queue.append(price, e);
+        both.note(e, price);
+    }
+    both.queue.sort();
+    for (int step = 0; !both.queued.empty(); ++step) {
+        ASSERT_NO_FATAL_FAILURE(both.compare()) << step;
+        const Entry top = *both.sorted.begin();
+        if (prices.below(2) == 0) {
+            both.remove(static_cast<size_t>(std::find(both.queued.begin(), both.queued.end(), top.edge) -
+                                            both.queued.begin()));
+        } else {
+            both.update(top.edge, prices(top.edge, top.price.concavity()));
+        }
+        for (int i = 0; i < 4 && !both.queued.empty(); ++i) {
+            const int32_t edge = both.queued[prices.below(both.queued.size())];
+            both.update(edge, prices(edge, 0.9 * both.price[static_cast<size_t>(edge)].concavity()));
+        }
+    }
+    EXPECT_TRUE(both.queue.empty());
+}
+
+TEST(EdgeQueue, OutlastsManyMoreEdgesThanItHolds) {
+    Prices prices(2);
+    Both both;
+    for (int32_t e = 0; e < 100; ++e) both.insert(e, prices(e));
+    for (int step = 0; step < 100000; ++step) {
+        const size_t i = prices.below(both.queued.size());
+        const int32_t edge = both.queued[i];
+        both.remove(i);
+        both.insert(edge, prices(edge, 2));  // later than all that is in the heap
+        if (step % 100 == 0) {
+            ASSERT_NO_FATAL_FAILURE(both.compare()) << step;
+        }
+    }
+    ASSERT_NO_FATAL_FAILURE(expect_drained(both));
+}
+
+}  // namespace
+}  // namespace partwheel::test
