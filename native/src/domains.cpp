@@ -16,9 +16,10 @@
 // A merge must find what it would have found in its turn. That holds if
 //   (a) no edge of its two clusters comes before it: inside, a queue sees to that, and a merge for which an edge left
 //       out comes first is left out, too;
-//   (b) no neighbour of its two clusters is one that was made after its turn. If there is one, all that its domain has
-//       made after that turn is taken back, latest turns first, to be done again. (A merge that was done after another
-//       with a later turn is no neighbour of that, by (b) again, so that the other can be taken back alone.)
+//   (b) no neighbour of its two clusters is one that was made after its turn. If there is one, that is taken back, to be
+//       done again, and before it what was done later next to it: that has found it there, so its turn is later, too.
+//       (A merge that was done after another with a later turn is no neighbour of that, by (b) again.) And with it what
+//       made it possible at a greater price: a queue inside, in the order of prices, must not have it too early.
 // Enough, for if edge (x, y) should have been contracted before a merge that has taken x: either y was there when that
 // was done, then (a) would have stopped it; or y was made later, then (b) took it back. A merge at the border is never
 // taken back: nothing that comes before it is left to be done.
@@ -31,6 +32,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <deque>
 #include <limits>
 #include <memory>
@@ -42,16 +44,18 @@ namespace {
 // With so few clusters left most of them are at the border.
 constexpr size_t few_clusters = 64;
 
-// A round is one merge in each domain for so many clusters: short enough that few are taken back.
-constexpr size_t clusters_a_merge = 1600;
+// A round is one merge in each domain for so many clusters: short enough that few must wait long for their turn.
+constexpr size_t clusters_a_merge = 800;
 constexpr size_t least_merges_a_round = 4;
 
 // A thread that is done with its round goes on, rather than wait for the other, until so many rounds' merges might
-// still be taken back.
-constexpr size_t patience = 4;
+// still be taken back. Few ever are.
+constexpr size_t patience = 64;
 
-// One tetrahedron in so many is asked where the middle is.
-constexpr size_t sample = 16;
+// One tetrahedron in so many is asked where the middle is, and what a plane cuts: so many planes in each direction, with
+// no less than half but this part of the tetrahedra on either side.
+constexpr size_t sample = 16, planes = 7;
+constexpr double off_middle = 0.02;
 
 // When a cluster is made, or an edge contracted.
 struct Stamp {
@@ -97,6 +101,8 @@ private:
         Contraction contraction;
         Numbered numbered;
         Stamp made_stay, made_go;  // as they were
+        Done* done_stay;           // the same
+        bool stands = false;       // and may still be taken back
     };
 
     // What one thread works with.
@@ -118,7 +124,7 @@ private:
         explicit Domain(EdgePlaces& places) : inside(places), left_out(places) {}
     };
 
-    static std::vector<uint8_t> halves(const TetMesh& mesh);
+    static std::vector<uint8_t> halves(const TetMesh& mesh, PairOfThreads& threads);
     Domain& domain(size_t d) { return d == 0 ? first_ : second_; }
     Stamp& made(int32_t cluster) { return made_[static_cast<size_t>(cluster)]; }
     const Stamp& made(int32_t cluster) const { return made_[static_cast<size_t>(cluster)]; }
@@ -126,6 +132,8 @@ private:
     uint8_t owner(int32_t cluster) const { return owner_[static_cast<size_t>(cluster)]; }
     char& border(int32_t cluster) { return border_[static_cast<size_t>(cluster)]; }
     char border(int32_t cluster) const { return border_[static_cast<size_t>(cluster)]; }
+
+    Done*& done_of(int32_t cluster) { return done_[static_cast<size_t>(cluster)]; }
 
     bool at_border(int32_t cluster) const;
     Home home(int32_t edge) const;
@@ -142,8 +150,9 @@ private:
     void merge_inside(size_t d, int32_t edge, const Turn& turn);
     LeftOut* next_left_out();
     bool inside_before(const Stamp& stamp) const;
+    Done* standing(int32_t cluster) const;
     bool take_back_after(const Turn& turn, int32_t edge);
-    void take_back(size_t d);
+    void take_back(Done& done);
     void merge_left_out();
     void merge_at_border(int32_t edge, const Turn& turn);
     void settle();
@@ -159,49 +168,67 @@ private:
     std::vector<uint8_t> owner_;
     std::vector<char> border_;  // char, for two threads may write neighbouring ones
     std::vector<Stamp> made_;
+    std::vector<Done*> done_;       // the latest that made this cluster inside; see standing()
     std::vector<Numbered> merges_;  // at the border
     size_t left_;                   // clusters
     size_t goal_ = 0;               // of the round: merges in each domain;
     size_t lead_ = 0;               // so many at most that are not final
 };
 
-// The half that each tetrahedron is in, of those made by the plane across an axis that cuts the fewest edges.
-std::vector<uint8_t> Domains::halves(const TetMesh& mesh) {
+// The half that each tetrahedron is in: of planes in some directions, near the middle, the one that cuts the fewest
+// edges is between them.
+std::vector<uint8_t> Domains::halves(const TetMesh& mesh, PairOfThreads& threads) {
     const size_t count = mesh.tetrahedra.size();
-    const auto place = [&](size_t t, size_t axis) {
-        double sum = 0;
-        for (const int32_t v : mesh.tetrahedra[t]) sum += mesh.vertices[static_cast<size_t>(v)][axis];
+    const auto middle = [&](size_t t) {
+        Point sum = {};
+        for (const int32_t v : mesh.tetrahedra[t])
+            for (size_t k = 0; k < 3; ++k) sum[k] += mesh.vertices[static_cast<size_t>(v)][k];
         return sum;
     };
-    size_t best_axis = 0, fewest = std::numeric_limits<size_t>::max();
-    double best_middle = 0;
-    std::vector<double> places;
-    for (size_t axis = 0; axis < 3; ++axis) {
-        places.clear();
-        for (size_t t = 0; t < count; t += sample) places.push_back(place(t, axis));
-        const auto middle = places.begin() + static_cast<std::ptrdiff_t>(places.size() / 2);
-        std::nth_element(places.begin(), middle, places.end());
-        size_t cut = 0;
-        for (size_t t = 0; t < count; t += sample) {
-            const bool side = place(t, axis) < *middle;
-            for (const int32_t n : mesh.neighbours[t])
-                cut += n >= 0 && (place(static_cast<size_t>(n), axis) < *middle) != side;
-        }
-        if (cut < fewest) {
-            fewest = cut;
-            best_axis = axis;
-            best_middle = *middle;
-        }
+    std::vector<Point> middles;
+    std::vector<std::array<Point, 2>> edges;
+    for (size_t t = 0; t < count; t += sample) {
+        middles.push_back(middle(t));
+        for (const int32_t n : mesh.neighbours[t])
+            if (n >= 0) edges.push_back({middles.back(), middle(static_cast<size_t>(n))});
     }
+
+    struct Plane {
+        size_t cut = 0;
+        double place = 0;
+    };
+    std::array<Plane, lattice_directions> best;
+    threads.share(lattice_directions, [&](size_t i, size_t) {
+        const Point direction = lattice_direction(i);
+        std::vector<double> places;
+        for (const Point& m : middles) places.push_back(dot(m, direction));
+        const auto quantile = [&](double part) {
+            const auto at = places.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(places.size()));
+            std::nth_element(places.begin(), at, places.end());
+            return *at;
+        };
+        const double first = quantile(0.5 - off_middle), last = quantile(0.5 + off_middle);
+        std::array<Plane, planes> tried;
+        for (size_t k = 0; k < planes; ++k) tried[k].place = std::lerp(first, last, double(k) / (planes - 1));
+        for (const auto& [a, b] : edges) {
+            const auto [low, high] = std::minmax({dot(a, direction), dot(b, direction)});
+            if (low < last && high >= first)
+                for (Plane& plane : tried) plane.cut += low < plane.place && plane.place <= high;
+        }
+        best[i] = std::ranges::min(tried, {}, &Plane::cut);
+    });
+    const auto chosen = std::ranges::min_element(best, {}, &Plane::cut);
+    const Point direction = lattice_direction(static_cast<size_t>(chosen - best.begin()));
     std::vector<uint8_t> half(count);
-    for (size_t t = 0; t < count; ++t) half[t] = place(t, best_axis) < best_middle ? 0 : 1;
+    for (size_t t = 0; t < count; ++t) half[t] = dot(middle(t), direction) < chosen->place ? 0 : 1;
     return half;
 }
 
 Domains::Domains(DualGraph& graph, const TetMesh& mesh, std::array<HullKernel*, 2> kernels, PairOfThreads& threads,
                  Progress& progress)
-    : graph_(graph), threads_(threads), progress_(progress), owner_(halves(mesh)),
-      border_(graph.clusters_count(), false), made_(graph.clusters_count()), left_(graph.clusters_count()) {
+    : graph_(graph), threads_(threads), progress_(progress), owner_(halves(mesh, threads)),
+      border_(graph.clusters_count(), false), made_(graph.clusters_count()),
+      done_(graph.clusters_count(), nullptr), left_(graph.clusters_count()) {
     for (size_t d = 0; d < 2; ++d) scratch_[d].kernel = kernels[d];
     places_.resize(graph.edges_count());
     for (int32_t c = 0; c < static_cast<int32_t>(graph.clusters_count()); ++c) border(c) = at_border(c);
@@ -358,6 +385,8 @@ void Domains::merge_inside(size_t d, int32_t edge, const Turn& now) {
     done->numbered = numbered;
     done->made_stay = merged == a ? made_a : made_b;
     done->made_go = merged == a ? made_b : made_a;
+    done->done_stay = std::exchange(done_of(merged), done.get());
+    done->stands = true;
     auto place_of = own.done.end();
     while (place_of != own.done.begin() && now.stamp < (*std::prev(place_of))->numbered.stamp) --place_of;
     own.done.insert(place_of, std::move(done));
@@ -387,31 +416,53 @@ bool Domains::inside_before(const Stamp& stamp) const {
     return false;
 }
 
-// Takes back the last merge inside the domain.
-void Domains::take_back(size_t d) {
-    Domain& own = domain(d);
-    Done& last = *own.done.back();
-    Contraction& c = last.contraction;
+// The merge inside that made the cluster, if it may be taken back.
+Domains::Done* Domains::standing(int32_t cluster) const {
+    Done* done = done_[static_cast<size_t>(cluster)];
+    return done && done->stands && done->numbered.number == graph_.at(cluster).number ? done : nullptr;
+}
+
+// (b) for a merge whose cluster is still there.
+void Domains::take_back(Done& done) {
+    Contraction& c = done.contraction;
+    const Numbered was = done.numbered;
+    const auto done_later = [&]() -> Done* {
+        for (const Link& link : graph_.at(c.stay).links)
+            if (Done* other = standing(link.cluster); other && other->numbered.number > was.number) return other;
+        return nullptr;
+    };
+    while (Done* other = done_later()) take_back(*other);
+
     for (const Link& link : graph_.at(c.stay).links) remove(link.edge);
     graph_.undo(c);
-    made(c.stay) = last.made_stay;
-    made(c.go) = last.made_go;
-    for (const auto& [edge, was] : c.edges) place(edge);
-    own.spare.push_back(std::move(own.done.back()));
-    own.done.pop_back();
+    made(c.stay) = done.made_stay;
+    made(c.go) = done.made_go;
+    done_of(c.stay) = done.done_stay;
+    for (const auto& [edge, as_it_was] : c.edges) place(edge);
     ++left_;
+    done.stands = false;
+    Domain& own = domain(owner(c.stay));
+    const auto place_of = std::find_if(own.done.rbegin(), own.done.rend(), [&](const auto& d) { return &*d == &done; });
+    own.spare.push_back(std::move(*place_of));
+    own.done.erase(std::prev(place_of.base()));
+
+    if (was.stamp.steps > 0)
+        for (const int32_t part : {c.stay, c.go})
+            if (Done* before = standing(part); before && !(before->numbered.stamp.price < was.stamp.price))
+                take_back(*before);
 }
 
 // (b) for an edge that was left out; whether anything had to be taken back.
 bool Domains::take_back_after(const Turn& now, int32_t edge) {
-    std::array<bool, 2> contradicted = {};
-    for (const int32_t c : {graph_.edge(edge).a, graph_.edge(edge).b})
-        for (const Link& link : graph_.at(c).links)
-            if (now.stamp < made(link.cluster)) contradicted[owner(link.cluster)] = true;
-    for (size_t d = 0; d < 2; ++d)
-        while (contradicted[d] && !domain(d).done.empty() && now.stamp < domain(d).done.back()->numbered.stamp)
-            take_back(d);
-    return contradicted[0] || contradicted[1];
+    const auto contradicts = [&]() -> Done* {
+        for (const int32_t c : {graph_.edge(edge).a, graph_.edge(edge).b})
+            for (const Link& link : graph_.at(c).links)
+                if (now.stamp < made(link.cluster)) return standing(link.cluster);
+        return nullptr;
+    };
+    bool any = false;
+    for (; Done* done = contradicts(); any = true) take_back(*done);
+    return any;
 }
 
 void Domains::merge_left_out() {
@@ -419,12 +470,14 @@ void Domains::merge_left_out() {
     while (LeftOut* queue = next_left_out()) {
         const auto top = queue->top();
         if (inside_before(top.stamp)) break;
+        prefetch_soon(graph_, *queue);
         if (!graph_.edge(top.edge).exact) {
             const auto* second = queue->runner_up();
             evaluate(top.edge, second ? dear * second->concavity() : std::numeric_limits<double>::infinity(),
                      scratch_[0]);
         } else if (!take_back_after(top, top.edge)) {
             queue->remove(top.edge);
+            prefetch_around(graph_, places_, top.edge);
             merge_at_border(top.edge, top);
         }
     }
@@ -464,6 +517,7 @@ void Domains::settle() {
         };
         for (; !own.done.empty() && final(own.done.front()->numbered.stamp); own.done.pop_front()) {
             own.merges.push_back(own.done.front()->numbered);
+            own.done.front()->stands = false;
             own.spare.push_back(std::move(own.done.front()));
         }
     }
@@ -510,7 +564,7 @@ std::vector<Merge> Domains::run() {
         progress_.advance(0.1 + 0.9 * (1 - static_cast<double>(left_) / static_cast<double>(graph_.clusters_count())));
     }
     for (size_t d = 0; d < 2; ++d)
-        while (!domain(d).done.empty()) take_back(d);
+        while (!domain(d).done.empty()) take_back(*domain(d).done.back());
     return in_order();
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 namespace partwheel {
@@ -28,6 +29,13 @@ inline double six_volumes(const Point& a, const Point& b, const Point& c, const 
 inline double area(const Point& a, const Point& b, const Point& c) {
     const Point n = cross(b - a, c - a);
     return std::sqrt(dot(n, n)) / 2;
+}
+
+// One of the 13 directions, up to their sign, whose coordinates are -1, 0 or 1.
+constexpr size_t lattice_directions = 13;
+inline Point lattice_direction(size_t i) {
+    const auto code = static_cast<int>(i) + 14;  // in base 3
+    return {static_cast<double>(code / 9 - 1), static_cast<double>(code / 3 % 3 - 1), static_cast<double>(code % 3 - 1)};
 }
 
 }  // namespace partwheel

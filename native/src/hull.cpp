@@ -762,10 +762,8 @@ Hull HullKernel::Impl::build(std::span<const int32_t> vertices) {
     // Extreme points first: most others are then inside from the start.
     std::vector<int32_t>& order = vertices_;
     order.clear();
-    for (int direction = 0; direction < 13 && vertices.size() > 32; ++direction) {
-        const int code = direction + 14;  // the 13 lattice directions of a half space, in base 3
-        const Point d = {static_cast<double>(code / 9 - 1), static_cast<double>(code / 3 % 3 - 1),
-                         static_cast<double>(code % 3 - 1)};
+    for (size_t i = 0; i < lattice_directions && vertices.size() > 32; ++i) {
+        const Point d = lattice_direction(i);
         const auto [low, high] = std::minmax_element(
             vertices.begin(), vertices.end(), [&](int32_t v, int32_t w) { return dot(at(v), d) < dot(at(w), d); });
         order.push_back(*low);
