@@ -14,8 +14,8 @@
 //    merge inside a domain before it.
 //
 // A merge must find what it would have found in its turn. That holds if
-//   (a) no edge of its two clusters comes before it: inside, a queue sees to that, and a merge for which an edge left
-//       out comes first is left out, too;
+//   (a) no edge of its two clusters comes before it: inside, a queue sees to that for the most part, and a merge for
+//       which an edge comes first that is left out, or has been taken back, is left out, too;
 //   (b) no neighbour of its two clusters is one that was made after its turn. If there is one, that is taken back, to be
 //       done again, and before it what was done later next to it: that has found it there, so its turn is later, too.
 //       (A merge that was done after another with a later turn is no neighbour of that, by (b) again.) And with it what
@@ -313,14 +313,18 @@ std::pair<int32_t, Domains::Numbered> Domains::contract(int32_t edge, const Stam
 
 // ---- Inside a domain: each thread in its own -----------------------------------------------------------------------
 
-// (a) and (b) for an edge that is its domain's cheapest inside.
+// (a) and (b) for an edge that is its domain's cheapest inside. A cheaper one than what made it possible has a later turn
+// than its price says, and others inside may come before it, where something has been taken back.
 bool Domains::may_merge(int32_t edge, const Turn& own, const Domain& in, Scratch& scratch) {
     const bool late = !in.done.empty() && own.stamp < in.done.back()->numbered.stamp;
+    const auto before = [&](int32_t e) {
+        if (const uint8_t home = graph_.edge(e).home; home > inside_1) return left_out(home).key(e) < own;
+        return own.stamp.steps > 0 && price(e) < own.stamp.price && turn(e) < own;
+    };
     for (const int32_t c : {graph_.edge(edge).a, graph_.edge(edge).b})
         for (const Link& link : graph_.at(c).links) {
             if (late && own.stamp < made(link.cluster)) return false;
-            while (graph_.edge(link.edge).home > inside_1 &&
-                   left_out(graph_.edge(link.edge).home).key(link.edge) < own) {
+            while (before(link.edge)) {
                 if (graph_.edge(link.edge).exact) return false;
                 evaluate(link.edge, dear * own.concavity(), scratch);
             }
