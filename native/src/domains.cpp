@@ -85,7 +85,7 @@ enum Home : uint8_t { inside_0, inside_1, left_out_0, left_out_1, across };
 class Domains {
 public:
     Domains(DualGraph& graph, const TetMesh& mesh, std::array<HullKernel*, 2> kernels, PairOfThreads& threads,
-            Progress& progress);
+            Progress& progress, const Pace& pace);
     std::vector<Merge> run();
 
 private:
@@ -118,7 +118,7 @@ private:
         std::vector<std::unique_ptr<Done>> spare;  // with their memory
         std::vector<Numbered> merges;              // final
         int32_t numbered = 0;                      // also what was taken back
-        size_t merged = 0;                         // in this round
+        size_t goal = 0, merged = 0;               // merges in this round
         std::atomic<bool> finished{false};
 
         explicit Domain(EdgePlaces& places) : inside(places), left_out(places) {}
@@ -161,6 +161,7 @@ private:
     DualGraph& graph_;
     PairOfThreads& threads_;
     Progress& progress_;
+    const Pace& pace_;
     EdgePlaces places_;
     Domain first_{places_}, second_{places_};
     LeftOut across_{places_};
@@ -171,8 +172,7 @@ private:
     std::vector<Done*> done_;       // the latest that made this cluster inside; see standing()
     std::vector<Numbered> merges_;  // at the border
     size_t left_;                   // clusters
-    size_t goal_ = 0;               // of the round: merges in each domain;
-    size_t lead_ = 0;               // so many at most that are not final
+    size_t lead_ = 0;               // so many merges of a domain at most that are not final
 };
 
 // The half that each tetrahedron is in: of planes in some directions, near the middle, the one that cuts the fewest
@@ -225,8 +225,8 @@ std::vector<uint8_t> Domains::halves(const TetMesh& mesh, PairOfThreads& threads
 }
 
 Domains::Domains(DualGraph& graph, const TetMesh& mesh, std::array<HullKernel*, 2> kernels, PairOfThreads& threads,
-                 Progress& progress)
-    : graph_(graph), threads_(threads), progress_(progress), owner_(halves(mesh, threads)),
+                 Progress& progress, const Pace& pace)
+    : graph_(graph), threads_(threads), progress_(progress), pace_(pace), owner_(halves(mesh, threads)),
       border_(graph.clusters_count(), false), made_(graph.clusters_count()),
       done_(graph.clusters_count(), nullptr), left_(graph.clusters_count()) {
     for (size_t d = 0; d < 2; ++d) scratch_[d].kernel = kernels[d];
@@ -341,9 +341,9 @@ void Domains::advance(size_t d) {
         // What belongs before or right after the latest merge is not left for later: others would wait for it.
         const bool may_stop = own.done.empty() || own.done.back()->numbered.stamp.price < own.inside.top();
         if (may_stop && own.done.size() >= lead_) break;
-        if (may_stop && own.merged >= goal_) {
+        if (may_stop && own.merged >= own.goal) {
             own.finished.store(true, std::memory_order_relaxed);
-            if (other.finished.load(std::memory_order_relaxed)) break;
+            if (pace_ || other.finished.load(std::memory_order_relaxed)) break;
         }
         prefetch_soon(graph_, own.inside);
         const auto top = own.inside.top();
@@ -557,9 +557,11 @@ std::vector<Merge> Domains::in_order() {
 }
 
 std::vector<Merge> Domains::run() {
-    while (left_ > few_clusters && threads_.pays() && !(first_.inside.empty() && second_.inside.empty())) {
-        goal_ = std::max(left_ / clusters_a_merge, least_merges_a_round);
-        lead_ = patience * goal_;
+    while (left_ > few_clusters && (pace_ || threads_.pays()) && !(first_.inside.empty() && second_.inside.empty())) {
+        const size_t goal = std::max(left_ / clusters_a_merge, least_merges_a_round);
+        const auto goals = pace_ ? pace_(goal) : std::array{goal, goal};
+        for (size_t d = 0; d < 2; ++d) domain(d).goal = goals[d];
+        lead_ = patience * goal;
         first_.finished = second_.finished = false;
         threads_.share(2, [this](size_t d, size_t) { advance(d); });
         left_ -= first_.merged + second_.merged;
@@ -575,8 +577,8 @@ std::vector<Merge> Domains::run() {
 }  // namespace
 
 std::vector<Merge> merge_in_domains(DualGraph& graph, const TetMesh& mesh, std::array<HullKernel*, 2> kernels,
-                                    PairOfThreads& threads, Progress& progress) {
-    return Domains(graph, mesh, kernels, threads, progress).run();
+                                    PairOfThreads& threads, Progress& progress, const Pace& pace) {
+    return Domains(graph, mesh, kernels, threads, progress, pace).run();
 }
 
 }  // namespace partwheel

@@ -6,13 +6,19 @@
 #include "progress.h"
 
 #include <array>
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace partwheel {
 
-// Contracts the dual graph's edges, cheapest first, until some hundreds of clusters are left, or no edge, or until two
-// threads don't pay any more; returns the merges in their order. Threads and kernels belong together.
+// How many merges each thread makes in a round that has so many.
+using Pace = std::function<std::array<size_t, 2>(size_t)>;
+
+// Contracts the dual graph's edges, cheapest first, until some dozens of clusters are left, or no edge, or until two
+// threads don't pay any more; returns the merges in their order. Threads and kernels belong together. The pace is for
+// tests: without one, who is done goes on until the other is.
 std::vector<Merge> merge_in_domains(DualGraph& graph, const TetMesh& mesh, std::array<HullKernel*, 2> kernels,
-                                    PairOfThreads& threads, Progress& progress);
+                                    PairOfThreads& threads, Progress& progress, const Pace& pace = {});
 
 }  // namespace partwheel
