@@ -16,10 +16,10 @@
 // A merge must find what it would have found in its turn. That holds if
 //   (a) no edge of its two clusters comes before it: inside, a queue sees to that for the most part, and a merge for
 //       which an edge comes first that is left out, or has been taken back, is left out, too;
-//   (b) no neighbour of its two clusters is one that was made after its turn. If there is one, that is taken back, to be
-//       done again, and before it what was done later next to it: that has found it there, so its turn is later, too.
-//       (A merge that was done after another with a later turn is no neighbour of that, by (b) again.) And with it what
-//       made it possible at a greater price: a queue inside, in the order of prices, must not have it too early.
+//   (b) no neighbour of its two clusters is one that was made after its turn. If there is one, that is taken back, to
+//       be done again, and before it what was done later next to it: that has found it there, so its turn is later,
+//       too. (A merge that was done after another with a later turn is no neighbour of that, by (b) again.) And with it
+//       what made it possible at a greater price: a queue inside, in the order of prices, must not have it too early.
 // Enough, for if edge (x, y) should have been contracted before a merge that has taken x: either y was there when that
 // was done, then (a) would have stopped it; or y was made later, then (b) took it back. A merge at the border is never
 // taken back: nothing that comes before it is left to be done.
@@ -52,8 +52,8 @@ constexpr size_t least_merges_a_round = 4;
 // still be taken back. Few ever are.
 constexpr size_t patience = 64;
 
-// One tetrahedron in so many is asked where the middle is, and what a plane cuts: so many planes in each direction, with
-// no less than half but this part of the tetrahedra on either side.
+// One tetrahedron in so many is asked where the middle is, and what a plane cuts: so many planes in each direction,
+// with no less than half but this part of the tetrahedra on either side.
 constexpr size_t sample = 16, planes = 7;
 constexpr double off_middle = 0.02;
 
@@ -152,7 +152,8 @@ private:
     bool inside_before(const Stamp& stamp) const;
     Done* standing(int32_t cluster) const;
     bool take_back_after(const Turn& turn, int32_t edge);
-    void take_back(Done& done);
+    void take_back(Done& first);
+    void undo(Done& done);
     void merge_left_out();
     void merge_at_border(int32_t edge, const Turn& turn);
     void settle();
@@ -209,7 +210,8 @@ std::vector<uint8_t> Domains::halves(const TetMesh& mesh, PairOfThreads& threads
         };
         const double first = quantile(0.5 - off_middle), last = quantile(0.5 + off_middle);
         std::array<Plane, planes> tried;
-        for (size_t k = 0; k < planes; ++k) tried[k].place = std::lerp(first, last, double(k) / (planes - 1));
+        for (size_t k = 0; k < planes; ++k)
+            tried[k].place = std::lerp(first, last, static_cast<double>(k) / (planes - 1));
         for (const auto& [a, b] : edges) {
             const auto [low, high] = std::minmax({dot(a, direction), dot(b, direction)});
             if (low < last && high >= first)
@@ -313,8 +315,8 @@ std::pair<int32_t, Domains::Numbered> Domains::contract(int32_t edge, const Stam
 
 // ---- Inside a domain: each thread in its own -----------------------------------------------------------------------
 
-// (a) and (b) for an edge that is its domain's cheapest inside. A cheaper one than what made it possible has a later turn
-// than its price says, and others inside may come before it, where something has been taken back.
+// (a) and (b) for an edge that is its domain's cheapest inside. If it is cheaper than what made it possible, its turn is
+// later than its price says, and others inside may come before it, where something has been taken back.
 bool Domains::may_merge(int32_t edge, const Turn& own, const Domain& in, Scratch& scratch) {
     const bool late = !in.done.empty() && own.stamp < in.done.back()->numbered.stamp;
     const auto before = [&](int32_t e) {
@@ -426,34 +428,48 @@ Domains::Done* Domains::standing(int32_t cluster) const {
     return done && done->stands && done->numbered.number == graph_.at(cluster).number ? done : nullptr;
 }
 
-// (b) for a merge whose cluster is still there.
-void Domains::take_back(Done& done) {
-    Contraction& c = done.contraction;
-    const Numbered was = done.numbered;
-    const auto done_later = [&]() -> Done* {
-        for (const Link& link : graph_.at(c.stay).links)
-            if (Done* other = standing(link.cluster); other && other->numbered.number > was.number) return other;
+// (b) for a merge whose cluster is still there. All that goes with it is on a list of its own, not on the thread's
+// stack, for it may be much.
+void Domains::take_back(Done& first) {
+    const auto done_later = [&](const Done& done) -> Done* {
+        for (const Link& link : graph_.at(done.contraction.stay).links)
+            if (Done* other = standing(link.cluster); other && other->numbered.number > done.numbered.number)
+                return other;
         return nullptr;
     };
-    while (Done* other = done_later()) take_back(*other);
+    std::vector<Done*> waiting{&first};
+    while (!waiting.empty()) {
+        Done& done = *waiting.back();
+        if (!done.stands) {  // it went with another
+            waiting.pop_back();
+        } else if (Done* later = done_later(done)) {
+            waiting.push_back(later);
+        } else {
+            waiting.pop_back();
+            undo(done);
+            if (done.numbered.stamp.steps == 0) continue;
+            for (const int32_t part : {done.contraction.stay, done.contraction.go})
+                if (Done* before = standing(part);
+                    before && !(before->numbered.stamp.price < done.numbered.stamp.price))
+                    waiting.push_back(before);
+        }
+    }
+}
 
+void Domains::undo(Done& done) {
+    Contraction& c = done.contraction;
     for (const Link& link : graph_.at(c.stay).links) remove(link.edge);
     graph_.undo(c);
     made(c.stay) = done.made_stay;
     made(c.go) = done.made_go;
     done_of(c.stay) = done.done_stay;
-    for (const auto& [edge, as_it_was] : c.edges) place(edge);
-    ++left_;
+    for (const auto& [edge, was] : c.edges) place(edge);
     done.stands = false;
+    ++left_;
     Domain& own = domain(owner(c.stay));
     const auto place_of = std::find_if(own.done.rbegin(), own.done.rend(), [&](const auto& d) { return &*d == &done; });
     own.spare.push_back(std::move(*place_of));
     own.done.erase(std::prev(place_of.base()));
-
-    if (was.stamp.steps > 0)
-        for (const int32_t part : {c.stay, c.go})
-            if (Done* before = standing(part); before && !(before->numbered.stamp.price < was.stamp.price))
-                take_back(*before);
 }
 
 // (b) for an edge that was left out; whether anything had to be taken back.
