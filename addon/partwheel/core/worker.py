@@ -105,7 +105,7 @@ class Job:
 
     @property
     def process_id(self):
-        """Of the worker that runs now, or ran last; None before the first."""
+        """Of the worker that runs now, or ran last; None if none could be started."""
         return self._process and self._process.pid
 
     def _launch(self):
