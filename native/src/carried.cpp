@@ -1,12 +1,12 @@
 // Parts carried over: another filling, the part that each tetrahedron is of, and the tree of that.
 #include "carried.h"
 
+#include "claims.h"
 #include "error.h"
 #include "hull.h"
 #include "rough.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 namespace partwheel {
@@ -69,10 +69,6 @@ std::vector<int32_t> spread(const Solid& solid, const std::vector<int32_t>& part
         const auto at = [&](int32_t v) -> const Point& { return mesh.vertices[static_cast<size_t>(v)]; };
         return area(at(a), at(b), at(c));
     };
-    struct Claim {
-        int32_t tetrahedron, part;
-        double area;
-    };
     std::vector<Claim> claims;
     for (size_t i = 0; i < part_of_triangle.size(); ++i) {
         const Triangle& t = solid.surface.triangles[i];
@@ -80,24 +76,11 @@ std::vector<int32_t> spread(const Solid& solid, const std::vector<int32_t>& part
     }
     std::vector<int32_t> part(mesh.tetrahedra.size(), -1), layer;
     while (!claims.empty()) {
-        std::sort(claims.begin(), claims.end(), [](const Claim& a, const Claim& b) {
-            return std::tie(a.tetrahedron, a.part, a.area) < std::tie(b.tetrahedron, b.part, b.area);
-        });
         layer.clear();
-        for (size_t i = 0; i < claims.size();) {
-            const int32_t t = claims[i].tetrahedron;
-            double most = -1;
-            while (i < claims.size() && claims[i].tetrahedron == t) {
-                const int32_t p = claims[i].part;
-                double sum = 0;
-                for (; i < claims.size() && claims[i].tetrahedron == t && claims[i].part == p; ++i)
-                    sum += claims[i].area;
-                if (sum <= most) continue;
-                most = sum;
-                part[static_cast<size_t>(t)] = p;
-            }
+        settle_claims(std::move(claims), [&](int32_t t, int32_t p) {
+            part[static_cast<size_t>(t)] = p;
             layer.push_back(t);
-        }
+        });
         claims.clear();
         for (const int32_t t : layer)
             for (size_t k = 0; k < 4; ++k) {

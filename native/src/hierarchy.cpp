@@ -1,6 +1,7 @@
 // The finished hierarchy: flat arrays, questions, saving and loading.
 #include "hierarchy.h"
 
+#include "claims.h"
 #include "hull.h"
 #include "packed.h"
 
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace partwheel {
@@ -61,24 +63,10 @@ void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const i
 // The source face that each outer facet of the tetrahedra is of, or nearest to; -1: none. Sorted by leaf, then corner.
 std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh& mesh,
                                            std::span<const int32_t> leaf_of_tet) {
-    std::vector<Piece> pieces = surface.pieces;
-    std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
-        return std::tie(a.triangle, a.face, a.area) < std::tie(b.triangle, b.face, b.area);
-    });
+    std::vector<Claim> claims;
+    for (const Piece& piece : surface.pieces) claims.push_back({piece.triangle, piece.face, piece.area});
     std::vector<int32_t> face(surface.triangles.size(), -1);
-    for (size_t i = 0; i < pieces.size();) {
-        const int32_t t = pieces[i].triangle;
-        double most = -1;
-        while (i < pieces.size() && pieces[i].triangle == t) {
-            const int32_t f = pieces[i].face;
-            double shared = 0;
-            for (; i < pieces.size() && pieces[i].triangle == t && pieces[i].face == f; ++i) shared += pieces[i].area;
-            if (shared > most) {
-                most = shared;
-                face[static_cast<size_t>(t)] = f;
-            }
-        }
-    }
+    settle_claims(std::move(claims), [&](int32_t t, int32_t f) { face[static_cast<size_t>(t)] = f; });
     struct Outer {
         int32_t leaf, corner, face;
     };

@@ -15,8 +15,8 @@ constexpr int looks_before_yielding = 2000;
 // millisecond, before it goes to sleep: waking it takes longer than most tasks.
 constexpr int looks_before_sleeping = 4000;
 
-// Two threads pay while the caller has been alone for no more than this part of its time, and these seconds, some of what
-// a system gives to another program at a time.
+// Two threads pay while the caller has been alone for no more than this part of its time, and these seconds, a few times
+// what a system gives to another program at a time.
 constexpr double tolerated_part = 1.0 / 8, tolerated_seconds = 12e-3;
 
 void pause() {

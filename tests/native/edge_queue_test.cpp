@@ -47,6 +47,14 @@ struct Both {
 
     Both() { places.resize(edges); }
 
+    void fill(int32_t count, Prices& prices) {
+        for (int32_t e = 0; e < count; ++e) {
+            const Price key = prices(e);
+            queue.append(key, e);
+            note(e, key);
+        }
+        queue.sort();
+    }
     void insert(int32_t edge, const Price& key) {
         queue.insert(key, edge);
         note(edge, key);
@@ -102,12 +110,7 @@ TEST(EdgeQueue, SortsWhatIsAppended) {
     for (const int32_t count : {0, 1, 2, 5, 31, 33, 127, 129, 200, edges}) {
         Prices prices(static_cast<unsigned>(count));
         Both both;
-        for (int32_t e = 0; e < count; ++e) {
-            const Price price = prices(e);
-            both.queue.append(price, e);
-            both.note(e, price);
-        }
-        both.queue.sort();
+        both.fill(count, prices);
         ASSERT_NO_FATAL_FAILURE(expect_drained(both)) << count;
     }
 }
@@ -140,12 +143,7 @@ TEST(EdgeQueue, KeepsItsOrderUnderAnyChange) {
 TEST(EdgeQueue, KeepsItsOrderWhilePricesRise) {
     Prices prices(1);
     Both both;
-    for (int32_t e = 0; e < edges; ++e) {
-        const Price price = prices(e);
-        both.queue.append(price, e);
-        both.note(e, price);
-    }
-    both.queue.sort();
+    both.fill(edges, prices);
     for (int step = 0; !both.queued.empty(); ++step) {
         ASSERT_NO_FATAL_FAILURE(both.compare()) << step;
         const Entry top = *both.sorted.begin();

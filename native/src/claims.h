@@ -1,0 +1,41 @@
+// Several that claim the same, each with some area: who has the most gets it.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+namespace partwheel {
+
+struct Claim {
+    int32_t what, who;
+    double area;
+};
+
+// Calls give(what, who) once for each that is claimed, in rising order: who claims most of it in all, of equals the
+// lowest. The order of the claims is no matter, not even to the rounding of the sums.
+template <class Give>
+void settle_claims(std::vector<Claim> claims, const Give& give) {
+    std::sort(claims.begin(), claims.end(), [](const Claim& a, const Claim& b) {
+        return std::tie(a.what, a.who, a.area) < std::tie(b.what, b.who, b.area);
+    });
+    for (size_t i = 0; i < claims.size();) {
+        const int32_t what = claims[i].what;
+        int32_t winner = claims[i].who;
+        double most = -1;
+        while (i < claims.size() && claims[i].what == what) {
+            const int32_t who = claims[i].who;
+            double sum = 0;
+            for (; i < claims.size() && claims[i].what == what && claims[i].who == who; ++i) sum += claims[i].area;
+            if (sum > most) {
+                most = sum;
+                winner = who;
+            }
+        }
+        give(what, winner);
+    }
+}
+
+}  // namespace partwheel
