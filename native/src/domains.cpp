@@ -80,6 +80,7 @@ struct Turn {
     }
 };
 
+// Where an edge is queued; and, but for the last, what a cluster is: of which domain, and inside it or at the border.
 enum Home : uint8_t { inside_0, inside_1, left_out_0, left_out_1, across };
 
 class Domains {
@@ -101,23 +102,24 @@ private:
         Contraction contraction;
         Numbered numbered;
         Stamp made_stay, made_go;  // as they were
-        Done* done_stay;           // the same
-        bool stands = false;       // and may still be taken back
     };
+
+    using DoneList = std::deque<std::unique_ptr<Done>>;
 
     // What one thread works with.
     struct Scratch {
         HullKernel* kernel = nullptr;
-        std::vector<int32_t> removed;
+        std::vector<int32_t> removed, cheaper;
     };
 
     struct Domain {
         Inside inside;
         LeftOut left_out;
-        std::deque<std::unique_ptr<Done>> done;    // inside, not yet final: in the order of their stamps
+        DoneList done;                             // inside, not yet final: in the order of their stamps
+        Stamp latest;                              // of these
         std::vector<std::unique_ptr<Done>> spare;  // with their memory
+        std::vector<Done*> by_number;              // null for what is final or has been taken back
         std::vector<Numbered> merges;              // final
-        int32_t numbered = 0;                      // also what was taken back
         size_t goal = 0, merged = 0;               // merges in this round
         std::atomic<bool> finished{false};
 
@@ -125,38 +127,43 @@ private:
     };
 
     static std::vector<uint8_t> halves(const TetMesh& mesh, PairOfThreads& threads);
-    Domain& domain(size_t d) { return d == 0 ? first_ : second_; }
     Stamp& made(int32_t cluster) { return made_[static_cast<size_t>(cluster)]; }
     const Stamp& made(int32_t cluster) const { return made_[static_cast<size_t>(cluster)]; }
-    uint8_t& owner(int32_t cluster) { return owner_[static_cast<size_t>(cluster)]; }
-    uint8_t owner(int32_t cluster) const { return owner_[static_cast<size_t>(cluster)]; }
-    char& border(int32_t cluster) { return border_[static_cast<size_t>(cluster)]; }
-    char border(int32_t cluster) const { return border_[static_cast<size_t>(cluster)]; }
+    uint8_t& site(int32_t cluster) { return sites_[static_cast<size_t>(cluster)]; }
+    uint8_t site(int32_t cluster) const { return sites_[static_cast<size_t>(cluster)]; }
+    uint8_t owner(int32_t cluster) const { return site(cluster) & 1; }
 
-    Done*& done_of(int32_t cluster) { return done_[static_cast<size_t>(cluster)]; }
-
-    bool at_border(int32_t cluster) const;
+    bool look_whether_at_border(int32_t cluster);
     Home home(int32_t edge) const;
     Price price(int32_t edge) const { return Price(graph_.cost(graph_.edge(edge))); }
-    Turn turn(int32_t edge) const;
-    LeftOut& left_out(uint8_t home) { return home == across ? across_ : domain(home - left_out_0).left_out; }
+    Turn turn(int32_t edge, const Price& own) const;
+    LeftOut& left_out(uint8_t home) { return home == across ? across_ : domains_[home - left_out_0].left_out; }
     void remove(int32_t edge);
-    void place(int32_t edge);
+    void place(int32_t edge, const Price& own);
+    void place(int32_t edge) { place(edge, price(edge)); }
+    template <class Queue>
+    void prefetch(const Queue& queue) const;
     void evaluate(int32_t edge, double concavity, Scratch& scratch);
+    template <class Queue>
+    bool price_top(const Queue& queue, Scratch& scratch);
     std::pair<int32_t, Numbered> contract(int32_t edge, const Stamp& stamp, int32_t number, Scratch& scratch,
                                           Contraction* undo);
+    void price_links(int32_t merged, const Price& paid, Scratch& scratch);
     bool may_merge(int32_t edge, const Turn& turn, const Domain& domain, Scratch& scratch);
+    void settle(size_t d);
     void advance(size_t d);
     void merge_inside(size_t d, int32_t edge, const Turn& turn);
     LeftOut* next_left_out();
     bool inside_before(const Stamp& stamp) const;
-    Done* standing(int32_t cluster) const;
+    static DoneList::iterator place_among(DoneList& done, const Stamp& stamp);
+    Done*& done(int32_t number);
+    Done* standing(int32_t cluster);
     bool take_back_after(const Turn& turn, int32_t edge);
     void take_back(Done& first);
     void undo(Done& done);
     void merge_left_out();
     void merge_at_border(int32_t edge, const Turn& turn);
-    void settle();
+    Stamp settled_before();
     std::vector<Merge> in_order();
 
     DualGraph& graph_;
@@ -164,15 +171,14 @@ private:
     Progress& progress_;
     const Pace& pace_;
     EdgePlaces places_;
-    Domain first_{places_}, second_{places_};
+    std::array<Domain, 2> domains_{Domain(places_), Domain(places_)};
     LeftOut across_{places_};
     std::array<Scratch, 2> scratch_;
-    std::vector<uint8_t> owner_;
-    std::vector<char> border_;  // char, for two threads may write neighbouring ones
+    std::vector<uint8_t> sites_;
     std::vector<Stamp> made_;
-    std::vector<Done*> done_;       // the latest that made this cluster inside; see standing()
     std::vector<Numbered> merges_;  // at the border
     size_t left_;                   // clusters
+    Stamp settled_;                 // what has been done before that is final
     size_t lead_ = 0;               // so many merges of a domain at most that are not final
 };
 
@@ -228,54 +234,55 @@ std::vector<uint8_t> Domains::halves(const TetMesh& mesh, PairOfThreads& threads
 
 Domains::Domains(DualGraph& graph, const TetMesh& mesh, std::array<HullKernel*, 2> kernels, PairOfThreads& threads,
                  Progress& progress, const Pace& pace)
-    : graph_(graph), threads_(threads), progress_(progress), pace_(pace), owner_(halves(mesh, threads)),
-      border_(graph.clusters_count(), false), made_(graph.clusters_count()),
-      done_(graph.clusters_count(), nullptr), left_(graph.clusters_count()) {
+    : graph_(graph), threads_(threads), progress_(progress), pace_(pace), sites_(halves(mesh, threads)),
+      made_(graph.clusters_count()), left_(graph.clusters_count()) {
     for (size_t d = 0; d < 2; ++d) scratch_[d].kernel = kernels[d];
     places_.resize(graph.edges_count());
-    for (int32_t c = 0; c < static_cast<int32_t>(graph.clusters_count()); ++c) border(c) = at_border(c);
+    for (int32_t c = 0; c < static_cast<int32_t>(graph.clusters_count()); ++c) look_whether_at_border(c);
     const auto edges = static_cast<int32_t>(graph.edges_count());
     threads_.share(2, [&](size_t d, size_t) {
-        domain(d).inside.reserve(graph.edges_count() * 5 / 8);
+        domains_[d].inside.reserve(graph.edges_count() * 5 / 8);
         for (int32_t e = 0; e < edges; ++e)
             if (owner(graph.edge(e).a) == d && home(e) == inside_0 + d) {
                 graph.edge(e).home = static_cast<uint8_t>(inside_0 + d);
-                domain(d).inside.append(price(e), e);
+                domains_[d].inside.append(price(e), e);
             }
-        domain(d).inside.sort();
+        domains_[d].inside.sort();
     });
     for (int32_t e = 0; e < edges; ++e)
         if (!places_.queued(e)) place(e);
 }
 
-bool Domains::at_border(int32_t cluster) const {
+// Notes that of a cluster whose owner is known; whether it has changed.
+bool Domains::look_whether_at_border(int32_t cluster) {
     const auto& links = graph_.at(cluster).links;
-    return std::any_of(links.begin(), links.end(), [&](const Link& l) { return owner(l.cluster) != owner(cluster); });
+    const bool is = std::any_of(links.begin(), links.end(),
+                                [&](const Link& l) { return owner(l.cluster) != owner(cluster); });
+    const auto now = static_cast<uint8_t>((is ? left_out_0 : inside_0) + owner(cluster));
+    return std::exchange(site(cluster), now) != now;
 }
 
 Home Domains::home(int32_t edge) const {
-    const auto [a, b] = std::pair(graph_.edge(edge).a, graph_.edge(edge).b);
-    if (owner(a) != owner(b)) return across;
-    return static_cast<Home>((border(a) || border(b) ? left_out_0 : inside_0) + owner(a));
+    const uint8_t a = site(graph_.edge(edge).a), b = site(graph_.edge(edge).b);
+    return static_cast<Home>(((a ^ b) & 1) != 0 ? across : a | b);
 }
 
 // As far as the edge's price is known.
-Turn Domains::turn(int32_t edge) const {
+Turn Domains::turn(int32_t edge, const Price& own) const {
     const Stamp &a = made(graph_.edge(edge).a), &b = made(graph_.edge(edge).b), &later = a < b ? b : a;
-    const Price own = price(edge);
     return {later.price < own ? Stamp{own, 0} : Stamp{later.price, later.steps + 1}, own};
 }
 
 void Domains::remove(int32_t edge) {
     const uint8_t at = graph_.edge(edge).home;
     if (at <= inside_1)
-        domain(at).inside.remove(edge);
+        domains_[at].inside.remove(edge);
     else
         left_out(at).remove(edge);
 }
 
 // Puts the edge where it belongs now.
-void Domains::place(int32_t edge) {
+void Domains::place(int32_t edge, const Price& own) {
     const Home to = home(edge);
     uint8_t& at = graph_.edge(edge).home;
     bool queued = places_.queued(edge);
@@ -286,9 +293,9 @@ void Domains::place(int32_t edge) {
     at = to;
     const auto put = [&](auto& queue, const auto& key) { queued ? queue.update(key, edge) : queue.insert(key, edge); };
     if (to <= inside_1)
-        put(domain(to).inside, price(edge));
+        put(domains_[to].inside, own);
     else
-        put(left_out(to), turn(edge));
+        put(left_out(to), turn(edge, own));
 }
 
 void Domains::evaluate(int32_t edge, double concavity, Scratch& scratch) {
@@ -296,6 +303,23 @@ void Domains::evaluate(int32_t edge, double concavity, Scratch& scratch) {
     pricing.work(*scratch.kernel);
     graph_.priced(edge, pricing);
     place(edge);
+}
+
+// What comes soon in the queue.
+template <class Queue>
+void Domains::prefetch(const Queue& queue) const {
+    prefetch_soon(graph_, queue);
+    for (const auto& item : queue.items(1, 3))
+        for (const int32_t c : {graph_.edge(item.edge).a, graph_.edge(item.edge).b}) prefetch_line(&made(c));
+}
+
+// If the price of the queue's first edge is not known yet: finds it, or that it comes later.
+template <class Queue>
+bool Domains::price_top(const Queue& queue, Scratch& scratch) {
+    if (graph_.edge(queue.top().edge).exact) return false;
+    const auto* second = queue.runner_up();
+    evaluate(queue.top().edge, second ? dear * second->concavity() : std::numeric_limits<double>::infinity(), scratch);
+    return true;
 }
 
 // Contracts an edge that is in no queue any more; returns the cluster.
@@ -306,11 +330,23 @@ std::pair<int32_t, Domains::Numbered> Domains::contract(int32_t edge, const Stam
     const Merge merge = graph_.contract(edge, number, *scratch.kernel, scratch.removed, merged, undo);
     made(merged) = stamp;
     for (const int32_t e : scratch.removed) remove(e);
-    for (const Link& link : graph_.at(merged).links) {
-        graph_.prefetch(link.edge, merged);
-        graph_.refresh(link.edge);
-    }
     return {merged, {merge, stamp, number}};
+}
+
+// For all edges of a cluster that has just been made, at this price. Those that may be cheaper are the next that a
+// queue would ask for.
+void Domains::price_links(int32_t merged, const Price& paid, Scratch& scratch) {
+    scratch.cheaper.clear();
+    for (const Link& link : graph_.at(merged).links) {
+        graph_.refresh(link.edge);
+        if (const Price bound = price(link.edge); bound < paid) {
+            graph_.prefetch(link.edge, merged);
+            scratch.cheaper.push_back(link.edge);
+        } else {
+            place(link.edge, bound);
+        }
+    }
+    for (const int32_t e : scratch.cheaper) evaluate(e, dear * paid.concavity(), scratch);
 }
 
 // ---- Inside a domain: each thread in its own -----------------------------------------------------------------------
@@ -318,10 +354,12 @@ std::pair<int32_t, Domains::Numbered> Domains::contract(int32_t edge, const Stam
 // (a) and (b) for an edge that is its domain's cheapest inside. If it is cheaper than what made it possible, its turn is
 // later than its price says, and others inside may come before it, where something has been taken back.
 bool Domains::may_merge(int32_t edge, const Turn& own, const Domain& in, Scratch& scratch) {
-    const bool late = !in.done.empty() && own.stamp < in.done.back()->numbered.stamp;
+    const bool late = own.stamp < in.latest;
     const auto before = [&](int32_t e) {
         if (const uint8_t home = graph_.edge(e).home; home > inside_1) return left_out(home).key(e) < own;
-        return own.stamp.steps > 0 && price(e) < own.stamp.price && turn(e) < own;
+        if (own.stamp.steps == 0) return false;
+        const Price other = price(e);
+        return other < own.stamp.price && turn(e, other) < own;
     };
     for (const int32_t c : {graph_.edge(edge).a, graph_.edge(edge).b})
         for (const Link& link : graph_.at(c).links) {
@@ -334,31 +372,34 @@ bool Domains::may_merge(int32_t edge, const Turn& own, const Domain& in, Scratch
     return true;
 }
 
+// Forgets how to take back what never will be.
+void Domains::settle(size_t d) {
+    Domain& own = domains_[d];
+    for (; !own.done.empty() && own.done.front()->numbered.stamp < settled_; own.done.pop_front()) {
+        own.merges.push_back(own.done.front()->numbered);
+        done(own.merges.back().number) = nullptr;
+        own.spare.push_back(std::move(own.done.front()));
+    }
+}
+
 void Domains::advance(size_t d) {
-    Domain& own = domain(d);
-    const Domain& other = domain(1 - d);
+    Domain& own = domains_[d];
+    const Domain& other = domains_[1 - d];
     Scratch& scratch = scratch_[d];
     scratch.kernel->forget();
     for (own.merged = 0; !own.inside.empty();) {
         // What belongs before or right after the latest merge is not left for later: others would wait for it.
-        const bool may_stop = own.done.empty() || own.done.back()->numbered.stamp.price < own.inside.top();
+        const bool may_stop = own.done.empty() || own.latest.price < own.inside.top();
         if (may_stop && own.done.size() >= lead_) break;
         if (may_stop && own.merged >= own.goal) {
             own.finished.store(true, std::memory_order_relaxed);
             if (pace_ || other.finished.load(std::memory_order_relaxed)) break;
         }
-        prefetch_soon(graph_, own.inside);
+        prefetch(own.inside);
         const auto top = own.inside.top();
-        const auto unpriced = [&](const auto& queue) {
-            if (graph_.edge(queue.top().edge).exact) return false;
-            const auto* second = queue.runner_up();
-            evaluate(queue.top().edge,
-                     second ? dear * second->concavity() : std::numeric_limits<double>::infinity(), scratch);
-            return true;
-        };
-        if (!own.left_out.empty() && own.left_out.top().price < top && unpriced(own.left_out)) continue;
-        if (unpriced(own.inside)) continue;
-        const Turn now = turn(top.edge);
+        if (!own.left_out.empty() && own.left_out.top().price < top && price_top(own.left_out, scratch)) continue;
+        if (price_top(own.inside, scratch)) continue;
+        const Turn now = turn(top.edge, top);
         prefetch_around(graph_, places_, top.edge);
         if (may_merge(top.edge, now, own, scratch)) {
             merge_inside(d, top.edge, now);
@@ -372,7 +413,7 @@ void Domains::advance(size_t d) {
 }
 
 void Domains::merge_inside(size_t d, int32_t edge, const Turn& now) {
-    Domain& own = domain(d);
+    Domain& own = domains_[d];
     Scratch& scratch = scratch_[d];
     own.inside.remove(edge);
     std::unique_ptr<Done> done;
@@ -383,26 +424,30 @@ void Domains::merge_inside(size_t d, int32_t edge, const Turn& now) {
         own.spare.pop_back();
         scratch.kernel->release(done->contraction.stayed.hull);
         scratch.kernel->release(done->contraction.gone.hull);
+        // They have lain for long.
+        if (own.spare.size() > 1) {
+            const auto* after = reinterpret_cast<const char*>(own.spare.end()[-2].get());
+            for (size_t i = 0; i < sizeof(Done); i += 64) prefetch_line(after + i);
+            own.spare.back()->contraction.stayed.hull.prefetch();
+            own.spare.back()->contraction.gone.hull.prefetch();
+        }
     }
     const auto [a, b] = std::pair(graph_.edge(edge).a, graph_.edge(edge).b);
     const Stamp made_a = made(a), made_b = made(b);
-    const auto number = static_cast<int32_t>(graph_.clusters_count()) + 3 * own.numbered++ + static_cast<int32_t>(d);
+    const auto number = static_cast<int32_t>(graph_.clusters_count() + 3 * own.by_number.size() + d);
+    own.by_number.push_back(done.get());
     const auto [merged, numbered] = contract(edge, now.stamp, number, scratch, &done->contraction);
     done->numbered = numbered;
     done->made_stay = merged == a ? made_a : made_b;
     done->made_go = merged == a ? made_b : made_a;
-    done->done_stay = std::exchange(done_of(merged), done.get());
-    done->stands = true;
-    auto place_of = own.done.end();
-    while (place_of != own.done.begin() && now.stamp < (*std::prev(place_of))->numbered.stamp) --place_of;
-    own.done.insert(place_of, std::move(done));
-    ++own.merged;
-    for (const Link& link : graph_.at(merged).links) {
-        if (price(link.edge) < now.price)
-            evaluate(link.edge, dear * now.concavity(), scratch);
-        else
-            place(link.edge);
+    if (now.stamp < own.latest) {
+        own.done.insert(place_among(own.done, now.stamp), std::move(done));
+    } else {
+        own.latest = now.stamp;
+        own.done.push_back(std::move(done));
     }
+    ++own.merged;
+    price_links(merged, now.price, scratch);
 }
 
 // ---- Between the rounds: one thread --------------------------------------------------------------------------------
@@ -410,48 +455,61 @@ void Domains::merge_inside(size_t d, int32_t edge, const Turn& now) {
 // The queue whose first edge comes first; null if there is none.
 Domains::LeftOut* Domains::next_left_out() {
     LeftOut* next = nullptr;
-    for (LeftOut* queue : {&first_.left_out, &second_.left_out, &across_})
+    for (LeftOut* queue : {&domains_[0].left_out, &domains_[1].left_out, &across_})
         if (!queue->empty() && (!next || queue->top() < next->top())) next = queue;
     return next;
 }
 
 // Whether a merge inside a domain may have its turn before that.
 bool Domains::inside_before(const Stamp& stamp) const {
-    for (const Domain* d : {&first_, &second_})
-        if (!d->inside.empty() && !(stamp.price < d->inside.top())) return true;
-    return false;
+    return std::any_of(domains_.begin(), domains_.end(), [&](const Domain& d) {
+        return !d.inside.empty() && !(stamp.price < d.inside.top());
+    });
+}
+
+// Where one with this stamp belongs, or right after it, if it is there.
+Domains::DoneList::iterator Domains::place_among(DoneList& done, const Stamp& stamp) {
+    return std::upper_bound(done.begin(), done.end(), stamp,
+                            [](const Stamp& s, const auto& other) { return s < other->numbered.stamp; });
+}
+
+// The place for the merge with this number, which is one inside.
+Domains::Done*& Domains::done(int32_t number) {
+    const size_t n = static_cast<size_t>(number) - graph_.clusters_count();
+    return domains_[n % 3].by_number[n / 3];
 }
 
 // The merge inside that made the cluster, if it may be taken back.
-Domains::Done* Domains::standing(int32_t cluster) const {
-    Done* done = done_[static_cast<size_t>(cluster)];
-    return done && done->stands && done->numbered.number == graph_.at(cluster).number ? done : nullptr;
+Domains::Done* Domains::standing(int32_t cluster) {
+    const int32_t number = graph_.at(cluster).number;
+    const size_t leaves = graph_.clusters_count(), n = static_cast<size_t>(number);
+    return n < leaves || (n - leaves) % 3 == 2 ? nullptr : done(number);
 }
 
 // (b) for a merge whose cluster is still there. All that goes with it is on a list of its own, not on the thread's
 // stack, for it may be much.
 void Domains::take_back(Done& first) {
-    const auto done_later = [&](const Done& done) -> Done* {
+    const auto done_later = [&](const Done& done) -> const Done* {
         for (const Link& link : graph_.at(done.contraction.stay).links)
-            if (Done* other = standing(link.cluster); other && other->numbered.number > done.numbered.number)
+            if (const Done* other = standing(link.cluster); other && other->numbered.number > done.numbered.number)
                 return other;
         return nullptr;
     };
-    std::vector<Done*> waiting{&first};
+    std::vector<int32_t> waiting{first.numbered.number};
     while (!waiting.empty()) {
-        Done& done = *waiting.back();
-        if (!done.stands) {  // it went with another
+        Done* const next = done(waiting.back());
+        if (!next) {  // it went with another
             waiting.pop_back();
-        } else if (Done* later = done_later(done)) {
-            waiting.push_back(later);
+        } else if (const Done* later = done_later(*next)) {
+            waiting.push_back(later->numbered.number);
         } else {
             waiting.pop_back();
-            undo(done);
-            if (done.numbered.stamp.steps == 0) continue;
-            for (const int32_t part : {done.contraction.stay, done.contraction.go})
-                if (Done* before = standing(part);
-                    before && !(before->numbered.stamp.price < done.numbered.stamp.price))
-                    waiting.push_back(before);
+            undo(*next);
+            if (next->numbered.stamp.steps == 0) continue;
+            for (const int32_t part : {next->contraction.stay, next->contraction.go})
+                if (const Done* before = standing(part);
+                    before && !(before->numbered.stamp.price < next->numbered.stamp.price))
+                    waiting.push_back(before->numbered.number);
         }
     }
 }
@@ -462,14 +520,15 @@ void Domains::undo(Done& done) {
     graph_.undo(c);
     made(c.stay) = done.made_stay;
     made(c.go) = done.made_go;
-    done_of(c.stay) = done.done_stay;
-    for (const auto& [edge, was] : c.edges) place(edge);
-    done.stands = false;
+    for (const int32_t part : {c.stay, c.go})
+        for (const Link& link : graph_.at(part).links) place(link.edge);
+    this->done(done.numbered.number) = nullptr;
     ++left_;
-    Domain& own = domain(owner(c.stay));
-    const auto place_of = std::find_if(own.done.rbegin(), own.done.rend(), [&](const auto& d) { return &*d == &done; });
-    own.spare.push_back(std::move(*place_of));
-    own.done.erase(std::prev(place_of.base()));
+    Domain& own = domains_[owner(c.stay)];
+    const auto at = std::prev(place_among(own.done, done.numbered.stamp));
+    own.spare.push_back(std::move(*at));
+    own.done.erase(at);
+    own.latest = own.done.empty() ? Stamp{} : own.done.back()->numbered.stamp;
 }
 
 // (b) for an edge that was left out; whether anything had to be taken back.
@@ -490,16 +549,11 @@ void Domains::merge_left_out() {
     while (LeftOut* queue = next_left_out()) {
         const auto top = queue->top();
         if (inside_before(top.stamp)) break;
-        prefetch_soon(graph_, *queue);
-        if (!graph_.edge(top.edge).exact) {
-            const auto* second = queue->runner_up();
-            evaluate(top.edge, second ? dear * second->concavity() : std::numeric_limits<double>::infinity(),
-                     scratch_[0]);
-        } else if (!take_back_after(top, top.edge)) {
-            queue->remove(top.edge);
-            prefetch_around(graph_, places_, top.edge);
-            merge_at_border(top.edge, top);
-        }
+        prefetch(*queue);
+        if (price_top(*queue, scratch_[0]) || take_back_after(top, top.edge)) continue;
+        queue->remove(top.edge);
+        prefetch_around(graph_, places_, top.edge);
+        merge_at_border(top.edge, top);
     }
 }
 
@@ -510,37 +564,22 @@ void Domains::merge_at_border(int32_t edge, const Turn& now) {
     const auto [merged, numbered] = contract(edge, now.stamp, number, scratch_[0], nullptr);
     merges_.push_back(numbered);
     --left_;
-    owner(merged) = larger;
-    border(merged) = at_border(merged);
-    for (const Link& link : graph_.at(merged).links) {
-        if (price(link.edge) < now.price)
-            evaluate(link.edge, dear * now.concavity(), scratch_[0]);
-        else
-            place(link.edge);
-    }
-    for (const Link& link : graph_.at(merged).links) {
-        const bool was = border(link.cluster), is = at_border(link.cluster);
-        border(link.cluster) = is;
-        if (was != is)
+    site(merged) = larger;
+    look_whether_at_border(merged);
+    price_links(merged, now.price, scratch_[0]);
+    for (const Link& link : graph_.at(merged).links)
+        if (look_whether_at_border(link.cluster))
             for (const Link& other : graph_.at(link.cluster).links) place(other.edge);
-    }
 }
 
-// Forgets how to take back what never will be.
-void Domains::settle() {
-    const LeftOut* next = next_left_out();
-    for (size_t d = 0; d < 2; ++d) {
-        Domain& own = domain(d);
-        const auto final = [&](const Stamp& stamp) {
-            return (!merges_.empty() && stamp < merges_.back().stamp) ||
-                   (!inside_before(stamp) && (!next || stamp < next->top().stamp));
-        };
-        for (; !own.done.empty() && final(own.done.front()->numbered.stamp); own.done.pop_front()) {
-            own.merges.push_back(own.done.front()->numbered);
-            own.done.front()->stands = false;
-            own.spare.push_back(std::move(own.done.front()));
-        }
-    }
+// What has been done before that won't be taken back any more.
+Stamp Domains::settled_before() {
+    Stamp first;
+    first.price.rank = std::numeric_limits<uint64_t>::max();
+    if (const LeftOut* next = next_left_out()) first = next->top().stamp;
+    for (const Domain& d : domains_)
+        if (!d.inside.empty()) first = std::min(first, Stamp{d.inside.top(), 0});
+    return merges_.empty() ? first : std::max(first, merges_.back().stamp);
 }
 
 // All merges, numbered as one thread does.
@@ -552,7 +591,7 @@ std::vector<Merge> Domains::in_order() {
     };
     std::vector<Merge> merges;
     merges.reserve(static_cast<size_t>(leaves));
-    std::array<std::span<const Numbered>, 3> rest = {first_.merges, second_.merges, merges_};
+    std::array<std::span<const Numbered>, 3> rest = {domains_[0].merges, domains_[1].merges, merges_};
     for (;;) {
         std::span<const Numbered>* next = nullptr;
         for (auto& list : rest)
@@ -573,20 +612,26 @@ std::vector<Merge> Domains::in_order() {
 }
 
 std::vector<Merge> Domains::run() {
-    while (left_ > few_clusters && (pace_ || threads_.pays()) && !(first_.inside.empty() && second_.inside.empty())) {
+    while (left_ > few_clusters && (pace_ || threads_.pays()) && !(domains_[0].inside.empty() && domains_[1].inside.empty())) {
         const size_t goal = std::max(left_ / clusters_a_merge, least_merges_a_round);
         const auto goals = pace_ ? pace_(goal) : std::array{goal, goal};
-        for (size_t d = 0; d < 2; ++d) domain(d).goal = goals[d];
+        for (size_t d = 0; d < 2; ++d) {
+            domains_[d].goal = goals[d];
+            domains_[d].finished = false;
+        }
         lead_ = patience * goal;
-        first_.finished = second_.finished = false;
-        threads_.share(2, [this](size_t d, size_t) { advance(d); });
-        left_ -= first_.merged + second_.merged;
+        threads_.share(2, [this](size_t d, size_t) {
+            settle(d);
+            advance(d);
+        });
+        left_ -= domains_[0].merged + domains_[1].merged;
         merge_left_out();
-        settle();
+        settled_ = settled_before();
         progress_.advance(0.1 + 0.9 * (1 - static_cast<double>(left_) / static_cast<double>(graph_.clusters_count())));
     }
-    for (size_t d = 0; d < 2; ++d)
-        while (!domain(d).done.empty()) take_back(*domain(d).done.back());
+    for (size_t d = 0; d < 2; ++d) settle(d);
+    for (Domain& d : domains_)
+        while (!d.done.empty()) take_back(*d.done.back());
     return in_order();
 }
 

@@ -2,6 +2,7 @@
 #include "dual_graph.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace partwheel {
 
@@ -127,9 +128,12 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, HullKernel& kernel
     if (undo) {
         undo->stay = stay;
         undo->go = go;
-        undo->edges.clear();
+        undo->hull_volumes.clear();
         for (const Cluster* c : {&m, &g})
-            for (const Link& link : c->links) undo->edges.push_back({link.edge, edge(link.edge)});
+            for (const Link& link : c->links) {
+                const DualEdge& e = edge(link.edge);
+                undo->hull_volumes.push_back(e.exact ? e.hull_volume : -e.hull_volume);
+            }
         Cluster& was = undo->stayed;
         was.hull = std::move(m.hull);
         was.hull_volume = m.hull_volume;
@@ -180,12 +184,20 @@ void DualGraph::undo(Contraction& contraction) {
     const int32_t stay = contraction.stay, go = contraction.go;
     for (const Link& link : at(stay).links)
         std::erase_if(at(link.cluster).links, [&](const Link& l) { return l.cluster == stay; });
-    for (const auto& [number, was] : contraction.edges) edge(number) = was;
     at(stay) = std::move(contraction.stayed);
     at(go) = std::move(contraction.gone);
+    auto volume = contraction.hull_volumes.begin();
     for (const int32_t c : {stay, go})
-        for (const Link& link : at(c).links)
+        for (const Link& link : at(c).links) {
+            edge(link.edge) = {.a = c,
+                               .b = link.cluster,
+                               .hull_volume = std::fabs(*volume),
+                               .exact = !std::signbit(*volume),
+                               .tried = false,
+                               .home = edge(link.edge).home};
+            ++volume;
             if (link.cluster != stay && link.cluster != go) at(link.cluster).links.push_back({c, link.edge});
+        }
 }
 
 }  // namespace partwheel

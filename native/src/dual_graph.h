@@ -29,15 +29,16 @@ struct Link {
 };
 
 struct alignas(64) Cluster {
-    Hull hull;               // none while it is one tetrahedron
+    Hull hull;  // none while it is one tetrahedron
     double hull_volume = 0;
-    uint32_t facets = 0;     // of the hull: here, for most who ask have no other need to fetch that
     double volume = 0;
-    int32_t size = 1;    // in tetrahedra; 0 once it has gone into another
-    int32_t low = 0;     // its lowest tetrahedron
-    int32_t number = 0;  // in the tree, see Merge
     std::vector<Link> links;
+    uint32_t facets = 0;  // of the hull: here, for most who ask have no other need to fetch that
+    int32_t size = 1;     // in tetrahedra; 0 once it has gone into another
+    int32_t low = 0;      // its lowest tetrahedron
+    int32_t number = 0;   // in the tree, see Merge
 };
+static_assert(sizeof(Cluster) == 64);
 
 struct DualEdge {
     int32_t a, b;            // clusters
@@ -50,8 +51,8 @@ struct DualEdge {
 // What it takes to take a contraction back.
 struct Contraction {
     int32_t stay = 0, go = 0;
-    Cluster stayed, gone;                            // as they were
-    std::vector<std::pair<int32_t, DualEdge>> edges;  // theirs, as they were
+    Cluster stayed, gone;              // as they were
+    std::vector<double> hull_volumes;  // of the edges of the one, then of the other; those not exact are negative
 };
 
 // Not for several threads at once, but that each may price and contract where no cluster or neighbour of one is
