@@ -28,8 +28,8 @@ constexpr size_t worth_sharing = 1500;
 
 // Two threads and what each works with; or one.
 struct Workers {
-    HullKernel first;
-    std::optional<HullKernel> second;
+    Worker first;
+    std::optional<Worker> second;
     std::optional<PairOfThreads> threads;
 
     Workers(std::span<const Point> points, int count) : first(points) {
@@ -162,10 +162,10 @@ void Clustering::join_components() {
         if (graph_.at(c).size > 0) rest.push_back(c);
     std::sort(rest.begin(), rest.end(), [&](int32_t a, int32_t b) { return graph_.at(a).low < graph_.at(b).low; });
     for (const int32_t c : rest)
-        if (!graph_.at(c).hull) graph_.set_hull(c, workers_.first.build(graph_.corners(c)));
+        if (!graph_.at(c).hull) graph_.set_hull(c, workers_.first.hulls.build(graph_.corners(c)));
     std::vector<int32_t> edges;
     const auto join = [&](int32_t i, int32_t j) {
-        edges.push_back(graph_.add_edge(rest[static_cast<size_t>(i)], rest[static_cast<size_t>(j)]));
+        edges.push_back(graph_.add_edge(rest[static_cast<size_t>(i)], rest[static_cast<size_t>(j)], workers_.first.links));
     };
     const auto price_all = [&] {
         queue_edges();
@@ -184,7 +184,7 @@ void Clustering::join_components() {
     using Box = bg::model::box<Corner>;
     std::vector<std::pair<Box, int32_t>> boxes;
     for (int32_t i = 0; i < count; ++i) {
-        const auto [low, high] = workers_.first.bounds(graph_.at(rest[static_cast<size_t>(i)]).hull);
+        const auto [low, high] = workers_.first.hulls.bounds(graph_.at(rest[static_cast<size_t>(i)]).hull);
         boxes.push_back({Box({low[0], low[1], low[2]}, {high[0], high[1], high[2]}), i});
     }
     const bg::index::rtree<std::pair<Box, int32_t>, bg::index::rstar<16>> tree(boxes);

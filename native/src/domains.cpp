@@ -85,7 +85,7 @@ enum Home : uint8_t { inside_0, inside_1, left_out_0, left_out_1, across };
 
 class Domains {
 public:
-    Domains(DualGraph& graph, const TetMesh& mesh, std::array<HullKernel*, 2> kernels, PairOfThreads& threads,
+    Domains(DualGraph& graph, const TetMesh& mesh, std::array<Worker*, 2> workers, PairOfThreads& threads,
             Progress& progress, const Pace& pace);
     std::vector<Merge> run();
 
@@ -108,7 +108,7 @@ private:
 
     // What one thread works with.
     struct Scratch {
-        HullKernel* kernel = nullptr;
+        Worker* worker = nullptr;
         std::vector<int32_t> removed, cheaper;
     };
 
@@ -232,11 +232,11 @@ std::vector<uint8_t> Domains::halves(const TetMesh& mesh, PairOfThreads& threads
     return half;
 }
 
-Domains::Domains(DualGraph& graph, const TetMesh& mesh, std::array<HullKernel*, 2> kernels, PairOfThreads& threads,
+Domains::Domains(DualGraph& graph, const TetMesh& mesh, std::array<Worker*, 2> workers, PairOfThreads& threads,
                  Progress& progress, const Pace& pace)
     : graph_(graph), threads_(threads), progress_(progress), pace_(pace), sites_(halves(mesh, threads)),
       made_(graph.clusters_count()), left_(graph.clusters_count()) {
-    for (size_t d = 0; d < 2; ++d) scratch_[d].kernel = kernels[d];
+    for (size_t d = 0; d < 2; ++d) scratch_[d].worker = workers[d];
     places_.resize(graph.edges_count());
     for (int32_t c = 0; c < static_cast<int32_t>(graph.clusters_count()); ++c) look_whether_at_border(c);
     const auto edges = static_cast<int32_t>(graph.edges_count());
@@ -299,8 +299,8 @@ void Domains::place(int32_t edge, const Price& own) {
 }
 
 void Domains::evaluate(int32_t edge, double concavity, Scratch& scratch) {
-    DualGraph::Pricing pricing = graph_.pricing(edge, concavity, *scratch.kernel);
-    pricing.work(*scratch.kernel);
+    DualGraph::Pricing pricing = graph_.pricing(edge, concavity, *scratch.worker);
+    pricing.work(*scratch.worker);
     graph_.priced(edge, pricing);
     place(edge);
 }
@@ -327,7 +327,7 @@ std::pair<int32_t, Domains::Numbered> Domains::contract(int32_t edge, const Stam
                                                         Scratch& scratch, Contraction* undo) {
     scratch.removed.clear();
     int32_t merged;
-    const Merge merge = graph_.contract(edge, number, *scratch.kernel, scratch.removed, merged, undo);
+    const Merge merge = graph_.contract(edge, number, *scratch.worker, scratch.removed, merged, undo);
     made(merged) = stamp;
     for (const int32_t e : scratch.removed) remove(e);
     return {merged, {merge, stamp, number}};
@@ -386,7 +386,7 @@ void Domains::advance(size_t d) {
     Domain& own = domains_[d];
     const Domain& other = domains_[1 - d];
     Scratch& scratch = scratch_[d];
-    scratch.kernel->forget();
+    scratch.worker->hulls.forget();
     for (own.merged = 0; !own.inside.empty();) {
         // What belongs before or right after the latest merge is not left for later: others would wait for it.
         const bool may_stop = own.done.empty() || own.latest.price < own.inside.top();
@@ -422,8 +422,7 @@ void Domains::merge_inside(size_t d, int32_t edge, const Turn& now) {
     } else {
         done = std::move(own.spare.back());
         own.spare.pop_back();
-        scratch.kernel->release(done->contraction.stayed.hull);
-        scratch.kernel->release(done->contraction.gone.hull);
+        DualGraph::forget(done->contraction, *scratch.worker);
         // They have lain for long.
         if (own.spare.size() > 1) {
             const auto* after = reinterpret_cast<const char*>(own.spare.end()[-2].get());
@@ -517,7 +516,7 @@ void Domains::take_back(Done& first) {
 void Domains::undo(Done& done) {
     Contraction& c = done.contraction;
     for (const Link& link : graph_.at(c.stay).links) remove(link.edge);
-    graph_.undo(c);
+    graph_.undo(c, *scratch_[0].worker);
     made(c.stay) = done.made_stay;
     made(c.go) = done.made_go;
     for (const int32_t part : {c.stay, c.go})
@@ -545,7 +544,7 @@ bool Domains::take_back_after(const Turn& now, int32_t edge) {
 }
 
 void Domains::merge_left_out() {
-    scratch_[0].kernel->forget();
+    scratch_[0].worker->hulls.forget();
     while (LeftOut* queue = next_left_out()) {
         const auto top = queue->top();
         if (inside_before(top.stamp)) break;
@@ -637,9 +636,9 @@ std::vector<Merge> Domains::run() {
 
 }  // namespace
 
-std::vector<Merge> merge_in_domains(DualGraph& graph, const TetMesh& mesh, std::array<HullKernel*, 2> kernels,
+std::vector<Merge> merge_in_domains(DualGraph& graph, const TetMesh& mesh, std::array<Worker*, 2> workers,
                                     PairOfThreads& threads, Progress& progress, const Pace& pace) {
-    return Domains(graph, mesh, kernels, threads, progress, pace).run();
+    return Domains(graph, mesh, workers, threads, progress, pace).run();
 }
 
 }  // namespace partwheel

@@ -16,9 +16,9 @@ namespace partwheel {
 using Pace = std::function<std::array<size_t, 2>(size_t)>;
 
 // Contracts the dual graph's edges, cheapest first, until some dozens of clusters are left, or no edge, or until two
-// threads don't pay any more; returns the merges in their order. Threads and kernels belong together. The pace is for
+// threads don't pay any more; returns the merges in their order. Threads and workers belong together. The pace is for
 // tests: without one, who is done goes on until the other is.
-std::vector<Merge> merge_in_domains(DualGraph& graph, const TetMesh& mesh, std::array<HullKernel*, 2> kernels,
+std::vector<Merge> merge_in_domains(DualGraph& graph, const TetMesh& mesh, std::array<Worker*, 2> workers,
                                     PairOfThreads& threads, Progress& progress, const Pace& pace = {});
 
 }  // namespace partwheel

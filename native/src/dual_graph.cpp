@@ -14,19 +14,21 @@ constexpr size_t edges_a_step = 16384;
 }  // namespace
 
 DualGraph::DualGraph(const TetMesh& mesh, Progress& progress, PairOfThreads* threads)
-    : mesh_(mesh), clusters_(mesh.tetrahedra.size()), link_of_(mesh.tetrahedra.size(), -1) {
+    : mesh_(mesh), first_links_(LinkPool::least * mesh.tetrahedra.size()), clusters_(mesh.tetrahedra.size()),
+      link_of_(mesh.tetrahedra.size(), -1) {
     const auto count = static_cast<int32_t>(mesh.tetrahedra.size());
     for (int32_t t = 0; t < count; ++t) {
         const Tetrahedron& tet = mesh.tetrahedra[static_cast<size_t>(t)];
         Cluster& c = at(t);
         c.volume = c.hull_volume = six_volumes(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3])) / 6;
         c.low = c.number = t;
-        c.links.reserve(4);
+        c.links = Links(&first_links_[LinkPool::least * static_cast<size_t>(t)]);
     }
     edges_.reserve(2 * mesh.tetrahedra.size());
+    LinkPool none;  // no tetrahedron has more links than it has room for
     for (int32_t t = 0; t < count; ++t)
         for (const int32_t other : mesh.neighbours[static_cast<size_t>(t)])
-            if (other > t) add_edge(t, other);
+            if (other > t) add_edge(t, other, none);
     for (size_t first = 0; first < edges_.size(); first += edges_a_step) {
         const size_t last = std::min(first + edges_a_step, edges_.size()), middle = (first + last) / 2;
         const auto price = [&](size_t i, size_t end) {
@@ -43,11 +45,11 @@ DualGraph::DualGraph(const TetMesh& mesh, Progress& progress, PairOfThreads* thr
     }
 }
 
-int32_t DualGraph::add_edge(int32_t a, int32_t b) {
+int32_t DualGraph::add_edge(int32_t a, int32_t b, LinkPool& pool) {
     const auto edge = static_cast<int32_t>(edges_.size());
     edges_.push_back({.a = a, .b = b});
-    at(a).links.push_back({b, edge});
-    at(b).links.push_back({a, edge});
+    at(a).links.push_back({b, edge}, pool);
+    at(b).links.push_back({a, edge}, pool);
     return edge;
 }
 
@@ -88,10 +90,10 @@ double DualGraph::enough(const DualEdge& e, double concavity) const {
     return (volume + concavity * (1 + 1e-8)) * (1 + 1e-10);
 }
 
-DualGraph::Pricing DualGraph::pricing(int32_t edge_number, double concavity, HullKernel& kernel) {
+DualGraph::Pricing DualGraph::pricing(int32_t edge_number, double concavity, Worker& worker) {
     const DualEdge& e = edge(edge_number);
     const auto [large, small] = by_size(e);
-    if (!at(large).hull) set_hull(large, kernel.build(corners(large)));
+    if (!at(large).hull) set_hull(large, worker.hulls.build(corners(large)));
     return {&at(large).hull, corners(small), enough(e, concavity), {}};
 }
 
@@ -111,7 +113,7 @@ Hull DualGraph::unite(const DualEdge& e, HullKernel& kernel) const {
     return kernel.build(both);
 }
 
-Merge DualGraph::contract(int32_t contracted, int32_t number, HullKernel& kernel, std::vector<int32_t>& removed,
+Merge DualGraph::contract(int32_t contracted, int32_t number, Worker& worker, std::vector<int32_t>& removed,
                           int32_t& merged, Contraction* undo) {
     const DualEdge& e = edge(contracted);
     // The cluster with more links stays and takes in the other.
@@ -123,8 +125,8 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, HullKernel& kernel
     const Cluster &first = ordered ? m : g, &second = ordered ? g : m;
     const double volume = first.volume + second.volume;
     const Merge merge = {first.number, second.number, ranked_concavity(e.hull_volume, volume), e.hull_volume};
-    for (const Link& link : g.links) prefetch_line(at(link.cluster).links.data());
-    Hull united = unite(e, kernel);
+    for (const Link& link : g.links) prefetch_line(at(link.cluster).links.begin());
+    Hull united = unite(e, worker.hulls);
     if (undo) {
         undo->stay = stay;
         undo->go = go;
@@ -142,7 +144,7 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, HullKernel& kernel
         was.size = m.size;
         was.low = m.low;
         was.number = m.number;
-        was.links = m.links;
+        was.links.copy(m.links, worker.links);
     }
     set_hull(stay, std::move(united));
     m.hull_volume = m.hull.volume();
@@ -151,20 +153,19 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, HullKernel& kernel
     m.low = std::min(m.low, g.low);
     m.number = number;
 
-    std::erase_if(m.links, [&](const Link& l) { return l.cluster == go; });
+    m.links.erase_of(go);
     for (size_t i = 0; i < m.links.size(); ++i)
         link_of_[static_cast<size_t>(m.links[i].cluster)] = static_cast<int32_t>(i);
     for (const Link& link : g.links) {
         if (link.cluster == stay) continue;
         Cluster& other = at(link.cluster);
         DualEdge& moved = edge(link.edge);
-        const auto back = std::find_if(other.links.begin(), other.links.end(),
-                                       [&](const Link& l) { return l.cluster == go; });
+        Link* const back = other.links.find(go);
         const int32_t twin = link_of_[static_cast<size_t>(link.cluster)];
         if (twin < 0) {
             back->cluster = stay;
             (moved.a == go ? moved.a : moved.b) = stay;
-            m.links.push_back(link);
+            m.links.push_back(link, worker.links);
         } else {
             DualEdge& kept = edge(m.links[static_cast<size_t>(twin)].edge);
             kept.hull_volume = std::max(kept.hull_volume, moved.hull_volume);
@@ -172,7 +173,10 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, HullKernel& kernel
             other.links.erase(back);
         }
     }
-    if (undo) undo->gone = std::move(g);
+    if (undo)
+        undo->gone = std::move(g);
+    else
+        g.links.release(worker.links);
     g = Cluster{};
     g.size = 0;
     for (const Link& link : m.links) link_of_[static_cast<size_t>(link.cluster)] = -1;
@@ -180,10 +184,10 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, HullKernel& kernel
     return merge;
 }
 
-void DualGraph::undo(Contraction& contraction) {
+void DualGraph::undo(Contraction& contraction, Worker& worker) {
     const int32_t stay = contraction.stay, go = contraction.go;
-    for (const Link& link : at(stay).links)
-        std::erase_if(at(link.cluster).links, [&](const Link& l) { return l.cluster == stay; });
+    for (const Link& link : at(stay).links) at(link.cluster).links.erase_of(stay);
+    at(stay).links.release(worker.links);
     at(stay) = std::move(contraction.stayed);
     at(go) = std::move(contraction.gone);
     auto volume = contraction.hull_volumes.begin();
@@ -196,8 +200,15 @@ void DualGraph::undo(Contraction& contraction) {
                                .tried = false,
                                .home = edge(link.edge).home};
             ++volume;
-            if (link.cluster != stay && link.cluster != go) at(link.cluster).links.push_back({c, link.edge});
+            if (link.cluster != stay && link.cluster != go) at(link.cluster).links.push_back({c, link.edge}, worker.links);
         }
+}
+
+void DualGraph::forget(Contraction& contraction, Worker& worker) {
+    for (Cluster* c : {&contraction.stayed, &contraction.gone}) {
+        worker.hulls.release(c->hull);
+        c->links.release(worker.links);
+    }
 }
 
 }  // namespace partwheel

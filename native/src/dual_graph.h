@@ -5,6 +5,7 @@
 #include "edge_queue.h"
 #include "hull.h"
 #include "large_pages.h"
+#include "links.h"
 #include "pair_of_threads.h"
 #include "prefetch.h"
 
@@ -23,16 +24,19 @@ inline constexpr double bound_slack = 1e-11;
 // An edge that costs more than so many times what the next merges cost is not priced exactly yet.
 inline constexpr double dear = 2;
 
-struct Link {
-    int32_t cluster;  // the neighbour
-    int32_t edge;
+// What one thread works with.
+struct Worker {
+    HullKernel hulls;
+    LinkPool links;
+
+    explicit Worker(std::span<const Point> points) : hulls(points) {}
 };
 
 struct alignas(64) Cluster {
     Hull hull;  // none while it is one tetrahedron
     double hull_volume = 0;
     double volume = 0;
-    std::vector<Link> links;
+    Links links;
     uint32_t facets = 0;  // of the hull: here, for most who ask have no other need to fetch that
     int32_t size = 1;     // in tetrahedra; 0 once it has gone into another
     int32_t low = 0;      // its lowest tetrahedron
@@ -56,7 +60,7 @@ struct Contraction {
 };
 
 // Not for several threads at once, but that each may price and contract where no cluster or neighbour of one is
-// another's.
+// another's. Workers must outlive the graph.
 class DualGraph {
 public:
     // One tetrahedron a cluster, all edges priced; by both threads if there are two.
@@ -69,7 +73,7 @@ public:
     DualEdge& edge(int32_t e) { return edges_[static_cast<size_t>(e)]; }
     const DualEdge& edge(int32_t e) const { return edges_[static_cast<size_t>(e)]; }
 
-    int32_t add_edge(int32_t a, int32_t b);
+    int32_t add_edge(int32_t a, int32_t b, LinkPool& pool);
     void set_hull(int32_t c, Hull hull) {
         at(c).facets = static_cast<uint32_t>(hull.facet_count());
         at(c).hull = std::move(hull);
@@ -95,7 +99,7 @@ public:
         HullKernel::Measure measure;
 
         size_t tests() const { return hull->facet_count() * points.size(); }
-        void work(HullKernel& kernel) { measure = kernel.united_volume(*hull, points, enough); }
+        void work(Worker& worker) { measure = worker.hulls.united_volume(*hull, points, enough); }
     };
 
     // Asks memory for what pricing and working out that price reads first, but for this cluster's, ahead of that.
@@ -105,13 +109,13 @@ public:
     }
 
     // The exact volume of the edge's hull; or, at the first try, only that it costs more than this concavity.
-    Pricing pricing(int32_t edge, double concavity, HullKernel& kernel);
+    Pricing pricing(int32_t edge, double concavity, Worker& worker);
     void priced(int32_t edge, const Pricing& pricing);
 
     // Merges the edge's clusters into one of the two, which gets that number, and returns what was merged. The edges
     // of the other that lead where the merged one leads already are appended to `removed`. Those that stay keep the
     // better bound of the two: refresh() is up to the caller. `undo`: null, or gets what undo() needs.
-    Merge contract(int32_t edge, int32_t number, HullKernel& kernel, std::vector<int32_t>& removed, int32_t& merged,
+    Merge contract(int32_t edge, int32_t number, Worker& worker, std::vector<int32_t>& removed, int32_t& merged,
                    Contraction* undo = nullptr);
 
     // The edge of a cluster just merged: what is known of its price now is a bound.
@@ -122,7 +126,11 @@ public:
     }
 
     // Takes the contraction back, of those that touched its clusters the last that stands.
-    void undo(Contraction& contraction);
+    void undo(Contraction& contraction, Worker& worker);
+
+    // Frees the hulls and links of one that won't be taken back. No worker but this one must be at work on what it had
+    // part in.
+    static void forget(Contraction& contraction, Worker& worker);
 
 private:
     const Point& point(int32_t v) const { return mesh_.vertices[static_cast<size_t>(v)]; }
@@ -132,6 +140,7 @@ private:
     Hull unite(const DualEdge& edge, HullKernel& kernel) const;
 
     const TetMesh& mesh_;
+    LargeVector<Link> first_links_;  // where each cluster's links are at first
     LargeVector<Cluster> clusters_;
     LargeVector<DualEdge> edges_;
     LargeVector<int32_t> link_of_;  // scratch of contract(): cluster -> position in the merged links, or -1
@@ -148,7 +157,7 @@ void prefetch_soon(const DualGraph& graph, const Queue& queue) {
     if (const auto* second = queue.runner_up())
         for (const int32_t c : {graph.edge(second->edge).a, graph.edge(second->edge).b}) {
             graph.at(c).hull.prefetch();
-            prefetch_line(graph.at(c).links.data());
+            prefetch_line(graph.at(c).links.begin());
         }
 }
 

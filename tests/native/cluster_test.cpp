@@ -261,7 +261,7 @@ TEST(Cluster, NorDoesOneThreadFarAheadOfTheOther) {
             };
             Progress progress;
             progress.begin();
-            HullKernel first(mesh.vertices), second(mesh.vertices);
+            Worker first(mesh.vertices), second(mesh.vertices);
             DualGraph graph(mesh, progress, &threads);
             const std::vector<Merge> is = merge_in_domains(graph, mesh, {&first, &second}, threads, progress, pace);
             ASSERT_GT(is.size(), should.size() / 2);  // the rest is up to one thread
