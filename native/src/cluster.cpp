@@ -12,9 +12,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <span>
-#include <system_error>
 #include <utility>
 
 namespace partwheel {
@@ -22,28 +20,6 @@ namespace partwheel {
 namespace {
 
 constexpr size_t nearest_components = 16;
-
-// A second thread is asked for help from so many tests of a point against a facet on: some microseconds.
-constexpr size_t worth_sharing = 1500;
-
-// Two threads and what each works with; or one.
-struct Workers {
-    Worker first;
-    std::optional<Worker> second;
-    std::optional<PairOfThreads> threads;
-
-    Workers(std::span<const Point> points, int count) : first(points) {
-        if (count < 2) return;
-        try {
-            threads.emplace();
-            second.emplace(points);
-        } catch (const std::system_error&) {
-            // The system gives no second thread: one does as well.
-        }
-    }
-    PairOfThreads* pair() { return threads ? &*threads : nullptr; }
-    bool two() const { return threads && threads->pays(); }
-};
 
 class Clustering {
 public:
@@ -69,7 +45,6 @@ private:
     DualGraph graph_;
     EdgePlaces places_;
     Queue queue_{places_};
-    std::vector<DualGraph::Pricing> pricings_;  // scratch of evaluate()
     std::vector<int32_t> unpriced_;             // scratch of contract() and first_unpriced()
     std::vector<int32_t> removed_;              // scratch of contract()
     BinaryTree tree_;
@@ -88,22 +63,8 @@ void Clustering::queue_edges() {
 
 // Finds the exact volumes of the edges' hulls; or, at the first try, only that they cost more than this concavity.
 void Clustering::evaluate(std::span<const int32_t> edges, double concavity) {
-    pricings_.clear();
-    size_t tests = 0;
-    for (const int32_t edge : edges) {
-        pricings_.push_back(graph_.pricing(edge, concavity, workers_.first));
-        tests += pricings_.back().tests();
-    }
-    if (edges.size() > 1 && tests >= worth_sharing && workers_.two())
-        workers_.threads->share(edges.size(), [&](size_t i, size_t thread) {
-            pricings_[i].work(thread == 0 ? workers_.first : *workers_.second);
-        });
-    else
-        for (DualGraph::Pricing& pricing : pricings_) pricing.work(workers_.first);
-    for (size_t i = 0; i < edges.size(); ++i) {
-        graph_.priced(edges[i], pricings_[i]);
-        queue_.update(Price(graph_.cost(graph_.edge(edges[i]))), edges[i]);
-    }
+    graph_.find_prices(edges, concavity, workers_);
+    for (const int32_t edge : edges) queue_.update(Price(graph_.cost(graph_.edge(edge))), edge);
 }
 
 // The queue's first edge if it is not exact; for two threads also the others near the top that are not.
@@ -200,8 +161,7 @@ void Clustering::join_components() {
 
 BinaryTree Clustering::run() {
     if (workers_.threads)
-        tree_.merges =
-            merge_in_domains(graph_, mesh_, {&workers_.first, &*workers_.second}, *workers_.threads, progress_);
+        tree_.merges = merge_in_domains(graph_, mesh_, workers_, progress_);
     queue_edges();
     contract_all();
     tree_.components = graph_.clusters_count() - tree_.merges.size();

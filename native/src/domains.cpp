@@ -85,8 +85,7 @@ enum Home : uint8_t { inside_0, inside_1, left_out_0, left_out_1, across };
 
 class Domains {
 public:
-    Domains(DualGraph& graph, const TetMesh& mesh, std::array<Worker*, 2> workers, PairOfThreads& threads,
-            Progress& progress, const Pace& pace);
+    Domains(DualGraph& graph, const TetMesh& mesh, Workers& workers, Progress& progress, const Pace& pace);
     std::vector<Merge> run();
 
 private:
@@ -108,8 +107,8 @@ private:
 
     // What one thread works with.
     struct Scratch {
-        Worker* worker = nullptr;
-        std::vector<int32_t> removed, cheaper;
+        Worker* worker;
+        std::vector<int32_t> removed{}, cheaper{};
     };
 
     struct Domain {
@@ -148,7 +147,7 @@ private:
     bool price_top(const Queue& queue, Scratch& scratch);
     std::pair<int32_t, Numbered> contract(int32_t edge, const Stamp& stamp, int32_t number, Scratch& scratch,
                                           Contraction* undo);
-    void price_links(int32_t merged, const Price& paid, Scratch& scratch);
+    void place_links(int32_t merged, const Price& paid, Scratch& scratch);
     bool may_merge(int32_t edge, const Turn& turn, const Domain& domain, Scratch& scratch);
     void settle(size_t d);
     void advance(size_t d);
@@ -167,6 +166,7 @@ private:
     std::vector<Merge> in_order();
 
     DualGraph& graph_;
+    Workers& workers_;
     PairOfThreads& threads_;
     Progress& progress_;
     const Pace& pace_;
@@ -232,11 +232,10 @@ std::vector<uint8_t> Domains::halves(const TetMesh& mesh, PairOfThreads& threads
     return half;
 }
 
-Domains::Domains(DualGraph& graph, const TetMesh& mesh, std::array<Worker*, 2> workers, PairOfThreads& threads,
-                 Progress& progress, const Pace& pace)
-    : graph_(graph), threads_(threads), progress_(progress), pace_(pace), sites_(halves(mesh, threads)),
-      made_(graph.clusters_count()), left_(graph.clusters_count()) {
-    for (size_t d = 0; d < 2; ++d) scratch_[d].worker = workers[d];
+Domains::Domains(DualGraph& graph, const TetMesh& mesh, Workers& workers, Progress& progress, const Pace& pace)
+    : graph_(graph), workers_(workers), threads_(*workers.threads), progress_(progress), pace_(pace),
+      scratch_{{{&workers.first}, {&*workers.second}}}, sites_(halves(mesh, threads_)), made_(graph.clusters_count()),
+      left_(graph.clusters_count()) {
     places_.resize(graph.edges_count());
     for (int32_t c = 0; c < static_cast<int32_t>(graph.clusters_count()); ++c) look_whether_at_border(c);
     const auto edges = static_cast<int32_t>(graph.edges_count());
@@ -299,9 +298,7 @@ void Domains::place(int32_t edge, const Price& own) {
 }
 
 void Domains::evaluate(int32_t edge, double concavity, Scratch& scratch) {
-    DualGraph::Pricing pricing = graph_.pricing(edge, concavity, *scratch.worker);
-    pricing.work(*scratch.worker);
-    graph_.priced(edge, pricing);
+    graph_.find_price(edge, concavity, *scratch.worker);
     place(edge);
 }
 
@@ -333,9 +330,9 @@ std::pair<int32_t, Domains::Numbered> Domains::contract(int32_t edge, const Stam
     return {merged, {merge, stamp, number}};
 }
 
-// For all edges of a cluster that has just been made, at this price. Those that may be cheaper are the next that a
-// queue would ask for.
-void Domains::price_links(int32_t merged, const Price& paid, Scratch& scratch) {
+// Puts the edges of a cluster that has just been made, at this price, where they belong; but for the cheaper ones, as far
+// as their price is known: these are the next that a queue would ask for.
+void Domains::place_links(int32_t merged, const Price& paid, Scratch& scratch) {
     scratch.cheaper.clear();
     for (const Link& link : graph_.at(merged).links) {
         graph_.refresh(link.edge);
@@ -346,7 +343,6 @@ void Domains::price_links(int32_t merged, const Price& paid, Scratch& scratch) {
             place(link.edge, bound);
         }
     }
-    for (const int32_t e : scratch.cheaper) evaluate(e, dear * paid.concavity(), scratch);
 }
 
 // ---- Inside a domain: each thread in its own -----------------------------------------------------------------------
@@ -446,7 +442,8 @@ void Domains::merge_inside(size_t d, int32_t edge, const Turn& now) {
         own.done.push_back(std::move(done));
     }
     ++own.merged;
-    price_links(merged, now.price, scratch);
+    place_links(merged, now.price, scratch);
+    for (const int32_t e : scratch.cheaper) evaluate(e, dear * now.concavity(), scratch);
 }
 
 // ---- Between the rounds: one thread --------------------------------------------------------------------------------
@@ -565,7 +562,9 @@ void Domains::merge_at_border(int32_t edge, const Turn& now) {
     --left_;
     site(merged) = larger;
     look_whether_at_border(merged);
-    price_links(merged, now.price, scratch_[0]);
+    place_links(merged, now.price, scratch_[0]);
+    graph_.find_prices(scratch_[0].cheaper, dear * now.concavity(), workers_);
+    for (const int32_t e : scratch_[0].cheaper) place(e);
     for (const Link& link : graph_.at(merged).links)
         if (look_whether_at_border(link.cluster))
             for (const Link& other : graph_.at(link.cluster).links) place(other.edge);
@@ -636,9 +635,9 @@ std::vector<Merge> Domains::run() {
 
 }  // namespace
 
-std::vector<Merge> merge_in_domains(DualGraph& graph, const TetMesh& mesh, std::array<Worker*, 2> workers,
-                                    PairOfThreads& threads, Progress& progress, const Pace& pace) {
-    return Domains(graph, mesh, workers, threads, progress, pace).run();
+std::vector<Merge> merge_in_domains(DualGraph& graph, const TetMesh& mesh, Workers& workers, Progress& progress,
+                                    const Pace& pace) {
+    return Domains(graph, mesh, workers, progress, pace).run();
 }
 
 }  // namespace partwheel

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "dual_graph.h"
-#include "pair_of_threads.h"
 #include "progress.h"
 
 #include <array>
@@ -16,9 +15,9 @@ namespace partwheel {
 using Pace = std::function<std::array<size_t, 2>(size_t)>;
 
 // Contracts the dual graph's edges, cheapest first, until some dozens of clusters are left, or no edge, or until two
-// threads don't pay any more; returns the merges in their order. Threads and workers belong together. The pace is for
-// tests: without one, who is done goes on until the other is.
-std::vector<Merge> merge_in_domains(DualGraph& graph, const TetMesh& mesh, std::array<Worker*, 2> workers,
-                                    PairOfThreads& threads, Progress& progress, const Pace& pace = {});
+// threads don't pay any more; returns the merges in their order. The workers must be two. The pace is for tests: without
+// one, who is done goes on until the other is.
+std::vector<Merge> merge_in_domains(DualGraph& graph, const TetMesh& mesh, Workers& workers, Progress& progress,
+                                    const Pace& pace = {});
 
 }  // namespace partwheel

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <system_error>
 
 namespace partwheel {
 
@@ -11,7 +12,20 @@ namespace {
 // So many edges are priced between two looks at whether all is cancelled.
 constexpr size_t edges_a_step = 16384;
 
+// A second thread is asked for help from so many tests of a point against a facet on: some microseconds.
+constexpr size_t worth_sharing = 1500;
+
 }  // namespace
+
+Workers::Workers(std::span<const Point> points, int count) : first(points) {
+    if (count < 2) return;
+    try {
+        threads.emplace();
+        second.emplace(points);
+    } catch (const std::system_error&) {
+        // One does as well.
+    }
+}
 
 DualGraph::DualGraph(const TetMesh& mesh, Progress& progress, PairOfThreads* threads)
     : mesh_(mesh), first_links_(LinkPool::least * mesh.tetrahedra.size()), clusters_(mesh.tetrahedra.size()),
@@ -103,6 +117,22 @@ void DualGraph::priced(int32_t edge_number, const Pricing& pricing) {
     e.hull_volume = exact ? volume : std::max(e.hull_volume, volume);
     e.exact = exact;
     e.tried = true;
+}
+
+void DualGraph::find_prices(std::span<const int32_t> edges, double concavity, Workers& workers) {
+    pricings_.clear();
+    size_t tests = 0;
+    for (const int32_t e : edges) {
+        pricings_.push_back(pricing(e, concavity, workers.first));
+        tests += pricings_.back().tests();
+    }
+    if (edges.size() > 1 && tests >= worth_sharing && workers.two())
+        workers.threads->share(edges.size(), [&](size_t i, size_t thread) {
+            pricings_[i].work(thread == 0 ? workers.first : *workers.second);
+        });
+    else
+        for (Pricing& pricing : pricings_) pricing.work(workers.first);
+    for (size_t i = 0; i < edges.size(); ++i) priced(edges[i], pricings_[i]);
 }
 
 Hull DualGraph::unite(const DualEdge& e, HullKernel& kernel) const {

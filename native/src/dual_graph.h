@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -30,6 +31,17 @@ struct Worker {
     LinkPool links;
 
     explicit Worker(std::span<const Point> points) : hulls(points) {}
+};
+
+// Two threads and what each works with; or one, if no more are asked for, or if the system gives no second.
+struct Workers {
+    Worker first;
+    std::optional<Worker> second;
+    std::optional<PairOfThreads> threads;
+
+    Workers(std::span<const Point> points, int count);
+    PairOfThreads* pair() { return threads ? &*threads : nullptr; }
+    bool two() const { return threads && threads->pays(); }
 };
 
 struct alignas(64) Cluster {
@@ -111,6 +123,14 @@ public:
     // The exact volume of the edge's hull; or, at the first try, only that it costs more than this concavity.
     Pricing pricing(int32_t edge, double concavity, Worker& worker);
     void priced(int32_t edge, const Pricing& pricing);
+    void find_price(int32_t edge, double concavity, Worker& worker) {
+        Pricing price = pricing(edge, concavity, worker);
+        price.work(worker);
+        priced(edge, price);
+    }
+
+    // The same for several edges, by both threads where that pays.
+    void find_prices(std::span<const int32_t> edges, double concavity, Workers& workers);
 
     // Merges the edge's clusters into one of the two, which gets that number, and returns what was merged. The edges
     // of the other that lead where the merged one leads already are appended to `removed`. Those that stay keep the
@@ -143,7 +163,8 @@ private:
     LargeVector<Link> first_links_;  // where each cluster's links are at first
     LargeVector<Cluster> clusters_;
     LargeVector<DualEdge> edges_;
-    LargeVector<int32_t> link_of_;  // scratch of contract(): cluster -> position in the merged links, or -1
+    LargeVector<int32_t> link_of_;    // scratch of contract(): cluster -> position in the merged links, or -1
+    std::vector<Pricing> pricings_;  // scratch of find_prices()
 };
 
 // What comes soon in a queue is anywhere in memory: lets it begin, step by step as it rises.

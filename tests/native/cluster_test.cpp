@@ -261,9 +261,9 @@ TEST(Cluster, NorDoesOneThreadFarAheadOfTheOther) {
             };
             Progress progress;
             progress.begin();
-            Worker first(mesh.vertices), second(mesh.vertices);
-            DualGraph graph(mesh, progress, &threads);
-            const std::vector<Merge> is = merge_in_domains(graph, mesh, {&first, &second}, threads, progress, pace);
+            Workers workers(mesh.vertices, 2);
+            DualGraph graph(mesh, progress, workers.pair());
+            const std::vector<Merge> is = merge_in_domains(graph, mesh, workers, progress, pace);
             ASSERT_GT(is.size(), should.size() / 2);  // the rest is up to one thread
             for (size_t m = 0; m < is.size(); ++m)
                 ASSERT_TRUE(is[m].left == should[m].left && is[m].right == should[m].right &&
