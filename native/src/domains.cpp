@@ -106,12 +106,12 @@ private:
     using DoneList = std::deque<std::unique_ptr<Done>>;
 
     // What one thread works with.
-    struct Scratch {
+    struct alignas(apart) Scratch {
         Worker* worker;
         std::vector<int32_t> removed{}, cheaper{};
     };
 
-    struct Domain {
+    struct alignas(apart) Domain {
         Inside inside;
         LeftOut left_out;
         DoneList done;                             // inside, not yet final: in the order of their stamps
@@ -252,7 +252,7 @@ Domains::Domains(DualGraph& graph, const TetMesh& mesh, Workers& workers, Progre
         if (!places_.queued(e)) place(e);
 }
 
-// Notes that of a cluster whose owner is known; whether it has changed.
+// Notes it; returns whether it has changed.
 bool Domains::look_whether_at_border(int32_t cluster) {
     const auto& links = graph_.at(cluster).links;
     const bool is = std::any_of(links.begin(), links.end(),
@@ -330,8 +330,8 @@ std::pair<int32_t, Domains::Numbered> Domains::contract(int32_t edge, const Stam
     return {merged, {merge, stamp, number}};
 }
 
-// Puts the edges of a cluster that has just been made, at this price, where they belong; but for the cheaper ones, as far
-// as their price is known: these are the next that a queue would ask for.
+// Puts the edges of a cluster that has just been made, at this price, where they belong; but those that may be cheaper
+// into scratch.cheaper: these are the next that a queue would ask for.
 void Domains::place_links(int32_t merged, const Price& paid, Scratch& scratch) {
     scratch.cheaper.clear();
     for (const Link& link : graph_.at(merged).links) {
@@ -419,7 +419,7 @@ void Domains::merge_inside(size_t d, int32_t edge, const Turn& now) {
         done = std::move(own.spare.back());
         own.spare.pop_back();
         DualGraph::forget(done->contraction, *scratch.worker);
-        // They have lain for long.
+        // What has lain for long is in no cache: the next one's memory, and the record after that.
         if (own.spare.size() > 1) {
             const auto* after = reinterpret_cast<const char*>(own.spare.end()[-2].get());
             for (size_t i = 0; i < sizeof(Done); i += 64) prefetch_line(after + i);

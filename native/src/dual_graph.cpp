@@ -163,8 +163,8 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, Worker& worker, st
         undo->hull_volumes.clear();
         for (const Cluster* c : {&m, &g})
             for (const Link& link : c->links) {
-                const DualEdge& e = edge(link.edge);
-                undo->hull_volumes.push_back(e.exact ? e.hull_volume : -e.hull_volume);
+                const DualEdge& was = edge(link.edge);
+                undo->hull_volumes.push_back(was.exact ? was.hull_volume : -was.hull_volume);
             }
         Cluster& was = undo->stayed;
         was.hull = std::move(m.hull);

@@ -26,7 +26,7 @@ inline constexpr double bound_slack = 1e-11;
 inline constexpr double dear = 2;
 
 // What one thread works with.
-struct Worker {
+struct alignas(apart) Worker {
     HullKernel hulls;
     LinkPool links;
 

@@ -1,5 +1,5 @@
-// The links of a cluster in the dual graph: a small array, for which one thread's pool gives the memory, as the system's
-// would take longer than the work done with it.
+// The links of a cluster in the dual graph: a small array in memory from a pool of the thread's own, for the system's
+// would take longer than the work that is done with it.
 #pragma once
 
 #include "large_pages.h"
@@ -63,8 +63,8 @@ private:
     size_t left_ = 0;
 };
 
-// Like a vector, but that who makes it larger says from which pool, and that it doesn't free its memory itself: the pools
-// do in the end, release() does before.
+// Like a vector, but that who makes it larger says from which pool, and that it doesn't free its memory itself: release()
+// does, or the pools do in the end.
 class Links {
 public:
     Links() = default;
@@ -99,9 +99,10 @@ public:
         --size_;
     }
     void erase_of(int32_t cluster) {
-        size_ = static_cast<uint32_t>(std::remove_if(begin(), end(), [&](const Link& l) { return l.cluster == cluster; }) - links_);
+        Link* const last = std::remove_if(begin(), end(), [&](const Link& l) { return l.cluster == cluster; });
+        size_ = static_cast<uint32_t>(last - links_);
     }
-    Link* find(int32_t cluster) {
+    Link* find(int32_t cluster) {  // end() if there is none
         return std::find_if(begin(), end(), [&](const Link& l) { return l.cluster == cluster; });
     }
     void release(LinkPool& pool) {

@@ -12,6 +12,9 @@
 
 namespace partwheel {
 
+// What each of two threads writes to is so far from what the other does: two cache lines, for they are fetched in pairs.
+inline constexpr size_t apart = 128;
+
 class PairOfThreads {
 public:
     PairOfThreads();  // throws std::system_error if the system gives no thread
