@@ -132,6 +132,7 @@ private:
     uint8_t site(int32_t cluster) const { return sites_[static_cast<size_t>(cluster)]; }
     uint8_t owner(int32_t cluster) const { return site(cluster) & 1; }
 
+    uint8_t site_of_owned(int32_t cluster) const;
     bool look_whether_at_border(int32_t cluster);
     Home home(int32_t edge) const;
     Price price(int32_t edge) const { return Price(graph_.cost(graph_.edge(edge))); }
@@ -228,7 +229,10 @@ std::vector<uint8_t> Domains::halves(const TetMesh& mesh, PairOfThreads& threads
     const auto chosen = std::ranges::min_element(best, {}, &Plane::cut);
     const Point direction = lattice_direction(static_cast<size_t>(chosen - best.begin()));
     std::vector<uint8_t> half(count);
-    for (size_t t = 0; t < count; ++t) half[t] = dot(middle(t), direction) < chosen->place ? 0 : 1;
+    threads.share(2, [&](size_t i, size_t) {
+        for (size_t t = i * count / 2; t < (i + 1) * count / 2; ++t)
+            half[t] = dot(middle(t), direction) < chosen->place ? 0 : 1;
+    });
     return half;
 }
 
@@ -237,7 +241,11 @@ Domains::Domains(DualGraph& graph, const TetMesh& mesh, Workers& workers, Progre
       scratch_{{{&workers.first}, {&*workers.second}}}, sites_(halves(mesh, threads_)), made_(graph.clusters_count()),
       left_(graph.clusters_count()) {
     places_.resize(graph.edges_count());
-    for (int32_t c = 0; c < static_cast<int32_t>(graph.clusters_count()); ++c) look_whether_at_border(c);
+    std::vector<uint8_t> sites(left_);
+    threads_.share(2, [&](size_t d, size_t) {
+        for (size_t c = d * left_ / 2; c < (d + 1) * left_ / 2; ++c) sites[c] = site_of_owned(static_cast<int32_t>(c));
+    });
+    sites_ = std::move(sites);
     const auto edges = static_cast<int32_t>(graph.edges_count());
     threads_.share(2, [&](size_t d, size_t) {
         domains_[d].inside.reserve(graph.edges_count() * 5 / 8);
@@ -252,12 +260,17 @@ Domains::Domains(DualGraph& graph, const TetMesh& mesh, Workers& workers, Progre
         if (!places_.queued(e)) place(e);
 }
 
+// What a cluster is if only owners are known.
+uint8_t Domains::site_of_owned(int32_t cluster) const {
+    const auto& links = graph_.at(cluster).links;
+    const bool at_border = std::any_of(links.begin(), links.end(),
+                                       [&](const Link& l) { return owner(l.cluster) != owner(cluster); });
+    return static_cast<uint8_t>((at_border ? left_out_0 : inside_0) + owner(cluster));
+}
+
 // Notes it; returns whether it has changed.
 bool Domains::look_whether_at_border(int32_t cluster) {
-    const auto& links = graph_.at(cluster).links;
-    const bool is = std::any_of(links.begin(), links.end(),
-                                [&](const Link& l) { return owner(l.cluster) != owner(cluster); });
-    const auto now = static_cast<uint8_t>((is ? left_out_0 : inside_0) + owner(cluster));
+    const uint8_t now = site_of_owned(cluster);
     return std::exchange(site(cluster), now) != now;
 }
 
