@@ -47,7 +47,7 @@ public:
     }
     void free(Link* block, uint32_t capacity) {
         Link*& head = free_[level(capacity)];
-        std::memcpy(block, &head, sizeof head);
+        std::memcpy(static_cast<void*>(block), &head, sizeof head);
         head = block;
     }
 
