@@ -81,8 +81,7 @@ void Clustering::contract_all() {
         const int32_t top = queue_.top().edge;
         prefetch_soon(graph_, queue_);
         if (!graph_.edge(top).exact) {
-            const Queue::Item* second = queue_.runner_up();
-            evaluate(first_unpriced(), second ? dear * second->concavity() : std::numeric_limits<double>::infinity());
+            evaluate(first_unpriced(), far_beyond_second(queue_));
             continue;
         }
         contract(top);

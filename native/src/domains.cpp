@@ -327,8 +327,7 @@ void Domains::prefetch(const Queue& queue) const {
 template <class Queue>
 bool Domains::price_top(const Queue& queue, Scratch& scratch) {
     if (graph_.edge(queue.top().edge).exact) return false;
-    const auto* second = queue.runner_up();
-    evaluate(queue.top().edge, second ? dear * second->concavity() : std::numeric_limits<double>::infinity(), scratch);
+    evaluate(queue.top().edge, far_beyond_second(queue), scratch);
     return true;
 }
 

@@ -103,17 +103,6 @@ public:
     // The vertices of a cluster's hull.
     std::span<const int32_t> corners(int32_t c) const;
 
-    // One price to be worked out. tests is how many of points against facets that takes.
-    struct Pricing {
-        const Hull* hull;
-        std::span<const int32_t> points;
-        double enough;
-        HullKernel::Measure measure;
-
-        size_t tests() const { return hull->facet_count() * points.size(); }
-        void work(Worker& worker) { measure = worker.hulls.united_volume(*hull, points, enough); }
-    };
-
     // Asks memory for what pricing and working out that price reads first, but for this cluster's, ahead of that.
     void prefetch(int32_t edge, int32_t but) const {
         const DualEdge& e = this->edge(edge);
@@ -121,8 +110,6 @@ public:
     }
 
     // The exact volume of the edge's hull; or, at the first try, only that it costs more than this concavity.
-    Pricing pricing(int32_t edge, double concavity, Worker& worker);
-    void priced(int32_t edge, const Pricing& pricing);
     void find_price(int32_t edge, double concavity, Worker& worker) {
         Pricing price = pricing(edge, concavity, worker);
         price.work(worker);
@@ -153,6 +140,19 @@ public:
     static void forget(Contraction& contraction, Worker& worker);
 
 private:
+    // One price to be worked out. tests is how many of points against facets that takes.
+    struct Pricing {
+        const Hull* hull;
+        std::span<const int32_t> points;
+        double enough;
+        HullKernel::Measure measure;
+
+        size_t tests() const { return hull->facet_count() * points.size(); }
+        void work(Worker& worker) { measure = worker.hulls.united_volume(*hull, points, enough); }
+    };
+
+    Pricing pricing(int32_t edge, double concavity, Worker& worker);
+    void priced(int32_t edge, const Pricing& pricing);
     const Point& point(int32_t v) const { return mesh_.vertices[static_cast<size_t>(v)]; }
     std::pair<int32_t, int32_t> by_size(const DualEdge& edge) const;
     double union_of_neighbours(int32_t a, int32_t b) const;
@@ -166,6 +166,13 @@ private:
     LargeVector<int32_t> link_of_;    // scratch of contract(): cluster -> position in the merged links, or -1
     std::vector<Pricing> pricings_;  // scratch of find_prices()
 };
+
+// Of the queue's first edge no more need be known than that it costs more than this concavity.
+template <class Queue>
+double far_beyond_second(const Queue& queue) {
+    const auto* second = queue.runner_up();
+    return second ? dear * second->concavity() : std::numeric_limits<double>::infinity();
+}
 
 // What comes soon in a queue is anywhere in memory: lets it begin, step by step as it rises.
 template <class Queue>

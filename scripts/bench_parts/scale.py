@@ -1,7 +1,7 @@
 """One natural model from 50,000 to 1,000,000 faces: time and memory against size.
 
-Growth is against the smallest size, which is measured again before and after each other one: a machine's speed may change
-within the minutes that the largest takes.
+Growth is against the smallest size, measured again after each other one, as the mean of before and after it: a machine's
+speed may change within the minutes that the largest takes.
 """
 
 from math import log
@@ -22,19 +22,22 @@ def measure(quick):
             raise Failure(f"{path.name} could not be built: {why_not}")
         return {"tets": report["tets"], **sizes(report)}
 
-    rows, paths = [], []
+    rows = []
     mesh = models.read(models.NATURAL)
     for faces in QUICK if quick else SIZES:
         mesh = models.subdivided(mesh, faces)
-        paths.append(models.write(f"natural-{faces}", mesh))
-        before = measured(paths[0], 1 if quick else 3)
-        row = {"faces": faces, **measured(paths[-1], 1 if quick or faces > 200_000 else 3)}
-        after = measured(paths[0], 1 if quick else 3)
+        path = models.write(f"natural-{faces}", mesh)
+        row = {"faces": faces, **measured(path, 1 if quick or faces > 200_000 else 3)}
+        if rows:
+            after = measured(first, 1 if quick else 3)
+        else:
+            first, before, after = path, row, row
         smallest = (before["htc_seconds"] + after["htc_seconds"]) / 2 / before["tets"]
         row["growth"] = row["htc_seconds"] / row["tets"] / smallest
         row["log2_growth"] = (log(row["tets"]) / log(before["tets"])) ** 2
         row["over_tetgen"] = (row["peak"] - row["tetgen_peak"]) / row["tets"]
         rows.append(row)
+        before = after
         print(f"   {faces} faces: {row['htc_seconds']:.2f} s HTC, a tetrahedron {row['growth']:.2f} x the smallest's, "
               f"{row['build_seconds']:.2f} s in all, {row['peak'] / 1e6:.0f} MB of which TetGen "
               f"{row['tetgen_peak'] / 1e6:.0f} MB")

@@ -244,7 +244,6 @@ TEST(Cluster, NorDoesOneThreadFarAheadOfTheOther) {
     for (const auto& [name, mesh] : meshes) {
         SCOPED_TRACE(name);
         const std::vector<Merge> should = clustered(mesh).merges;
-        PairOfThreads threads;
         for (unsigned seed = 0; seed < (light() ? 2U : 10U); ++seed) {
             // For some rounds at a time one thread is up to many times as fast as the other.
             std::mt19937 random(seed);
