@@ -6,8 +6,8 @@
 // its far side that strictly doesn't see the point, so the point is not on the edge's line.
 //
 // The hulls of clusters are mostly tiny: there all facets are tested, two at a time, and those that see the point are a
-// set of bits. On a large hull a walk finds one of them, the others are found from there. What a point sees can't be
-// foreseen, so the inner loops don't branch on it.
+// set of bits. On a hull of more facets than a set has bits a walk finds one of them, the others are found from there.
+// What a point sees can't be foreseen, so the inner loops don't branch on it.
 #include "hull.h"
 
 #include "large_pages.h"
@@ -24,8 +24,12 @@ namespace partwheel {
 
 namespace {
 
-// From so many facets on a walk beats testing them all.
-constexpr size_t large_hull = 64;
+// From so many facets on, points that are to be added are taken as they come, rather than tested first for what they add.
+constexpr size_t large_hull = 32;
+
+// Then every so many-th point is first, then those halfway between, and so on: as vertices are numbered along a curve
+// through space, the first few are from all over and add most of what all will.
+constexpr size_t first_stride = 64;
 
 // A point that adds less than this part of the hull's volume does not count when the volume is all that is asked for.
 constexpr double negligible = 1e-14;
@@ -216,9 +220,8 @@ private:
 
     // A point that is not surely inside.
     struct Candidate {
-        double volume6 = 0;  // six times what it alone adds to the hull, to rounding; on a large hull a lower bound
+        double volume6 = 0;  // six times what it alone adds to the hull, to rounding; infinity if not known
         int32_t vertex = 0;
-        uint32_t facet = 0;  // on a large hull, one that sees it, if known
     };
 
     struct RimEdge {
@@ -273,7 +276,7 @@ private:
     bool centred_ = false;
     double volume6_ = 0;
 
-    // What the last survey found, of these arguments, those that add most first. The first inserted_ are in the hull at
+    // What the last survey found, of these arguments, in the order to insert them. The first inserted_ are in the hull at
     // work, if that is loaded_.
     const Hull::Block* surveyed_ = nullptr;
     const int32_t* surveyed_points_ = nullptr;
@@ -363,8 +366,7 @@ bool HullKernel::Impl::surely_best(const View& h, size_t f, const Point& p) {
 // Some facet that the vertex is strictly outside of; none if it is in the hull. p is the vertex relative to the origin,
 // start a facet near it, if one is known.
 size_t HullKernel::Impl::find_seen(const View& h, const Point& p, int32_t vertex, size_t start) {
-    if (h.count >= large_hull)
-        if (const size_t f = walk(h, p, start); f != none) return f == inside ? none : f;
+    if (const size_t f = walk(h, p, start); f != none) return f == inside ? none : f;
     const double factor = h.error_factor(p);
     bool doubtful = false;
     for (size_t f = 0; f < h.count; f += 2) {
@@ -442,26 +444,24 @@ void HullKernel::Impl::survey(const Hull& hull, std::span<const int32_t> points)
     reserve(h.count);
     const std::span<const int32_t> own = hull.vertices();
     constexpr size_t few = 64;
-    // Those that remain to be tested against all facets. What is written past their end is no harm.
+    const auto is_own = [&](int32_t v) {
+        return own.size() > few ? std::binary_search(own.begin(), own.end(), v) : contains(own, v);
+    };
+    if (h.count >= large_hull) {
+        const auto take = [&](int32_t v) {
+            if (!is_own(v)) candidates_.push_back({HUGE_VAL, v});
+        };
+        for (size_t i = 0; i < points.size(); i += first_stride) take(points[i]);
+        for (size_t stride = first_stride / 2; stride > 0; stride /= 2)
+            for (size_t i = stride; i < points.size(); i += 2 * stride) take(points[i]);
+        return;
+    }
+    // Those that remain to be tested. What is written past their end is no harm.
     others_.resize(points.size());
-    size_t others = 0, start = 0;
+    size_t others = 0;
     for (const int32_t v : points) {
         others_[others] = v;
-        const bool is_own = own.size() > few ? std::binary_search(own.begin(), own.end(), v) : contains(own, v);
-        if (h.count >= large_hull && !is_own) {
-            const Point p = at(v) - h.origin;
-            const size_t f = walk(h, p, start);
-            if (f == inside) continue;
-            if (f != none) {
-                start = f;
-                // A bound that is negligible says nothing about what the point adds.
-                if (const double bound = h.side(f, p); bound > negligible * hull.volume()) {
-                    candidates_.push_back({bound, v, static_cast<uint32_t>(f)});
-                    continue;
-                }
-            }
-        }
-        others += !is_own;
+        others += !is_own(v);
     }
     for (size_t i = 0; i < others; i += 2) {
         const std::array<int32_t, 2> v = {others_[i], others_[std::min(i + 1, others - 1)]};
@@ -808,16 +808,11 @@ HullKernel::Measure HullKernel::Impl::united_volume(const Hull& hull, std::span<
     survey(hull, points);
     const double volume = hull.volume();
     if (candidates_.empty()) return {volume, true};
-    Candidate& first = candidates_[0];
-    if (hull.facet_count() >= large_hull) {
-        const View h = view(hull);
-        const Point p = at(first.vertex) - h.origin;
-        const size_t f = find_seen(h, p, first.vertex, first.facet);
-        first.volume6 = f == none ? 0 : flood(h, f, p, first.vertex);
+    if (const double first = candidates_[0].volume6; first < HUGE_VAL) {
+        const double with_first = volume + first / 6;
+        if (candidates_.size() == 1 || candidates_[1].volume6 <= negligible * volume) return {with_first, true};
+        if (with_first > enough) return {with_first, false};
     }
-    const double with_first = volume + first.volume6 / 6;
-    if (candidates_.size() == 1 || candidates_[1].volume6 <= negligible * volume) return {with_first, true};
-    if (with_first > enough) return {with_first, false};
     load(hull);
     for (;;) {
         const int32_t vertex = candidates_[inserted_].vertex;
