@@ -455,7 +455,8 @@ void Domains::merge_inside(size_t d, int32_t edge, const Turn& now) {
     }
     ++own.merged;
     place_links(merged, now.price, scratch);
-    for (const int32_t e : scratch.cheaper) evaluate(e, dear * now.concavity(), scratch);
+    graph_.find_prices(scratch.cheaper, dear * now.concavity(), *scratch.worker);
+    for (const int32_t e : scratch.cheaper) place(e);
 }
 
 // ---- Between the rounds: one thread --------------------------------------------------------------------------------

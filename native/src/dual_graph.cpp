@@ -119,19 +119,25 @@ void DualGraph::priced(int32_t edge_number, const Pricing& pricing) {
     e.tried = true;
 }
 
+void DualGraph::find_prices(std::span<const int32_t> edges, double concavity, Worker& worker) {
+    for (size_t i = 0; i < edges.size(); ++i) {
+        if (i + 1 < edges.size()) worker.hulls.prefetch(corners(by_size(edge(edges[i + 1])).second));
+        find_price(edges[i], concavity, worker);
+    }
+}
+
 void DualGraph::find_prices(std::span<const int32_t> edges, double concavity, Workers& workers) {
+    if (edges.size() < 2 || !workers.two()) return find_prices(edges, concavity, workers.first);
     pricings_.clear();
     size_t tests = 0;
     for (const int32_t e : edges) {
         pricings_.push_back(pricing(e, concavity, workers.first));
         tests += pricings_.back().tests();
     }
-    if (edges.size() > 1 && tests >= worth_sharing && workers.two())
-        workers.threads->share(edges.size(), [&](size_t i, size_t thread) {
-            pricings_[i].work(thread == 0 ? workers.first : *workers.second);
-        });
-    else
-        for (Pricing& pricing : pricings_) pricing.work(workers.first);
+    if (tests < worth_sharing) return find_prices(edges, concavity, workers.first);
+    workers.threads->share(edges.size(), [&](size_t i, size_t thread) {
+        pricings_[i].work(thread == 0 ? workers.first : *workers.second);
+    });
     for (size_t i = 0; i < edges.size(); ++i) priced(edges[i], pricings_[i]);
 }
 

@@ -106,7 +106,11 @@ public:
     // Asks memory for what pricing and working out that price reads first, but for this cluster's, ahead of that.
     void prefetch(int32_t edge, int32_t but) const {
         const DualEdge& e = this->edge(edge);
-        at(e.a == but ? e.b : e.a).hull.prefetch();
+        const Cluster& other = at(e.a == but ? e.b : e.a);
+        if (other.hull)
+            other.hull.prefetch();
+        else
+            prefetch_line(&mesh_.tetrahedra[static_cast<size_t>(other.low)]);
     }
 
     // The exact volume of the edge's hull; or, at the first try, only that it costs more than this concavity.
@@ -116,7 +120,10 @@ public:
         priced(edge, price);
     }
 
-    // The same for several edges, by both threads where that pays.
+    // The same for several edges.
+    void find_prices(std::span<const int32_t> edges, double concavity, Worker& worker);
+
+    // The same, by both threads where that pays.
     void find_prices(std::span<const int32_t> edges, double concavity, Workers& workers);
 
     // Merges the edge's clusters into one of the two, which gets that number, and returns what was merged. The edges

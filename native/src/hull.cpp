@@ -34,6 +34,9 @@ constexpr size_t first_stride = 64;
 // A point that adds less than this part of the hull's volume does not count when the volume is all that is asked for.
 constexpr double negligible = 1e-14;
 
+// So many points are asked for ahead of use: more would take longer than they are waited for.
+constexpr size_t few_points = 8;
+
 // So many facets at most are a set of bits.
 constexpr size_t set_bits = 64;
 
@@ -184,14 +187,18 @@ std::span<const HullFacet> Hull::facets() const {
 
 class HullKernel::Impl {
 public:
-    explicit Impl(std::span<const Point> points)
-        : points_(points), mark_(points.size(), 0), facet_from_(points.size(), -1) {
+    explicit Impl(std::span<const Point> points) {
+        points_.reserve(points.size());
+        for (const Point& p : points) points_.push_back({p});
         reserve(64);
     }
 
     Hull build(std::span<const int32_t> vertices);
     Hull unite(const Hull& hull, std::span<const int32_t> points);
     Measure united_volume(const Hull& hull, std::span<const int32_t> points, double enough);
+    void prefetch(std::span<const int32_t> points) const {
+        for (const int32_t v : points.first(std::min(points.size(), few_points))) prefetch_line(&at(v));
+    }
     void forget() { surveyed_ = nullptr; }
     void release(Hull& hull) {
         if (hull.block_) hull.block_->pool = &pool_;
@@ -224,6 +231,13 @@ private:
         int32_t vertex = 0;
     };
 
+    // With what is noted of it, so that all comes from memory at once.
+    struct alignas(32) Vertex {
+        Point place;
+        uint32_t mark = 0;         // stamp_: it is one of those in question
+        int32_t facet_from = -1;   // the new facet whose rim edge starts here
+    };
+
     struct RimEdge {
         int32_t from, to;
         int32_t beyond;  // the facet that stays
@@ -231,7 +245,9 @@ private:
 
     static constexpr size_t none = ~size_t{0}, inside = none - 1;  // in place of a facet
 
-    const Point& at(int32_t v) const { return points_[static_cast<size_t>(v)]; }
+    const Point& at(int32_t v) const { return points_[static_cast<size_t>(v)].place; }
+    void mark(int32_t v) { points_[static_cast<size_t>(v)].mark = stamp_; }
+    bool marked(int32_t v) const { return points_[static_cast<size_t>(v)].mark == stamp_; }
     static View view(const Hull& hull);
     View view() const;
 
@@ -262,7 +278,7 @@ private:
     Hull allocate(std::span<const int32_t> vertices, size_t facets);
     bool load_simplex(std::span<const int32_t> vertices);
 
-    std::span<const Point> points_;
+    LargeVector<Vertex> points_;
     Hull::Pool pool_;
 
     // The hull at work: its facets are in the first count_ places, but for the gaps.
@@ -291,9 +307,7 @@ private:
     std::vector<RimEdge> rim_;          // the edges around them
     std::vector<uint32_t> facet_mark_;  // facet_mark_[f] == facet_stamp_: f is one of those in question
     uint32_t facet_stamp_ = 0;
-    LargeVector<uint32_t> mark_;  // of vertices, in the same manner
-    uint32_t stamp_ = 0;
-    LargeVector<int32_t> facet_from_;  // the new facet whose rim edge starts at a vertex
+    uint32_t stamp_ = 0;  // of vertices, in the same manner
     std::vector<int32_t> vertices_;
     std::vector<int32_t> unloaded_;
 };
@@ -449,7 +463,9 @@ void HullKernel::Impl::survey(const Hull& hull, std::span<const int32_t> points)
     };
     if (h.count >= large_hull) {
         const auto take = [&](int32_t v) {
-            if (!is_own(v)) candidates_.push_back({HUGE_VAL, v});
+            if (is_own(v)) return;
+            prefetch_line(&at(v));
+            candidates_.push_back({HUGE_VAL, v});
         };
         for (size_t i = 0; i < points.size(); i += first_stride) take(points[i]);
         for (size_t stride = first_stride / 2; stride > 0; stride /= 2)
@@ -487,6 +503,8 @@ void HullKernel::Impl::make_room(size_t facets) {
 
 void HullKernel::Impl::load(const Hull& hull) {
     const View h = view(hull);
+    if (h.count <= set_bits)
+        for (const int32_t v : hull.vertices()) prefetch_line(&at(v));
     count_ = h.count;
     // One loop for all, for they are short and their length can't be foreseen.
     const double* const from[] = {h.x, h.y, h.z, h.offset, h.size};
@@ -614,7 +632,7 @@ void HullKernel::Impl::attach(int32_t vertex) {
     latest_ = seen_[0];
     make_facets(rim, p, vertex);
     HullFacet* const facets = facets_.data();
-    int32_t* const facet_from = facet_from_.data();
+    Vertex* const points = points_.data();
     for (size_t i = 0; i < rim.size(); ++i) {
         const auto [from, to, beyond] = rim[i];
         const uint32_t f = seen_[i];
@@ -623,10 +641,10 @@ void HullKernel::Impl::attach(int32_t vertex) {
         HullFacet& across = facets[beyond];
         const size_t k = size_t{across.corners[1] == to} + 2 * size_t{across.corners[2] == to};
         across.neighbours[k] = static_cast<int32_t>(f);
-        facet_from[from] = static_cast<int32_t>(f);
+        points[from].facet_from = static_cast<int32_t>(f);
     }
     for (size_t i = 0; i < rim.size(); ++i) {
-        const int32_t next = facet_from[rim[i].to];
+        const int32_t next = points[rim[i].to].facet_from;
         facets[seen_[i]].neighbours[1] = next;
         facets[next].neighbours[2] = static_cast<int32_t>(seen_[i]);
     }
@@ -662,13 +680,13 @@ Hull HullKernel::Impl::unload(std::span<const int32_t> some, std::span<const int
     close_gaps();
     ++stamp_;
     for (size_t f = 0; f < count_; ++f)
-        for (const int32_t v : facets_[f].corners) mark_[static_cast<size_t>(v)] = stamp_;
+        for (const int32_t v : facets_[f].corners) mark(v);
     // Both lists merged, without a branch on what can't be foreseen.
     unloaded_.resize(some.size() + others.size() + 1);
     size_t vertices = 0;
     const auto take = [&](int32_t v) {
         unloaded_[vertices] = v;
-        vertices += mark_[static_cast<size_t>(v)] == stamp_;
+        vertices += marked(v);
     };
     size_t i = 0, j = 0;
     while (i < some.size() && j < others.size()) {
@@ -778,9 +796,12 @@ Hull HullKernel::Impl::build(std::span<const int32_t> vertices) {
     }
     ++stamp_;
     for (size_t f = 0; f < count_; ++f)
-        for (const int32_t v : facets_[f].corners) mark_[static_cast<size_t>(v)] = stamp_;
+        for (const int32_t v : facets_[f].corners) mark(v);
     for (const int32_t v : order)
-        if (std::exchange(mark_[static_cast<size_t>(v)], stamp_) != stamp_) insert(v);
+        if (!marked(v)) {
+            mark(v);
+            insert(v);
+        }
     std::sort(order.begin(), order.end());
     order.erase(std::unique(order.begin(), order.end()), order.end());
     return unload(order, {});
@@ -847,6 +868,7 @@ Hull HullKernel::unite(const Hull& hull, std::span<const int32_t> points) { retu
 HullKernel::Measure HullKernel::united_volume(const Hull& hull, std::span<const int32_t> points, double enough) {
     return impl_->united_volume(hull, points, enough);
 }
+void HullKernel::prefetch(std::span<const int32_t> points) const { impl_->prefetch(points); }
 void HullKernel::release(Hull& hull) { impl_->release(hull); }
 void HullKernel::forget() { impl_->forget(); }
 std::pair<Point, Point> HullKernel::bounds(const Hull& hull) const { return impl_->bounds(hull); }

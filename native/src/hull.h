@@ -62,8 +62,7 @@ private:
 // Results are exact in their combinatorics (exact predicates); volumes are rounded.
 class HullKernel {
 public:
-    // points must outlive the kernel; their coordinates should be at most some 1e80 in size, and their differences,
-    // where not 0, at least some 1e-80.
+    // The points' coordinates should be at most some 1e80 in size, and their differences, where not 0, at least some 1e-80.
     explicit HullKernel(std::span<const Point> points);
     ~HullKernel();
     HullKernel(const HullKernel&) = delete;
@@ -85,6 +84,9 @@ public:
     // that follows.
     Measure united_volume(const Hull& hull, std::span<const int32_t> points,
                           double enough = std::numeric_limits<double>::infinity());
+
+    // Asks memory for the first of these points, ahead of use.
+    void prefetch(std::span<const int32_t> points) const;
 
     // Forgets what it has kept for a unite(): needed where another kernel may since have made hulls in the place of
     // those it knew.
