@@ -51,6 +51,7 @@ constexpr size_t least_merges_a_round = 4;
 // A thread that is done with its round goes on, rather than wait for the other, until so many rounds' merges might
 // still be taken back. Few ever are.
 constexpr size_t patience = 64;
+constexpr size_t least_lead = 16;
 
 // One tetrahedron in so many is asked where the middle is, and what a plane cuts: so many planes in each direction,
 // with no less than half but this part of the tetrahedra on either side.
@@ -118,7 +119,7 @@ private:
         Stamp latest;                              // of these
         std::vector<std::unique_ptr<Done>> spare;  // with their memory
         std::vector<Done*> by_number;              // null for what is final or has been taken back
-        std::vector<Numbered> merges;              // final
+        std::vector<Numbered> settled;             // final since the last round
         size_t goal = 0, merged = 0;               // merges in this round
         std::atomic<bool> finished{false};
 
@@ -139,6 +140,8 @@ private:
     Turn turn(int32_t edge, const Price& own) const;
     LeftOut& left_out(uint8_t home) { return home == across ? across_ : domains_[home - left_out_0].left_out; }
     void remove(int32_t edge);
+    uint8_t& hindered(int32_t cluster) { return hindered_[static_cast<size_t>(cluster)]; }
+    void note_left_out(int32_t edge) { hindered(graph_.edge(edge).a) = hindered(graph_.edge(edge).b) = 1; }
     void place(int32_t edge, const Price& own);
     void place(int32_t edge) { place(edge, price(edge)); }
     template <class Queue>
@@ -164,7 +167,8 @@ private:
     void merge_left_out();
     void merge_at_border(int32_t edge, const Turn& turn);
     Stamp settled_before();
-    std::vector<Merge> in_order();
+    void put_in_order();
+    std::vector<Merge> finish();
 
     DualGraph& graph_;
     Workers& workers_;
@@ -176,11 +180,16 @@ private:
     LeftOut across_{places_};
     std::array<Scratch, 2> scratch_;
     std::vector<uint8_t> sites_;
+    std::vector<uint8_t> hindered_;  // whether an edge of the cluster may be left out: if not, none is
     std::vector<Stamp> made_;
-    std::vector<Numbered> merges_;  // at the border
-    size_t left_;                   // clusters
-    Stamp settled_;                 // what has been done before that is final
-    size_t lead_ = 0;               // so many merges of a domain at most that are not final
+    std::vector<Numbered> at_border_;  // merges there since the last round
+    size_t count_at_border_ = 0;       // of all so far
+    Stamp latest_at_border_;
+    std::vector<Merge> merges_;        // the final ones, numbered as one thread does
+    LargeVector<int32_t> number_of_;   // how it does that, by our numbers, the leaves' left out
+    size_t left_;                      // clusters
+    Stamp settled_;                    // what has been done before that is final
+    size_t lead_ = 0;                  // so many merges of a domain at most that are not final
 };
 
 // The half that each tetrahedron is in: of planes in some directions, near the middle, the one that cuts the fewest
@@ -238,7 +247,8 @@ std::vector<uint8_t> Domains::halves(const TetMesh& mesh, PairOfThreads& threads
 
 Domains::Domains(DualGraph& graph, const TetMesh& mesh, Workers& workers, Progress& progress, const Pace& pace)
     : graph_(graph), workers_(workers), threads_(*workers.threads), progress_(progress), pace_(pace),
-      scratch_{{{&workers.first}, {&*workers.second}}}, sites_(halves(mesh, threads_)), made_(graph.clusters_count()),
+      scratch_{{{&workers.first}, {&*workers.second}}}, sites_(halves(mesh, threads_)), hindered_(graph.clusters_count(), 0),
+      made_(graph.clusters_count()),
       left_(graph.clusters_count()) {
     places_.resize(graph.edges_count());
     std::vector<uint8_t> sites(left_);
@@ -304,10 +314,9 @@ void Domains::place(int32_t edge, const Price& own) {
     }
     at = to;
     const auto put = [&](auto& queue, const auto& key) { queued ? queue.update(key, edge) : queue.insert(key, edge); };
-    if (to <= inside_1)
-        put(domains_[to].inside, own);
-    else
-        put(left_out(to), turn(edge, own));
+    if (to <= inside_1) return put(domains_[to].inside, own);
+    note_left_out(edge);
+    put(left_out(to), turn(edge, own));
 }
 
 void Domains::evaluate(int32_t edge, double concavity, Scratch& scratch) {
@@ -336,8 +345,10 @@ std::pair<int32_t, Domains::Numbered> Domains::contract(int32_t edge, const Stam
                                                         Scratch& scratch, Contraction* undo) {
     scratch.removed.clear();
     int32_t merged;
+    const uint8_t either = hindered(graph_.edge(edge).a) | hindered(graph_.edge(edge).b);
     const Merge merge = graph_.contract(edge, number, *scratch.worker, scratch.removed, merged, undo);
     made(merged) = stamp;
+    hindered(merged) |= either;
     for (const int32_t e : scratch.removed) remove(e);
     return {merged, {merge, stamp, number}};
 }
@@ -362,14 +373,16 @@ void Domains::place_links(int32_t merged, const Price& paid, Scratch& scratch) {
 // (a) and (b) for an edge that is its domain's cheapest inside. If it is cheaper than what made it possible, its turn is
 // later than its price says, and others inside may come before it, where something has been taken back.
 bool Domains::may_merge(int32_t edge, const Turn& own, const Domain& in, Scratch& scratch) {
+    const auto [a, b] = std::pair(graph_.edge(edge).a, graph_.edge(edge).b);
     const bool late = own.stamp < in.latest;
+    if (!late && own.stamp.steps == 0 && !hindered(a) && !hindered(b)) return true;
     const auto before = [&](int32_t e) {
         if (const uint8_t home = graph_.edge(e).home; home > inside_1) return left_out(home).key(e) < own;
         if (own.stamp.steps == 0) return false;
         const Price other = price(e);
         return other < own.stamp.price && turn(e, other) < own;
     };
-    for (const int32_t c : {graph_.edge(edge).a, graph_.edge(edge).b})
+    for (const int32_t c : {a, b})
         for (const Link& link : graph_.at(c).links) {
             if (late && own.stamp < made(link.cluster)) return false;
             while (before(link.edge)) {
@@ -384,8 +397,8 @@ bool Domains::may_merge(int32_t edge, const Turn& own, const Domain& in, Scratch
 void Domains::settle(size_t d) {
     Domain& own = domains_[d];
     for (; !own.done.empty() && own.done.front()->numbered.stamp < settled_; own.done.pop_front()) {
-        own.merges.push_back(own.done.front()->numbered);
-        done(own.merges.back().number) = nullptr;
+        own.settled.push_back(own.done.front()->numbered);
+        done(own.settled.back().number) = nullptr;
         own.spare.push_back(std::move(own.done.front()));
     }
 }
@@ -405,7 +418,6 @@ void Domains::advance(size_t d) {
         }
         prefetch(own.inside);
         const auto top = own.inside.top();
-        if (!own.left_out.empty() && own.left_out.top().price < top && price_top(own.left_out, scratch)) continue;
         if (price_top(own.inside, scratch)) continue;
         const Turn now = turn(top.edge, top);
         prefetch_around(graph_, places_, top.edge);
@@ -414,6 +426,7 @@ void Domains::advance(size_t d) {
         } else {
             own.inside.remove(top.edge);
             graph_.edge(top.edge).home = static_cast<uint8_t>(left_out_0 + d);
+            note_left_out(top.edge);
             own.left_out.insert(now, top.edge);
         }
     }
@@ -569,9 +582,10 @@ void Domains::merge_left_out() {
 void Domains::merge_at_border(int32_t edge, const Turn& now) {
     const auto [a, b] = std::pair(graph_.edge(edge).a, graph_.edge(edge).b);
     const uint8_t larger = graph_.at(a).size >= graph_.at(b).size ? owner(a) : owner(b);
-    const auto number = static_cast<int32_t>(graph_.clusters_count() + 3 * merges_.size() + 2);
+    const auto number = static_cast<int32_t>(graph_.clusters_count() + 3 * count_at_border_++ + 2);
     const auto [merged, numbered] = contract(edge, now.stamp, number, scratch_[0], nullptr);
-    merges_.push_back(numbered);
+    at_border_.push_back(numbered);
+    latest_at_border_ = now.stamp;
     --left_;
     site(merged) = larger;
     look_whether_at_border(merged);
@@ -590,39 +604,48 @@ Stamp Domains::settled_before() {
     if (const LeftOut* next = next_left_out()) first = next->top().stamp;
     for (const Domain& d : domains_)
         if (!d.inside.empty()) first = std::min(first, Stamp{d.inside.top(), 0});
-    return merges_.empty() ? first : std::max(first, merges_.back().stamp);
+    return std::max(first, latest_at_border_);
 }
 
-// All merges, numbered as one thread does.
-std::vector<Merge> Domains::in_order() {
+// Numbers all merges that have become final as one thread does.
+void Domains::put_in_order() {
     const auto leaves = static_cast<int32_t>(graph_.clusters_count());
-    std::vector<int32_t> number_of(4 * graph_.clusters_count());
-    const auto renumber = [&](int32_t& n) {
-        if (n >= leaves) n = number_of[static_cast<size_t>(n - leaves)];
-    };
-    std::vector<Merge> merges;
-    merges.reserve(static_cast<size_t>(leaves));
-    std::array<std::span<const Numbered>, 3> rest = {domains_[0].merges, domains_[1].merges, merges_};
+    const auto renumbered = [&](int32_t n) { return n < leaves ? n : number_of_[static_cast<size_t>(n - leaves)]; };
+    std::array<std::span<const Numbered>, 3> rest = {domains_[0].settled, domains_[1].settled, at_border_};
     for (;;) {
         std::span<const Numbered>* next = nullptr;
         for (auto& list : rest)
             if (!list.empty() && (!next || list.front().stamp < next->front().stamp)) next = &list;
         if (!next) break;
-        const auto number = static_cast<size_t>(next->front().number - leaves);
-        if (number >= number_of.size()) number_of.resize(2 * number + 1);
-        number_of[number] = leaves + static_cast<int32_t>(merges.size());
-        Merge merge = next->front().merge;
+        const Numbered& made = next->front();
         *next = next->subspan(1);
-        renumber(merge.left);
-        renumber(merge.right);
-        merges.push_back(merge);
+        const auto number = static_cast<size_t>(made.number - leaves);
+        if (number >= number_of_.size()) number_of_.resize(2 * number + 1);
+        number_of_[number] = leaves + static_cast<int32_t>(merges_.size());
+        merges_.push_back(made.merge);
+        merges_.back().left = renumbered(made.merge.left);
+        merges_.back().right = renumbered(made.merge.right);
     }
+    for (Domain& d : domains_) d.settled.clear();
+    at_border_.clear();
+}
+
+// Takes back what is not final, and numbers what is left.
+std::vector<Merge> Domains::finish() {
+    for (size_t d = 0; d < 2; ++d) settle(d);
+    for (Domain& d : domains_)
+        while (!d.done.empty()) take_back(*d.done.back());
+    put_in_order();
+    const auto leaves = static_cast<int32_t>(graph_.clusters_count());
     for (int32_t c = 0; c < leaves; ++c)
-        if (graph_.at(c).size > 0) renumber(graph_.at(c).number);
-    return merges;
+        if (int32_t& n = graph_.at(c).number; graph_.at(c).size > 0 && n >= leaves)
+            n = number_of_[static_cast<size_t>(n - leaves)];
+    return std::move(merges_);
 }
 
 std::vector<Merge> Domains::run() {
+    merges_.reserve(graph_.clusters_count());
+    number_of_.resize(4 * graph_.clusters_count());
     while (left_ > few_clusters && (pace_ || threads_.pays()) && !(domains_[0].inside.empty() && domains_[1].inside.empty())) {
         const size_t goal = std::max(left_ / clusters_a_merge, least_merges_a_round);
         const auto goals = pace_ ? pace_(goal) : std::array{goal, goal};
@@ -630,20 +653,18 @@ std::vector<Merge> Domains::run() {
             domains_[d].goal = goals[d];
             domains_[d].finished = false;
         }
-        lead_ = patience * goal;
+        lead_ = std::max(left_ * patience / clusters_a_merge, least_lead);
         threads_.share(2, [this](size_t d, size_t) {
             settle(d);
             advance(d);
         });
         left_ -= domains_[0].merged + domains_[1].merged;
+        put_in_order();
         merge_left_out();
         settled_ = settled_before();
         progress_.advance(0.1 + 0.9 * (1 - static_cast<double>(left_) / static_cast<double>(graph_.clusters_count())));
     }
-    for (size_t d = 0; d < 2; ++d) settle(d);
-    for (Domain& d : domains_)
-        while (!d.done.empty()) take_back(*d.done.back());
-    return in_order();
+    return finish();
 }
 
 }  // namespace
