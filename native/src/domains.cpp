@@ -53,6 +53,10 @@ constexpr size_t least_merges_a_round = 4;
 constexpr size_t patience = 64;
 constexpr size_t least_lead = 16;
 
+// What is convex costs the same and goes by size and then by place, so first all in one half: one thread may be so many
+// times as far ahead then.
+constexpr size_t convex_patience = 4;
+
 // One tetrahedron in so many is asked where the middle is, and what a plane cuts: so many planes in each direction,
 // with no less than half but this part of the tetrahedra on either side.
 constexpr size_t sample = 16, planes = 7;
@@ -189,7 +193,7 @@ private:
     LargeVector<int32_t> number_of_;   // how it does that, by our numbers, the leaves' left out
     size_t left_;                      // clusters
     Stamp settled_;                    // what has been done before that is final
-    size_t lead_ = 0;                  // so many merges of a domain at most that are not final
+    size_t lead_ = 0;                  // so many merges of a domain at most that are not final, but for convex ones
 };
 
 // The half that each tetrahedron is in: of planes in some directions, near the middle, the one that cuts the fewest
@@ -411,7 +415,8 @@ void Domains::advance(size_t d) {
     for (own.merged = 0; !own.inside.empty();) {
         // What belongs before or right after the latest merge is not left for later: others would wait for it.
         const bool may_stop = own.done.empty() || own.latest.price < own.inside.top();
-        if (may_stop && own.done.size() >= lead_) break;
+        const size_t lead = own.inside.top().concavity() > 0 ? lead_ : convex_patience * lead_;
+        if (may_stop && own.done.size() >= lead) break;
         if (may_stop && own.merged >= own.goal) {
             own.finished.store(true, std::memory_order_relaxed);
             if (pace_ || other.finished.load(std::memory_order_relaxed)) break;
