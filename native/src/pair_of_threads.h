@@ -37,6 +37,7 @@ private:
 
     void work(size_t thread) noexcept;
     void wait_for_second();
+    Clock::duration second_has_run();
     void serve();
 
     std::atomic<uint32_t> state_{idle};
@@ -45,7 +46,7 @@ private:
     const std::function<void(size_t, size_t)>* task_ = nullptr;
     std::array<std::exception_ptr, 2> errors_;
     const Clock::time_point made_ = Clock::now();
-    Clock::duration alone_{};  // how long the caller had work for two and was the only one to do it, or waited
+    Clock::duration alone_{};  // how long the caller had work for two, or waited, and the second thread was not running
     std::thread second_;  // last, so that all else is there when it begins
 };
 
