@@ -171,6 +171,7 @@ private:
     void merge_left_out();
     void merge_at_border(int32_t edge, const Turn& turn);
     Stamp settled_before();
+    int32_t final_number(int32_t number) const;
     void put_in_order();
     std::vector<Merge> finish();
 
@@ -251,9 +252,8 @@ std::vector<uint8_t> Domains::halves(const TetMesh& mesh, PairOfThreads& threads
 
 Domains::Domains(DualGraph& graph, const TetMesh& mesh, Workers& workers, Progress& progress, const Pace& pace)
     : graph_(graph), workers_(workers), threads_(*workers.threads), progress_(progress), pace_(pace),
-      scratch_{{{&workers.first}, {&*workers.second}}}, sites_(halves(mesh, threads_)), hindered_(graph.clusters_count(), 0),
-      made_(graph.clusters_count()),
-      left_(graph.clusters_count()) {
+      scratch_{{{&workers.first}, {&*workers.second}}}, sites_(halves(mesh, threads_)),
+      hindered_(graph.clusters_count(), 0), made_(graph.clusters_count()), left_(graph.clusters_count()) {
     places_.resize(graph.edges_count());
     std::vector<uint8_t> sites(left_);
     threads_.share(2, [&](size_t d, size_t) {
@@ -612,10 +612,15 @@ Stamp Domains::settled_before() {
     return std::max(first, latest_at_border_);
 }
 
+// The number that one thread gives to what has this one; the same for a leaf.
+int32_t Domains::final_number(int32_t number) const {
+    const auto leaves = static_cast<int32_t>(graph_.clusters_count());
+    return number < leaves ? number : number_of_[static_cast<size_t>(number - leaves)];
+}
+
 // Numbers all merges that have become final as one thread does.
 void Domains::put_in_order() {
     const auto leaves = static_cast<int32_t>(graph_.clusters_count());
-    const auto renumbered = [&](int32_t n) { return n < leaves ? n : number_of_[static_cast<size_t>(n - leaves)]; };
     std::array<std::span<const Numbered>, 3> rest = {domains_[0].settled, domains_[1].settled, at_border_};
     for (;;) {
         std::span<const Numbered>* next = nullptr;
@@ -628,8 +633,8 @@ void Domains::put_in_order() {
         if (number >= number_of_.size()) number_of_.resize(2 * number + 1);
         number_of_[number] = leaves + static_cast<int32_t>(merges_.size());
         merges_.push_back(made.merge);
-        merges_.back().left = renumbered(made.merge.left);
-        merges_.back().right = renumbered(made.merge.right);
+        merges_.back().left = final_number(made.merge.left);
+        merges_.back().right = final_number(made.merge.right);
     }
     for (Domain& d : domains_) d.settled.clear();
     at_border_.clear();
@@ -643,8 +648,7 @@ std::vector<Merge> Domains::finish() {
     put_in_order();
     const auto leaves = static_cast<int32_t>(graph_.clusters_count());
     for (int32_t c = 0; c < leaves; ++c)
-        if (int32_t& n = graph_.at(c).number; graph_.at(c).size > 0 && n >= leaves)
-            n = number_of_[static_cast<size_t>(n - leaves)];
+        if (Cluster& left = graph_.at(c); left.size > 0) left.number = final_number(left.number);
     return std::move(merges_);
 }
 

@@ -225,7 +225,7 @@ private:
         double error_factor(const Point& p) const { return side_error * std::max(reach, reach_of(p)); }
     };
 
-    // A point that is not surely inside.
+    // A point that may be outside.
     struct Candidate {
         double volume6 = 0;  // six times what it alone adds to the hull, to rounding; infinity if not known
         int32_t vertex = 0;
@@ -248,6 +248,11 @@ private:
     const Point& at(int32_t v) const { return points_[static_cast<size_t>(v)].place; }
     void mark(int32_t v) { points_[static_cast<size_t>(v)].mark = stamp_; }
     bool marked(int32_t v) const { return points_[static_cast<size_t>(v)].mark == stamp_; }
+    void mark_corners() {  // of the hull at work, and no other vertex
+        ++stamp_;
+        for (size_t f = 0; f < count_; ++f)
+            for (const int32_t v : facets_[f].corners) mark(v);
+    }
     static View view(const Hull& hull);
     View view() const;
 
@@ -678,9 +683,7 @@ void HullKernel::Impl::close_gaps() {
 // The hull at work; its vertices are among these, which are in rising order both.
 Hull HullKernel::Impl::unload(std::span<const int32_t> some, std::span<const int32_t> others) {
     close_gaps();
-    ++stamp_;
-    for (size_t f = 0; f < count_; ++f)
-        for (const int32_t v : facets_[f].corners) mark(v);
+    mark_corners();
     // Both lists merged, without a branch on what can't be foreseen.
     unloaded_.resize(some.size() + others.size() + 1);
     size_t vertices = 0;
@@ -794,9 +797,7 @@ Hull HullKernel::Impl::build(std::span<const int32_t> vertices) {
         order.erase(std::unique(order.begin(), order.end()), order.end());
         return allocate(order, 0);
     }
-    ++stamp_;
-    for (size_t f = 0; f < count_; ++f)
-        for (const int32_t v : facets_[f].corners) mark(v);
+    mark_corners();
     for (const int32_t v : order)
         if (!marked(v)) {
             mark(v);
