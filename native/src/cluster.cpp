@@ -21,6 +21,9 @@ namespace {
 
 constexpr size_t nearest_components = 16;
 
+// While one thread makes a hull, the other prices so many edges, of those at the first so many places of the queue.
+constexpr size_t most_beside_union = 3, places_beside_union = 21;
+
 class Clustering {
 public:
     Clustering(const TetMesh& mesh, Progress& progress, int threads)
@@ -34,7 +37,9 @@ private:
 
     void queue_edges();
     void evaluate(std::span<const int32_t> edges, double concavity);
-    std::span<const int32_t> first_unpriced();
+    void update(std::span<const int32_t> edges);
+    std::span<const int32_t> unpriced(std::span<const Queue::Item> items, size_t most, int32_t apart_from = -1);
+    void unite_ahead(int32_t contracted);
     void contract_all();
     void contract(int32_t edge);
     void join_components();
@@ -45,8 +50,8 @@ private:
     DualGraph graph_;
     EdgePlaces places_;
     Queue queue_{places_};
-    std::vector<int32_t> unpriced_;             // scratch of contract() and first_unpriced()
-    std::vector<int32_t> removed_;              // scratch of contract()
+    std::vector<int32_t> unpriced_;  // scratch of contract() and unpriced()
+    std::vector<int32_t> removed_;   // scratch of contract()
     BinaryTree tree_;
 };
 
@@ -64,16 +69,33 @@ void Clustering::queue_edges() {
 // Finds the exact volumes of the edges' hulls; or, at the first try, only that they cost more than this concavity.
 void Clustering::evaluate(std::span<const int32_t> edges, double concavity) {
     graph_.find_prices(edges, concavity, workers_);
+    update(edges);
+}
+
+void Clustering::update(std::span<const int32_t> edges) {
     for (const int32_t edge : edges) queue_.update(Price(graph_.cost(graph_.edge(edge))), edge);
 }
 
-// The queue's first edge if it is not exact; for two threads also the others near the top that are not.
-std::span<const int32_t> Clustering::first_unpriced() {
+// The first of these that are not exact, and have no cluster of that edge.
+std::span<const int32_t> Clustering::unpriced(std::span<const Queue::Item> items, size_t most, int32_t apart_from) {
+    const auto touches = [&](int32_t c) {
+        return apart_from >= 0 && (c == graph_.edge(apart_from).a || c == graph_.edge(apart_from).b);
+    };
     unpriced_.clear();
-    const auto items = queue_.top_items();
-    for (const Queue::Item& item : items.first(workers_.two() ? items.size() : 1))
-        if (!graph_.edge(item.edge).exact) unpriced_.push_back(item.edge);
+    for (const Queue::Item& item : items)
+        if (const DualEdge& e = graph_.edge(item.edge);
+            unpriced_.size() < most && !e.exact && !touches(e.a) && !touches(e.b))
+            unpriced_.push_back(item.edge);
     return unpriced_;
+}
+
+// Has one thread make the hull of an edge that is to be contracted, while the other prices what comes soon in the queue.
+void Clustering::unite_ahead(int32_t contracted) {
+    if (queue_.empty() || !graph_.worth_uniting_ahead(contracted, workers_)) return;
+    const auto edges = unpriced(queue_.items(0, places_beside_union), most_beside_union, contracted);
+    if (edges.empty()) return;
+    graph_.unite_and_find_prices(contracted, edges, dear * queue_.top().concavity(), workers_);
+    update(edges);
 }
 
 void Clustering::contract_all() {
@@ -81,7 +103,8 @@ void Clustering::contract_all() {
         const int32_t top = queue_.top().edge;
         prefetch_soon(graph_, queue_);
         if (!graph_.edge(top).exact) {
-            evaluate(first_unpriced(), far_beyond_second(queue_));
+            const auto items = queue_.top_items();
+            evaluate(unpriced(items.first(workers_.two() ? items.size() : 1), items.size()), far_beyond_second(queue_));
             continue;
         }
         contract(top);
@@ -94,6 +117,7 @@ void Clustering::contract_all() {
 void Clustering::contract(int32_t contracted) {
     const Price price = queue_.top();
     queue_.remove(contracted);
+    unite_ahead(contracted);
     prefetch_around(graph_, places_, contracted);
     removed_.clear();
     int32_t merged;

@@ -13,6 +13,8 @@
 // 2. One thread makes the merges that were left out, in the order of their stamps, up to the first that still has a
 //    merge inside a domain before it.
 //
+// That ends when too many are left out: one queue has the rest.
+//
 // A merge must find what it would have found in its turn. That holds if
 //   (a) no edge of its two clusters comes before it: inside, a queue sees to that for the most part, and a merge for
 //       which an edge comes first that is left out, or has been taken back, is left out, too;
@@ -36,6 +38,7 @@
 #include <deque>
 #include <limits>
 #include <memory>
+#include <optional>
 
 namespace partwheel {
 
@@ -43,6 +46,11 @@ namespace {
 
 // With so few clusters left most of them are at the border.
 constexpr size_t few_clusters = 64;
+
+// Once more than this part of the merges is made at the border, by one thread, two do better with one queue. Looked at
+// whenever one cluster in so many has been merged.
+constexpr double most_at_border = 1.0 / 3;
+constexpr size_t looks = 8;
 
 // A round is one merge in each domain for so many clusters: short enough that few must wait long for their turn.
 constexpr size_t clusters_a_merge = 800;
@@ -159,9 +167,12 @@ private:
     bool may_merge(int32_t edge, const Turn& turn, const Domain& domain, Scratch& scratch);
     void settle(size_t d);
     void advance(size_t d);
+    void round(const std::array<size_t, 2>& goals);
+    void catch_up();
     void merge_inside(size_t d, int32_t edge, const Turn& turn);
     LeftOut* next_left_out();
     bool inside_before(const Stamp& stamp) const;
+    bool goes_on(const Domain& d) const { return !d.inside.empty() && !(last_ && *last_ < d.inside.top()); }
     static DoneList::iterator place_among(DoneList& done, const Stamp& stamp);
     Done*& done(int32_t number);
     Done* standing(int32_t cluster);
@@ -194,6 +205,7 @@ private:
     LargeVector<int32_t> number_of_;   // how it does that, by our numbers, the leaves' left out
     size_t left_;                      // clusters
     Stamp settled_;                    // what has been done before that is final
+    std::optional<Price> last_;        // of the merges to be made; none: all
     size_t lead_ = 0;                  // so many merges of a domain at most that are not final, but for convex ones
 };
 
@@ -412,7 +424,7 @@ void Domains::advance(size_t d) {
     const Domain& other = domains_[1 - d];
     Scratch& scratch = scratch_[d];
     scratch.worker->hulls.forget();
-    for (own.merged = 0; !own.inside.empty();) {
+    for (own.merged = 0; goes_on(own);) {
         // What belongs before or right after the latest merge is not left for later: others would wait for it.
         const bool may_stop = own.done.empty() || own.latest.price < own.inside.top();
         const size_t lead = own.inside.top().concavity() > 0 ? lead_ : convex_patience * lead_;
@@ -649,30 +661,55 @@ std::vector<Merge> Domains::finish() {
     const auto leaves = static_cast<int32_t>(graph_.clusters_count());
     for (int32_t c = 0; c < leaves; ++c)
         if (Cluster& left = graph_.at(c); left.size > 0) left.number = final_number(left.number);
+    threads_.share(2, [this](size_t d, size_t) {  // it is many small blocks
+        for (const auto& spare : domains_[d].spare) DualGraph::forget(spare->contraction, *scratch_[d].worker);
+        domains_[d].spare.clear();
+    });
     return std::move(merges_);
+}
+
+void Domains::round(const std::array<size_t, 2>& goals) {
+    for (size_t d = 0; d < 2; ++d) {
+        domains_[d].goal = goals[d];
+        domains_[d].finished = false;
+    }
+    threads_.share(2, [this](size_t d, size_t) {
+        settle(d);
+        advance(d);
+    });
+    left_ -= domains_[0].merged + domains_[1].merged;
+    put_in_order();
+    merge_left_out();
+    settled_ = settled_before();
+    progress_.advance(0.1 + 0.9 * (1 - static_cast<double>(left_) / static_cast<double>(graph_.clusters_count())));
+}
+
+// Lets each domain catch up with the other: what is not final in the end would have to be taken back.
+void Domains::catch_up() {
+    last_ = std::max(domains_[0].latest.price, domains_[1].latest.price);
+    while (std::ranges::any_of(domains_, [&](const Domain& d) { return goes_on(d); })) round({left_, left_});
 }
 
 std::vector<Merge> Domains::run() {
     merges_.reserve(graph_.clusters_count());
     number_of_.resize(4 * graph_.clusters_count());
-    while (left_ > few_clusters && (pace_ || threads_.pays()) && !(domains_[0].inside.empty() && domains_[1].inside.empty())) {
-        const size_t goal = std::max(left_ / clusters_a_merge, least_merges_a_round);
-        const auto goals = pace_ ? pace_(goal) : std::array{goal, goal};
-        for (size_t d = 0; d < 2; ++d) {
-            domains_[d].goal = goals[d];
-            domains_[d].finished = false;
-        }
+    size_t inside = 0, at_border = 0;  // merges since the last look
+    const auto mostly_inside = [&] {
+        const size_t all = inside + at_border;
+        if (all * looks < left_) return true;
+        const bool mostly = static_cast<double>(at_border) <= most_at_border * static_cast<double>(all);
+        inside = at_border = 0;
+        return mostly;
+    };
+    while (left_ > few_clusters && (pace_ || threads_.pays()) && mostly_inside() &&
+           std::ranges::any_of(domains_, [&](const Domain& d) { return goes_on(d); })) {
+        const size_t goal = std::max(left_ / clusters_a_merge, least_merges_a_round), before = count_at_border_;
         lead_ = std::max(left_ * patience / clusters_a_merge, least_lead);
-        threads_.share(2, [this](size_t d, size_t) {
-            settle(d);
-            advance(d);
-        });
-        left_ -= domains_[0].merged + domains_[1].merged;
-        put_in_order();
-        merge_left_out();
-        settled_ = settled_before();
-        progress_.advance(0.1 + 0.9 * (1 - static_cast<double>(left_) / static_cast<double>(graph_.clusters_count())));
+        round(pace_ ? pace_(goal) : std::array{goal, goal});
+        inside += domains_[0].merged + domains_[1].merged;
+        at_border += count_at_border_ - before;
     }
+    catch_up();
     return finish();
 }
 

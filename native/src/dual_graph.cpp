@@ -15,6 +15,9 @@ constexpr size_t edges_a_step = 16384;
 // A second thread is asked for help from so many tests of a point against a facet on: some microseconds.
 constexpr size_t worth_sharing = 1500;
 
+// The same for a hull that is made, not only measured.
+constexpr size_t worth_sharing_union = 400;
+
 }  // namespace
 
 Workers::Workers(std::span<const Point> points, int count) : first(points) {
@@ -141,6 +144,26 @@ void DualGraph::find_prices(std::span<const int32_t> edges, double concavity, Wo
     for (size_t i = 0; i < edges.size(); ++i) priced(edges[i], pricings_[i]);
 }
 
+bool DualGraph::worth_uniting_ahead(int32_t contracted, const Workers& workers) const {
+    if (!workers.two()) return false;
+    const auto [large, small] = by_size(edge(contracted));
+    return at(large).facets * corners(small).size() >= worth_sharing_union;
+}
+
+void DualGraph::unite_and_find_prices(int32_t contracted, std::span<const int32_t> edges, double concavity,
+                                      Workers& workers) {
+    pricings_.clear();
+    for (const int32_t e : edges) pricings_.push_back(pricing(e, concavity, workers.first));
+    workers.threads->share(1 + edges.size(), [&](size_t i, size_t thread) {
+        Worker& worker = thread == 0 ? workers.first : *workers.second;
+        if (i == 0)
+            united_ = unite(edge(contracted), worker.hulls);
+        else
+            pricings_[i - 1].work(worker);
+    });
+    for (size_t i = 0; i < edges.size(); ++i) priced(edges[i], pricings_[i]);
+}
+
 Hull DualGraph::unite(const DualEdge& e, HullKernel& kernel) const {
     const auto [large, small] = by_size(e);
     if (at(large).hull) return kernel.unite(at(large).hull, corners(small));
@@ -162,7 +185,7 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, Worker& worker, st
     const double volume = first.volume + second.volume;
     const Merge merge = {first.number, second.number, ranked_concavity(e.hull_volume, volume), e.hull_volume};
     for (const Link& link : g.links) prefetch_line(at(link.cluster).links.begin());
-    Hull united = unite(e, worker.hulls);
+    Hull united = united_ ? std::move(united_) : unite(e, worker.hulls);
     if (undo) {
         undo->stay = stay;
         undo->go = go;

@@ -126,6 +126,11 @@ public:
     // The same, by both threads where that pays.
     void find_prices(std::span<const int32_t> edges, double concavity, Workers& workers);
 
+    // The same, while one of two threads makes the hull for the contract() that follows, of an edge with none of whose
+    // clusters these have to do; and whether that pays.
+    void unite_and_find_prices(int32_t contracted, std::span<const int32_t> edges, double concavity, Workers& workers);
+    bool worth_uniting_ahead(int32_t contracted, const Workers& workers) const;
+
     // Merges the edge's clusters into one of the two, which gets that number, and returns what was merged. The edges
     // of the other that lead where the merged one leads already are appended to `removed`. Those that stay keep the
     // better bound of the two: refresh() is up to the caller. `undo`: null, or gets what undo() needs.
@@ -171,7 +176,8 @@ private:
     LargeVector<Cluster> clusters_;
     LargeVector<DualEdge> edges_;
     LargeVector<int32_t> link_of_;    // scratch of contract(): cluster -> position in the merged links, or -1
-    std::vector<Pricing> pricings_;  // scratch of find_prices()
+    std::vector<Pricing> pricings_;   // scratch of find_prices()
+    Hull united_;                     // made ahead for the next contract()
 };
 
 // Of the queue's first edge no more need be known than that it costs more than this concavity.

@@ -27,7 +27,7 @@ def measure(quick):
     for faces in QUICK if quick else SIZES:
         mesh = models.subdivided(mesh, faces)
         path = models.write(f"natural-{faces}", mesh)
-        row = {"faces": faces, **measured(path, 1 if quick or faces > 200_000 else 3)}
+        row = {"faces": faces, **measured(path, 1 if quick else 3)}
         if rows:
             after = measured(first, 1 if quick else 3)
         else:

@@ -1,8 +1,11 @@
 // What the benchmarks share: models from OFF files, stopwatches, memory.
 #include "measured.h"
 
+#include <malloc.h>
+
 #include <ctime>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -70,6 +73,11 @@ void reset_peak_memory() {
     std::ofstream clear("/proc/self/clear_refs");
     clear << "5" << std::flush;  // proc(5): the peak is set to what is held now
     if (!clear) throw std::runtime_error("/proc/self/clear_refs can't be written");
+}
+
+void keep_memory() {
+    if (mallopt(M_MMAP_MAX, 0) == 0 || mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max()) == 0)
+        throw std::runtime_error("the C library doesn't let memory be kept");
 }
 
 }  // namespace partwheel::bench

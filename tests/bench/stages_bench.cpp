@@ -6,7 +6,8 @@
 // the checks of the surface and its filling by TetGen, `hierarchy` with the paper's tree; then, beside that, it clusters
 // the same tetrahedra again with two threads, and regroups the tree, which the other mode of pw_build does.
 // `seconds` are [wall, cpu]; `peak` is the most memory in bytes that the process held during each stage of the first
-// repetition, `start` what it held before.
+// repetition, `start` what it held before. From the second repetition on memory is used again, so with some repetitions
+// the median is of the program's time, not of what the system takes to provide memory.
 #include "cluster.h"
 #include "dendrogram.h"
 #include "hierarchy.h"
@@ -94,6 +95,7 @@ int main(int argc, char** argv) {
         for (const Stage& stage : first.stages) std::printf(", \"%s\": %zu", stage.name, stage.peak);
         std::printf("},\n \"seconds\": [");
         print(first);
+        keep_memory();  // from the next one on, once it's known how much each stage takes
         for (int i = 1; i < repetitions; ++i) {
             std::printf(",\n  ");
             print(run(model, quality));
