@@ -47,8 +47,10 @@ namespace {
 // With so few clusters left most of them are at the border.
 constexpr size_t few_clusters = 64;
 
-// Once more than this part of the merges is made at the border, by one thread, two do better with one queue. Looked at
-// whenever one cluster in so many has been merged.
+// Of clusters of so many tetrahedra prices take long enough to be shared. Two threads then do better with one queue once
+// more than this part of the merges is made at the border, by one of them; looked at when one cluster in so many has
+// been merged.
+constexpr size_t tetrahedra_to_share = 50;
 constexpr double most_at_border = 1.0 / 3;
 constexpr size_t looks = 8;
 
@@ -694,15 +696,19 @@ std::vector<Merge> Domains::run() {
     merges_.reserve(graph_.clusters_count());
     number_of_.resize(4 * graph_.clusters_count());
     size_t inside = 0, at_border = 0;  // merges since the last look
-    const auto mostly_inside = [&] {
+    const auto mostly_at_border = [&] {
         const size_t all = inside + at_border;
-        if (all * looks < left_) return true;
-        const bool mostly = static_cast<double>(at_border) <= most_at_border * static_cast<double>(all);
+        if (all * looks < left_) return false;
+        const bool mostly = static_cast<double>(at_border) > most_at_border * static_cast<double>(all);
         inside = at_border = 0;
         return mostly;
     };
-    while (left_ > few_clusters && (pace_ || threads_.pays()) && mostly_inside() &&
-           std::ranges::any_of(domains_, [&](const Domain& d) { return goes_on(d); })) {
+    const auto pays = [&] {
+        if (left_ <= few_clusters || (mostly_at_border() && left_ * tetrahedra_to_share < graph_.clusters_count()))
+            return false;
+        return pace_ || threads_.pays();
+    };
+    while (pays() && std::ranges::any_of(domains_, [&](const Domain& d) { return goes_on(d); })) {
         const size_t goal = std::max(left_ / clusters_a_merge, least_merges_a_round), before = count_at_border_;
         lead_ = std::max(left_ * patience / clusters_a_merge, least_lead);
         round(pace_ ? pace_(goal) : std::array{goal, goal});
