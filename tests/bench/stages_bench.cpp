@@ -5,9 +5,9 @@
 // Each repetition runs every stage of pw_build from the model's arrays to the saved bytes in one thread, `solid` being
 // the checks of the surface and its filling by TetGen, `hierarchy` with the paper's tree; then, beside that, it clusters
 // the same tetrahedra again with two threads, and regroups the tree, which the other mode of pw_build does.
-// `seconds` are [wall, cpu]; `peak` is the most memory in bytes that the process held during each stage of the first
-// repetition, `start` what it held before. From the second repetition on memory is used again, so with some repetitions
-// the median is of the program's time, not of what the system takes to provide memory.
+// `seconds` are [wall, cpu]. A run before them has its own, `first`: there `peak` is the most memory in bytes that the
+// process held during each stage, `start` what it held before. In the others memory is used again, so that they tell the
+// program's time and not what the system takes to provide memory.
 #include "cluster.h"
 #include "dendrogram.h"
 #include "hierarchy.h"
@@ -93,11 +93,12 @@ int main(int argc, char** argv) {
                     "\"peak\": {\"start\": %zu, \"tetgen\": %zu",
                     model.triangle_count(), first.tets, first.bytes, first.tetgen.calls, start, first.tetgen.peak_memory);
         for (const Stage& stage : first.stages) std::printf(", \"%s\": %zu", stage.name, stage.peak);
-        std::printf("},\n \"seconds\": [");
+        std::printf("},\n \"first\": ");
         print(first);
-        keep_memory();  // from the next one on, once it's known how much each stage takes
-        for (int i = 1; i < repetitions; ++i) {
-            std::printf(",\n  ");
+        std::printf(",\n \"seconds\": [");
+        keep_memory();
+        for (int i = 0; i < repetitions; ++i) {
+            if (i > 0) std::printf(",\n  ");
             print(run(model, quality));
         }
         std::printf("]}\n");
