@@ -199,7 +199,7 @@ private:
     std::array<Scratch, 2> scratch_;
     std::vector<uint8_t> sites_;
     std::vector<uint8_t> hindered_;  // whether an edge of the cluster may be left out: if not, none is
-    std::vector<Stamp> made_;
+    LargeVector<Stamp> made_;
     std::vector<Numbered> at_border_;  // merges there since the last round
     size_t count_at_border_ = 0;       // of all so far
     Stamp latest_at_border_;
