@@ -27,9 +27,9 @@ def measure(quick):
     for faces in QUICK if quick else SIZES:
         mesh = models.subdivided(mesh, faces)
         path = models.write(f"natural-{faces}", mesh)
-        row = {"faces": faces, **measured(path, 1 if quick else 3)}
+        row = {"faces": faces, **measured(path, 1 if quick else 5)}
         if rows:
-            after = measured(first, 1 if quick else 3)
+            after = measured(first, 1 if quick else 5)
         else:
             first, before, after = path, row, row
         smallest = (before["htc_seconds"] + after["htc_seconds"]) / 2 / before["tets"]
