@@ -175,6 +175,7 @@ private:
     LeftOut* next_left_out();
     bool inside_before(const Stamp& stamp) const;
     bool goes_on(const Domain& d) const { return !d.inside.empty() && !(last_ && *last_ < d.inside.top()); }
+    bool either_goes_on() const { return goes_on(domains_[0]) || goes_on(domains_[1]); }
     static DoneList::iterator place_among(DoneList& done, const Stamp& stamp);
     Done*& done(int32_t number);
     Done* standing(int32_t cluster);
@@ -689,7 +690,7 @@ void Domains::round(const std::array<size_t, 2>& goals) {
 // Lets each domain catch up with the other: what is not final in the end would have to be taken back.
 void Domains::catch_up() {
     last_ = std::max(domains_[0].latest.price, domains_[1].latest.price);
-    while (std::ranges::any_of(domains_, [&](const Domain& d) { return goes_on(d); })) round({left_, left_});
+    while (either_goes_on()) round({left_, left_});
 }
 
 std::vector<Merge> Domains::run() {
@@ -708,7 +709,7 @@ std::vector<Merge> Domains::run() {
             return false;
         return pace_ || threads_.pays();
     };
-    while (pays() && std::ranges::any_of(domains_, [&](const Domain& d) { return goes_on(d); })) {
+    while (pays() && either_goes_on()) {
         const size_t goal = std::max(left_ / clusters_a_merge, least_merges_a_round), before = count_at_border_;
         lead_ = std::max(left_ * patience / clusters_a_merge, least_lead);
         round(pace_ ? pace_(goal) : std::array{goal, goal});

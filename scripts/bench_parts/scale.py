@@ -16,8 +16,8 @@ STAGES = ("solid", "cluster", "dendrogram", "hierarchy")
 
 
 def measure(quick):
-    def measured(path, repetitions):
-        report, why_not = stages(path, repetitions)
+    def measured(path):
+        report, why_not = stages(path, 1 if quick else 5)
         if report is None:
             raise Failure(f"{path.name} could not be built: {why_not}")
         return {"tets": report["tets"], **sizes(report)}
@@ -27,9 +27,9 @@ def measure(quick):
     for faces in QUICK if quick else SIZES:
         mesh = models.subdivided(mesh, faces)
         path = models.write(f"natural-{faces}", mesh)
-        row = {"faces": faces, **measured(path, 1 if quick else 5)}
+        row = {"faces": faces, **measured(path)}
         if rows:
-            after = measured(first, 1 if quick else 5)
+            after = measured(first)
         else:
             first, before, after = path, row, row
         smallest = (before["htc_seconds"] + after["htc_seconds"]) / 2 / before["tets"]
