@@ -1,7 +1,8 @@
 """One natural model from 50,000 to 1,000,000 faces: time and memory against size.
 
 Growth is against the smallest size, measured again after each other one, as the mean of before and after it: a machine's
-speed may change within the minutes that the largest takes.
+speed may change within the minutes that the largest takes. What is short is repeated more often, as the median of five
+short runs is a matter of chance.
 """
 
 from math import log
@@ -15,9 +16,13 @@ QUICK = (50_000, 100_000, 200_000)
 STAGES = ("solid", "cluster", "dendrogram", "hierarchy")
 
 
+def repetitions(faces):
+    return min(max(5, 2_000_000 // faces), 20)
+
+
 def measure(quick):
-    def measured(path):
-        report, why_not = stages(path, 1 if quick else 5)
+    def measured(path, faces):
+        report, why_not = stages(path, 1 if quick else repetitions(faces))
         if report is None:
             raise Failure(f"{path.name} could not be built: {why_not}")
         return {"tets": report["tets"], **sizes(report)}
@@ -27,9 +32,9 @@ def measure(quick):
     for faces in QUICK if quick else SIZES:
         mesh = models.subdivided(mesh, faces)
         path = models.write(f"natural-{faces}", mesh)
-        row = {"faces": faces, **measured(path)}
+        row = {"faces": faces, **measured(path, faces)}
         if rows:
-            after = measured(first)
+            after = measured(first, SIZES[0])
         else:
             first, before, after = path, row, row
         smallest = (before["htc_seconds"] + after["htc_seconds"]) / 2 / before["tets"]
