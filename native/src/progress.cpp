@@ -15,8 +15,8 @@ constexpr std::array<double, PW_STAGE_COUNT + 1> stage_begin = {0.0, 0.1, 0.2, 0
 
 void Progress::begin() {
     for (auto& s : seconds_) s.store(0, std::memory_order_relaxed);
-    fraction_.store(0, std::memory_order_relaxed);
     stage_.store(PW_STAGE_SURFACE, std::memory_order_relaxed);
+    fraction_.store(0, std::memory_order_release);
     stage_start_ = Clock::now();
     running_ = true;
 }
@@ -50,7 +50,7 @@ void Progress::book() {
 }
 
 void Progress::raise_to(double fraction) {
-    if (fraction > fraction_.load(std::memory_order_relaxed)) fraction_.store(fraction, std::memory_order_relaxed);
+    if (fraction > fraction_.load(std::memory_order_relaxed)) fraction_.store(fraction, std::memory_order_release);
 }
 
 }  // namespace partwheel

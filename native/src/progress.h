@@ -25,7 +25,8 @@ public:
     void advance(double part);
 
     void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
-    double fraction() const { return fraction_.load(std::memory_order_relaxed); }
+    // Who asks for the fraction first and then for the stage never sees a stage that was over at that fraction.
+    double fraction() const { return fraction_.load(std::memory_order_acquire); }
     pw_stage stage() const { return stage_.load(std::memory_order_relaxed); }
     double seconds(pw_stage stage) const { return seconds_[stage].load(std::memory_order_relaxed); }
 
@@ -35,7 +36,7 @@ private:
     void raise_to(double fraction);
 
     std::atomic<bool> cancelled_{false};
-    std::atomic<double> fraction_{0};
+    std::atomic<double> fraction_{0};  // stored after the stage it belongs to
     std::atomic<pw_stage> stage_{PW_STAGE_SURFACE};
     std::array<std::atomic<double>, PW_STAGE_COUNT> seconds_{};
     Clock::time_point stage_start_{};
