@@ -34,7 +34,7 @@ def measure(quick):
         path = models.write(f"natural-{faces}", mesh)
         row = {"faces": faces, **measured(path, faces)}
         if rows:
-            after = measured(first, SIZES[0])
+            after = measured(first, rows[0]["faces"])
         else:
             first, before, after = path, row, row
         smallest = (before["htc_seconds"] + after["htc_seconds"]) / 2 / before["tets"]
