@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Progress, cancelling, and many threads at once."""
 
+import _thread
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -52,6 +53,18 @@ def test_an_exception_in_progress_stops_the_build_and_goes_on():
             raise Interrupted
 
     with pytest.raises(Interrupted):
+        Hierarchy.build(*shapes.off("bear"), progress=progress)
+    assert not [thread for thread in threading.enumerate() if thread.name == "partwheel-build"]
+
+
+def test_ctrl_c_stops_the_build():
+    def progress(_, stage):
+        if stage == "cluster" and not timers:
+            timers.append(threading.Timer(0.05, _thread.interrupt_main))  # in the midst of waiting for the build
+            timers[0].start()
+
+    timers = []
+    with pytest.raises(KeyboardInterrupt):
         Hierarchy.build(*shapes.off("bear"), progress=progress)
     assert not [thread for thread in threading.enumerate() if thread.name == "partwheel-build"]
 

@@ -5,6 +5,7 @@ no file, no open pipe left, and a new attempt on the next rung.
 The harm is done by a real library with one function replaced (tests/faults), so the product has no hook for tests.
 """
 
+import _thread
 import contextlib
 import os
 import resource
@@ -344,6 +345,18 @@ if LINUX and PLAIN:
             except PartwheelError as error:
                 assert error.status == Status.CANCELLED and milliseconds < 1000
             job.cancel()
+
+    def test_ctrl_c_that_interrupts_no_wait(harm):
+        """As one that comes just before: Python has noted it, but is told of it only when it is not waiting."""
+        harm("loop", 1)
+        job = Job(*shapes.off("hand"), time_limit=5)
+        timer = threading.Timer(0.05, _thread.interrupt_main)
+        timer.start()
+        began = time.monotonic()
+        with pytest.raises(KeyboardInterrupt):
+            job.result()
+        assert time.monotonic() - began < 2 and timer.finished.is_set()
+        until(lambda: state(job.process_id) is None, 1)
 
     # ---- The end of the parent
 

@@ -9,6 +9,7 @@
 
 #include <dlfcn.h>
 #include <pthread.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -69,6 +70,15 @@ static int on_the_rung(void) {
     return !fault_rung || (pw_context_rung(watched, &rung) == PW_OK && (int)rung == fault_rung);
 }
 
+// Keeps the building thread, and all that it starts, on the core it runs on. The watching thread then comes to its turn
+// however busy the others are; on another core it has been so late that the stage was over.
+static void stay_on_one_core(void) {
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(sched_getcpu(), &one);
+    sched_setaffinity(0, sizeof one, &one);
+}
+
 static void *watch(void *unused) {
     for (pw_stage stage; running && !happened; usleep(20))
         if (on_the_rung() && pw_context_progress(watched, NULL, &stage) == PW_OK && (int)stage >= fault_stage) {
@@ -92,6 +102,7 @@ pw_status pw_build(pw_context *context, const double *vertices, size_t vertex_co
         own = malloc(64);
         running = 1;
         signal(SIGUSR2, harm);
+        stay_on_one_core();
         watching = !pthread_create(&watcher, NULL, watch, NULL);
     }
     if (!strcmp(fault, "chatter"))

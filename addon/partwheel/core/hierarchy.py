@@ -143,17 +143,20 @@ class _Build(threading.Thread):
         self.arguments = arrays, face_count, options
         self.address = c_void_p()
         self.error = None
+        self.done = threading.Event()  # is_alive() may say no too early: Ctrl-C during join() has that effect (bpo-45274)
 
     def run(self):
         (vertices, triangles, *faces), face_count, options = self.arguments
-        status = load().pw_build(
-            self.context.handle.address, vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles),
-            faces[0].ctypes.data if faces else None, face_count, byref(options), byref(self.address),
-        )
         try:
+            status = load().pw_build(
+                self.context.handle.address, vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles),
+                faces[0].ctypes.data if faces else None, face_count, byref(options), byref(self.address),
+            )
             check(status, self.context.seconds())
         except PartwheelError as error:
             self.error = error
+        finally:
+            self.done.set()
 
 
 class Hierarchy:
@@ -228,14 +231,14 @@ class Hierarchy:
         report()
         build.start()
         try:
-            while build.is_alive():
-                build.join(POLL_SECONDS)
+            while not build.done.wait(POLL_SECONDS):
                 report()
+            report()
         finally:
             # Also after an exception of progress() or Ctrl-C: the thread reads our arrays, so it must end first.
-            if build.is_alive():
+            if not build.done.is_set():
                 context.cancel()
-                build.join()
+            build.join()
         if build.error:
             raise build.error
         return cls(build.address.value, context.seconds())

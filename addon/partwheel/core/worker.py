@@ -22,6 +22,8 @@ MEMORY_SHARE = 0.8  # of the memory that is available when the build starts
 # Some fifty times what an ordinary build takes: only what would never end should meet this limit.
 SECONDS, SECONDS_PER_TRIANGLE = 120, 0.002
 WATCH_SECONDS = 0.1  # between two looks at what the worker has taken
+# One wait of result(), which has several: a Ctrl-C that comes just before a wait without end would not be noticed in it.
+WAIT_SECONDS = 0.1
 # A message to or from the worker: kind, length, then so many bytes.
 MESSAGE = struct.Struct("<cQ")
 
@@ -68,6 +70,7 @@ class Job:
         self._process = None
         self._cancelled = False
         self._hierarchy = self._error = None
+        self._done = threading.Event()  # not is_alive(), which may say no too early after Ctrl-C (bpo-45274)
         # Not in the thread, which so has little Python left to run: with Python up to 3.11 Blender takes any thread's
         # hold of the interpreter for its own, and may crash (seen in 3.4) where a script calls an operator under
         # temp_override() that starts a build.
@@ -77,12 +80,11 @@ class Job:
 
     def poll(self):
         """(fraction 0..1 that never falls, name of the stage) while it runs; None once result() won't block."""
-        return self._progress if self._thread.is_alive() else None
+        return None if self._done.is_set() else self._progress
 
     def wait(self, seconds):
         """Waits so long at most, and says whether the job is done."""
-        self._thread.join(seconds)
-        return not self._thread.is_alive()
+        return self._done.wait(seconds)
 
     def cancel(self):
         """Kills the worker at once. result() then raises PartwheelError with Status.CANCELLED, unless it was done."""
@@ -95,6 +97,8 @@ class Job:
         """Waits for the end: the Hierarchy. Raises PartwheelError: what is wrong with the surface, that the build was
         cancelled, or a WorkerError."""
         try:
+            while not self.wait(WAIT_SECONDS):
+                pass
             self._thread.join()
         except BaseException:  # Ctrl-C
             self.cancel()
@@ -142,6 +146,8 @@ class Job:
             self._error = self.failures[-1]
         except Exception as error:  # whatever it is, result() raises it
             self._error = error
+        finally:
+            self._done.set()
 
     def _attempt(self, launched, rungs):
         """One worker process from start to end: the Hierarchy, or raises PartwheelError."""
