@@ -29,8 +29,6 @@ double log2_of(double x) {
     return std::clamp(static_cast<double>(exponent) - 0.5 + 2 * 1.44269504088896340736 * series, -limit, limit);
 }
 
-double ratio(double a, double b) { return log2_of(a) - log2_of(b); }
-
 constexpr size_t facets[4][3] = {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}};  // opposite each corner, outward
 
 // Costs are the logits of a likelihood; more than this tells no more.
@@ -69,6 +67,7 @@ struct Link {
 
 struct Part {
     double volume = 0, area = 0;
+    double log_volume = 0, log_area = 0;  // log2_of() them: each is in many measures
     Border rim;
     Hull hull;
     double hull_volume = 0;
@@ -145,7 +144,7 @@ private:
     std::vector<int32_t> link_to_;       // scratch of join()
     size_t fine_ = 0;                    // parts before any was joined
     double length_unit_ = 1, area_unit_ = 1, volume_unit_ = 1;  // of the longest side of the bounding box
-    double volume_ = 0, area_ = 0, hull_volume_ = 0;            // of all
+    double volume_ = 0, area_ = 0, log_volume_ = 0, log_area_ = 0, hull_volume_ = 0;  // of all
     Regrouped result_;
 };
 
@@ -280,10 +279,14 @@ void Regrouping::measure() {
         parts_[p].volume = std::max(0.0, parts_[p].volume);
         parts_[p].hull = kernel_.build(corners[p]);
         parts_[p].hull_volume = parts_[p].hull.volume() / volume_unit_;
+        parts_[p].log_volume = log2_of(parts_[p].volume);
+        parts_[p].log_area = log2_of(parts_[p].area);
         volume_ += parts_[p].volume;
         area_ += parts_[p].area;
         if (p % 16 == 0) progress_.advance(0.1);
     }
+    log_volume_ = log2_of(volume_);
+    log_area_ = log2_of(area_);
     hull_volume_ = tree_.merges.back().hull_volume / volume_unit_;
 
     struct Fold {
@@ -371,20 +374,20 @@ std::array<double, pair_measures> Regrouping::measures(const Part& a, const Part
     const double gap = convexity_gap(volume, hull), gap_s = convexity_gap(s.volume, s.hull_volume),
                  gap_l = convexity_gap(l.volume, l.hull_volume);
     const double length = log2_of(std::max(border.length, 1e-12)), face = log2_of(border.interface);
-    const double thick_s = ratio(s.volume, s.area), thick_l = ratio(l.volume, l.area);
-    const double size = log2_of(volume_) / 3;
-    return {ratio(s.area, area_),
-            ratio(area, area_),
-            ratio(s.volume, volume_),
-            ratio(volume, volume_),
+    const double thick_s = s.log_volume - s.log_area, thick_l = l.log_volume - l.log_area;
+    const double size = log_volume_ / 3;
+    return {s.log_area - log_area_,
+            log2_of(area) - log_area_,
+            s.log_volume - log_volume_,
+            log2_of(volume) - log_volume_,
             gap,
             gap_s,
             gap_l,
             log2_of(1e-4 + (s.hull_volume > 0 ? excess / s.hull_volume : 0)),
             log2_of(1e-8 + excess / hull_volume_),
-            std::clamp(face - 2 * log2_of(s.volume) / 3, -8.0, 4.0),
-            std::clamp(face - log2_of(s.area), -8.0, 4.0),
-            std::clamp(length - log2_of(s.area) / 2, -8.0, 4.0),
+            std::clamp(face - 2 * s.log_volume / 3, -8.0, 4.0),
+            std::clamp(face - s.log_area, -8.0, 4.0),
+            std::clamp(length - s.log_area / 2, -8.0, 4.0),
             share(border.length, s.rim.length),
             share(border.length, l.rim.length),
             share(border.interface, s.rim.interface),
@@ -396,9 +399,9 @@ std::array<double, pair_measures> Regrouping::measures(const Part& a, const Part
             share(border.concave, border.length),
             mean(border.curvature, border.length),
             std::clamp(2 * length - face, -4.0, 8.0),
-            std::clamp(face - 2 * log2_of(l.volume) / 3, -10.0, 4.0),
+            std::clamp(face - 2 * l.log_volume / 3, -10.0, 4.0),
             gap - std::max(gap_s, gap_l),
-            ratio(l.area, s.area),
+            l.log_area - s.log_area,
             std::clamp(thick_s - size, -8.0, 2.0),
             std::clamp(thick_l - size, -8.0, 2.0)};
 }
@@ -449,6 +452,8 @@ void Regrouping::join(int32_t ia, int32_t ib, double cost) {
     Part &a = at(ia), &b = at(ib), &u = parts_.back();
     u.volume = a.volume + b.volume;
     u.area = a.area + b.area;
+    u.log_volume = log2_of(u.volume);
+    u.log_area = log2_of(u.area);
     u.low = std::min(a.low, b.low);
     u.own_cost = std::clamp(cost, -largest_cost, largest_cost);
     u.worst_cost = std::max({u.own_cost, a.worst_cost, b.worst_cost});
@@ -535,19 +540,19 @@ void Regrouping::join_components() {
 std::array<double, node_measures> Regrouping::measures(size_t node) const {
     const auto own = [&](const Part& p) -> std::array<double, 15> {
         const double length = log2_of(p.rim.length), face = log2_of(p.rim.interface);
-        const double thick = ratio(p.volume, p.area);
-        return {ratio(p.area, area_),
-                ratio(p.volume, volume_),
+        const double thick = p.log_volume - p.log_area;
+        return {p.log_area - log_area_,
+                p.log_volume - log_volume_,
                 convexity_gap(p.volume, p.hull_volume),
-                std::clamp(length - log2_of(p.area) / 2, -8.0, 4.0),
-                std::clamp(face - 2 * log2_of(p.volume) / 3, -8.0, 4.0),
+                std::clamp(length - p.log_area / 2, -8.0, 4.0),
+                std::clamp(face - 2 * p.log_volume / 3, -8.0, 4.0),
                 mean(p.rim.crease, p.rim.length),
                 mean(p.rim.concave, p.rim.length),
                 mean(p.rim.curvature, p.rim.length),
-                std::clamp(face - log2_of(p.area), -8.0, 4.0),
+                std::clamp(face - p.log_area, -8.0, 4.0),
                 p.own_cost,
                 p.worst_cost,
-                std::clamp(thick - log2_of(volume_) / 3, -8.0, 2.0),
+                std::clamp(thick - log_volume_ / 3, -8.0, 2.0),
                 std::clamp(2 * length - face, -4.0, 8.0),
                 std::clamp(face - length - thick, -8.0, 4.0),
                 log2_of(1e-6 + std::max(0.0, p.hull_volume - p.volume) / hull_volume_)};
