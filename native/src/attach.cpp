@@ -27,8 +27,6 @@ constexpr double rounding = 1e-12;
 
 Kernel::Point_3 to_cgal(const Point& p) { return {p[0], p[1], p[2]}; }
 
-double length(const Point& p) { return std::sqrt(dot(p, p)); }
-
 double diagonal(const Surface& source) {
     Point high{};  // the lower corner is the origin of working coordinates
     for (const Point& p : source.vertices)

@@ -43,11 +43,6 @@ constexpr double most_cost = static_cast<double>(int64_t{1} << 36);
 constexpr double same_depth = 1e-9;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-size_t at(int32_t i) { return static_cast<size_t>(i); }
-double length(const Point& p) { return std::sqrt(dot(p, p)); }
-Point operator+(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Point operator*(double s, const Point& p) { return {s * p[0], s * p[1], s * p[2]}; }
-
 void check(const MeshView& mesh) {
     if (mesh.vertex_count == 0 || mesh.triangle_count == 0 || mesh.face_count == 0)
         throw Error(PW_ERROR_EMPTY, "The mesh has no faces. Choose a mesh object that has some.");

@@ -16,8 +16,6 @@ namespace {
 // Passes of smoothing, as a multiple of the noise: a surface that is only measured may lose more than one that is used.
 constexpr double smoothing_passes = 90;
 
-constexpr size_t facets[4][3] = {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}};  // opposite each corner, outward
-
 bool sound(const Surface& surface, Progress& progress) {
     try {
         check_surface(surface, progress);
@@ -65,14 +63,13 @@ Numbers numbers(const Regrouped& parts, size_t leaves) {
 // neighbours behind most of its facets' area.
 std::vector<int32_t> spread(const Solid& solid, const std::vector<int32_t>& part_of_triangle, Progress& progress) {
     const TetMesh& mesh = solid.mesh;
-    const auto size = [&](int32_t a, int32_t b, int32_t c) {
+    const auto size = [&](const Triangle& t) {
         const auto at = [&](int32_t v) -> const Point& { return mesh.vertices[static_cast<size_t>(v)]; };
-        return area(at(a), at(b), at(c));
+        return area(at(t[0]), at(t[1]), at(t[2]));
     };
     std::vector<Claim> claims;
     for (size_t i = 0; i < part_of_triangle.size(); ++i) {
-        const Triangle& t = solid.surface.triangles[i];
-        claims.push_back({mesh.tet_of_triangle[i], part_of_triangle[i], size(t[0], t[1], t[2])});
+        claims.push_back({mesh.tet_of_triangle[i], part_of_triangle[i], size(solid.surface.triangles[i])});
     }
     std::vector<int32_t> part(mesh.tetrahedra.size(), -1), layer;
     while (!claims.empty()) {
@@ -87,8 +84,7 @@ std::vector<int32_t> spread(const Solid& solid, const std::vector<int32_t>& part
                 const int32_t next = mesh.neighbours[static_cast<size_t>(t)][k];
                 if (next < 0 || part[static_cast<size_t>(next)] >= 0) continue;
                 const Tetrahedron& tet = mesh.tetrahedra[static_cast<size_t>(t)];
-                claims.push_back({next, part[static_cast<size_t>(t)],
-                                  size(tet[facets[k][0]], tet[facets[k][1]], tet[facets[k][2]])});
+                claims.push_back({next, part[static_cast<size_t>(t)], size(facet(tet, k))});
             }
         progress.advance(0);
     }

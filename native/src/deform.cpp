@@ -30,9 +30,7 @@ constexpr int most_turns = 12;
 // A second thread takes its share of the vertices, so many at a time, if there are at least so many.
 constexpr size_t shared_at_once = 512, worth_sharing = 4000;
 
-Point operator+(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Point operator*(double s, const Point& a) { return {s * a[0], s * a[1], s * a[2]}; }
-
+using partwheel::operator+, partwheel::operator*;  // else the next ones would hide them
 Wide wide(double x, double y, double z) { return {Wide::Pair{x, y}, z}; }
 Wide wide(const Point& p) { return wide(p[0], p[1], p[2]); }
 Point narrow(const Wide& p) { return {p.xy[0], p.xy[1], p.z}; }
@@ -132,7 +130,7 @@ Quaternion best_rotation(const Matrix& s, Quaternion q) {
 // Cotangents of a triangle's angles, opposite corner 0, 1, 2; of a thin triangle: see above.
 std::array<double, 3> cotangents(const Point& a, const Point& b, const Point& c) {
     const Point ab = b - a, bc = c - b, ca = a - c, normal = cross(ab, ca);
-    const double doubled_area = std::sqrt(dot(normal, normal));
+    const double doubled_area = length(normal);
     const double least = thin * std::max({dot(ab, ab), dot(bc, bc), dot(ca, ca)});
     if (!(least > 0)) return {1, 1, 1};  // a point
     const double more = doubled_area < least ? least_weight : 0, divisor = std::max(doubled_area, least);
@@ -474,8 +472,8 @@ void vertex_normals(std::span<const Point> vertices, std::span<const Triangle> t
         normals[k] = normals[k] + (1 / (two * three)) * normal;
     }
     for (Point& normal : normals) {
-        const double length = std::sqrt(dot(normal, normal));
-        normal = length > 0 && std::isfinite(length) ? (1 / length) * normal : Point{};
+        const double size = length(normal);
+        normal = size > 0 && std::isfinite(size) ? (1 / size) * normal : Point{};
     }
 }
 
@@ -507,7 +505,7 @@ void surface_distances(std::span<const Point> vertices, std::span<const Triangle
         const auto [low, high, opposite] = sides[i];
         for (end = i; end < sides.size() && sides[end].low == low && sides[end].high == high;) ++end;
         const Point along = vertices[high] - vertices[low];
-        const double length = std::sqrt(dot(along, along));
+        const double length = partwheel::length(along);
         add(low, high, length);
         if (end != i + 2 || !(length > 0)) continue;
         // Both opposite corners laid flat: along the edge from its low end, and away from it on either side.

@@ -22,8 +22,6 @@ constexpr double nudge = 1e-3;
 // Passes of smoothing until a surface doesn't cross itself, one after the other, as multiples of the noise.
 constexpr double uncrossing_passes[] = {45, 70, 110};
 
-double length(const Point& p) { return std::sqrt(dot(p, p)); }
-
 // The vertices that are at the place of another.
 std::vector<size_t> at_one_place(const std::vector<Point>& vertices) {
     std::vector<size_t> order(vertices.size()), found;

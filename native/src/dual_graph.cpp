@@ -84,7 +84,6 @@ std::pair<int32_t, int32_t> DualGraph::by_size(const DualEdge& e) const {
 
 // The volume of the union of two tetrahedra with a common facet: theirs, and what the far corner of b sees of a.
 double DualGraph::union_of_neighbours(int32_t a, int32_t b) const {
-    constexpr size_t facets[4][3] = {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}};  // opposite each corner, outward
     const Tetrahedron& s = mesh_.tetrahedra[static_cast<size_t>(a)];
     const Tetrahedron& t = mesh_.tetrahedra[static_cast<size_t>(b)];
     const auto& beyond = mesh_.neighbours[static_cast<size_t>(b)];
@@ -92,8 +91,8 @@ double DualGraph::union_of_neighbours(int32_t a, int32_t b) const {
     double seen = 0;
     for (size_t k = 0; k < 4; ++k) {
         if (mesh_.neighbours[static_cast<size_t>(a)][k] == b) continue;
-        const auto& f = facets[k];
-        seen += std::max(0.0, six_volumes(point(s[f[0]]), point(s[f[1]]), point(s[f[2]]), far));
+        const Triangle f = facet(s, k);
+        seen += std::max(0.0, six_volumes(point(f[0]), point(f[1]), point(f[2]), far));
     }
     return at(a).volume + at(b).volume + seen / 6;
 }

@@ -16,10 +16,6 @@ namespace {
 // An edge shorter than this part of their mean counts as that long: Boolean operations leave such edges.
 constexpr double least_length = 1e-3;
 
-size_t at(int32_t i) { return static_cast<size_t>(i); }
-
-double length(const Point& p) { return std::sqrt(dot(p, p)); }
-
 // Afterwards only vertices from which a way of free ones leads to a fixed one are free.
 void fix_islands(std::span<const std::array<int32_t, 2>> edges, std::vector<bool>& free) {
     std::vector<size_t> up(free.size());

@@ -2,6 +2,7 @@
 #include "polygons.h"
 
 #include "error.h"
+#include "geometry.h"
 
 #include <algorithm>
 #include <numeric>
@@ -10,8 +11,6 @@
 namespace partwheel {
 
 namespace {
-
-size_t at(int32_t i) { return static_cast<size_t>(i); }
 
 // The corner after each in its polygon.
 std::vector<int32_t> next_corners(std::span<const int32_t> corners, std::span<const int32_t> begin,

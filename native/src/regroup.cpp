@@ -29,8 +29,6 @@ double log2_of(double x) {
     return std::clamp(static_cast<double>(exponent) - 0.5 + 2 * 1.44269504088896340736 * series, -limit, limit);
 }
 
-constexpr size_t facets[4][3] = {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}};  // opposite each corner, outward
-
 // Costs are the logits of a likelihood; more than this tells no more.
 constexpr double largest_cost = 8;
 
@@ -113,7 +111,6 @@ public:
 private:
     const Point& point(int32_t v) const { return mesh_.vertices[static_cast<size_t>(v)]; }
     Part& at(int32_t p) { return parts_[static_cast<size_t>(p)]; }
-    Triangle facet(size_t tetrahedron, size_t corner) const;
     void choose_parts();
     void measure();
     double hull_volume(const Link& link);
@@ -148,12 +145,6 @@ private:
     Regrouped result_;
 };
 
-Triangle Regrouping::facet(size_t tetrahedron, size_t corner) const {
-    const Tetrahedron& t = mesh_.tetrahedra[tetrahedron];
-    const auto& f = facets[corner];
-    return {t[f[0]], t[f[1]], t[f[2]]};
-}
-
 // Cuts the paper's tree where most surface lies in what is least convex, components first.
 void Regrouping::choose_parts() {
     const size_t leaves = mesh_.tetrahedra.size(), merges = tree_.merges.size(), joins = tree_.components - 1;
@@ -165,7 +156,7 @@ void Regrouping::choose_parts() {
     for (size_t t = 0; t < leaves; ++t)
         for (size_t k = 0; k < 4; ++k) {
             if (mesh_.neighbours[t][k] >= 0) continue;
-            const Triangle f = facet(t, k);
+            const Triangle f = facet(mesh_.tetrahedra[t], k);
             area[t] += partwheel::area(point(f[0]), point(f[1]), point(f[2]));
         }
     for (size_t m = 0; m < merges; ++m) {
@@ -253,9 +244,9 @@ void Regrouping::measure() {
             const int32_t other = mesh_.neighbours[t][k];
             const int32_t q = other < 0 ? -1 : part_of_[static_cast<size_t>(other)];
             if (other >= 0 && q <= p) continue;
-            const Triangle f = facet(t, k);
+            const Triangle f = facet(tet, k);
             Point n = cross(point(f[1]) - point(f[0]), point(f[2]) - point(f[0]));
-            const double twice = std::sqrt(dot(n, n));
+            const double twice = length(n);
             const double size = twice / 2 / area_unit_;
             if (other >= 0) {
                 between.push_back({p, q, true, {size, 0, 0, 0, 0}});
@@ -302,7 +293,7 @@ void Regrouping::measure() {
         const Point along = point(x.high) - point(x.low);
         const double turn = dot(cross(m, n), along) * (x.forward ? 1 : -1);
         const double bend = std::sqrt(std::max(0.0, (1 - dot(m, n)) / 2)) * (turn < 0 ? -1 : 1);
-        const double length = std::sqrt(dot(along, along)) / length_unit_;
+        const double length = partwheel::length(along) / length_unit_;
         folds.push_back({x.low, x.high, x.triangle, y.triangle, length, bend});
         ++i;
     }

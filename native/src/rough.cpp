@@ -52,8 +52,6 @@ std::vector<Point> blurred(std::vector<Point> vertices, std::span<const Triangle
     return vertices;
 }
 
-double length(const Point& p) { return std::sqrt(dot(p, p)); }
-
 }  // namespace
 
 double roughness(std::span<const Point> vertices, std::span<const Triangle> triangles) {

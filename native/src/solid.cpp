@@ -14,15 +14,10 @@ namespace partwheel {
 
 namespace {
 
-// The corners of the facet opposite each corner, counter-clockwise seen from outside the tetrahedron.
-constexpr std::array<std::array<int32_t, 3>, 4> opposite = {{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-
 // Areas of caps are whole numbers, of so many to the square of the size of what changed sides; none counts for more than
 // the largest.
 constexpr double cap_steps = 1 << 24;
 constexpr double largest_cap = static_cast<double>(int64_t{1} << 36);
-
-size_t at(int32_t i) { return static_cast<size_t>(i); }
 
 [[noreturn]] void refuse() {
     throw Error(PW_ERROR_DATA,
@@ -44,8 +39,7 @@ std::vector<std::array<int32_t, 4>> neighbours_of(std::span<const Tetrahedron> t
     for (const Tetrahedron& t : tetrahedra) vertices = std::max({vertices, t[0] + 1, t[1] + 1, t[2] + 1, t[3] + 1});
     std::vector<size_t> begin(at(vertices) + 2, 0);
     const auto sorted = [&](size_t tet, size_t corner) {
-        Triangle v;
-        for (size_t k = 0; k < 3; ++k) v[k] = tetrahedra[tet][at(opposite[corner][k])];
+        Triangle v = facet(tetrahedra[tet], corner);
         std::sort(v.begin(), v.end());
         return v;
     };
@@ -178,8 +172,8 @@ std::vector<int32_t> Facets::with_faces(std::span<const Tetrahedron> tetrahedra,
     for (int32_t t : at_home(first, last)) in[at(t)] = 1;
     const std::vector<uint8_t> before = in;
     const auto area = [&](size_t t, size_t corner) {
-        const auto p = [&](size_t k) { return vertices[at(tetrahedra[t][at(opposite[corner][k])])]; };
-        return partwheel::area(p(0), p(1), p(2));
+        const Triangle f = facet(tetrahedra[t], corner);
+        return partwheel::area(vertices[at(f[0])], vertices[at(f[1])], vertices[at(f[2])]);
     };
 
     std::vector<uint8_t> within(tetrahedra.size(), 1);
@@ -204,7 +198,7 @@ std::vector<int32_t> Facets::with_faces(std::span<const Tetrahedron> tetrahedra,
                 changed = true;
             }
     }
-    if (const double size = std::sqrt(dot(high - low, high - low)); changed && size > 0) {
+    if (const double size = length(high - low); changed && size > 0) {
         // Edges of the surface, by the faces of which they are: of the part's, and of all.
         struct Edge {
             std::pair<int32_t, int32_t> ends;
@@ -212,8 +206,8 @@ std::vector<int32_t> Facets::with_faces(std::span<const Tetrahedron> tetrahedra,
         };
         std::vector<Edge> edges;
         const auto ends = [&](size_t t, size_t corner, size_t k) -> std::pair<int32_t, int32_t> {
-            const auto& facet = opposite[corner];
-            return std::minmax(tetrahedra[t][at(facet[k])], tetrahedra[t][at(facet[(k + 1) % 3])]);
+            const Triangle f = facet(tetrahedra[t], corner);
+            return std::minmax(f[k], f[(k + 1) % 3]);
         };
         BorderBand band;
         std::vector<int32_t> number(tetrahedra.size(), -1);
@@ -249,7 +243,7 @@ std::vector<int32_t> Facets::with_faces(std::span<const Tetrahedron> tetrahedra,
                 if (found == edges.end() || found->ends != ends(t, corner, k)) continue;
                 if (found->all < 2 || (found->in > 0 && found->in < found->all)) continue;
                 const Point along = vertices[at(found->ends.first)] - vertices[at(found->ends.second)];
-                sum += std::sqrt(dot(along, along));
+                sum += length(along);
             }
             return sum / size;
         };
@@ -331,7 +325,7 @@ TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<co
     // that are joined by steps across edges are an umbrella, and each umbrella gets a vertex of its own.
     const auto vertex = [&](size_t f, size_t k) {
         const Facet& facet = surface[f];
-        return tetrahedra[at(facet.tet)][at(opposite[at(facet.corner)][k % 3])];
+        return tetrahedra[at(facet.tet)][facet_corners[at(facet.corner)][k % 3]];
     };
     constexpr int32_t unknown = -1;
     std::vector<std::array<int32_t, 3>> across(surface.size(), {unknown, unknown, unknown});  // 3 * triangle + edge
@@ -340,7 +334,8 @@ TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<co
         for (size_t k = 0; k < 3; ++k) {
             if (across[f][k] != unknown) continue;  // seen from the other side
             const Facet& facet = surface[f];
-            const Facet other = next_around(tetrahedra, inside, facet, opposite[at(facet.corner)][(k + 2) % 3]);
+            const size_t edge = facet_corners[at(facet.corner)][(k + 2) % 3];
+            const Facet other = next_around(tetrahedra, inside, facet, static_cast<int32_t>(edge));
             const size_t g = at(number[at(other.tet)][at(other.corner)]);
             size_t j = 0;
             while (j < 3 && vertex(g, j) != vertex(f, k + 1)) ++j;

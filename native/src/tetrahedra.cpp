@@ -36,12 +36,9 @@ namespace partwheel {
 
 namespace {
 
-// The facet opposite each corner of a positively oriented tetrahedron, outward.
-constexpr std::array<std::array<size_t, 3>, 4> facet_corners = {{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-
-Triangle facet(const Tetrahedron& tet, size_t opposite) {
-    const auto& c = facet_corners[opposite];
-    Triangle t = {tet[c[0]], tet[c[1]], tet[c[2]]};
+// Its lowest vertex first.
+Triangle sorted_facet(const Tetrahedron& tet, size_t opposite) {
+    Triangle t = facet(tet, opposite);
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     return t;
 }
@@ -224,7 +221,7 @@ public:
           by_lowest_(triangles_.size(), mesh.vertices.size(), [&](size_t t) { return triangles_[t][0]; }) {}
 
     Wall at(size_t tet, size_t opposite) const {
-        const Triangle f = facet(mesh_.tetrahedra[tet], opposite);
+        const Triangle f = sorted_facet(mesh_.tetrahedra[tet], opposite);
         for (const int32_t t : by_lowest_.with(f[0])) {
             const Triangle& wall = triangles_[static_cast<size_t>(t)];
             if (wall[1] == f[1] && wall[2] == f[2]) return {t, true};

@@ -1,11 +1,14 @@
 """Running the measuring programs, each model in a process of its own."""
 
+import contextlib
 import json
 import os
 import pathlib
 import platform
 import re
 import subprocess
+import tempfile
+import threading
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build" / "bench"
@@ -31,7 +34,49 @@ def run(*command, time_limit=TIME_LIMIT):
 
 def stages(model, repetitions, quality=0):
     """What stages_bench prints of one model, and why not if it can't be built."""
-    return run(BUILD / "stages_bench", model, repetitions, quality)
+    try:
+        with Stages(model, quality) as program:
+            return {**program.report, "seconds": [program.again() for _ in range(repetitions)]}, None
+    except Failure as failure:
+        return None, str(failure)
+
+
+class Stages(contextlib.AbstractContextManager):
+    """stages_bench with one model, to be run again and again: several of them may take turns. Raises Failure with what
+    it said last."""
+
+    def __init__(self, model, quality=0):
+        self._errors = tempfile.TemporaryFile("w+")
+        self._process = subprocess.Popen([BUILD / "stages_bench", model, str(quality)], stdin=subprocess.PIPE,
+                                         stdout=subprocess.PIPE, stderr=self._errors, text=True)
+        try:
+            self.report = self._read()  # sizes, peak and the first run
+        except Failure:
+            self.__exit__()
+            raise
+
+    def again(self):
+        """One more run: {stage: [wall seconds, processor seconds]}"""
+        with contextlib.suppress(BrokenPipeError):  # it has ended: _read() says why
+            print(file=self._process.stdin, flush=True)
+        return self._read()
+
+    def __exit__(self, *_):
+        self._process.communicate()
+        self._errors.close()
+
+    def _read(self):
+        limit = threading.Timer(TIME_LIMIT, self._process.kill)
+        limit.start()
+        line = self._process.stdout.readline()
+        late = not limit.is_alive()
+        limit.cancel()
+        if line:
+            return json.loads(line)
+        code = self._process.wait()
+        self._errors.seek(0)
+        errors = f"not done after {TIME_LIMIT} s" if late else self._errors.read().strip()
+        raise Failure((errors or f"ended with code {code}").splitlines()[-1])
 
 
 def machine():

@@ -1,13 +1,14 @@
 // Time and memory of each stage of a build, and of TetGen by itself, as JSON.
 //
-//   stages_bench MODEL.off REPETITIONS [QUALITY]
+//   stages_bench MODEL.off [QUALITY]
 //
-// Each repetition runs every stage of pw_build from the model's arrays to the saved bytes in one thread, `solid` being
-// the checks of the surface and its filling by TetGen, `hierarchy` with the paper's tree; then, beside that, it clusters
-// the same tetrahedra again with two threads, and regroups the tree, which the other mode of pw_build does.
-// `seconds` are [wall, cpu]. A run before them has its own, `first`: there `peak` is the most memory in bytes that the
-// process held during each stage, `start` what it held before. In the others memory is used again, so that they tell the
-// program's time and not what the system takes to provide memory.
+// One line for a first run, and then one for each line that it is sent: so programs may take turns. A run takes every
+// stage of pw_build from the model's arrays to the saved bytes in one thread, `solid` being the checks of the surface and
+// its filling by TetGen, `hierarchy` with the paper's tree; then, beside that, it clusters the same tetrahedra again with
+// two threads, and regroups the tree, which the other mode of pw_build does.
+// Seconds are [wall, cpu]. The first line has them as `first`, beside the model's sizes; its `peak` is the most memory in
+// bytes that the process held during each stage, `start` what it held before. In the other runs memory is used again, so
+// that they tell the program's time and not what the system takes to provide memory.
 #include "cluster.h"
 #include "dendrogram.h"
 #include "hierarchy.h"
@@ -16,6 +17,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,16 +33,16 @@ struct Stage {
     size_t peak;
 };
 
-struct Repetition {
+struct Run {
     std::vector<Stage> stages;
     TetgenWatch tetgen;
     size_t tets = 0, bytes = 0;
 };
 
-Repetition run(const Model& model, double quality) {
+Run run(const Model& model, double quality) {
     const MeshView view{model.vertices.data(), model.vertex_count(), model.triangles.data(), model.triangle_count(),
                         nullptr, model.triangle_count()};
-    Repetition r;
+    Run r;
     Progress progress;
     tetgen_watch() = {};
     const auto staged = [&](const char* name, auto stage) {
@@ -69,7 +71,7 @@ Repetition run(const Model& model, double quality) {
 
 void print(const Seconds& s) { std::printf("[%.6f, %.6f]", s.wall, s.cpu); }
 
-void print(const Repetition& r) {
+void print(const Run& r) {
     std::printf("{\"tetgen\": ");
     print(r.tetgen.seconds);
     for (const Stage& stage : r.stages) {
@@ -83,25 +85,23 @@ void print(const Repetition& r) {
 
 int main(int argc, char** argv) {
     try {
-        if (argc < 3) throw std::runtime_error("usage: stages_bench MODEL.off REPETITIONS [QUALITY]");
+        if (argc < 2) throw std::runtime_error("usage: stages_bench MODEL.off [QUALITY]");
         const Model model = read_off(argv[1]);
-        const int repetitions = std::stoi(argv[2]);
-        const double quality = argc > 3 ? std::stod(argv[3]) : 0;
+        const double quality = argc > 2 ? std::stod(argv[2]) : 0;
         const size_t start = peak_memory();
-        const Repetition first = run(model, quality);
-        std::printf("{\"faces\": %zu, \"tets\": %zu, \"saved\": %zu, \"tetgen_calls\": %zu,\n "
+        const Run first = run(model, quality);
+        std::printf("{\"faces\": %zu, \"tets\": %zu, \"saved\": %zu, \"tetgen_calls\": %zu, "
                     "\"peak\": {\"start\": %zu, \"tetgen\": %zu",
                     model.triangle_count(), first.tets, first.bytes, first.tetgen.calls, start, first.tetgen.peak_memory);
         for (const Stage& stage : first.stages) std::printf(", \"%s\": %zu", stage.name, stage.peak);
-        std::printf("},\n \"first\": ");
+        std::printf("}, \"first\": ");
         print(first);
-        std::printf(",\n \"seconds\": [");
+        std::printf("}\n");
         keep_memory();
-        for (int i = 0; i < repetitions; ++i) {
-            if (i > 0) std::printf(",\n  ");
+        for (std::string line; std::fflush(stdout), std::getline(std::cin, line);) {
             print(run(model, quality));
+            std::printf("\n");
         }
-        std::printf("]}\n");
     } catch (const std::exception& e) {
         std::fprintf(stderr, "%s\n", e.what());
         return 1;
