@@ -43,30 +43,12 @@ constexpr double most_cost = static_cast<double>(int64_t{1} << 36);
 constexpr double same_depth = 1e-9;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-void check(const MeshView& mesh) {
-    if (mesh.vertex_count == 0 || mesh.triangle_count == 0 || mesh.face_count == 0)
-        throw Error(PW_ERROR_EMPTY, "The mesh has no faces. Choose a mesh object that has some.");
-    if (std::max({mesh.vertex_count, mesh.triangle_count, mesh.face_count}) > PW_MAX_COUNT)
-        throw Error(PW_ERROR_ARGUMENT, "The mesh has more vertices or faces than can be numbered. Decimate it first.");
-    if (!mesh.faces && mesh.face_count != mesh.triangle_count)
-        throw Error(PW_ERROR_ARGUMENT, "Without source faces, face_count must equal triangle_count.");
-    for (size_t i = 0; i < 3 * mesh.vertex_count; ++i)
-        if (!(std::abs(mesh.vertices[i]) <= 1e100))
-            throw Error(PW_ERROR_NOT_FINITE, "A coordinate is infinite, too large, or not a number.");
-    for (size_t i = 0; i < 3 * mesh.triangle_count; ++i)
-        if (mesh.triangles[i] < 0 || at(mesh.triangles[i]) >= mesh.vertex_count)
-            throw Error(PW_ERROR_INDEX, "A triangle names a vertex that does not exist.");
-    for (size_t t = 0; mesh.faces && t < mesh.triangle_count; ++t)
-        if (mesh.faces[t] < 0 || at(mesh.faces[t]) >= mesh.face_count)
-            throw Error(PW_ERROR_INDEX, "A triangle names a face that does not exist.");
-}
-
 size_t face_of(const MeshView& mesh, size_t triangle) { return mesh.faces ? at(mesh.faces[triangle]) : triangle; }
 
 }  // namespace
 
 Creases::Creases(const MeshView& mesh) {
-    check(mesh);
+    check_arrays(mesh);
     centre_.resize(mesh.face_count), normal_.resize(mesh.face_count), area_.resize(mesh.face_count);
     // A frame around the vertices in use, so that others have no say in how these are rounded.
     const std::span<const Point> given(reinterpret_cast<const Point*>(mesh.vertices), mesh.vertex_count);

@@ -2,6 +2,7 @@
 #include "deform.h"
 
 #include "error.h"
+#include "surface.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -140,16 +141,8 @@ std::array<double, 3> cotangents(const Point& a, const Point& b, const Point& c)
 void check(std::span<const Point> vertices, std::span<const Triangle> triangles) {
     if (vertices.empty() || triangles.empty())
         throw Error(PW_ERROR_EMPTY, "There are no triangles: select a part with faces.");
-    if (vertices.size() > PW_MAX_COUNT || triangles.size() > PW_MAX_COUNT)
-        throw Error(PW_ERROR_ARGUMENT, "The mesh has more vertices or triangles than can be numbered.");
-    for (const Triangle& triangle : triangles)
-        for (const int32_t v : triangle)
-            if (v < 0 || static_cast<size_t>(v) >= vertices.size())
-                throw Error(PW_ERROR_INDEX, "A triangle names a vertex that does not exist.");
-    for (const Point& p : vertices)
-        for (const double x : p)
-            if (!(std::abs(x) <= 1e100))
-                throw Error(PW_ERROR_NOT_FINITE, "A coordinate is infinite, too large, or not a number.");
+    check_arrays({vertices.front().data(), vertices.size(), triangles.front().data(), triangles.size(), nullptr,
+                  triangles.size()});
 }
 
 // Vertices along a space-filling curve (Morton's) through the box of a grid of 2^21 cells a side.

@@ -33,37 +33,10 @@ std::string counted(size_t n, const char* one, const char* many) {
     return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
-void check_arrays(const MeshView& mesh) {
-    if (mesh.vertex_count == 0 || mesh.triangle_count == 0 || mesh.face_count == 0)
-        throw Error(PW_ERROR_EMPTY, "The mesh has no faces. Choose a mesh object that has some.");
-    if (std::max({mesh.vertex_count, mesh.triangle_count, mesh.face_count}) > PW_MAX_COUNT)
-        throw Error(PW_ERROR_ARGUMENT, "The mesh is too large: the limit is " + std::to_string(PW_MAX_COUNT) +
-                                           " vertices or triangles. Decimate it first.");
-    if (!mesh.faces && mesh.face_count != mesh.triangle_count)
-        throw Error(PW_ERROR_ARGUMENT, "Without source faces, face_count must equal triangle_count.");
-
-    for (size_t i = 0; i < 3 * mesh.vertex_count; ++i)
-        if (!(std::fabs(mesh.vertices[i]) <= largest_coordinate))
-            throw Error(PW_ERROR_NOT_FINITE, "Vertex " + std::to_string(i / 3) +
-                                                 " has a coordinate that is not a number, or is too large. Delete or "
-                                                 "move that vertex.");
-
-    const auto vertex_count = static_cast<int64_t>(mesh.vertex_count);
-    for (size_t i = 0; i < 3 * mesh.triangle_count; ++i)
-        if (mesh.triangles[i] < 0 || mesh.triangles[i] >= vertex_count)
-            throw Error(PW_ERROR_INDEX, "Triangle " + std::to_string(i / 3) + " names vertex " +
-                                            std::to_string(mesh.triangles[i]) + ", but there are " +
-                                            std::to_string(vertex_count) + ". The mesh data are damaged.");
+void check_all_faces_used(const MeshView& mesh) {
     if (!mesh.faces) return;
-    const auto face_count = static_cast<int64_t>(mesh.face_count);
     std::vector<bool> used(mesh.face_count, false);
-    for (size_t t = 0; t < mesh.triangle_count; ++t) {
-        if (mesh.faces[t] < 0 || mesh.faces[t] >= face_count)
-            throw Error(PW_ERROR_INDEX, "Triangle " + std::to_string(t) + " names face " +
-                                            std::to_string(mesh.faces[t]) + ", but there are " +
-                                            std::to_string(face_count) + ". The mesh data are damaged.");
-        used[static_cast<size_t>(mesh.faces[t])] = true;
-    }
+    for (size_t t = 0; t < mesh.triangle_count; ++t) used[at(mesh.faces[t])] = true;
     const auto unused = std::find(used.begin(), used.end(), false);
     if (unused != used.end())
         throw Error(PW_ERROR_INDEX, "Face " + std::to_string(unused - used.begin()) +
@@ -299,6 +272,35 @@ std::vector<int32_t> order_on_curve(std::span<const Point> vertices) {
 
 }  // namespace
 
+void check_arrays(const MeshView& mesh) {
+    if (mesh.vertex_count == 0 || mesh.triangle_count == 0 || mesh.face_count == 0)
+        throw Error(PW_ERROR_EMPTY, "The mesh has no faces. Choose a mesh object that has some.");
+    if (std::max({mesh.vertex_count, mesh.triangle_count, mesh.face_count}) > PW_MAX_COUNT)
+        throw Error(PW_ERROR_ARGUMENT, "The mesh is too large: the limit is " + std::to_string(PW_MAX_COUNT) +
+                                           " vertices or triangles. Decimate it first.");
+    if (!mesh.faces && mesh.face_count != mesh.triangle_count)
+        throw Error(PW_ERROR_ARGUMENT, "Without source faces, face_count must equal triangle_count.");
+
+    for (size_t i = 0; i < 3 * mesh.vertex_count; ++i)
+        if (!(std::fabs(mesh.vertices[i]) <= largest_coordinate))
+            throw Error(PW_ERROR_NOT_FINITE, "Vertex " + std::to_string(i / 3) +
+                                                 " has a coordinate that is not a number, or is too large. Delete or "
+                                                 "move that vertex.");
+
+    const auto vertex_count = static_cast<int64_t>(mesh.vertex_count);
+    for (size_t i = 0; i < 3 * mesh.triangle_count; ++i)
+        if (mesh.triangles[i] < 0 || mesh.triangles[i] >= vertex_count)
+            throw Error(PW_ERROR_INDEX, "Triangle " + std::to_string(i / 3) + " names vertex " +
+                                            std::to_string(mesh.triangles[i]) + ", but there are " +
+                                            std::to_string(vertex_count) + ". The mesh data are damaged.");
+    const auto face_count = static_cast<int64_t>(mesh.face_count);
+    for (size_t t = 0; mesh.faces && t < mesh.triangle_count; ++t)
+        if (mesh.faces[t] < 0 || mesh.faces[t] >= face_count)
+            throw Error(PW_ERROR_INDEX, "Triangle " + std::to_string(t) + " names face " +
+                                            std::to_string(mesh.faces[t]) + ", but there are " +
+                                            std::to_string(face_count) + ". The mesh data are damaged.");
+}
+
 Frame Frame::around(std::span<const Point> points) {
     Frame frame{.longest = 0, .scale = 0};
     if (points.empty()) return frame;
@@ -323,6 +325,7 @@ Point Frame::to_caller(const Point& p) const {
 
 Surface read_mesh(const MeshView& mesh) {
     check_arrays(mesh);
+    check_all_faces_used(mesh);
     const auto point = [&](int32_t v) {
         const double* p = mesh.vertices + 3 * static_cast<size_t>(v);
         return Point{p[0], p[1], p[2]};

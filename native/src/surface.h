@@ -63,6 +63,9 @@ struct Surface {
     std::string account;
 };
 
+// Throws an Error where the caller's arrays are no mesh: no faces, too many, an index or a coordinate that can't be.
+void check_arrays(const MeshView& mesh);
+
 // The caller's arrays in canonical order, good or bad. Throws an Error where they aren't a mesh with an extent.
 Surface read_mesh(const MeshView& mesh);
 
