@@ -351,11 +351,11 @@ if LINUX and PLAIN:
         harm("loop", 1)
         job = Job(*shapes.off("hand"), time_limit=5)
         timer = threading.Timer(0.05, _thread.interrupt_main)
-        timer.start()
         began = time.monotonic()
         with pytest.raises(KeyboardInterrupt):
+            timer.start()
             job.result()
-        assert time.monotonic() - began < 2 and timer.finished.is_set()
+        assert time.monotonic() - began < 2
         until(lambda: state(job.process_id) is None, 1)
 
     # ---- The end of the parent
