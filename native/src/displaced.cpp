@@ -43,7 +43,7 @@ std::vector<Point> set_apart(const Surface& source, const std::vector<size_t>& t
         const Point n = cross(at(1) - at(0), at(2) - at(0));
         for (size_t k = 0; k < 3; ++k) {
             const auto v = static_cast<size_t>(t[k]);
-            for (size_t i = 0; i < 3; ++i) normal[v][i] += n[i];
+            normal[v] = normal[v] + n;
             shortest[v] = std::min({shortest[v], length(at(k + 1) - at(k)), length(at(k + 2) - at(k))});
         }
     }

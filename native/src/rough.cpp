@@ -64,7 +64,7 @@ double roughness(std::span<const Point> vertices, std::span<const Triangle> tria
         const Point n = cross(at(1) - at(0), at(2) - at(0));
         for (size_t k = 0; k < 3; ++k) {
             const auto v = static_cast<size_t>(t[k]);
-            for (size_t i = 0; i < 3; ++i) normal[v][i] += n[i];
+            normal[v] = normal[v] + n;
             edges[v] += length(at(k + 1) - at(k)) + length(at(k + 2) - at(k));
             count[v] += 2;
         }

@@ -36,8 +36,8 @@ namespace partwheel {
 
 namespace {
 
-// Its lowest vertex first.
-Triangle sorted_facet(const Tetrahedron& tet, size_t opposite) {
+// With its lowest vertex first.
+Triangle facet_from_lowest(const Tetrahedron& tet, size_t opposite) {
     Triangle t = facet(tet, opposite);
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     return t;
@@ -221,7 +221,7 @@ public:
           by_lowest_(triangles_.size(), mesh.vertices.size(), [&](size_t t) { return triangles_[t][0]; }) {}
 
     Wall at(size_t tet, size_t opposite) const {
-        const Triangle f = sorted_facet(mesh_.tetrahedra[tet], opposite);
+        const Triangle f = facet_from_lowest(mesh_.tetrahedra[tet], opposite);
         for (const int32_t t : by_lowest_.with(f[0])) {
             const Triangle& wall = triangles_[static_cast<size_t>(t)];
             if (wall[1] == f[1] && wall[2] == f[2]) return {t, true};

@@ -17,7 +17,7 @@ QUICK = (50_000, 100_000, 200_000)
 STAGES = ("solid", "cluster", "dendrogram", "hierarchy")
 
 
-def turns(faces):
+def repetitions(faces):
     return min(max(5, 2_000_000 // faces), 20)
 
 
@@ -28,13 +28,14 @@ def measure(quick):
         for faces in QUICK if quick else SIZES:
             mesh = models.subdivided(mesh, faces)
             path = models.write(f"natural-{faces}", mesh)
+            count = 1 if quick else repetitions(faces)
             if not rows:
-                smallest = programs.enter_context(Stages(path))
-                runs = [smallest.again() for _ in range(1 if quick else turns(faces))]
+                smallest, most = programs.enter_context(Stages(path)), count
+                runs = [smallest.again() for _ in range(count)]
                 row = {"faces": faces, "growth": 1, **sizes(smallest.report, runs)}
             else:
                 with Stages(path) as program:
-                    runs, growths = in_turn(smallest, program, 1 if quick else turns(faces))
+                    runs, growths = in_turn(smallest, program, count, most // count)
                     row = {"faces": faces, "growth": median(growths), **sizes(program.report, runs)}
             rows.append(row)
             row["log2_growth"] = (log(row["tets"]) / log(rows[0]["tets"])) ** 2
@@ -44,11 +45,11 @@ def measure(quick):
     return {"model": models.NATURAL.stem, "sizes": rows}
 
 
-def in_turn(small, large, turns):
+def in_turn(small, large, turns, between):
     """The large one's runs, and of each how much longer a tetrahedron takes than in the small one's just before and
-    after. These are together as many as a short large one would have."""
+    after; of these there are so many between two turns."""
     def smalls():
-        return [htc(small.again()) for _ in range(max(1, 20 // turns))]
+        return [htc(small.again()) for _ in range(between)]
 
     runs, growths = [], []
     before = smalls()

@@ -143,7 +143,7 @@ class _Build(threading.Thread):
         self.arguments = arrays, face_count, options
         self.address = c_void_p()
         self.error = None
-        self.done = threading.Event()  # is_alive() may say no too early: Ctrl-C during join() has that effect (bpo-45274)
+        self.done = threading.Event()  # not is_alive(), which may say no too early after Ctrl-C (bpo-45274)
 
     def run(self):
         (vertices, triangles, *faces), face_count, options = self.arguments
