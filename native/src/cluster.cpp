@@ -4,6 +4,7 @@
 #include "domains.h"
 #include "dual_graph.h"
 #include "edge_queue.h"
+#include "halves.h"
 
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/box.hpp>
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -27,7 +29,8 @@ constexpr size_t most_beside_union = 3, places_beside_union = 21;
 class Clustering {
 public:
     Clustering(const TetMesh& mesh, Progress& progress, int threads)
-        : mesh_(mesh), progress_(progress), workers_(mesh.vertices, threads), graph_(mesh, progress, workers_.pair()) {
+        : mesh_(mesh), progress_(progress), workers_(mesh.vertices, threads), graph_(make_graph()) {
+        graph_.price_all(progress, workers_.pair());
         tree_.merges.reserve(mesh.tetrahedra.size());
     }
     BinaryTree run();
@@ -35,6 +38,7 @@ public:
 private:
     using Queue = EdgeQueue<Price>;
 
+    DualGraph make_graph();
     void queue_edges();
     void evaluate(std::span<const int32_t> edges, double concavity);
     void update(std::span<const int32_t> edges);
@@ -47,6 +51,7 @@ private:
     const TetMesh& mesh_;
     Progress& progress_;
     Workers workers_;
+    std::vector<uint8_t> halves_;  // none for one thread
     DualGraph graph_;
     EdgePlaces places_;
     Queue queue_{places_};
@@ -54,6 +59,18 @@ private:
     std::vector<int32_t> removed_;   // scratch of contract()
     BinaryTree tree_;
 };
+
+// While a second thread, if there is one, looks for the halves to begin with.
+DualGraph Clustering::make_graph() {
+    std::optional<DualGraph> graph;
+    in_halves(workers_.pair(), 0, 2, [&](size_t i) {
+        if (i == 0)
+            graph.emplace(mesh_);
+        else if (workers_.threads)
+            halves_ = halves(mesh_);
+    });
+    return std::move(*graph);
+}
 
 // Those between clusters that remain.
 void Clustering::queue_edges() {
@@ -184,7 +201,7 @@ void Clustering::join_components() {
 
 BinaryTree Clustering::run() {
     if (workers_.threads)
-        tree_.merges = merge_in_domains(graph_, mesh_, workers_, progress_);
+        tree_.merges = merge_in_domains(graph_, std::move(halves_), workers_, progress_);
     queue_edges();
     contract_all();
     tree_.components = graph_.clusters_count() - tree_.merges.size();

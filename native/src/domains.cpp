@@ -34,7 +34,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <deque>
 #include <limits>
 #include <memory>
@@ -67,11 +66,6 @@ constexpr size_t least_lead = 16;
 // times as far ahead then.
 constexpr size_t convex_patience = 4;
 
-// One tetrahedron in so many is asked where the middle is, and what a plane cuts: so many planes in each direction,
-// with no less than half but this part of the tetrahedra on either side.
-constexpr size_t sample = 16, planes = 7;
-constexpr double off_middle = 0.02;
-
 // When a cluster is made, or an edge contracted.
 struct Stamp {
     Price price;         // the greatest paid below it, its own included
@@ -100,7 +94,7 @@ enum Home : uint8_t { inside_0, inside_1, left_out_0, left_out_1, across };
 
 class Domains {
 public:
-    Domains(DualGraph& graph, const TetMesh& mesh, Workers& workers, Progress& progress, const Pace& pace);
+    Domains(DualGraph& graph, std::vector<uint8_t> halves, Workers& workers, Progress& progress, const Pace& pace);
     std::vector<Merge> run();
 
 private:
@@ -133,14 +127,13 @@ private:
         Stamp latest;                              // of these
         std::vector<std::unique_ptr<Done>> spare;  // with their memory
         std::vector<Done*> by_number;              // null for what is final or has been taken back
-        std::vector<Numbered> settled;             // final since the last round
+        LargeVector<Numbered> settled;             // final, in the order of their stamps
         size_t goal = 0, merged = 0;               // merges in this round
         std::atomic<bool> finished{false};
 
         explicit Domain(EdgePlaces& places) : inside(places), left_out(places) {}
     };
 
-    static std::vector<uint8_t> halves(const TetMesh& mesh, PairOfThreads& threads);
     Stamp& made(int32_t cluster) { return made_[static_cast<size_t>(cluster)]; }
     const Stamp& made(int32_t cluster) const { return made_[static_cast<size_t>(cluster)]; }
     uint8_t& site(int32_t cluster) { return sites_[static_cast<size_t>(cluster)]; }
@@ -171,6 +164,7 @@ private:
     void advance(size_t d);
     void round(const std::array<size_t, 2>& goals);
     void catch_up();
+    static void prefetch_spare(const std::vector<std::unique_ptr<Done>>& spare);
     void merge_inside(size_t d, int32_t edge, const Turn& turn);
     LeftOut* next_left_out();
     bool inside_before(const Stamp& stamp) const;
@@ -186,7 +180,7 @@ private:
     void merge_at_border(int32_t edge, const Turn& turn);
     Stamp settled_before();
     int32_t final_number(int32_t number) const;
-    void put_in_order();
+    std::vector<Merge> in_order();
     std::vector<Merge> finish();
 
     DualGraph& graph_;
@@ -201,79 +195,22 @@ private:
     std::vector<uint8_t> sites_;
     std::vector<uint8_t> hindered_;  // whether an edge of the cluster may be left out: if not, none is
     LargeVector<Stamp> made_;
-    std::vector<Numbered> at_border_;  // merges there since the last round
-    size_t count_at_border_ = 0;       // of all so far
+    LargeVector<Numbered> at_border_;  // merges there, in the order of their stamps
     Stamp latest_at_border_;
-    std::vector<Merge> merges_;        // the final ones, numbered as one thread does
-    LargeVector<int32_t> number_of_;   // how it does that, by our numbers, the leaves' left out
+    LargeVector<int32_t> number_of_;   // as one thread numbers them, by our numbers, the leaves' left out
     size_t left_;                      // clusters
     Stamp settled_;                    // what has been done before that is final
     std::optional<Price> last_;        // of the merges to be made; none: all
     size_t lead_ = 0;                  // so many merges of a domain at most that are not final, but for convex ones
 };
 
-// The half that each tetrahedron is in: of planes in some directions, near the middle, the one that cuts the fewest
-// edges is between them.
-std::vector<uint8_t> Domains::halves(const TetMesh& mesh, PairOfThreads& threads) {
-    const size_t count = mesh.tetrahedra.size();
-    const auto middle = [&](size_t t) {
-        Point sum = {};
-        for (const int32_t v : mesh.tetrahedra[t])
-            for (size_t k = 0; k < 3; ++k) sum[k] += mesh.vertices[static_cast<size_t>(v)][k];
-        return sum;
-    };
-    std::vector<Point> middles;
-    std::vector<std::array<Point, 2>> edges;
-    for (size_t t = 0; t < count; t += sample) {
-        middles.push_back(middle(t));
-        for (const int32_t n : mesh.neighbours[t])
-            if (n >= 0) edges.push_back({middles.back(), middle(static_cast<size_t>(n))});
-    }
-
-    struct Plane {
-        size_t cut = 0;
-        double place = 0;
-    };
-    std::array<Plane, lattice_directions> best;
-    threads.share(lattice_directions, [&](size_t i, size_t) {
-        const Point direction = lattice_direction(i);
-        std::vector<double> places;
-        for (const Point& m : middles) places.push_back(dot(m, direction));
-        const auto quantile = [&](double part) {
-            const auto at = places.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(places.size()));
-            std::nth_element(places.begin(), at, places.end());
-            return *at;
-        };
-        const double first = quantile(0.5 - off_middle), last = quantile(0.5 + off_middle);
-        std::array<Plane, planes> tried;
-        for (size_t k = 0; k < planes; ++k)
-            tried[k].place = std::lerp(first, last, static_cast<double>(k) / (planes - 1));
-        for (const auto& [a, b] : edges) {
-            const auto [low, high] = std::minmax({dot(a, direction), dot(b, direction)});
-            if (low < last && high >= first)
-                for (Plane& plane : tried) plane.cut += low < plane.place && plane.place <= high;
-        }
-        best[i] = std::ranges::min(tried, {}, &Plane::cut);
-    });
-    const auto chosen = std::ranges::min_element(best, {}, &Plane::cut);
-    const Point direction = lattice_direction(static_cast<size_t>(chosen - best.begin()));
-    std::vector<uint8_t> half(count);
-    threads.share(2, [&](size_t i, size_t) {
-        for (size_t t = i * count / 2; t < (i + 1) * count / 2; ++t)
-            half[t] = dot(middle(t), direction) < chosen->place ? 0 : 1;
-    });
-    return half;
-}
-
-Domains::Domains(DualGraph& graph, const TetMesh& mesh, Workers& workers, Progress& progress, const Pace& pace)
+Domains::Domains(DualGraph& graph, std::vector<uint8_t> halves, Workers& workers, Progress& progress, const Pace& pace)
     : graph_(graph), workers_(workers), threads_(*workers.threads), progress_(progress), pace_(pace),
-      scratch_{{{&workers.first}, {&*workers.second}}}, sites_(halves(mesh, threads_)),
+      scratch_{{{&workers.first}, {&*workers.second}}}, sites_(std::move(halves)),
       hindered_(graph.clusters_count(), 0), made_(graph.clusters_count()), left_(graph.clusters_count()) {
     places_.resize(graph.edges_count());
     std::vector<uint8_t> sites(left_);
-    threads_.share(2, [&](size_t d, size_t) {
-        for (size_t c = d * left_ / 2; c < (d + 1) * left_ / 2; ++c) sites[c] = site_of_owned(static_cast<int32_t>(c));
-    });
+    in_halves(&threads_, 0, left_, [&](size_t c) { sites[c] = site_of_owned(static_cast<int32_t>(c)); });
     sites_ = std::move(sites);
     const auto edges = static_cast<int32_t>(graph.edges_count());
     threads_.share(2, [&](size_t d, size_t) {
@@ -453,6 +390,16 @@ void Domains::advance(size_t d) {
     own.finished.store(true, std::memory_order_relaxed);
 }
 
+// What has lain for long is in no cache: the memory of the one before the last, and the record before that.
+void Domains::prefetch_spare(const std::vector<std::unique_ptr<Done>>& spare) {
+    if (spare.size() < 3) return;
+    const Done& next = *spare.end()[-2];
+    next.contraction.stayed.hull.prefetch();
+    next.contraction.gone.hull.prefetch();
+    const auto* after = reinterpret_cast<const char*>(spare.end()[-3].get());
+    for (size_t i = 0; i < sizeof(Done); i += 64) prefetch_line(after + i);
+}
+
 void Domains::merge_inside(size_t d, int32_t edge, const Turn& now) {
     Domain& own = domains_[d];
     Scratch& scratch = scratch_[d];
@@ -461,16 +408,10 @@ void Domains::merge_inside(size_t d, int32_t edge, const Turn& now) {
     if (own.spare.empty()) {
         done = std::make_unique<Done>();
     } else {
+        prefetch_spare(own.spare);
         done = std::move(own.spare.back());
         own.spare.pop_back();
         DualGraph::forget(done->contraction, *scratch.worker);
-        // What has lain for long is in no cache: the next one's memory, and the record after that.
-        if (own.spare.size() > 1) {
-            const auto* after = reinterpret_cast<const char*>(own.spare.end()[-2].get());
-            for (size_t i = 0; i < sizeof(Done); i += 64) prefetch_line(after + i);
-            own.spare.back()->contraction.stayed.hull.prefetch();
-            own.spare.back()->contraction.gone.hull.prefetch();
-        }
     }
     const auto [a, b] = std::pair(graph_.edge(edge).a, graph_.edge(edge).b);
     const Stamp made_a = made(a), made_b = made(b);
@@ -602,7 +543,7 @@ void Domains::merge_left_out() {
 void Domains::merge_at_border(int32_t edge, const Turn& now) {
     const auto [a, b] = std::pair(graph_.edge(edge).a, graph_.edge(edge).b);
     const uint8_t larger = graph_.at(a).size >= graph_.at(b).size ? owner(a) : owner(b);
-    const auto number = static_cast<int32_t>(graph_.clusters_count() + 3 * count_at_border_++ + 2);
+    const auto number = static_cast<int32_t>(graph_.clusters_count() + 3 * at_border_.size() + 2);
     const auto [merged, numbered] = contract(edge, now.stamp, number, scratch_[0], nullptr);
     at_border_.push_back(numbered);
     latest_at_border_ = now.stamp;
@@ -633,26 +574,36 @@ int32_t Domains::final_number(int32_t number) const {
     return number < leaves ? number : number_of_[static_cast<size_t>(number - leaves)];
 }
 
-// Numbers all merges that have become final as one thread does.
-void Domains::put_in_order() {
+// All merges, numbered as one thread does: each thread takes a part of their order, up to the same stamp in all lists.
+std::vector<Merge> Domains::in_order() {
+    const std::array<std::span<const Numbered>, 3> lists = {domains_[0].settled, domains_[1].settled, at_border_};
+    const auto& longest = *std::ranges::max_element(lists, {}, [](const auto& list) { return list.size(); });
+    if (longest.empty()) return {};
+    std::array<size_t, 3> middle;
+    for (size_t k = 0; k < 3; ++k)
+        middle[k] = static_cast<size_t>(std::ranges::lower_bound(lists[k], longest[longest.size() / 2].stamp, std::less<>(),
+                                                                 &Numbered::stamp) - lists[k].begin());
+    std::vector<Merge> merges(lists[0].size() + lists[1].size() + lists[2].size());
+    number_of_.resize(3 * std::max({domains_[0].by_number.size(), domains_[1].by_number.size(), at_border_.size()}));
     const auto leaves = static_cast<int32_t>(graph_.clusters_count());
-    std::array<std::span<const Numbered>, 3> rest = {domains_[0].settled, domains_[1].settled, at_border_};
-    for (;;) {
-        std::span<const Numbered>* next = nullptr;
-        for (auto& list : rest)
-            if (!list.empty() && (!next || list.front().stamp < next->front().stamp)) next = &list;
-        if (!next) break;
-        const Numbered& made = next->front();
-        *next = next->subspan(1);
-        const auto number = static_cast<size_t>(made.number - leaves);
-        if (number >= number_of_.size()) number_of_.resize(2 * number + 1);
-        number_of_[number] = leaves + static_cast<int32_t>(merges_.size());
-        merges_.push_back(made.merge);
-        merges_.back().left = final_number(made.merge.left);
-        merges_.back().right = final_number(made.merge.right);
-    }
-    for (Domain& d : domains_) d.settled.clear();
-    at_border_.clear();
+    threads_.share(2, [&](size_t half, size_t) {
+        auto rest = lists;
+        for (size_t k = 0; k < 3; ++k) rest[k] = half == 0 ? rest[k].first(middle[k]) : rest[k].subspan(middle[k]);
+        for (size_t i = half == 0 ? 0 : middle[0] + middle[1] + middle[2];; ++i) {
+            std::span<const Numbered>* next = nullptr;
+            for (auto& list : rest)
+                if (!list.empty() && (!next || list.front().stamp < next->front().stamp)) next = &list;
+            if (!next) break;
+            number_of_[static_cast<size_t>(next->front().number - leaves)] = leaves + static_cast<int32_t>(i);
+            merges[i] = next->front().merge;
+            *next = next->subspan(1);
+        }
+    });
+    in_halves(&threads_, 0, merges.size(), [&](size_t i) {
+        merges[i].left = final_number(merges[i].left);
+        merges[i].right = final_number(merges[i].right);
+    });
+    return merges;
 }
 
 // Takes back what is not final, and numbers what is left.
@@ -660,15 +611,18 @@ std::vector<Merge> Domains::finish() {
     for (size_t d = 0; d < 2; ++d) settle(d);
     for (Domain& d : domains_)
         while (!d.done.empty()) take_back(*d.done.back());
-    put_in_order();
+    auto merges = in_order();
     const auto leaves = static_cast<int32_t>(graph_.clusters_count());
     for (int32_t c = 0; c < leaves; ++c)
         if (Cluster& left = graph_.at(c); left.size > 0) left.number = final_number(left.number);
     threads_.share(2, [this](size_t d, size_t) {  // it is many small blocks
-        for (const auto& spare : domains_[d].spare) DualGraph::forget(spare->contraction, *scratch_[d].worker);
-        domains_[d].spare.clear();
+        auto& spare = domains_[d].spare;
+        for (; !spare.empty(); spare.pop_back()) {
+            prefetch_spare(spare);
+            DualGraph::forget(spare.back()->contraction, *scratch_[d].worker);
+        }
     });
-    return std::move(merges_);
+    return merges;
 }
 
 void Domains::round(const std::array<size_t, 2>& goals) {
@@ -681,7 +635,6 @@ void Domains::round(const std::array<size_t, 2>& goals) {
         advance(d);
     });
     left_ -= domains_[0].merged + domains_[1].merged;
-    put_in_order();
     merge_left_out();
     settled_ = settled_before();
     progress_.advance(0.1 + 0.9 * (1 - static_cast<double>(left_) / static_cast<double>(graph_.clusters_count())));
@@ -694,8 +647,6 @@ void Domains::catch_up() {
 }
 
 std::vector<Merge> Domains::run() {
-    merges_.reserve(graph_.clusters_count());
-    number_of_.resize(4 * graph_.clusters_count());
     size_t inside = 0, at_border = 0;  // merges since the last look
     const auto mostly_at_border = [&] {
         const size_t all = inside + at_border;
@@ -710,11 +661,11 @@ std::vector<Merge> Domains::run() {
         return pace_ || threads_.pays();
     };
     while (pays() && either_goes_on()) {
-        const size_t goal = std::max(left_ / clusters_a_merge, least_merges_a_round), before = count_at_border_;
+        const size_t goal = std::max(left_ / clusters_a_merge, least_merges_a_round), before = at_border_.size();
         lead_ = std::max(left_ * patience / clusters_a_merge, least_lead);
         round(pace_ ? pace_(goal) : std::array{goal, goal});
         inside += domains_[0].merged + domains_[1].merged;
-        at_border += count_at_border_ - before;
+        at_border += at_border_.size() - before;
     }
     catch_up();
     return finish();
@@ -722,9 +673,9 @@ std::vector<Merge> Domains::run() {
 
 }  // namespace
 
-std::vector<Merge> merge_in_domains(DualGraph& graph, const TetMesh& mesh, Workers& workers, Progress& progress,
-                                    const Pace& pace) {
-    return Domains(graph, mesh, workers, progress, pace).run();
+std::vector<Merge> merge_in_domains(DualGraph& graph, std::vector<uint8_t> halves, Workers& workers,
+                                    Progress& progress, const Pace& pace) {
+    return Domains(graph, std::move(halves), workers, progress, pace).run();
 }
 
 }  // namespace partwheel

@@ -30,7 +30,7 @@ Workers::Workers(std::span<const Point> points, int count) : first(points) {
     }
 }
 
-DualGraph::DualGraph(const TetMesh& mesh, Progress& progress, PairOfThreads* threads)
+DualGraph::DualGraph(const TetMesh& mesh)
     : mesh_(mesh), first_links_(LinkPool::least * mesh.tetrahedra.size()), clusters_(mesh.tetrahedra.size()),
       link_of_(mesh.tetrahedra.size(), -1) {
     const auto count = static_cast<int32_t>(mesh.tetrahedra.size());
@@ -46,18 +46,15 @@ DualGraph::DualGraph(const TetMesh& mesh, Progress& progress, PairOfThreads* thr
     for (int32_t t = 0; t < count; ++t)
         for (const int32_t other : mesh.neighbours[static_cast<size_t>(t)])
             if (other > t) add_edge(t, other, none);
+}
+
+void DualGraph::price_all(Progress& progress, PairOfThreads* threads) {
     for (size_t first = 0; first < edges_.size(); first += edges_a_step) {
-        const size_t last = std::min(first + edges_a_step, edges_.size()), middle = (first + last) / 2;
-        const auto price = [&](size_t i, size_t end) {
-            for (; i < end; ++i) {
-                edges_[i].hull_volume = union_of_neighbours(edges_[i].a, edges_[i].b);
-                edges_[i].exact = true;
-            }
-        };
-        if (threads)
-            threads->share(2, [&](size_t half, size_t) { half == 0 ? price(first, middle) : price(middle, last); });
-        else
-            price(first, last);
+        const size_t last = std::min(first + edges_a_step, edges_.size());
+        in_halves(threads, first, last, [this](size_t i) {
+            edges_[i].hull_volume = union_of_neighbours(edges_[i].a, edges_[i].b);
+            edges_[i].exact = true;
+        });
         progress.advance(0.1 * static_cast<double>(last) / static_cast<double>(edges_.size()));
     }
 }

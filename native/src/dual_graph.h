@@ -75,8 +75,11 @@ struct Contraction {
 // another's. Workers must outlive the graph.
 class DualGraph {
 public:
-    // One tetrahedron a cluster, all edges priced; by both threads if there are two.
-    DualGraph(const TetMesh& mesh, Progress& progress, PairOfThreads* threads);
+    // One tetrahedron a cluster; the edges are not priced.
+    explicit DualGraph(const TetMesh& mesh);
+
+    // Of a graph as it was made; by both threads if there are two.
+    void price_all(Progress& progress, PairOfThreads* threads);
 
     size_t clusters_count() const { return clusters_.size(); }  // those that have gone into others included
     size_t edges_count() const { return edges_.size(); }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <new>
+#include <utility>
 #include <vector>
 
 #if defined(__linux__)
@@ -44,6 +45,15 @@ struct LargePages {
             free_large(memory);
         else
             ::operator delete(memory, std::align_val_t{cache_line});
+    }
+    // Without arguments as by default: numbers are whatever lies in that memory, not 0.
+    template <class U>
+    void construct(U* item) {
+        ::new (static_cast<void*>(item)) U;
+    }
+    template <class U, class First, class... More>
+    void construct(U* item, First&& first, More&&... more) {
+        ::new (static_cast<void*>(item)) U(std::forward<First>(first), std::forward<More>(more)...);
     }
     bool operator==(const LargePages&) const = default;
 

@@ -50,4 +50,17 @@ private:
     std::thread second_;  // last, so that all else is there when it begins
 };
 
+// Calls task(i) once for each i from first to last - 1: by two threads, each in a half of these, or by one if there is
+// no second.
+template <class Task>
+void in_halves(PairOfThreads* threads, size_t first, size_t last, const Task& task) {
+    const std::array bounds = {first, (first + last) / 2, last};
+    const auto work = [&](size_t half, size_t) {
+        for (size_t i = bounds[half]; i < bounds[half + 1]; ++i) task(i);
+    };
+    if (threads) return threads->share(2, work);
+    work(0, 0);
+    work(1, 0);
+}
+
 }  // namespace partwheel

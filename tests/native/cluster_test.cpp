@@ -6,6 +6,7 @@
 #include "cluster.h"
 #include "domains.h"
 #include "dual_graph.h"
+#include "halves.h"
 #include "hull.h"
 
 #include "support/real_meshes.h"
@@ -261,8 +262,9 @@ TEST(Cluster, NorDoesOneThreadFarAheadOfTheOther) {
             Progress progress;
             progress.begin();
             Workers workers(mesh.vertices, 2);
-            DualGraph graph(mesh, progress, workers.pair());
-            const std::vector<Merge> is = merge_in_domains(graph, mesh, workers, progress, pace);
+            DualGraph graph(mesh);
+            graph.price_all(progress, workers.pair());
+            const std::vector<Merge> is = merge_in_domains(graph, halves(mesh), workers, progress, pace);
             ASSERT_GT(is.size(), should.size() / 2);  // the rest is up to one thread
             for (size_t m = 0; m < is.size(); ++m)
                 ASSERT_TRUE(is[m].left == should[m].left && is[m].right == should[m].right &&
