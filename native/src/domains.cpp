@@ -36,6 +36,7 @@
 #include <atomic>
 #include <deque>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -110,9 +111,30 @@ private:
         Contraction contraction;
         Numbered numbered;
         Stamp made_stay, made_go;  // as they were
+        size_t place = 0;          // among those not final
     };
 
-    using DoneList = std::deque<std::unique_ptr<Done>>;
+    // Merges that are not final, by their stamps, each of which is another. Nearly all come in that order; those that
+    // don't have a list apart, so that no other must make room, and who is taken out leaves a gap.
+    class NotFinal {
+    public:
+        bool empty() const { return in_order_.empty() && late_.empty(); }
+        size_t size() const { return in_order_.size() + late_.size(); }  // with the gaps
+        const Stamp& latest() const { return latest_; }  // the least of all if there is none
+        Done& last() { return late_.empty() || latest_of_late() < latest_ ? *in_order_.back() : *late_.rbegin()->second; }
+        void add(std::unique_ptr<Done> done);
+        std::unique_ptr<Done> take_out(const Done& done);
+        std::unique_ptr<Done> take_first_before(const Stamp& stamp);  // null if there is none
+
+    private:
+        static constexpr size_t is_late = std::numeric_limits<size_t>::max();
+        const Stamp& latest_of_late() const { return late_.rbegin()->first; }
+
+        std::deque<std::unique_ptr<Done>> in_order_;  // no gap at either end
+        size_t before_ = 0;                           // places before the first of these
+        std::map<Stamp, std::unique_ptr<Done>> late_;
+        Stamp latest_;
+    };
 
     // What one thread works with.
     struct alignas(apart) Scratch {
@@ -123,8 +145,7 @@ private:
     struct alignas(apart) Domain {
         Inside inside;
         LeftOut left_out;
-        DoneList done;                             // inside, not yet final: in the order of their stamps
-        Stamp latest;                              // of these
+        NotFinal done;                             // inside
         std::vector<std::unique_ptr<Done>> spare;  // with their memory
         std::vector<Done*> by_number;              // null for what is final or has been taken back
         LargeVector<Numbered> settled;             // final, in the order of their stamps
@@ -170,7 +191,6 @@ private:
     bool inside_before(const Stamp& stamp) const;
     bool goes_on(const Domain& d) const { return !d.inside.empty() && !(last_ && *last_ < d.inside.top()); }
     bool either_goes_on() const { return goes_on(domains_[0]) || goes_on(domains_[1]); }
-    static DoneList::iterator place_among(DoneList& done, const Stamp& stamp);
     Done*& done(int32_t number);
     Done* standing(int32_t cluster);
     bool take_back_after(const Turn& turn, int32_t edge);
@@ -203,6 +223,36 @@ private:
     std::optional<Price> last_;        // of the merges to be made; none: all
     size_t lead_ = 0;                  // so many merges of a domain at most that are not final, but for convex ones
 };
+
+void Domains::NotFinal::add(std::unique_ptr<Done> done) {
+    const Stamp& stamp = done->numbered.stamp;
+    if (stamp < latest_) {
+        done->place = is_late;
+        late_.emplace(stamp, std::move(done));
+    } else {
+        latest_ = stamp;
+        done->place = before_ + in_order_.size();
+        in_order_.push_back(std::move(done));
+    }
+}
+
+std::unique_ptr<Domains::Done> Domains::NotFinal::take_out(const Done& done) {
+    std::unique_ptr<Done> taken = done.place == is_late ? std::move(late_.extract(done.numbered.stamp).mapped())
+                                                        : std::move(in_order_[done.place - before_]);
+    while (!in_order_.empty() && !in_order_.back()) in_order_.pop_back();
+    for (; !in_order_.empty() && !in_order_.front(); ++before_) in_order_.pop_front();
+    if (!(taken->numbered.stamp < latest_)) {
+        latest_ = in_order_.empty() ? Stamp{} : in_order_.back()->numbered.stamp;
+        if (!late_.empty()) latest_ = std::max(latest_, latest_of_late());
+    }
+    return taken;
+}
+
+std::unique_ptr<Domains::Done> Domains::NotFinal::take_first_before(const Stamp& stamp) {
+    Done* first = in_order_.empty() ? nullptr : in_order_.front().get();
+    if (!late_.empty() && (!first || late_.begin()->first < first->numbered.stamp)) first = late_.begin()->second.get();
+    return first && first->numbered.stamp < stamp ? take_out(*first) : nullptr;
+}
 
 Domains::Domains(DualGraph& graph, std::vector<uint8_t> halves, Workers& workers, Progress& progress, const Pace& pace)
     : graph_(graph), workers_(workers), threads_(*workers.threads), progress_(progress), pace_(pace),
@@ -330,7 +380,7 @@ void Domains::place_links(int32_t merged, const Price& paid, Scratch& scratch) {
 // later than its price says, and others inside may come before it, where something has been taken back.
 bool Domains::may_merge(int32_t edge, const Turn& own, const Domain& in, Scratch& scratch) {
     const auto [a, b] = std::pair(graph_.edge(edge).a, graph_.edge(edge).b);
-    const bool late = own.stamp < in.latest;
+    const bool late = own.stamp < in.done.latest();
     if (!late && own.stamp.steps == 0 && !hindered(a) && !hindered(b)) return true;
     const auto before = [&](int32_t e) {
         if (const uint8_t home = graph_.edge(e).home; home > inside_1) return left_out(home).key(e) < own;
@@ -352,10 +402,10 @@ bool Domains::may_merge(int32_t edge, const Turn& own, const Domain& in, Scratch
 // Forgets how to take back what never will be.
 void Domains::settle(size_t d) {
     Domain& own = domains_[d];
-    for (; !own.done.empty() && own.done.front()->numbered.stamp < settled_; own.done.pop_front()) {
-        own.settled.push_back(own.done.front()->numbered);
-        done(own.settled.back().number) = nullptr;
-        own.spare.push_back(std::move(own.done.front()));
+    while (auto first = own.done.take_first_before(settled_)) {
+        own.settled.push_back(first->numbered);
+        done(first->numbered.number) = nullptr;
+        own.spare.push_back(std::move(first));
     }
 }
 
@@ -366,7 +416,7 @@ void Domains::advance(size_t d) {
     scratch.worker->hulls.forget();
     for (own.merged = 0; goes_on(own);) {
         // What belongs before or right after the latest merge is not left for later: others would wait for it.
-        const bool may_stop = own.done.empty() || own.latest.price < own.inside.top();
+        const bool may_stop = own.done.empty() || own.done.latest().price < own.inside.top();
         const size_t lead = own.inside.top().concavity() > 0 ? lead_ : convex_patience * lead_;
         if (may_stop && own.done.size() >= lead) break;
         if (may_stop && own.merged >= own.goal) {
@@ -421,12 +471,7 @@ void Domains::merge_inside(size_t d, int32_t edge, const Turn& now) {
     done->numbered = numbered;
     done->made_stay = merged == a ? made_a : made_b;
     done->made_go = merged == a ? made_b : made_a;
-    if (now.stamp < own.latest) {
-        own.done.insert(place_among(own.done, now.stamp), std::move(done));
-    } else {
-        own.latest = now.stamp;
-        own.done.push_back(std::move(done));
-    }
+    own.done.add(std::move(done));
     ++own.merged;
     place_links(merged, now.price, scratch);
     graph_.find_prices(scratch.cheaper, dear * now.concavity(), *scratch.worker);
@@ -448,12 +493,6 @@ bool Domains::inside_before(const Stamp& stamp) const {
     return std::any_of(domains_.begin(), domains_.end(), [&](const Domain& d) {
         return !d.inside.empty() && !(stamp.price < d.inside.top());
     });
-}
-
-// Where one with this stamp belongs, or right after it, if it is there.
-Domains::DoneList::iterator Domains::place_among(DoneList& done, const Stamp& stamp) {
-    return std::upper_bound(done.begin(), done.end(), stamp,
-                            [](const Stamp& s, const auto& other) { return s < other->numbered.stamp; });
 }
 
 // The place for the merge with this number, which is one inside.
@@ -508,10 +547,7 @@ void Domains::undo(Done& done) {
     this->done(done.numbered.number) = nullptr;
     ++left_;
     Domain& own = domains_[owner(c.stay)];
-    const auto at = std::prev(place_among(own.done, done.numbered.stamp));
-    own.spare.push_back(std::move(*at));
-    own.done.erase(at);
-    own.latest = own.done.empty() ? Stamp{} : own.done.back()->numbered.stamp;
+    own.spare.push_back(own.done.take_out(done));
 }
 
 // (b) for an edge that was left out; whether anything had to be taken back.
@@ -610,7 +646,7 @@ std::vector<Merge> Domains::in_order() {
 std::vector<Merge> Domains::finish() {
     for (size_t d = 0; d < 2; ++d) settle(d);
     for (Domain& d : domains_)
-        while (!d.done.empty()) take_back(*d.done.back());
+        while (!d.done.empty()) take_back(d.done.last());
     auto merges = in_order();
     const auto leaves = static_cast<int32_t>(graph_.clusters_count());
     for (int32_t c = 0; c < leaves; ++c)
@@ -642,7 +678,7 @@ void Domains::round(const std::array<size_t, 2>& goals) {
 
 // Lets each domain catch up with the other: what is not final in the end would have to be taken back.
 void Domains::catch_up() {
-    last_ = std::max(domains_[0].latest.price, domains_[1].latest.price);
+    last_ = std::max(domains_[0].done.latest().price, domains_[1].done.latest().price);
     while (either_goes_on()) round({left_, left_});
 }
 

@@ -159,6 +159,9 @@ private:
     // The heap holds at least so many, if there are as many: what comes soon is to be found there.
     static constexpr size_t least_soon = 32;
 
+    // From this place on items are in no near cache: a level is asked for while the one above is looked at.
+    static constexpr size_t far = 2048, items_a_line = std::max<size_t>(64 / sizeof(Item), 1);
+
     // When it runs out it gets one in so many of the later ones, the first as far as a sample tells.
     static constexpr size_t share = 8, sample = 16 * share;
 
@@ -242,6 +245,9 @@ private:
         for (;;) {
             const size_t first = children * i + 1, end = std::min(first + children, soon());
             if (first >= end) break;
+            if (const size_t next = children * first + 1; next >= far && next < soon())
+                for (size_t c = next; c < next + children * children; c += items_a_line)
+                    prefetch_line(heap_.data() + before + c);
             size_t least = first;
             for (size_t c = first + 1; c < end; ++c) least = at(c) < at(least) ? c : least;
             if (!(at(least) < item)) break;
