@@ -35,6 +35,7 @@
 #include <algorithm>
 #include <atomic>
 #include <deque>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -121,7 +122,7 @@ private:
         bool empty() const { return in_order_.empty() && late_.empty(); }
         size_t size() const { return in_order_.size() + late_.size(); }  // with the gaps
         const Stamp& latest() const { return latest_; }  // the least of all if there is none
-        Done& last() { return late_.empty() || latest_of_late() < latest_ ? *in_order_.back() : *late_.rbegin()->second; }
+        Done& last();
         void add(std::unique_ptr<Done> done);
         std::unique_ptr<Done> take_out(const Done& done);
         std::unique_ptr<Done> take_first_before(const Stamp& stamp);  // null if there is none
@@ -234,6 +235,10 @@ void Domains::NotFinal::add(std::unique_ptr<Done> done) {
         done->place = before_ + in_order_.size();
         in_order_.push_back(std::move(done));
     }
+}
+
+Domains::Done& Domains::NotFinal::last() {
+    return late_.empty() || latest_of_late() < latest_ ? *in_order_.back() : *late_.rbegin()->second;
 }
 
 std::unique_ptr<Domains::Done> Domains::NotFinal::take_out(const Done& done) {
@@ -616,9 +621,10 @@ std::vector<Merge> Domains::in_order() {
     const auto& longest = *std::ranges::max_element(lists, {}, [](const auto& list) { return list.size(); });
     if (longest.empty()) return {};
     std::array<size_t, 3> middle;
-    for (size_t k = 0; k < 3; ++k)
-        middle[k] = static_cast<size_t>(std::ranges::lower_bound(lists[k], longest[longest.size() / 2].stamp, std::less<>(),
-                                                                 &Numbered::stamp) - lists[k].begin());
+    for (size_t k = 0; k < 3; ++k) {
+        const auto at = std::ranges::lower_bound(lists[k], longest[longest.size() / 2].stamp, std::less(), &Numbered::stamp);
+        middle[k] = static_cast<size_t>(at - lists[k].begin());
+    }
     std::vector<Merge> merges(lists[0].size() + lists[1].size() + lists[2].size());
     number_of_.resize(3 * std::max({domains_[0].by_number.size(), domains_[1].by_number.size(), at_border_.size()}));
     const auto leaves = static_cast<int32_t>(graph_.clusters_count());
