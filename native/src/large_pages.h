@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <new>
-#include <utility>
 #include <vector>
 
 #if defined(__linux__)
@@ -50,10 +49,6 @@ struct LargePages {
     template <class U>
     void construct(U* item) {
         ::new (static_cast<void*>(item)) U;
-    }
-    template <class U, class First, class... More>
-    void construct(U* item, First&& first, More&&... more) {
-        ::new (static_cast<void*>(item)) U(std::forward<First>(first), std::forward<More>(more)...);
     }
     bool operator==(const LargePages&) const = default;
 
