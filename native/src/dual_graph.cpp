@@ -2,6 +2,7 @@
 #include "dual_graph.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <system_error>
 
@@ -186,6 +187,7 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, Worker& worker, st
         undo->stay = stay;
         undo->go = go;
         undo->hull_volumes.clear();
+        undo->hull_volumes.reserve(std::bit_ceil(m.links.size() + g.links.size()));
         for (const Cluster* c : {&m, &g})
             for (const Link& link : c->links) {
                 const DualEdge& was = edge(link.edge);
