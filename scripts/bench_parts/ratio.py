@@ -22,14 +22,15 @@ def measure(quick):
             refused[file.stem] = why_not
             continue
         built.append({"model": file.stem, **report, **ratios(report)})
-        print(f"   {file.stem}: {report['faces']} faces, HTC/TetGen {built[-1]['htc']:.2f}, two threads/one "
-              f"{built[-1]['two_threads']:.2f}, pipeline/TetGen {built[-1]['pipeline']:.2f}")
+        now = built[-1]
+        print(f"   {file.stem}: {now['faces']} faces, HTC/TetGen {now['htc']:.2f}, two threads/one "
+              f"{now['two_threads']:.2f} (two at once/one {now['twice']:.2f}), pipeline/TetGen {now['pipeline']:.2f}")
     if not built:
         raise Failure("no model could be built")
     print(f"   {len(built)} built, {len(refused)} refused")
     return {"source": source, "models": built, "refused": refused,
             **{name: median(model[name] for model in built)
-               for name in ("htc", "two_threads", "pipeline", "regrouping")}}
+               for name in ("htc", "two_threads", "twice", "pipeline", "regrouping")}}
 
 
 def ratios(report):
@@ -38,6 +39,9 @@ def ratios(report):
     def over_tetgen(parts):
         return median(sum(r[part][CPU] for part in parts) / r["tetgen"][CPU] for r in report["seconds"])
 
+    def over_one_thread(stage):
+        return median(r[stage][WALL] / r["cluster"][WALL] for r in report["seconds"])
+
     return {"htc": over_tetgen(OURS), "pipeline": over_tetgen(PIPELINE),
             "regrouping": median(r["regroup"][CPU] / sum(r[part][CPU] for part in PIPELINE) for r in report["seconds"]),
-            "two_threads": median(r["cluster_two_threads"][WALL] / r["cluster"][WALL] for r in report["seconds"])}
+            "two_threads": over_one_thread("cluster_two_threads"), "twice": over_one_thread("cluster_twice")}
