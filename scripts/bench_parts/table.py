@@ -39,9 +39,11 @@ def ratio(report):
 
 def on_two_cores(found):
     name = (f"the same while the machine had two whole cores: two clusterings at once, a thread each, took at most "
-            f"{found['whole']} of one ({found['turns']} of {found['of']} turns, in {found['models']} models; the median of "
-            f"all turns is {found['at_once']:.2f})")
-    return row(name, found["two_threads"], 0.7, "{:.2f}") if found["turns"] else (name, "", "≤ 0.7", "not seen")
+            f"{found['whole']} of one ({found['turns']} of {found['of']} turns, in {found['models']} models; the median "
+            f"of all turns is {found['at_once']:.2f})")
+    if not found["turns"]:
+        return name, "", "≤ 0.7", "not seen"
+    return row(name, found["two_threads"], 0.7, "{:.2f}")
 
 
 def scale(report):
