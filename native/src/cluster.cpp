@@ -76,7 +76,7 @@ DualGraph Clustering::make_graph() {
 void Clustering::queue_edges() {
     places_.reserve(graph_.edges_count());
     places_.resize(graph_.edges_count());
-    if (tree_.merges.empty()) queue_.reserve(graph_.edges_count());
+    if (tree_.merges.empty()) queue_.reserve(graph_.edges_count());  // else few are left
     for (size_t c = 0; c < graph_.clusters_count(); ++c)
         for (const Link& link : graph_.at(static_cast<int32_t>(c)).links)
             if (!places_.queued(link.edge)) queue_.append(Price(graph_.cost(graph_.edge(link.edge))), link.edge);

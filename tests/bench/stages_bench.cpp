@@ -65,13 +65,11 @@ Run run(const Model& model, double quality) {
     });
     staged("cluster_two_threads", [&] { return cluster(mesh, progress, 2); });
     staged("cluster_twice", [&] {
-        std::thread other([&] {
+        const std::jthread other([&] {
             Progress own;
             cluster(mesh, own, 1);
         });
-        auto result = cluster(mesh, progress, 1);
-        other.join();
-        return result;
+        return cluster(mesh, progress, 1);
     });
     staged("regroup", [&] { return regroup(mesh, tree, progress); });
     r.tetgen = tetgen_watch();
