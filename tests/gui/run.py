@@ -11,6 +11,7 @@ RESULT.json: {"passed": n, "failed": n, "failures": [sentence, ...]}. Exit code:
 PARTWHEEL_BLENDER names another Blender than the one on the PATH.
 """
 import argparse
+import concurrent.futures
 import contextlib
 import json
 import os
@@ -71,19 +72,23 @@ def main():
         environment = clean_environment(work)
         prepare_models(arguments.zip, work, names)
         install(arguments.zip, environment)
-        failures = []
-        for name, driver in runs:
-            began = time.monotonic()
-            failure, checks = run_scenario(name, driver, work, environment)
-            seconds = time.monotonic() - began
-            print(f"{name} ({driver}): {failure or f'ok, {checks} checks'}, {seconds:.1f} s", flush=True)
-            if failure:
-                failures.append(f"{name} ({driver}): {failure}")
+        # As many at once as there are cores: each mostly waits for its own window.
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            failures = [failure for failure in pool.map(lambda run: played(*run, work, environment), runs) if failure]
 
     result = {"passed": len(runs) - len(failures), "failed": len(failures), "failures": failures}
     arguments.result.write_text(json.dumps(result, indent=1) + "\n")
     print(f"GUI: {result['passed']} passed, {result['failed']} failed")
     return 1 if failures else 0
+
+
+def played(name, driver, work, environment):
+    """Runs a scenario and says how it went; returns the sentence that says what failed or ""."""
+    began = time.monotonic()
+    failure, checks = run_scenario(name, driver, work, environment)
+    seconds = time.monotonic() - began
+    print(f"{name} ({driver}): {failure or f'ok, {checks} checks'}, {seconds:.1f} s", flush=True)
+    return failure and f"{name} ({driver}): {failure}"
 
 
 def clean_environment(work):
@@ -140,17 +145,18 @@ def run_scenario(name, driver, work, environment):
     command = [BLENDER, "-noaudio", "--window-geometry", "0", "0", "1280", "800", "--python-exit-code", "9",
                *(["--enable-event-simulate"] if driver == "simulate" else []),
                "--python", HERE / "inside.py", "--", name, driver, work, OUTPUT / title, result_path]
-    home = work / "homes" / title
+    home, temporary = work / "homes" / title, work / "tmp" / title
     shutil.copytree(environment["HOME"], home, symlinks=True)
+    temporary.mkdir()
     limit = LONG.get(name, TIME_LIMIT)
     with x_server(environment) as display, log_path.open("w") as log:
         try:
-            own = environment | {"HOME": str(home), "DISPLAY": display}
+            own = environment | {"HOME": str(home), "TMPDIR": str(temporary), "DISPLAY": display}
             code = subprocess.run(command, env=own, stdout=log, stderr=log, stdin=subprocess.DEVNULL, cwd=work,
                                   timeout=limit).returncode
         except subprocess.TimeoutExpired:
             return f"Blender was still running after {limit} s, see {log_path}", 0
-    for report in (work / "tmp").glob("*.crash.txt"):
+    for report in temporary.glob("*.crash.txt"):
         print(report.read_text(errors="replace"), flush=True)
         report.rename(OUTPUT / f"{title}.crash.txt")
     result = json.loads(result_path.read_text()) if result_path.exists() else None
