@@ -17,7 +17,6 @@
 #include <new>
 #include <span>
 #include <string>
-#include <thread>
 
 using namespace partwheel;
 
@@ -106,13 +105,7 @@ private:
     Progress& progress_;
 };
 
-// Clustering knows what to do with two; a third would wait.
-int threads_to_use(int32_t asked) {
-    const int useful = std::thread::hardware_concurrency() < 2 ? 1 : 2;
-    return asked == 0 ? useful : std::min<int>(asked, 2);
-}
-
-Hierarchy build(const MeshView& mesh, const LadderOptions& options, int threads, int32_t mode, Progress& progress) {
+Hierarchy build(const MeshView& mesh, const LadderOptions& options, size_t threads, int32_t mode, Progress& progress) {
     const Solid solid = climb(mesh, options, progress);
     std::optional<TetMesh> plain;
     if (mode != PW_MODE_PAPER) plain = plain_filling(solid, options.quality > 0, progress);
@@ -242,7 +235,7 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
         const MeshView mesh{vertices, vertex_count, triangles, triangle_count, faces, face_count};
         const LadderOptions ladder{given.quality, given.rungs, given.open_surfaces == 1,
                                    [&](pw_rung rung) { if (context) context->rung = rung; }};
-        *hierarchy = new pw_hierarchy{build(mesh, ladder, threads_to_use(given.threads), given.mode, progress)};
+        *hierarchy = new pw_hierarchy{build(mesh, ladder, static_cast<size_t>(given.threads), given.mode, progress)};
     });
 }
 

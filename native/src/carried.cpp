@@ -133,7 +133,7 @@ std::optional<TetMesh> plain_filling(const Solid& solid, bool points_inside, Pro
     }
 }
 
-Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& solid, Progress& progress, int threads) {
+Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& solid, Progress& progress, size_t threads) {
     const size_t leaves = solid.mesh.tetrahedra.size(), count = parts.scores.size() / 2 + 1;
     const Numbers number = numbers(parts, plain.tetrahedra.size());
     std::vector<int32_t> part_of_triangle;

@@ -20,6 +20,6 @@ std::optional<TetMesh> plain_filling(const Solid& solid, bool points_inside, Pro
 
 // The tree of the solid with the parts of plain, a filling of the same triangles; of parts without a surface none.
 // threads: as cluster() takes it.
-Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& solid, Progress& progress, int threads);
+Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& solid, Progress& progress, size_t threads);
 
 }  // namespace partwheel

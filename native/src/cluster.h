@@ -60,7 +60,7 @@ struct BinaryTree {
     size_t components = 0;  // clusters left when the dual edges had run out
 };
 
-// threads: 1, or 2 to work ahead on the second core; the tree is the same, bit for bit.
-BinaryTree cluster(const TetMesh& mesh, Progress& progress, int threads = 1);
+// threads: at most so many; 0: as many as help. The tree is the same, bit for bit.
+BinaryTree cluster(const TetMesh& mesh, Progress& progress, size_t threads = 1);
 
 }  // namespace partwheel

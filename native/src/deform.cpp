@@ -28,8 +28,8 @@ constexpr double least_weight = 0.1;
 constexpr double small_turn = 1e-3;
 constexpr int most_turns = 12;
 
-// A second thread takes its share of the vertices, so many at a time, if there are at least so many.
-constexpr size_t shared_at_once = 512, worth_sharing = 4000;
+// Threads take so many vertices at a time, if there are at least so many.
+constexpr size_t vertices_a_piece = 512, worth_sharing = 4000;
 
 using partwheel::operator+, partwheel::operator*;  // else the next ones would hide them
 Wide wide(double x, double y, double z) { return {Wide::Pair{x, y}, z}; }
@@ -187,7 +187,8 @@ std::vector<int32_t> components(size_t vertex_count, std::span<const Triangle> t
 }  // namespace
 
 Deformation::Deformation(std::span<const Point> vertices, std::span<const Triangle> given_triangles,
-                         std::span<const int32_t> roles, size_t threads) {
+                         std::span<const int32_t> roles, size_t threads)
+    : threads_(threads, vertices.size() < worth_sharing ? 1 : vertices.size() / vertices_a_piece) {
     check(vertices, given_triangles);
     Point low = vertices[0], high = vertices[0];
     for (const Point& p : vertices)
@@ -240,7 +241,6 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
     find_weights();
     quaternion_.assign(vertices.size(), {1, 0, 0, 0});
     rotation_.resize(vertices.size());
-    if (vertices.size() >= worth_sharing && threads > 1) second_thread_.emplace();
 }
 
 void Deformation::build_elements(std::span<const Triangle> triangles) {
@@ -361,23 +361,8 @@ void Deformation::move(size_t handle, const Affine& matrix) {
     moved.matrix = about;
 }
 
-// Calls task(first, last) for slices that make up all the vertices. What a task writes is its own vertices' alone, so
-// the result does not depend on who calls it.
-template <typename Task>
-void Deformation::for_slices(const Task& task) {
-    const size_t count = now_.size(), slices = (count + shared_at_once - 1) / shared_at_once;
-    const auto one = [&](size_t slice, size_t) {
-        task(slice * shared_at_once, std::min((slice + 1) * shared_at_once, count));
-    };
-    if (second_thread_) {
-        second_thread_->share(slices, one);
-    } else {
-        for (size_t slice = 0; slice < slices; ++slice) one(slice, 0);
-    }
-}
-
 void Deformation::fit_rotations() {
-    for_slices([this](size_t first, size_t last) {
+    threads_.parallel_for(now_.size(), vertices_a_piece, [this](size_t first, size_t last) {
         for (size_t vertex = first; vertex < last; ++vertex) {
             Matrix s{};
             for (int32_t p = first_around_[vertex]; p < first_around_[vertex + 1]; ++p) {
@@ -399,7 +384,7 @@ void Deformation::place() {
     std::fill(right_.begin(), right_.end(), Point{});
     for (const Coupling& coupling : couplings_)
         right_[coupling.unknown] = right_[coupling.unknown] + coupling.weight * now_[coupling.vertex];
-    for_slices([this](size_t first, size_t last) {
+    threads_.parallel_for(now_.size(), vertices_a_piece, [this](size_t first, size_t last) {
         for (size_t vertex = first; vertex < last; ++vertex) {
             if (unknown_[vertex] < 0) continue;
             Wide sum{};

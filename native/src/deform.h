@@ -2,15 +2,13 @@
 #pragma once
 
 #include "geometry.h"
-#include "pair_of_threads.h"
+#include "parallel.h"
 #include "partwheel.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <thread>
 #include <vector>
 
 namespace partwheel {
@@ -39,10 +37,10 @@ using Quaternion = std::array<double, 4>;  // w, x, y, z
 class Deformation {
 public:
     // role: PW_VERTEX_FREE, vertex_fixed or the number of a handle, of each vertex. Vertices of a component without any
-    // fixed vertex or handle, and those of no triangle, stay. threads: that there are to be used; two are, where there
-    // is much to do; the results are the same. Throws an Error.
+    // fixed vertex or handle, and those of no triangle, stay. threads: at most so many; 0: as many as help; the results
+    // are the same. Throws an Error.
     Deformation(std::span<const Point> vertices, std::span<const Triangle> triangles, std::span<const int32_t> roles,
-                size_t threads = std::thread::hardware_concurrency());
+                size_t threads = 0);
 
     size_t vertex_count() const { return now_.size(); }
     size_t handle_count() const { return handles_.size(); }
@@ -73,8 +71,6 @@ private:
     void build_elements(std::span<const Triangle> triangles);
     void factorize(std::span<const Triangle> triangles);
     void find_weights();
-    template <typename Task>
-    void for_slices(const Task& task);
     void fit_rotations();
     void place();
     void solve(std::vector<Point>& x) const;
@@ -107,7 +103,7 @@ private:
     std::vector<Quaternion> quaternion_;  // of each vertex, as last fitted: where the next fit starts
     std::vector<Matrix> rotation_;
     std::vector<Point> right_;
-    std::optional<PairOfThreads> second_thread_;  // where there is much to do, and more than one core
+    Threads threads_;
 };
 
 // As pw_vertex_normals.

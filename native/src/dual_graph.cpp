@@ -1,38 +1,22 @@
 // Clusters and edges: priced by hulls from hulls, contracted.
 #include "dual_graph.h"
 
+#include "parallel.h"
+
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <system_error>
 
 namespace partwheel {
 
 namespace {
 
-// So many edges are priced between two looks at whether all is cancelled.
-constexpr size_t edges_a_step = 16384;
-
-// A second thread is asked for help from so many tests of a point against a facet on: some microseconds.
-constexpr size_t worth_sharing = 1500;
-
-// The same for a hull that is made, not only measured.
-constexpr size_t worth_sharing_union = 400;
+// So many edges are priced between two looks at whether all is cancelled, a thread so many at a time: some 60
+// nanoseconds each.
+constexpr size_t edges_a_step = 65536, edges_a_piece = 4096;
 
 }  // namespace
 
-Workers::Workers(std::span<const Point> points, int count) : first(points) {
-    if (count < 2) return;
-    try {
-        threads.emplace();
-        second.emplace(points);
-    } catch (const std::system_error&) {
-        // One does as well.
-    }
-}
-
 DualGraph::DualGraph(const TetMesh& mesh)
-    : mesh_(mesh), first_links_(LinkPool::least * mesh.tetrahedra.size()), clusters_(mesh.tetrahedra.size()),
+    : mesh_(mesh), hulls_(mesh.vertices), first_links_(LinkPool::least * mesh.tetrahedra.size()), clusters_(mesh.tetrahedra.size()),
       link_of_(mesh.tetrahedra.size(), -1) {
     const auto count = static_cast<int32_t>(mesh.tetrahedra.size());
     for (int32_t t = 0; t < count; ++t) {
@@ -43,28 +27,30 @@ DualGraph::DualGraph(const TetMesh& mesh)
         c.links = Links(&first_links_[LinkPool::least * static_cast<size_t>(t)]);
     }
     edges_.reserve(2 * mesh.tetrahedra.size());
-    LinkPool none;  // no tetrahedron has more links than it has room for
     for (int32_t t = 0; t < count; ++t)
         for (const int32_t other : mesh.neighbours[static_cast<size_t>(t)])
-            if (other > t) add_edge(t, other, none);
+            if (other > t) add_edge(t, other);
 }
 
-void DualGraph::price_all(Progress& progress, PairOfThreads* threads) {
+void DualGraph::price_all(Progress& progress, size_t threads) {
+    Threads pool(threads, std::min(edges_a_step, edges_.size()) / edges_a_piece + 1);
     for (size_t first = 0; first < edges_.size(); first += edges_a_step) {
         const size_t last = std::min(first + edges_a_step, edges_.size());
-        in_halves(threads, first, last, [this](size_t i) {
-            edges_[i].hull_volume = union_of_neighbours(edges_[i].a, edges_[i].b);
-            edges_[i].exact = true;
+        pool.parallel_for(last - first, edges_a_piece, [&](size_t begin, size_t end) {
+            for (DualEdge& e : std::span(edges_).subspan(first + begin, end - begin)) {
+                e.hull_volume = union_of_neighbours(e.a, e.b);
+                e.exact = true;
+            }
         });
         progress.advance(0.1 * static_cast<double>(last) / static_cast<double>(edges_.size()));
     }
 }
 
-int32_t DualGraph::add_edge(int32_t a, int32_t b, LinkPool& pool) {
+int32_t DualGraph::add_edge(int32_t a, int32_t b) {
     const auto edge = static_cast<int32_t>(edges_.size());
     edges_.push_back({.a = a, .b = b});
-    at(a).links.push_back({b, edge}, pool);
-    at(b).links.push_back({a, edge}, pool);
+    at(a).links.push_back({b, edge}, links_);
+    at(b).links.push_back({a, edge}, links_);
     return edge;
 }
 
@@ -104,73 +90,32 @@ double DualGraph::enough(const DualEdge& e, double concavity) const {
     return (volume + concavity * (1 + 1e-8)) * (1 + 1e-10);
 }
 
-DualGraph::Pricing DualGraph::pricing(int32_t edge_number, double concavity, Worker& worker) {
-    const DualEdge& e = edge(edge_number);
-    const auto [large, small] = by_size(e);
-    if (!at(large).hull) set_hull(large, worker.hulls.build(corners(large)));
-    return {&at(large).hull, corners(small), enough(e, concavity), {}};
-}
-
-void DualGraph::priced(int32_t edge_number, const Pricing& pricing) {
+void DualGraph::find_price(int32_t edge_number, double concavity) {
     DualEdge& e = edge(edge_number);
-    const auto [volume, exact] = pricing.measure;
+    const auto [large, small] = by_size(e);
+    make_hull(large);
+    const auto [volume, exact] = hulls_.united_volume(at(large).hull, corners(small), enough(e, concavity));
     e.hull_volume = exact ? volume : std::max(e.hull_volume, volume);
     e.exact = exact;
     e.tried = true;
 }
 
-void DualGraph::find_prices(std::span<const int32_t> edges, double concavity, Worker& worker) {
+void DualGraph::find_prices(std::span<const int32_t> edges, double concavity) {
     for (size_t i = 0; i < edges.size(); ++i) {
-        if (i + 1 < edges.size()) worker.hulls.prefetch(corners(by_size(edge(edges[i + 1])).second));
-        find_price(edges[i], concavity, worker);
+        if (i + 1 < edges.size()) hulls_.prefetch(corners(by_size(edge(edges[i + 1])).second));
+        find_price(edges[i], concavity);
     }
 }
 
-void DualGraph::find_prices(std::span<const int32_t> edges, double concavity, Workers& workers) {
-    if (edges.size() < 2 || !workers.two()) return find_prices(edges, concavity, workers.first);
-    pricings_.clear();
-    size_t tests = 0;
-    for (const int32_t e : edges) {
-        pricings_.push_back(pricing(e, concavity, workers.first));
-        tests += pricings_.back().tests();
-    }
-    if (tests < worth_sharing) return find_prices(edges, concavity, workers.first);
-    workers.threads->share(edges.size(), [&](size_t i, size_t thread) {
-        pricings_[i].work(thread == 0 ? workers.first : *workers.second);
-    });
-    for (size_t i = 0; i < edges.size(); ++i) priced(edges[i], pricings_[i]);
-}
-
-bool DualGraph::worth_uniting_ahead(int32_t contracted, const Workers& workers) const {
-    if (!workers.two()) return false;
-    const auto [large, small] = by_size(edge(contracted));
-    return at(large).facets * corners(small).size() >= worth_sharing_union;
-}
-
-void DualGraph::unite_and_find_prices(int32_t contracted, std::span<const int32_t> edges, double concavity,
-                                      Workers& workers) {
-    pricings_.clear();
-    for (const int32_t e : edges) pricings_.push_back(pricing(e, concavity, workers.first));
-    workers.threads->share(1 + edges.size(), [&](size_t i, size_t thread) {
-        Worker& worker = thread == 0 ? workers.first : *workers.second;
-        if (i == 0)
-            united_ = unite(edge(contracted), worker.hulls);
-        else
-            pricings_[i - 1].work(worker);
-    });
-    for (size_t i = 0; i < edges.size(); ++i) priced(edges[i], pricings_[i]);
-}
-
-Hull DualGraph::unite(const DualEdge& e, HullKernel& kernel) const {
+Hull DualGraph::unite(const DualEdge& e) {
     const auto [large, small] = by_size(e);
-    if (at(large).hull) return kernel.unite(at(large).hull, corners(small));
+    if (at(large).hull) return hulls_.unite(at(large).hull, corners(small));
     std::array<int32_t, 8> both;
     std::copy_n(corners(small).begin(), 4, std::copy_n(corners(large).begin(), 4, both.begin()));
-    return kernel.build(both);
+    return hulls_.build(both);
 }
 
-Merge DualGraph::contract(int32_t contracted, int32_t number, Worker& worker, std::vector<int32_t>& removed,
-                          int32_t& merged, Contraction* undo) {
+Merge DualGraph::contract(int32_t contracted, int32_t number, std::vector<int32_t>& removed, int32_t& merged) {
     const DualEdge& e = edge(contracted);
     // The cluster with more links stays and takes in the other.
     const bool stay_a = at(e.a).links.size() >= at(e.b).links.size();
@@ -182,28 +127,7 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, Worker& worker, st
     const double volume = first.volume + second.volume;
     const Merge merge = {first.number, second.number, ranked_concavity(e.hull_volume, volume), e.hull_volume};
     for (const Link& link : g.links) prefetch_line(at(link.cluster).links.begin());
-    Hull united = united_ ? std::move(united_) : unite(e, worker.hulls);
-    if (undo) {
-        undo->stay = stay;
-        undo->go = go;
-        undo->hull_volumes.clear();
-        undo->hull_volumes.reserve(std::bit_ceil(m.links.size() + g.links.size()));
-        for (const Cluster* c : {&m, &g})
-            for (const Link& link : c->links) {
-                const DualEdge& was = edge(link.edge);
-                undo->hull_volumes.push_back(was.exact ? was.hull_volume : -was.hull_volume);
-            }
-        Cluster& was = undo->stayed;
-        was.hull = std::move(m.hull);
-        was.hull_volume = m.hull_volume;
-        was.facets = m.facets;
-        was.volume = m.volume;
-        was.size = m.size;
-        was.low = m.low;
-        was.number = m.number;
-        was.links.copy(m.links, worker.links);
-    }
-    set_hull(stay, std::move(united));
+    set_hull(stay, unite(e));
     m.hull_volume = m.hull.volume();
     m.volume = volume;
     m.size += g.size;
@@ -222,7 +146,7 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, Worker& worker, st
         if (twin < 0) {
             back->cluster = stay;
             (moved.a == go ? moved.a : moved.b) = stay;
-            m.links.push_back(link, worker.links);
+            m.links.push_back(link, links_);
         } else {
             DualEdge& kept = edge(m.links[static_cast<size_t>(twin)].edge);
             kept.hull_volume = std::max(kept.hull_volume, moved.hull_volume);
@@ -230,42 +154,12 @@ Merge DualGraph::contract(int32_t contracted, int32_t number, Worker& worker, st
             other.links.erase(back);
         }
     }
-    if (undo)
-        undo->gone = std::move(g);
-    else
-        g.links.release(worker.links);
+    g.links.release(links_);
     g = Cluster{};
     g.size = 0;
     for (const Link& link : m.links) link_of_[static_cast<size_t>(link.cluster)] = -1;
     merged = stay;
     return merge;
-}
-
-void DualGraph::undo(Contraction& contraction, Worker& worker) {
-    const int32_t stay = contraction.stay, go = contraction.go;
-    for (const Link& link : at(stay).links) at(link.cluster).links.erase_of(stay);
-    at(stay).links.release(worker.links);
-    at(stay) = std::move(contraction.stayed);
-    at(go) = std::move(contraction.gone);
-    auto volume = contraction.hull_volumes.begin();
-    for (const int32_t c : {stay, go})
-        for (const Link& link : at(c).links) {
-            edge(link.edge) = {.a = c,
-                               .b = link.cluster,
-                               .hull_volume = std::fabs(*volume),
-                               .exact = !std::signbit(*volume),
-                               .tried = false,
-                               .home = edge(link.edge).home};
-            ++volume;
-            if (link.cluster != stay && link.cluster != go) at(link.cluster).links.push_back({c, link.edge}, worker.links);
-        }
-}
-
-void DualGraph::forget(Contraction& contraction, Worker& worker) {
-    for (Cluster* c : {&contraction.stayed, &contraction.gone}) {
-        worker.hulls.release(c->hull);
-        c->links.release(worker.links);
-    }
 }
 
 }  // namespace partwheel

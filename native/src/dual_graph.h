@@ -6,12 +6,10 @@
 #include "hull.h"
 #include "large_pages.h"
 #include "links.h"
-#include "pair_of_threads.h"
 #include "prefetch.h"
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -24,25 +22,6 @@ inline constexpr double bound_slack = 1e-11;
 
 // An edge that costs more than so many times what the next merges cost is not priced exactly yet.
 inline constexpr double dear = 2;
-
-// What one thread works with.
-struct alignas(apart) Worker {
-    HullKernel hulls;
-    LinkPool links;
-
-    explicit Worker(std::span<const Point> points) : hulls(points) {}
-};
-
-// Two threads and what each works with; or one, if no more are asked for, or if the system gives no second.
-struct Workers {
-    Worker first;
-    std::optional<Worker> second;
-    std::optional<PairOfThreads> threads;
-
-    Workers(std::span<const Point> points, int count);
-    PairOfThreads* pair() { return threads ? &*threads : nullptr; }
-    bool two() const { return threads && threads->pays(); }
-};
 
 struct alignas(64) Cluster {
     Hull hull;  // none while it is one tetrahedron
@@ -61,25 +40,15 @@ struct DualEdge {
     double hull_volume = 0;  // of their union, or a lower bound of it
     bool exact = false;
     bool tried = false;  // the bound has been worked out for these clusters
-    uint8_t home = 0;    // for those who keep edges in several queues
 };
 
-// What it takes to take a contraction back.
-struct Contraction {
-    int32_t stay = 0, go = 0;
-    Cluster stayed, gone;              // as they were
-    std::vector<double> hull_volumes;  // of the edges of the one, then of the other; those not exact are negative
-};
-
-// Not for several threads at once, but that each may price and contract where no cluster or neighbour of one is
-// another's. Workers must outlive the graph.
 class DualGraph {
 public:
     // One tetrahedron a cluster; the edges are not priced.
     explicit DualGraph(const TetMesh& mesh);
 
-    // Of a graph as it was made; by both threads if there are two.
-    void price_all(Progress& progress, PairOfThreads* threads);
+    // Of a graph as it was made. threads: at most so many; 0: as many as help.
+    void price_all(Progress& progress, size_t threads);
 
     size_t clusters_count() const { return clusters_.size(); }  // those that have gone into others included
     size_t edges_count() const { return edges_.size(); }
@@ -88,11 +57,15 @@ public:
     DualEdge& edge(int32_t e) { return edges_[static_cast<size_t>(e)]; }
     const DualEdge& edge(int32_t e) const { return edges_[static_cast<size_t>(e)]; }
 
-    int32_t add_edge(int32_t a, int32_t b, LinkPool& pool);
-    void set_hull(int32_t c, Hull hull) {
-        at(c).facets = static_cast<uint32_t>(hull.facet_count());
-        at(c).hull = std::move(hull);
+    int32_t add_edge(int32_t a, int32_t b);
+
+    // For a cluster that may still be one tetrahedron.
+    void make_hull(int32_t c) {
+        if (!at(c).hull) set_hull(c, hulls_.build(corners(c)));
     }
+
+    // The lower and upper corner of the box around a cluster that has its hull.
+    std::pair<Point, Point> bounds(int32_t c) const { return hulls_.bounds(at(c).hull); }
 
     // The edge's cost as far as its hull volume is known.
     Cost cost(const DualEdge& e) const {
@@ -102,9 +75,6 @@ public:
         return {ranked_concavity(hull_volume, a.volume + b.volume), square(a.size) + square(b.size),
                 std::min(a.low, b.low), std::max(a.low, b.low)};
     }
-
-    // The vertices of a cluster's hull.
-    std::span<const int32_t> corners(int32_t c) const;
 
     // Asks memory for what pricing and working out that price reads first, but for this cluster's, ahead of that.
     void prefetch(int32_t edge, int32_t but) const {
@@ -117,28 +87,15 @@ public:
     }
 
     // The exact volume of the edge's hull; or, at the first try, only that it costs more than this concavity.
-    void find_price(int32_t edge, double concavity, Worker& worker) {
-        Pricing price = pricing(edge, concavity, worker);
-        price.work(worker);
-        priced(edge, price);
-    }
+    void find_price(int32_t edge, double concavity);
 
     // The same for several edges.
-    void find_prices(std::span<const int32_t> edges, double concavity, Worker& worker);
-
-    // The same, by both threads where that pays.
-    void find_prices(std::span<const int32_t> edges, double concavity, Workers& workers);
-
-    // The same, while one of two threads makes the hull for the contract() that follows, of an edge with none of whose
-    // clusters these have to do; and whether that pays.
-    void unite_and_find_prices(int32_t contracted, std::span<const int32_t> edges, double concavity, Workers& workers);
-    bool worth_uniting_ahead(int32_t contracted, const Workers& workers) const;
+    void find_prices(std::span<const int32_t> edges, double concavity);
 
     // Merges the edge's clusters into one of the two, which gets that number, and returns what was merged. The edges
     // of the other that lead where the merged one leads already are appended to `removed`. Those that stay keep the
-    // better bound of the two: refresh() is up to the caller. `undo`: null, or gets what undo() needs.
-    Merge contract(int32_t edge, int32_t number, Worker& worker, std::vector<int32_t>& removed, int32_t& merged,
-                   Contraction* undo = nullptr);
+    // better bound of the two: refresh() is up to the caller.
+    Merge contract(int32_t edge, int32_t number, std::vector<int32_t>& removed, int32_t& merged);
 
     // The edge of a cluster just merged: what is known of its price now is a bound.
     void refresh(int32_t number) {
@@ -147,52 +104,35 @@ public:
         e.exact = e.tried = false;
     }
 
-    // Takes the contraction back, of those that touched its clusters the last that stands.
-    void undo(Contraction& contraction, Worker& worker);
-
-    // Frees the hulls and links of one that won't be taken back. No worker but this one must be at work on what it had
-    // part in.
-    static void forget(Contraction& contraction, Worker& worker);
-
 private:
-    // One price to be worked out. tests is how many of points against facets that takes.
-    struct Pricing {
-        const Hull* hull;
-        std::span<const int32_t> points;
-        double enough;
-        HullKernel::Measure measure;
-
-        size_t tests() const { return hull->facet_count() * points.size(); }
-        void work(Worker& worker) { measure = worker.hulls.united_volume(*hull, points, enough); }
-    };
-
-    Pricing pricing(int32_t edge, double concavity, Worker& worker);
-    void priced(int32_t edge, const Pricing& pricing);
+    std::span<const int32_t> corners(int32_t c) const;  // the vertices of a cluster's hull
+    void set_hull(int32_t c, Hull hull) {
+        at(c).facets = static_cast<uint32_t>(hull.facet_count());
+        at(c).hull = std::move(hull);
+    }
     const Point& point(int32_t v) const { return mesh_.vertices[static_cast<size_t>(v)]; }
     std::pair<int32_t, int32_t> by_size(const DualEdge& edge) const;
     double union_of_neighbours(int32_t a, int32_t b) const;
     double enough(const DualEdge& edge, double concavity) const;
-    Hull unite(const DualEdge& edge, HullKernel& kernel) const;
+    Hull unite(const DualEdge& edge);
 
     const TetMesh& mesh_;
+    HullKernel hulls_;  // outlives all hulls, as links_ does all lists of links
+    LinkPool links_;
     LargeVector<Link> first_links_;  // where each cluster's links are at first
     LargeVector<Cluster> clusters_;
     LargeVector<DualEdge> edges_;
-    LargeVector<int32_t> link_of_;    // scratch of contract(): cluster -> position in the merged links, or -1
-    std::vector<Pricing> pricings_;   // scratch of find_prices()
-    Hull united_;                     // made ahead for the next contract()
+    LargeVector<int32_t> link_of_;  // scratch of contract(): cluster -> position in the merged links, or -1
 };
 
 // Of the queue's first edge no more need be known than that it costs more than this concavity.
-template <class Queue>
-double far_beyond_second(const Queue& queue) {
+inline double far_beyond_second(const EdgeQueue& queue) {
     const auto* second = queue.runner_up();
     return second ? dear * second->concavity() : std::numeric_limits<double>::infinity();
 }
 
 // What comes soon in a queue is anywhere in memory: lets it begin, step by step as it rises.
-template <class Queue>
-void prefetch_soon(const DualGraph& graph, const Queue& queue) {
+inline void prefetch_soon(const DualGraph& graph, const EdgeQueue& queue) {
     for (const auto& item : queue.items(5, 21)) prefetch_line(&graph.edge(item.edge));
     for (const auto& item : queue.items(1, 5)) {
         prefetch_line(&graph.at(graph.edge(item.edge).a));
@@ -206,12 +146,12 @@ void prefetch_soon(const DualGraph& graph, const Queue& queue) {
 }
 
 // The same for the neighbours of an edge that is about to be contracted.
-inline void prefetch_around(const DualGraph& graph, const EdgePlaces& places, int32_t contracted) {
+inline void prefetch_around(const DualGraph& graph, const EdgeQueue& queue, int32_t contracted) {
     for (const int32_t c : {graph.edge(contracted).a, graph.edge(contracted).b})
         for (const Link& link : graph.at(c).links) {
             prefetch_line(&graph.at(link.cluster));
             prefetch_line(&graph.edge(link.edge));
-            places.prefetch(link.edge);
+            queue.prefetch(link.edge);
         }
 }
 

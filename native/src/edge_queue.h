@@ -1,4 +1,4 @@
-// Dual edges, cheapest first: the keys and the queue.
+// Dual edges, cheapest first: their prices and the queue.
 #pragma once
 
 #include "cluster.h"
@@ -40,72 +40,52 @@ private:
     static constexpr uint64_t not_convex = uint64_t{1} << 63;
 };
 
-// Where each edge is in the queue that it is in. Queues may share one, for an edge is in one of them at most.
-class EdgePlaces {
-public:
-    static constexpr uint32_t absent = 0xffffffff;
-
-    void resize(size_t edges) { places_.resize(edges, absent); }
-    void reserve(size_t edges) { places_.reserve(edges); }
-    uint32_t& operator[](int32_t edge) { return places_[static_cast<size_t>(edge)]; }
-    uint32_t operator[](int32_t edge) const { return places_[static_cast<size_t>(edge)]; }
-    bool queued(int32_t edge) const { return places_[static_cast<size_t>(edge)] != absent; }
-    void prefetch(int32_t edge) const { prefetch_line(&places_[static_cast<size_t>(edge)]); }
-
-private:
-    LargeVector<uint32_t> places_;
-};
-
 // Those up to some key are in a heap, small enough to stay in a cache; the later ones lie in no order until that runs
 // out. Most edges become dearer several times before they come near the top, if they ever do.
 //
-// The heap has four children a node. Each edge's place is known, so that keys change in place.
-template <class Key>
+// The heap has four children a node. Each edge's place is known, so that prices change in place.
 class EdgeQueue {
 public:
-    struct Item : Key {
+    struct Item : Price {
         int32_t edge = -1;
 
         Item() = default;
-        Item(const Key& key, int32_t e) : Key(key), edge(e) {}
+        Item(const Price& price, int32_t e) : Price(price), edge(e) {}
     };
 
-    explicit EdgeQueue(EdgePlaces& places) : place_(places) {}
+    // Makes room for so many to be appended.
+    void reserve(size_t items) { later_.reserve(items); }
 
-    void reserve(size_t edges) { later_.reserve(edges); }
+    // All edges that are ever appended have lower numbers than this.
+    void number_edges(size_t edges) {
+        places_.reserve(edges);
+        places_.resize(edges, absent);
+    }
 
     // Fills an empty queue; sort() then brings it in order.
-    void append(const Key& key, int32_t edge) {
+    void append(const Price& price, int32_t edge) {
         ++size_;
-        put_later({key, edge});
+        put_later({price, edge});
     }
 
     void sort() { refill(); }
 
-    void insert(const Key& key, int32_t edge) {
-        ++size_;
-        if (horizon_ < key)
-            put_later({key, edge});
-        else
-            put_soon({key, edge});
-        refill();
-    }
-
     bool empty() const { return size_ == 0; }
     size_t size() const { return size_; }
     const Item& top() const { return at(0); }
-    const Key& key(int32_t edge) const {
-        const uint32_t place = place_[edge];
-        return place & later ? later_[place & ~later] : at(place);
+    bool has(int32_t edge) const { return place(edge) != absent; }
+    const Price& price(int32_t edge) const {  // of one that it has
+        const uint32_t at = place(edge);
+        return at & later ? later_[at & ~later] : this->at(at);
     }
 
-    // The top one and some that come soon after it.
-    std::span<const Item> top_items() const { return items(0, children + 1); }
+    // Asks memory for where an edge is in it, ahead of use.
+    void prefetch(int32_t edge) const { prefetch_line(&places_[static_cast<size_t>(edge)]); }
 
     // What comes after the top one; null if there is nothing.
     const Item* runner_up() const {
-        const std::span<const Item> items = top_items();
-        return items.size() < 2 ? nullptr : &*std::min_element(items.begin() + 1, items.end());
+        const std::span<const Item> next = items(1, children + 1);
+        return next.empty() ? nullptr : &*std::min_element(next.begin(), next.end());
     }
 
     // Some of those that come after the top one: the items at these places of the heap.
@@ -113,33 +93,33 @@ public:
         return {&at(std::min(first, soon())), &at(std::min(last, soon()))};
     }
 
-    void update(const Key& key, int32_t edge) {
-        const uint32_t place = place_[edge];
-        const bool is_later = horizon_ < key;
-        if (place & later) {
-            Item& item = later_[place & ~later];
+    void update(const Price& price, int32_t edge) {
+        const uint32_t at = place(edge);
+        const bool is_later = horizon_ < price;
+        if (at & later) {
+            Item& item = later_[at & ~later];
             if (is_later) {
-                item = {key, edge};
+                item = {price, edge};
             } else {
                 item.edge = gone;
-                put_soon({key, edge});
+                put_soon({price, edge});
             }
         } else if (is_later) {
-            take_out(place);
-            put_later({key, edge});
+            take_out(at);
+            put_later({price, edge});
             refill();
         } else {
-            settle(place, {key, edge});
+            settle(at, {price, edge});
         }
     }
 
     void remove(int32_t edge) {
         --size_;
-        const uint32_t place = std::exchange(place_[edge], EdgePlaces::absent);
-        if (place & later) {
-            later_[place & ~later].edge = gone;
+        const uint32_t at = std::exchange(place(edge), absent);
+        if (at & later) {
+            later_[at & ~later].edge = gone;
         } else {
-            take_out(place);
+            take_out(at);
             refill();
         }
     }
@@ -153,6 +133,9 @@ private:
     // This bit of a place says that it is not one in the heap.
     static constexpr uint32_t later = uint32_t{1} << 31;
 
+    // In place of the place of an edge that is not in the queue.
+    static constexpr uint32_t absent = 0xffffffff;
+
     // In place of an edge that is not there any more.
     static constexpr int32_t gone = -1;
 
@@ -165,13 +148,16 @@ private:
     // When it runs out it gets one in so many of the later ones, the first as far as a sample tells.
     static constexpr size_t share = 8, sample = 16 * share;
 
+    uint32_t& place(int32_t edge) { return places_[static_cast<size_t>(edge)]; }
+    uint32_t place(int32_t edge) const { return places_[static_cast<size_t>(edge)]; }
+
     size_t soon() const { return heap_.size() - before; }
     Item& at(size_t i) { return *(heap_.data() + before + i); }
     const Item& at(size_t i) const { return *(heap_.data() + before + i); }
 
     void put(size_t i, const Item& item) {
         at(i) = item;
-        place_[item.edge] = static_cast<uint32_t>(i);
+        place(item.edge) = static_cast<uint32_t>(i);
     }
 
     void put_soon(const Item& item) {
@@ -180,7 +166,7 @@ private:
     }
 
     void put_later(const Item& item) {
-        place_[item.edge] = static_cast<uint32_t>(later_.size()) | later;
+        place(item.edge) = static_cast<uint32_t>(later_.size()) | later;
         later_.push_back(item);
     }
 
@@ -214,21 +200,21 @@ private:
             later_.pop_back();
             if (i == later_.size()) break;
             later_[i] = last;
-            if (last.edge != gone) place_[last.edge] = static_cast<uint32_t>(i) | later;
+            if (last.edge != gone) place(last.edge) = static_cast<uint32_t>(i) | later;
         }
         for (size_t i = soon() / children + 1; i-- > 0;)
             if (i < soon()) sink(i, Item(at(i)));
     }
 
     // Among the later ones; if they are few it is the last, so that all are fetched.
-    Key next_horizon() const {
+    Price next_horizon() const {
         const bool few = size_ - soon() <= 4 * least_soon;
-        std::vector<Key> keys;
-        for (size_t stride = few ? 1 : later_.size() / sample + 1; keys.empty(); stride = 1)  // a sample may miss all
+        std::vector<Price> prices;
+        for (size_t stride = few ? 1 : later_.size() / sample + 1; prices.empty(); stride = 1)  // a sample may miss all
             for (size_t i = 0; i < later_.size(); i += stride)
-                if (later_[i].edge != gone) keys.push_back(later_[i]);
-        const auto next = keys.begin() + static_cast<std::ptrdiff_t>(few ? keys.size() - 1 : keys.size() / share);
-        std::nth_element(keys.begin(), next, keys.end());
+                if (later_[i].edge != gone) prices.push_back(later_[i]);
+        const auto next = prices.begin() + static_cast<std::ptrdiff_t>(few ? prices.size() - 1 : prices.size() / share);
+        std::nth_element(prices.begin(), next, prices.end());
         return *next;
     }
 
@@ -260,8 +246,8 @@ private:
     LargeVector<Item> heap_{before};
     LargeVector<Item> later_;
     size_t size_ = 0;
-    Key horizon_{};  // the heap has what doesn't come after it
-    EdgePlaces& place_;
+    Price horizon_;  // the heap has what doesn't come after it
+    LargeVector<uint32_t> places_;  // of each edge
 };
 
 }  // namespace partwheel

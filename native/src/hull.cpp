@@ -199,11 +199,6 @@ public:
     void prefetch(std::span<const int32_t> points) const {
         for (const int32_t v : points.first(std::min(points.size(), few_points))) prefetch_line(&at(v));
     }
-    void forget() { surveyed_ = nullptr; }
-    void release(Hull& hull) {
-        if (hull.block_) hull.block_->pool = &pool_;
-        hull = {};
-    }
     std::pair<Point, Point> bounds(const Hull& hull) const;
 
 private:
@@ -870,8 +865,6 @@ HullKernel::Measure HullKernel::united_volume(const Hull& hull, std::span<const 
     return impl_->united_volume(hull, points, enough);
 }
 void HullKernel::prefetch(std::span<const int32_t> points) const { impl_->prefetch(points); }
-void HullKernel::release(Hull& hull) { impl_->release(hull); }
-void HullKernel::forget() { impl_->forget(); }
 std::pair<Point, Point> HullKernel::bounds(const Hull& hull) const { return impl_->bounds(hull); }
 
 }  // namespace partwheel

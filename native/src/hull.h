@@ -88,14 +88,6 @@ public:
     // Asks memory for the first of these points, ahead of use.
     void prefetch(std::span<const int32_t> points) const;
 
-    // Forgets what it has kept for a unite(): needed where another kernel may since have made hulls in the place of
-    // those it knew.
-    void forget();
-
-    // Frees a hull of any kernel of these points into this one's memory. As both must outlive that, and no hull of
-    // another kernel may be freed otherwise while that one is at work, this is for kernels that share their hulls.
-    void release(Hull& hull);
-
     // The lower and upper corner of the hull's bounding box.
     std::pair<Point, Point> bounds(const Hull& hull) const;
 

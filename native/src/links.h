@@ -1,5 +1,5 @@
-// The links of a cluster in the dual graph: a small array in memory from a pool of the thread's own, for the system's
-// would take longer than the work that is done with it.
+// The links of a cluster in the dual graph: a small array in memory from a pool, for the system's would take longer than
+// the work that is done with it.
 #pragma once
 
 #include "large_pages.h"
@@ -20,8 +20,7 @@ struct Link {
     int32_t edge;
 };
 
-// Blocks of 4, 8, 16... links. A block may be given back to another pool than it came from, so no list must outlive
-// any of them.
+// Blocks of 4, 8, 16... links. No list must outlive the pool.
 class LinkPool {
 public:
     static constexpr uint32_t least = 4;
@@ -87,12 +86,6 @@ public:
         if (size_ == capacity_) [[unlikely]]
             grow(size_ + 1, pool);
         links_[size_++] = link;
-    }
-    void copy(const Links& other, LinkPool& pool) {
-        size_ = 0;
-        if (other.size_ > capacity_) grow(other.size_, pool);
-        size_ = other.size_;
-        std::copy(other.begin(), other.end(), links_);
     }
     void erase(Link* link) {
         std::copy(link + 1, end(), link);
