@@ -146,8 +146,8 @@ PW_API void pw_hierarchy_free(pw_hierarchy *hierarchy);
 
 /* ---- The hierarchy's arrays ----------------------------------------------------------------------------------- */
 
-/* The dendrogram (the tree pruned by the paper's Listing 2: see pw_mode) as flat arrays. All pointers belong to the hierarchy and live as long as
- * it does.
+/* The dendrogram (the tree pruned by the paper's Listing 2: see pw_mode) as flat arrays. All pointers belong to the
+ * hierarchy and live as long as it does.
  *
  * Tetrahedra stand in the depth-first order of the tree, source faces sorted by their tetrahedron; so every node's
  * tetrahedra, and its faces, are one contiguous slice of one array. A face belongs to the tetrahedron behind it; a
