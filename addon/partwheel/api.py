@@ -44,7 +44,8 @@ def hierarchy(obj):
 
 
 def path(obj, face):
-    """(n,) the nodes that hold a face, growing: from its leaf to the root. All of them; the wheel stops at some."""
+    """(n,) the nodes that hold a face, growing: from its leaf to the root. All of them; the wheel stops at some (in
+    core.Mode.PAPER at all)."""
     return hierarchy(obj).path(face)
 
 
@@ -68,11 +69,12 @@ def select(obj, face, level=0, extend=False, snap=False):
     return picked.node
 
 
-def cut(obj, parts=None, height=None):
-    """(F,) the part of each face, counted from 0, when the whole is cut into so many parts, those with the least total
-    concavity, or at a height of the dendrogram: give one of the two. A part inside the solid has no face."""
+def cut(obj, parts=None, height=None, least_concavity=None):
+    """(F,) the part of each face, counted from 0, when the whole is cut: give one of the three. parts: into so many, the
+    last merges undone. least_concavity: into so many, those with the least concavity in total, as for convex hulls.
+    height: at this height of the dendrogram. A part inside the solid has no face."""
     built = hierarchy(obj)
-    return built.face_labels(_bounds(built, parts, height))
+    return built.face_labels(_bounds(built, parts, height, least_concavity))
 
 
 def copy_part(obj, node, smooth=False, material=False, snap=False):
@@ -92,11 +94,12 @@ def remove(obj, node, smooth=False, material=False, snap=False):
     composition.removed(obj, hierarchy(obj), node, solids.Options(smooth, material), snap)
 
 
-def split(obj, parts=None, height=None, explode=0.0, smooth=False, material=False):
+def split(obj, parts=None, height=None, explode=0.0, smooth=False, material=False, least_concavity=None):
     """New objects in a new collection, one for each part of a cut as cut() makes it: closed solids whose caps match
     exactly (unless smooth). Each is moved out by explode times its distance from the middle."""
     built = hierarchy(obj)
-    return composition.split(obj, built, _bounds(built, parts, height), solids.Options(smooth, material), explode)
+    bounds = _bounds(built, parts, height, least_concavity)
+    return composition.split(obj, built, bounds, solids.Options(smooth, material), explode)
 
 
 def place(part, location, normal=(0, 0, 1), scale=1.0, angle=0.0, depth=0.0, target=None, fit=False, mirror=False):
@@ -160,10 +163,13 @@ def _place(obj, node, other, snap=False):
     return swapping.Place(obj, built, node, snap)
 
 
-def _bounds(built, parts, height):
-    if (parts is None) == (height is None):
-        raise ValueError("Say into how many parts to cut, or at which height: one of the two.")
-    return built.cut_height(height) if parts is None else built.cut_parts(parts)
+def _bounds(built, parts, height, least_concavity):
+    given = [(cut, value) for cut, value in ((built.cut_parts, parts), (built.cut_height, height),
+                                             (built.cut_least_concavity, least_concavity)) if value is not None]
+    if len(given) != 1:
+        raise ValueError("Say how to cut by one of the three: parts=, least_concavity= or height=.")
+    (cut, value), = given
+    return cut(value)
 
 
 def deform(obj, node, handle_vertices, matrix, rings=0):

@@ -44,7 +44,7 @@ def _build(obj, options):
 
 
 def _cut(obj, options):
-    labels = api.cut(obj, options.parts, options.height)
+    labels = api.cut(obj, options.parts, options.height, options.least_concavity)
     attributes = obj.data.attributes
     if options.attribute in attributes:
         attributes.remove(attributes[options.attribute])
@@ -68,7 +68,9 @@ def _parser():
             command.add_argument("--open-surfaces", action="store_true", help="take sheets for thin solids")
         else:
             size = command.add_mutually_exclusive_group(required=True)
-            size.add_argument("--parts", type=int, help="into so many")
+            size.add_argument("--parts", type=int, help="into so many, the last merges undone")
+            size.add_argument("--least-concavity", type=int, metavar="PARTS",
+                              help="into so many, those with the least concavity in total")
             size.add_argument("--height", type=float, help="at this height of the dendrogram")
             command.add_argument("--attribute", default="part", help="its name (default: part)")
     return parser

@@ -93,6 +93,12 @@ void require_face(const pw_hierarchy* hierarchy, size_t face) {
     require(face < hierarchy->hierarchy.face_count(), "There is no face of this index in the hierarchy.");
 }
 
+void require_parts(const pw_hierarchy* hierarchy, size_t parts) {
+    require(hierarchy != nullptr, "hierarchy must not be null.");
+    require(parts >= 1 && parts <= std::min(most_parts, hierarchy->hierarchy.tetrahedron_count()),
+            "The number of parts must be at least 1, and at most the number of tetrahedra and 4096.");
+}
+
 // Ends what Progress::begin() began, however the build ends.
 class Watch {
 public:
@@ -304,11 +310,18 @@ pw_status pw_hierarchy_cut_height(const pw_hierarchy* hierarchy, double height, 
 pw_status pw_hierarchy_cut_parts(const pw_hierarchy* hierarchy, size_t parts, int32_t* bounds, size_t capacity,
                                  size_t* count) {
     return guarded([&] {
-        require(hierarchy != nullptr, "hierarchy must not be null.");
-        require(parts >= 1 && parts <= std::min(most_parts, hierarchy->hierarchy.tetrahedron_count()),
-                "The number of parts must be at least 1, and at most the number of tetrahedra and 4096.");
+        require_parts(hierarchy, parts);
         require_room(bounds, capacity, count);
         hand_out<int32_t>(hierarchy->hierarchy.cut_parts(parts), bounds, capacity, count);
+    });
+}
+
+pw_status pw_hierarchy_cut_least_concavity(const pw_hierarchy* hierarchy, size_t parts, int32_t* bounds,
+                                           size_t capacity, size_t* count) {
+    return guarded([&] {
+        require_parts(hierarchy, parts);
+        require_room(bounds, capacity, count);
+        hand_out<int32_t>(hierarchy->hierarchy.cut_least_concavity(parts), bounds, capacity, count);
     });
 }
 

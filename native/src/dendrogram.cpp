@@ -7,24 +7,53 @@
 
 namespace partwheel {
 
-std::vector<uint8_t> prune(std::span<const Merge> merges, size_t top) {
+namespace {
+
+// Listing 2 by these costs, of all but the last `top` merges.
+template <class Cost>
+std::vector<uint8_t> pruned(std::span<const Merge> merges, size_t top, const std::vector<Cost>& costs) {
     const size_t leaves = merges.size() + 1;
     std::vector<uint8_t> kept(merges.size(), 0);
-    // What each merge would hang from is known once its parent has been decided: from the root down.
-    std::vector<double> ceiling(merges.size(), std::numeric_limits<double>::infinity());
+    // What each merge would hang from is known once its parent has been decided: from the root down. Null: nothing.
+    std::vector<const Cost*> above(merges.size(), nullptr);
     for (size_t m = merges.size(); m-- > 0;) {
         const bool regrouped = m + top >= merges.size();
-        kept[m] = regrouped || merges[m].concavity < ceiling[m];
-        const double below = regrouped ? std::numeric_limits<double>::infinity()
-                             : kept[m] ? merges[m].concavity
-                                       : ceiling[m];
+        kept[m] = regrouped || !above[m] || costs[m] < *above[m];
+        const Cost* below = regrouped ? nullptr : kept[m] ? &costs[m] : above[m];
         for (int32_t child : {merges[m].left, merges[m].right})
-            if (static_cast<size_t>(child) >= leaves) ceiling[static_cast<size_t>(child) - leaves] = below;
+            if (static_cast<size_t>(child) >= leaves) above[static_cast<size_t>(child) - leaves] = below;
     }
     return kept;
 }
 
-std::vector<int32_t> cut_into_parts(std::span<const Merge> merges, size_t parts) {
+}  // namespace
+
+std::vector<NodeCost> node_costs(std::span<const Merge> merges) {
+    const size_t leaves = merges.size() + 1;
+    std::vector<int32_t> size(leaves + merges.size(), 1);  // in tetrahedra
+    std::vector<NodeCost> costs;
+    for (size_t m = 0; m < merges.size(); ++m) {
+        const int32_t left = size[static_cast<size_t>(merges[m].left)],
+                      right = size[static_cast<size_t>(merges[m].right)];
+        size[leaves + m] = left + right;
+        const double a = double(left) / double(leaves), b = double(right) / double(leaves);
+        if (merges[m].concavity > 0)
+            costs.push_back({true, merges[m].concavity});
+        else
+            costs.push_back({false, a * a + b * b});
+    }
+    return costs;
+}
+
+std::vector<uint8_t> prune(std::span<const Merge> merges) { return pruned(merges, 0, node_costs(merges)); }
+
+std::vector<uint8_t> prune_regrouped(std::span<const Merge> merges, size_t top) {
+    std::vector<double> concavities;
+    for (const Merge& m : merges) concavities.push_back(m.concavity);
+    return pruned(merges, top, concavities);
+}
+
+std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t parts) {
     const size_t leaves = merges.size() + 1;
     // least[c][k - 1]: the least total concavity of cluster c in k parts; split[m][k - 2]: how many of them are left.
     std::vector<std::vector<double>> least(leaves + merges.size());
@@ -113,39 +142,7 @@ std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, std::span<cons
     return cut;
 }
 
-WheelStops wheel_stops(std::span<const double> areas, std::span<const double> heights) {
-    constexpr double growth = 1.1, smallest_start = 0.01, largest_start = 0.6;
-    const size_t root = areas.size() - 1;
-    WheelStops wheel;
-    wheel.stops.push_back(0);
-    for (size_t i = 1; i <= root; ++i)
-        if (areas[i] >= growth * areas[static_cast<size_t>(wheel.stops.back())])
-            wheel.stops.push_back(static_cast<int32_t>(i));
-    if (static_cast<size_t>(wheel.stops.back()) != root) {
-        if (areas[root] > areas[static_cast<size_t>(wheel.stops.back())] || root == 0)
-            wheel.stops.push_back(static_cast<int32_t>(root));
-        else
-            wheel.stops.back() = static_cast<int32_t>(root);
-    }
-
-    // Convex nodes have height 0: a floor far below any real part's keeps the factor finite.
-    const double floor = 1e-9 * heights[root];
-    double clearest = 0;
-    wheel.start = wheel.stops.size() - 1;
-    for (size_t s = 0; s + 1 < wheel.stops.size(); ++s) {
-        const auto i = static_cast<size_t>(wheel.stops[s]);
-        if (areas[i] < smallest_start * areas[root]) continue;
-        if (areas[i] > largest_start * areas[root]) break;
-        const double factor = heights[i + 1] / std::max(heights[i], floor);
-        if (factor > clearest) {
-            clearest = factor;
-            wheel.start = s;
-        }
-    }
-    return wheel;
-}
-
-WheelStops scored_wheel_stops(std::span<const double> areas, std::span<const double> scores) {
+WheelStops wheel_stops(std::span<const double> areas, std::span<const double> scores) {
     constexpr double most_overlap = 0.85, shrink = 0.5;
     const auto root = static_cast<int32_t>(areas.size()) - 1;
     const auto area = [&](int32_t i) { return areas[static_cast<size_t>(i)]; };

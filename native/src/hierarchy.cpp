@@ -205,7 +205,8 @@ void Hierarchy::finish() {
     }
 
     // Nodes: all leaves, then the merges that were kept; so arrays by cluster become arrays by node where they are.
-    const std::vector<uint8_t> kept = prune(merges_, regrouped_merges());
+    const std::vector<uint8_t> kept = kept_merges();
+    const std::vector<NodeCost> costs = node_costs(merges_);
     const size_t nodes = leaves + static_cast<size_t>(std::count(kept.begin(), kept.end(), 1));
     std::vector<int32_t> node(clusters, -1);
     std::iota(node.begin(), node.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
@@ -213,20 +214,11 @@ void Hierarchy::finish() {
     cost_.resize(nodes);
     for (size_t c = leaves, n = leaves; c < clusters; ++c) {
         if (!kept[c - leaves]) continue;
-        const Merge& merge = merges_[c - leaves];
         node[c] = static_cast<int32_t>(n);
-        cost_class_[n] = merge.concavity > 0;
-        cost_[n] = merge.concavity;
+        cost_class_[n] = costs[c - leaves].concave;
+        cost_[n] = costs[c - leaves].value;
         tet_first_[n] = tet_first_[c];
         tet_last_[n] = tet_last_[c];
-        if (merge.concavity == 0) {  // Eq. 2
-            const int32_t middle = static_cast<size_t>(merge.left) < leaves
-                                       ? merge.left + 1
-                                       : merge_last_[static_cast<size_t>(merge.left) - leaves];
-            const double left = double(middle - tet_first_[n]) / double(leaves);
-            const double right = double(tet_last_[n] - middle) / double(leaves);
-            cost_[n] = left * left + right * right;
-        }
         for (std::vector<double>* values : {&volume_, &area_, &height_, &score_}) (*values)[n] = (*values)[c];
         ++n;
     }
@@ -248,6 +240,10 @@ void Hierarchy::finish() {
                 parent_[static_cast<size_t>(below)] = node[leaves + m];
         }
     }
+}
+
+std::vector<uint8_t> Hierarchy::kept_merges() const {
+    return scores_.empty() ? prune(merges_) : prune_regrouped(merges_, regrouped_merges());
 }
 
 pw_arrays Hierarchy::arrays() const {
@@ -284,12 +280,13 @@ std::vector<int32_t> Hierarchy::path(size_t face) const {
 
 WheelStops Hierarchy::wheel(size_t face) const {
     const std::vector<int32_t> nodes = path(face);
-    std::vector<double> areas, worth;
+    if (scores_.empty()) return {nodes, 0};  // the paper's: all of the path, from the tetrahedron clicked
+    std::vector<double> areas, scores;
     for (int32_t n : nodes) {
         areas.push_back(area_[static_cast<size_t>(n)]);
-        worth.push_back((scores_.empty() ? height_ : score_)[static_cast<size_t>(n)]);
+        scores.push_back(score_[static_cast<size_t>(n)]);
     }
-    WheelStops wheel = scores_.empty() ? wheel_stops(areas, worth) : scored_wheel_stops(areas, worth);
+    WheelStops wheel = wheel_stops(areas, scores);
     for (int32_t& stop : wheel.stops) stop = nodes[static_cast<size_t>(stop)];
     return wheel;
 }
@@ -311,7 +308,11 @@ std::vector<int32_t> Hierarchy::cut_height(double height) const {
 }
 
 std::vector<int32_t> Hierarchy::cut_parts(size_t parts) const {
-    return bounds_of(scores_.empty() ? cut_into_parts(merges_, parts) : cut_undoing_last(merges_, parts));
+    return bounds_of(cut_undoing_last(merges_, parts));
+}
+
+std::vector<int32_t> Hierarchy::cut_least_concavity(size_t parts) const {
+    return bounds_of(partwheel::cut_least_concavity(merges_, parts));
 }
 
 std::vector<int32_t> Hierarchy::cut_automatic() const {
@@ -319,7 +320,7 @@ std::vector<int32_t> Hierarchy::cut_automatic() const {
     if (scores_.empty()) return cut_height(paper_height * summary_.hull_volume);
     // By cluster again; what has been pruned has no score.
     const size_t leaves = tetrahedra_.size(), clusters = leaves + merges_.size();
-    const std::vector<uint8_t> kept = prune(merges_, regrouped_merges());
+    const std::vector<uint8_t> kept = kept_merges();
     std::vector<double> areas(clusters, 0), scores(clusters, 0);
     for (size_t c = 0, n = 0; c < clusters; ++c) {
         if (c >= leaves && !kept[c - leaves]) continue;

@@ -40,6 +40,7 @@ public:
     std::span<const int32_t> faces(size_t node) const;
     std::vector<int32_t> cut_height(double height) const;   // bounds, as the C API documents
     std::vector<int32_t> cut_parts(size_t parts) const;     // likewise
+    std::vector<int32_t> cut_least_concavity(size_t parts) const;  // likewise
     std::vector<int32_t> cut_automatic() const;             // likewise
     TriangleMesh hull(size_t tet_first, size_t tet_last) const;
     TriangleMesh solid(size_t tet_first, size_t tet_last, std::span<const std::array<int32_t, 2>> middles) const;
@@ -51,6 +52,7 @@ private:
     void check_stored() const;
     void plant(std::span<const int32_t> borders, std::span<const double> concavities);
     void finish();
+    std::vector<uint8_t> kept_merges() const;  // those that are nodes
     size_t regrouped_merges() const { return scores_.empty() ? 0 : (scores_.size() - 1) / 2; }
     std::vector<int32_t> bounds_of(std::span<const int32_t> clusters) const;
     const Facets& facets() const;

@@ -117,11 +117,12 @@ private:
     double cost(const Link& link, double hull, bool exact);
     void enter(Link& link);
     void price(Link& link);
-    std::array<double, pair_measures> measures(const Part& a, const Part& b, const Border& border, double hull) const;
+    PairMeasures measures(const Part& a, const Part& b, const Border& border, double hull) const;
     void join(int32_t a, int32_t b, double cost);
     void join_neighbours();
     void join_components();
-    std::array<double, node_measures> measures(size_t node) const;
+    OwnMeasures measures(const Part& part) const;
+    NodeMeasures measures(size_t node) const;
     std::vector<double> scores() const;
 
     const TetMesh& mesh_;
@@ -352,10 +353,8 @@ double share(double part, double whole) { return whole > 0 ? std::clamp(part / w
 
 double mean(double sum, double length) { return length > 0 ? sum / length : 0; }
 
-// regroup_fitted.h has numbers for just these, in this order. s is the part with the smaller surface, l the larger.
 // hull: the volume of the hull of both.
-std::array<double, pair_measures> Regrouping::measures(const Part& a, const Part& b, const Border& border,
-                                                       double hull) const {
+PairMeasures Regrouping::measures(const Part& a, const Part& b, const Border& border, double hull) const {
     const auto rough_a = static_cast<float>(a.area), rough_b = static_cast<float>(b.area);
     const bool ordered = rough_a < rough_b || (rough_a == rough_b && a.low < b.low);
     const Part &s = ordered ? a : b, &l = ordered ? b : a;
@@ -367,34 +366,36 @@ std::array<double, pair_measures> Regrouping::measures(const Part& a, const Part
     const double length = log2_of(std::max(border.length, 1e-12)), face = log2_of(border.interface);
     const double thick_s = s.log_volume - s.log_area, thick_l = l.log_volume - l.log_area;
     const double size = log_volume_ / 3;
-    return {s.log_area - log_area_,
-            log2_of(area) - log_area_,
-            s.log_volume - log_volume_,
-            log2_of(volume) - log_volume_,
-            gap,
-            gap_s,
-            gap_l,
-            log2_of(1e-4 + (s.hull_volume > 0 ? excess / s.hull_volume : 0)),
-            log2_of(1e-8 + excess / hull_volume_),
-            std::clamp(face - 2 * s.log_volume / 3, -8.0, 4.0),
-            std::clamp(face - s.log_area, -8.0, 4.0),
-            std::clamp(length - s.log_area / 2, -8.0, 4.0),
-            share(border.length, s.rim.length),
-            share(border.length, l.rim.length),
-            share(border.interface, s.rim.interface),
-            share(border.interface, l.rim.interface),
-            std::clamp(thick_s - thick_l, -6.0, 6.0),
-            std::clamp(face - length - thick_s, -8.0, 4.0),
-            std::clamp(face - length - thick_l, -8.0, 4.0),
-            mean(border.crease, border.length),
-            share(border.concave, border.length),
-            mean(border.curvature, border.length),
-            std::clamp(2 * length - face, -4.0, 8.0),
-            std::clamp(face - 2 * l.log_volume / 3, -10.0, 4.0),
-            gap - std::max(gap_s, gap_l),
-            l.log_area - s.log_area,
-            std::clamp(thick_s - size, -8.0, 2.0),
-            std::clamp(thick_l - size, -8.0, 2.0)};
+    return {
+        .area_s = s.log_area - log_area_,
+        .area_both = log2_of(area) - log_area_,
+        .volume_s = s.log_volume - log_volume_,
+        .volume_both = log2_of(volume) - log_volume_,
+        .gap_both = gap,
+        .gap_s = gap_s,
+        .gap_l = gap_l,
+        .excess_to_s = log2_of(1e-4 + (s.hull_volume > 0 ? excess / s.hull_volume : 0)),
+        .excess_to_all = log2_of(1e-8 + excess / hull_volume_),
+        .face_to_volume_s = std::clamp(face - 2 * s.log_volume / 3, -8.0, 4.0),
+        .face_to_area_s = std::clamp(face - s.log_area, -8.0, 4.0),
+        .length_to_area_s = std::clamp(length - s.log_area / 2, -8.0, 4.0),
+        .length_share_s = share(border.length, s.rim.length),
+        .length_share_l = share(border.length, l.rim.length),
+        .face_share_s = share(border.interface, s.rim.interface),
+        .face_share_l = share(border.interface, l.rim.interface),
+        .thickness_step = std::clamp(thick_s - thick_l, -6.0, 6.0),
+        .face_to_thick_s = std::clamp(face - length - thick_s, -8.0, 4.0),
+        .face_to_thick_l = std::clamp(face - length - thick_l, -8.0, 4.0),
+        .crease = mean(border.crease, border.length),
+        .concave = share(border.concave, border.length),
+        .curvature = mean(border.curvature, border.length),
+        .outline = std::clamp(2 * length - face, -4.0, 8.0),
+        .face_to_volume_l = std::clamp(face - 2 * l.log_volume / 3, -10.0, 4.0),
+        .gap_added = gap - std::max(gap_s, gap_l),
+        .area_step = l.log_area - s.log_area,
+        .thickness_s = std::clamp(thick_s - size, -8.0, 2.0),
+        .thickness_l = std::clamp(thick_l - size, -8.0, 2.0),
+    };
 }
 
 // Of the hull of both parts.
@@ -407,7 +408,7 @@ double Regrouping::hull_volume(const Link& link) {
 
 // hull: the volume of the hull of both parts, exact or a guess.
 double Regrouping::cost(const Link& link, double hull, bool exact) {
-    const auto inputs = measures(at(link.a), at(link.b), link.border, hull);
+    const auto inputs = in_order(measures(at(link.a), at(link.b), link.border, hull));
     if (trace_ && exact) trace_->pairs.push_back({link.a, link.b, inputs});
     // Rounded, so that pairs that cost the same by symmetry tie, whatever rounding errors their measures carry.
     return static_cast<double>(static_cast<float>(fitted(pair_numbers_, inputs)));
@@ -527,32 +528,34 @@ void Regrouping::join_components() {
     }
 }
 
-// regroup_fitted.h has numbers for just these, in this order: the node's own; then beside its parent and sibling.
-std::array<double, node_measures> Regrouping::measures(size_t node) const {
-    const auto own = [&](const Part& p) -> std::array<double, 15> {
-        const double length = log2_of(p.rim.length), face = log2_of(p.rim.interface);
-        const double thick = p.log_volume - p.log_area;
-        return {p.log_area - log_area_,
-                p.log_volume - log_volume_,
-                convexity_gap(p.volume, p.hull_volume),
-                std::clamp(length - p.log_area / 2, -8.0, 4.0),
-                std::clamp(face - 2 * p.log_volume / 3, -8.0, 4.0),
-                mean(p.rim.crease, p.rim.length),
-                mean(p.rim.concave, p.rim.length),
-                mean(p.rim.curvature, p.rim.length),
-                std::clamp(face - p.log_area, -8.0, 4.0),
-                p.own_cost,
-                p.worst_cost,
-                std::clamp(thick - log_volume_ / 3, -8.0, 2.0),
-                std::clamp(2 * length - face, -4.0, 8.0),
-                std::clamp(face - length - thick, -8.0, 4.0),
-                log2_of(1e-6 + std::max(0.0, p.hull_volume - p.volume) / hull_volume_)};
+OwnMeasures Regrouping::measures(const Part& p) const {
+    const double length = log2_of(p.rim.length), face = log2_of(p.rim.interface);
+    const double thick = p.log_volume - p.log_area;
+    return {
+        .area = p.log_area - log_area_,
+        .volume = p.log_volume - log_volume_,
+        .gap = convexity_gap(p.volume, p.hull_volume),
+        .length_to_area = std::clamp(length - p.log_area / 2, -8.0, 4.0),
+        .face_to_volume = std::clamp(face - 2 * p.log_volume / 3, -8.0, 4.0),
+        .crease = mean(p.rim.crease, p.rim.length),
+        .concave = mean(p.rim.concave, p.rim.length),
+        .curvature = mean(p.rim.curvature, p.rim.length),
+        .face_to_area = std::clamp(face - p.log_area, -8.0, 4.0),
+        .own_cost = p.own_cost,
+        .worst_cost = p.worst_cost,
+        .thickness = std::clamp(thick - log_volume_ / 3, -8.0, 2.0),
+        .outline = std::clamp(2 * length - face, -4.0, 8.0),
+        .face_to_thick = std::clamp(face - length - thick, -8.0, 4.0),
+        .dents = log2_of(1e-6 + std::max(0.0, p.hull_volume - p.volume) / hull_volume_),
     };
+}
+
+NodeMeasures Regrouping::measures(size_t node) const {
     const bool root = above_[node] < 0;
     const size_t up = root ? node : static_cast<size_t>(above_[node]);
     const size_t side = root ? node : static_cast<size_t>(beside_[node]);
-    const auto f = own(parts_[node]), parent = own(parts_[up]), sibling = own(parts_[side]);
-    const double out = root ? largest_cost : parent[9];
+    const OwnMeasures own = measures(parts_[node]), parent = measures(parts_[up]), sibling = measures(parts_[side]);
+    const double out = root ? largest_cost : parent.own_cost;
     double cheapest_above = largest_cost, dearest_above = root ? largest_cost : -largest_cost;
     for (int32_t p = above_[node]; p >= 0; p = above_[static_cast<size_t>(p)]) {
         cheapest_above = std::min(cheapest_above, parts_[static_cast<size_t>(p)].own_cost);
@@ -560,21 +563,33 @@ std::array<double, node_measures> Regrouping::measures(size_t node) const {
     }
     // How many parts there are when it comes, and when it goes.
     const auto parts_at = [&](size_t n) { return static_cast<double>(n < fine_ ? fine_ : 2 * fine_ - 1 - n); };
-    std::array<double, node_measures> all{};
-    auto next = std::copy(f.begin(), f.end(), all.begin());
-    for (const double x :
-         {out, out - f[9], sibling[0] - f[0], parent[0] - f[0], sibling[2], sibling[11], parent[2], parent[5],
-          parent[6], parent[7], root ? 1.0 : 0.0, parent[2] - f[2], log2_of(parts_at(node)),
-          log2_of(root ? 1 : parts_at(up) + 1), cheapest_above, dearest_above, std::abs(sibling[1] - f[1])})
-        *next++ = x;
-    return all;
+    return {
+        .own = own,
+        .parent_cost = out,
+        .cost_step = out - own.own_cost,
+        .sibling_area = sibling.area - own.area,
+        .parent_area = parent.area - own.area,
+        .sibling_gap = sibling.gap,
+        .sibling_thickness = sibling.thickness,
+        .parent_gap = parent.gap,
+        .parent_crease = parent.crease,
+        .parent_concave = parent.concave,
+        .parent_curvature = parent.curvature,
+        .root = root ? 1.0 : 0.0,
+        .gap_step = parent.gap - own.gap,
+        .parts_when_made = log2_of(parts_at(node)),
+        .parts_when_joined = log2_of(root ? 1 : parts_at(up) + 1),
+        .cheapest_above = cheapest_above,
+        .dearest_above = dearest_above,
+        .sibling_volume = std::abs(sibling.volume - own.volume),
+    };
 }
 
 std::vector<double> Regrouping::scores() const {
     const size_t leaves = part_of_.size();
     std::vector<double> of_part;
     for (size_t n = 0; n < parts_.size(); ++n) {
-        const auto inputs = measures(n);
+        const auto inputs = in_order(measures(n));
         if (trace_) trace_->nodes.push_back(inputs);
         const double logit = fitted(fitted_node_numbers, inputs);
         of_part.push_back((1 + logit / (1 + std::abs(logit))) / 2);

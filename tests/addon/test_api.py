@@ -75,9 +75,11 @@ class Api(MeshTest):
             labels = self.api.cut(obj, parts=parts)
             self.assertEqual((len(labels), labels.max() < parts), (2390, True))
             self.assertEqual(labels.tolist(), h.face_labels(h.cut_parts(parts)).tolist())
+            self.assertEqual(self.api.cut(obj, least_concavity=parts).tolist(),
+                             h.face_labels(h.cut_least_concavity(parts)).tolist())
         self.assertEqual(self.api.cut(obj, height=0.5 * h.height[-1]).tolist(),
                          h.face_labels(h.cut_height(0.5 * h.height[-1])).tolist())
-        for arguments in ({}, {"parts": 2, "height": 0.5}):
+        for arguments in ({}, {"parts": 2, "height": 0.5}, {"parts": 2, "least_concavity": 2}):
             with self.assertRaises(ValueError):
                 self.api.cut(obj, **arguments)
 

@@ -37,14 +37,16 @@ class Command(MeshTest):
         bpy.ops.wm.open_mainfile(filepath=self.path)
         for name in ("hand", "box"):
             self.assertIsNotNone(part("session").hierarchy(bpy.data.objects[name]))
-        expected = part("api").cut(bpy.data.objects["hand"], parts=5).tolist()
-        code, printed = self.run_command("cut", self.path, "--object", "hand", "--parts", "5", "--attribute", "limb",
-                                         "--output", self.other)
-        self.assertEqual(code, 0, printed)
-        bpy.ops.wm.open_mainfile(filepath=self.other)
-        found = [value.value for value in bpy.data.objects["hand"].data.attributes["limb"].data]
-        self.assertEqual(found, expected)
-        self.assertNotIn("limb", bpy.data.objects["box"].data.attributes)
+        for way in ("parts", "least-concavity"):
+            bpy.ops.wm.open_mainfile(filepath=self.path)
+            expected = part("api").cut(bpy.data.objects["hand"], **{way.replace("-", "_"): 5}).tolist()
+            code, printed = self.run_command("cut", self.path, "--object", "hand", f"--{way}", "5", "--attribute", "limb",
+                                             "--output", self.other)
+            self.assertEqual(code, 0, printed)
+            bpy.ops.wm.open_mainfile(filepath=self.other)
+            found = [value.value for value in bpy.data.objects["hand"].data.attributes["limb"].data]
+            self.assertEqual(found, expected)
+            self.assertNotIn("limb", bpy.data.objects["box"].data.attributes)
 
     def test_what_fails_is_named(self):
         self.add(*SHEET, "sheet")

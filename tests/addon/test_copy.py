@@ -470,3 +470,14 @@ class Split(SolidTest):
         self.assertEqual(len(made), len(hierarchy.cut_height(height)) - 1)
         away = [new.matrix_world.translation.length for new in made]
         self.assertGreater(min(away), 0)
+
+    def test_into_the_parts_of_least_concavity(self):
+        obj, hierarchy = self.built("hand")
+        self.assertNotEqual(hierarchy.cut_least_concavity(5).tolist(), hierarchy.cut_parts(5).tolist())
+        self.run_on(obj, bpy.ops.mesh.partwheel_split, by="LEAST_CONCAVITY", parts=5)
+        bounds = hierarchy.cut_least_concavity(5)
+        volumes = [hierarchy.volume[first:last].sum() for first, last in zip(bounds, bounds[1:])]
+        found = sorted(volume(new.data) for new in bpy.context.selected_objects)
+        self.assertEqual(len(found), 5)
+        for one, other in zip(found, sorted(volumes)):
+            self.assertAlmostEqual(one, other, delta=1e-3 * sum(volumes))

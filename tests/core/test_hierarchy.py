@@ -165,6 +165,36 @@ def test_merges_are_one_binary_tree_and_the_dendrogram_prunes_it(case):
     assert clusters >= set(zip(h.tet_first, h.tet_last))
 
 
+def test_the_papers_dendrogram_is_listing_2_by_equation_3(paper_case):
+    """From the root down: a cluster is a node just if it costs less (Eq. 3) than the node it would hang from."""
+    _, h = paper_case
+    tets, slices = len(h.tetrahedra), merge_slices(h)
+    costs = {bounds: (c, cost) for bounds, c, cost in zip(zip(h.tet_first, h.tet_last), h.cost_class, h.cost)}
+    todo, nodes = [(2 * tets - 2, (2, 0.0))], tets
+    while todo:
+        cluster, above = todo.pop()
+        if cluster < tets:
+            continue
+        bounds = tuple(slices[cluster])
+        if bounds in costs:
+            assert costs[bounds] < above
+            above, nodes = costs[bounds], nodes + 1
+        else:
+            hull = hull_volume(h, *bounds)
+            concavity = hull - tet_volumes(h.vertices, h.tetrahedra[slice(*bounds)]).sum()
+            # Never what is convex. Ties are settled after rounding to 28 bits.
+            assert concavity > 0.99e-6 * hull and (1, concavity * (1 + 1e-7)) >= above
+        todo += [(side, above) for side in h.merges[cluster - tets]]
+    assert nodes == len(h.parent)
+
+
+def test_the_papers_wheel_goes_through_the_whole_path(paper_case):
+    shape, h = paper_case
+    for face in range(shape.face_count):
+        stops, start = h.wheel(face)
+        assert stops.tolist() == h.path(face).tolist() and start == 0
+
+
 def test_the_papers_tree_has_no_scores(paper_case):
     _, h = paper_case
     assert not h.score.any()
@@ -195,6 +225,17 @@ def test_scores_begin_at_the_parts(name, build_shape):
     assert set(zip(parts[:-1].tolist(), parts[1:].tolist())) <= set(zip(h.tet_first.tolist(), h.tet_last.tolist()))
 
 
+def test_cutting_into_parts_undoes_the_last_merges(case):
+    _, h = case
+    slices, tets = merge_slices(h), len(h.tetrahedra)
+    parts = {2 * tets - 2}
+    for count in range(1, min(50, tets) + 1):
+        if count > 1:  # what the last merge but count - 2 made
+            made = 2 * tets - count
+            parts = parts - {made} | set(h.merges[made - tets].tolist())
+        assert h.cut_parts(count).tolist() == sorted({0} | {int(slices[part][1]) for part in parts})
+
+
 @pytest.mark.parametrize("name", ["cube", "L", "star", "hand.off"])
 def test_cuts_of_the_regrouped_tree_are_nested(name, build_shape):
     _, h = build_shape(name, Mode.REGROUPED)
@@ -220,8 +261,9 @@ def test_path_and_faces_of_nodes(case):
         assert np.array_equal(h.faces(node), h.order[h.first[node]:h.last[node]])
 
 
-def test_wheel_stops_grow_visibly_along_the_path(case):
-    shape, h = case
+@pytest.mark.parametrize("name", shapes.SHAPES)
+def test_wheel_stops_grow_visibly_along_the_path(name, build_shape):
+    shape, h = build_shape(name)
     for face in range(shape.face_count):
         stops, start = h.wheel(face)
         path = h.path(face).tolist()
@@ -288,13 +330,14 @@ def least_concavity(h):
 
 
 @pytest.mark.parametrize("name", ["cube", "L", "jack", "frame", "box with a cavity", "star", "3torus.off", "P.off"])
-def test_cut_into_parts_is_the_best(name, build_shape):
-    _, h = build_shape(name, Mode.PAPER)
+@pytest.mark.parametrize("mode", Mode)
+def test_the_cut_of_least_concavity_is_the_best(name, mode, build_shape):
+    _, h = build_shape(name, mode)
     tets = len(h.tetrahedra)
     volumes, clusters = tet_volumes(h.vertices, h.tetrahedra), set(map(tuple, merge_slices(h)))
     best = least_concavity(h)
     for parts in range(1, tets + 1):
-        bounds = h.cut_parts(parts)
+        bounds = h.cut_least_concavity(parts)
         assert len(bounds) == parts + 1 and bounds[0] == 0 and bounds[-1] == tets
         pieces = list(zip(bounds[:-1].tolist(), bounds[1:].tolist()))
         assert set(pieces) <= clusters
@@ -384,6 +427,7 @@ def test_numbers_of_nothing_are_refused(build_shape):
     for call in (lambda: h.path(faces), lambda: h.path(-1), lambda: h.wheel(faces), lambda: h.faces(nodes),
                  lambda: h.faces(-1), lambda: h.hull(nodes), lambda: h.hull_of_slice(2, 2),
                  lambda: h.hull_of_slice(0, tets + 1), lambda: h.cut_parts(0), lambda: h.cut_parts(tets + 1),
+                 lambda: h.cut_least_concavity(0), lambda: h.cut_least_concavity(tets + 1),
                  lambda: h.cut_height(-1.0), lambda: h.cut_height(math.nan)):
         with pytest.raises(PartwheelError) as refused:
             call()

@@ -23,7 +23,9 @@ def test_round_trip(case):
     for face in range(0, shape.face_count, 7):
         assert np.array_equal(h.wheel(face)[0], other.wheel(face)[0]) and h.wheel(face)[1] == other.wheel(face)[1]
     assert np.array_equal(h.hull(len(h.parent) - 1)[1], other.hull(len(h.parent) - 1)[1])
-    assert np.array_equal(h.cut_parts(1), other.cut_parts(1))
+    for parts in (1, len(h.tetrahedra) // 2 + 1):
+        assert np.array_equal(h.cut_parts(parts), other.cut_parts(parts))
+        assert np.array_equal(h.cut_least_concavity(parts), other.cut_least_concavity(parts))
 
 
 def test_other_bytes_like_objects_load(build_shape):

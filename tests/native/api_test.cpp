@@ -105,9 +105,11 @@ TEST(Api, NullsAreErrors) {
     expect_argument_error(pw_hierarchy_cut_height(nullptr, 0, room, 64, &count));
     expect_argument_error(pw_hierarchy_cut_height(h, 0, nullptr, 64, &count));
     expect_argument_error(pw_hierarchy_cut_height(h, 0, room, 64, nullptr));
-    expect_argument_error(pw_hierarchy_cut_parts(nullptr, 1, room, 64, &count));
-    expect_argument_error(pw_hierarchy_cut_parts(h, 1, nullptr, 64, &count));
-    expect_argument_error(pw_hierarchy_cut_parts(h, 1, room, 64, nullptr));
+    for (const auto cut : {pw_hierarchy_cut_parts, pw_hierarchy_cut_least_concavity}) {
+        expect_argument_error(cut(nullptr, 1, room, 64, &count));
+        expect_argument_error(cut(h, 1, nullptr, 64, &count));
+        expect_argument_error(cut(h, 1, room, 64, nullptr));
+    }
     expect_argument_error(pw_hierarchy_cut_automatic(nullptr, room, 64, &count));
     expect_argument_error(pw_hierarchy_cut_automatic(h, nullptr, 64, &count));
     expect_argument_error(pw_hierarchy_cut_automatic(h, room, 64, nullptr));
@@ -153,8 +155,10 @@ TEST(Api, OutOfRangeIsAnError) {
     for (const size_t node : {a.node_count, huge}) expect_argument_error(pw_hierarchy_faces(h, node, &faces, &count));
     for (const double height : {-1.0, -1e-300, std::nan(""), -HUGE_VAL})
         expect_argument_error(pw_hierarchy_cut_height(h, height, room, 8, &count));
-    for (const size_t parts : {size_t{0}, a.tetrahedron_count + 1, size_t{4097}, huge})
+    for (const size_t parts : {size_t{0}, a.tetrahedron_count + 1, size_t{4097}, huge}) {
         expect_argument_error(pw_hierarchy_cut_parts(h, parts, room, 8, &count));
+        expect_argument_error(pw_hierarchy_cut_least_concavity(h, parts, room, 8, &count));
+    }
     for (const auto& [first, last] : std::vector<std::pair<size_t, size_t>>{{0, 0},
                                                                             {1, 0},
                                                                             {5, 5},
@@ -222,6 +226,9 @@ TEST(Api, CapacityRules) {
         },
         [&](int32_t* out, size_t capacity, size_t* count) {
             return pw_hierarchy_cut_parts(h, 7, out, capacity, count);
+        },
+        [&](int32_t* out, size_t capacity, size_t* count) {
+            return pw_hierarchy_cut_least_concavity(h, 7, out, capacity, count);
         },
     };
     for (const auto& ask : questions) {
@@ -523,8 +530,8 @@ void ask_everything(const Handle& handle) {
     for (const double height : {0.0, 1.0, HUGE_VAL})
         EXPECT_EQ(pw_hierarchy_cut_height(handle.get(), height, room.data(), room.size(), &count), PW_OK);
     for (const size_t parts : {size_t{1}, (a.tetrahedron_count + 1) / 2})
-        EXPECT_EQ(pw_hierarchy_cut_parts(handle.get(), std::min<size_t>(parts, 4096), room.data(), room.size(), &count),
-                  PW_OK);
+        for (const auto cut : {pw_hierarchy_cut_parts, pw_hierarchy_cut_least_concavity})
+            EXPECT_EQ(cut(handle.get(), std::min<size_t>(parts, 4096), room.data(), room.size(), &count), PW_OK);
     for (size_t n = 0; n < a.node_count; n += 1 + a.node_count / 10) {
         pw_mesh* made = nullptr;
         const pw_status status = pw_hierarchy_hull(handle.get(), static_cast<size_t>(a.tet_first[n]),

@@ -1,4 +1,4 @@
-// The dendrogram against direct transcriptions: Listing 2, cuts by enumeration, the rules of the wheel.
+// The dendrogram against direct transcriptions: Listing 2 by Eq. 3, cuts by enumeration, the rules of the wheel.
 #include "dendrogram.h"
 
 #include "support/shapes.h"
@@ -18,9 +18,18 @@ namespace {
 
 // ---- Listing 2, as the paper has it: nodes with lists of children, recursion from the root ----
 
+// The paper's Eq. 3. What it adds 1 for, that no convex cluster costs as much as any other, is said by the class here:
+// a small concavity would be lost beside a 1.
+struct PaperCost {
+    int concave = 0;
+    double value = 0;  // Eq. 1 or Eq. 2
+    auto operator<=>(const PaperCost&) const = default;
+};
+
 struct Node {
     int32_t number = 0;
-    double cost = 0;
+    PaperCost cost;
+    double tetrahedra = 1;
     bool leaf = false;
     std::list<Node*> children;
 };
@@ -43,17 +52,27 @@ struct Tree {
     Node* root() const { return nodes.back().get(); }
 };
 
-Tree tree_of(const std::vector<Merge>& merges) {
+// With the costs of Eq. 3; or else with the concavity alone, all in one class.
+Tree tree_of(const std::vector<Merge>& merges, bool equation_3 = true) {
     Tree tree;
+    const auto all = static_cast<double>(merges.size() + 1);
     for (size_t i = 0; i < 2 * merges.size() + 1; ++i) {
         auto node = std::make_unique<Node>();
         node->number = static_cast<int32_t>(i);
         node->leaf = i <= merges.size();
         if (!node->leaf) {
             const Merge& m = merges[i - merges.size() - 1];
-            node->cost = m.concavity;
-            node->children = {tree.nodes[static_cast<size_t>(m.left)].get(),
-                              tree.nodes[static_cast<size_t>(m.right)].get()};
+            Node *left = tree.nodes[static_cast<size_t>(m.left)].get(),
+                 *right = tree.nodes[static_cast<size_t>(m.right)].get();
+            node->children = {left, right};
+            node->tetrahedra = left->tetrahedra + right->tetrahedra;
+            const double t1 = left->tetrahedra, t2 = right->tetrahedra;
+            if (!equation_3)
+                node->cost = {0, m.concavity};
+            else if (m.concavity > 0)
+                node->cost = {1, m.concavity};
+            else
+                node->cost = {0, (t1 * t1 + t2 * t2) / (all * all)};
         }
         tree.nodes.push_back(std::move(node));
     }
@@ -82,7 +101,7 @@ class DendrogramTest : public testing::Test {
 protected:
     int whole(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); }
 
-    // Heights are small whole numbers, so that ties abound, or any numbers.
+    // Concavities are small whole numbers, so that ties abound, or any numbers; many are convex.
     std::vector<Merge> random_tree(int leaves, bool ties) {
         std::vector<int32_t> open(static_cast<size_t>(leaves));
         std::iota(open.begin(), open.end(), 0);
@@ -99,7 +118,7 @@ protected:
             Merge m;
             m.left = side[0];
             m.right = side[1];
-            m.concavity = ties ? whole(0, 3) : std::uniform_real_distribution<double>(0, 1)(random);
+            m.concavity = ties ? whole(0, 3) : std::max(0.0, std::uniform_real_distribution<double>(-0.5, 1)(random));
             open.push_back(leaves + static_cast<int32_t>(merges.size()));
             merges.push_back(m);
         }
@@ -127,22 +146,37 @@ TEST_F(DendrogramTest, PrunesRealTreesAsListing2) {
     }
 }
 
+Merge merge_of(int32_t left, int32_t right, double concavity) {
+    Merge m;
+    m.left = left;
+    m.right = right;
+    m.concavity = concavity;
+    return m;
+}
+
 TEST_F(DendrogramTest, PruningKeepsWhatGrows) {
-    const auto merge = [](int32_t left, int32_t right, double height) {
-        Merge m;
-        m.left = left;
-        m.right = right;
-        m.concavity = height;
-        return m;
-    };
-    // Heights 1, 2, 3 up a chain: all stay. 2, 2, 3: the lower of equals goes. 3, 1, 2: a child above its parent goes,
-    // but is held against the ancestor that it would hang from, not against the one that went.
-    EXPECT_EQ(prune(std::vector{merge(0, 1, 1), merge(4, 2, 2), merge(5, 3, 3)}), (std::vector<uint8_t>{1, 1, 1}));
-    EXPECT_EQ(prune(std::vector{merge(0, 1, 2), merge(4, 2, 2), merge(5, 3, 3)}), (std::vector<uint8_t>{0, 1, 1}));
-    EXPECT_EQ(prune(std::vector{merge(0, 1, 3), merge(4, 2, 1), merge(5, 3, 2)}), (std::vector<uint8_t>{0, 1, 1}));
-    EXPECT_EQ(prune(std::vector{merge(0, 1, 1), merge(4, 2, 5), merge(5, 3, 2)}), (std::vector<uint8_t>{1, 0, 1}));
-    EXPECT_EQ(prune(std::vector{merge(0, 1, 3), merge(4, 2, 5), merge(5, 3, 2)}), (std::vector<uint8_t>{0, 0, 1}));
+    // Concavities 1, 2, 3 up a chain: all stay. 2, 2, 3: the lower of equals goes. 3, 1, 2: a child above its parent
+    // goes, but is held against the ancestor that it would hang from, not against the one that went.
+    const std::vector<std::pair<std::array<double, 3>, std::vector<uint8_t>>> cases{
+        {{1, 2, 3}, {1, 1, 1}}, {{2, 2, 3}, {0, 1, 1}}, {{3, 1, 2}, {0, 1, 1}},
+        {{1, 5, 2}, {1, 0, 1}}, {{3, 5, 2}, {0, 0, 1}}};
+    for (const auto& [c, expected] : cases) {
+        const std::vector<Merge> chain{merge_of(0, 1, c[0]), merge_of(4, 2, c[1]), merge_of(5, 3, c[2])};
+        EXPECT_EQ(prune(chain), expected);
+        EXPECT_EQ(prune_regrouped(chain, 0), expected);
+    }
     EXPECT_TRUE(prune(std::vector<Merge>{}).empty());
+    EXPECT_TRUE(prune_regrouped(std::vector<Merge>{}, 0).empty());
+}
+
+TEST_F(DendrogramTest, ConvexNodesInConvexNodesStayAsEq3HasIt) {
+    // C2 of two tetrahedra of four is 2/16, of three 5/16, of all 10/16: it grows. By concavity alone they are equal.
+    const std::vector<Merge> convex{merge_of(0, 1, 0), merge_of(4, 2, 0), merge_of(5, 3, 0)};
+    EXPECT_EQ(prune(convex), (std::vector<uint8_t>{1, 1, 1}));
+    EXPECT_EQ(prune_regrouped(convex, 0), (std::vector<uint8_t>{0, 0, 1}));
+    // What is concave costs more than anything convex, however little it is: it goes.
+    const std::vector<Merge> dented{merge_of(0, 1, 0), merge_of(4, 2, 1e-300), merge_of(5, 3, 0)};
+    EXPECT_EQ(prune(dented), (std::vector<uint8_t>{1, 0, 1}));
 }
 
 TEST_F(DendrogramTest, Figure4) {
@@ -157,13 +191,17 @@ TEST_F(DendrogramTest, Figure4) {
     EXPECT_EQ(prune(merges), (std::vector<uint8_t>{0, 0, 1}));
 }
 
-TEST_F(DendrogramTest, ConvexShapesLinkAllLeavesToTheRoot) {
+TEST_F(DendrogramTest, OfConvexShapesWhatIsConvexStays) {
     for (const TetMesh& mesh : {tets_of(block({0, 0, 0}, {1, 1, 1})), tets_of(block({0, 0, 0}, {4, 3, 2})),
                                 tets_of(block({0, 0, 0}, {9, 1, 1}), {0.1, 0.3, 0.7})}) {
         Progress progress;
         progress.begin();
         const auto merges = cluster(mesh, progress).merges;
-        const auto kept = prune(merges);
+        std::vector<uint8_t> convex;
+        for (const Merge& m : merges) convex.push_back(m.concavity == 0);
+        EXPECT_EQ(prune(merges), convex);
+        // By concavity alone nothing is between the leaves and the root.
+        const auto kept = prune_regrouped(merges, 0);
         EXPECT_EQ(std::count(kept.begin(), kept.end(), 1), 1);
         EXPECT_EQ(kept.back(), 1);
     }
@@ -183,14 +221,14 @@ std::vector<std::vector<int32_t>> all_cuts(const Node* node) {
     return cuts;
 }
 
-TEST_F(DendrogramTest, CutIntoPartsIsTheBest) {
+TEST_F(DendrogramTest, TheLeastConcavityIsTheBest) {
     for (int i = 0; i < sized(400, 60); ++i) {
         const auto leaves = static_cast<size_t>(whole(1, 12));
         const auto merges = random_tree(static_cast<int>(leaves), i % 2 == 0);
-        const Tree tree = tree_of(merges);
+        const Tree tree = tree_of(merges, false);
         const auto total = [&](const std::vector<int32_t>& cut) {
             double sum = 0;
-            for (const int32_t n : cut) sum += tree.nodes[static_cast<size_t>(n)]->cost;
+            for (const int32_t n : cut) sum += tree.nodes[static_cast<size_t>(n)]->cost.value;
             return sum;
         };
         const auto cuts = all_cuts(tree.root());
@@ -199,7 +237,7 @@ TEST_F(DendrogramTest, CutIntoPartsIsTheBest) {
             double best = std::numeric_limits<double>::infinity();
             for (const auto& cut : cuts)
                 if (cut.size() == parts) best = std::min(best, total(cut));
-            const auto cut = cut_into_parts(merges, parts);
+            const auto cut = cut_least_concavity(merges, parts);
             ASSERT_EQ(cut.size(), parts);
             ASSERT_TRUE(known.contains(cut)) << "no cut of the tree in depth-first order";
             ASSERT_NEAR(total(cut), best, 1e-12);
@@ -207,62 +245,17 @@ TEST_F(DendrogramTest, CutIntoPartsIsTheBest) {
     }
 }
 
-TEST_F(DendrogramTest, CutIntoPartsBeatsUndoingMerges) {
+TEST_F(DendrogramTest, TheLeastConcavityBeatsUndoingMerges) {
     // The last merge is cheap and the one before dear: two parts are the sides of the last, but three are best made
     // by opening the dear one.
     std::vector<Merge> merges(3);
     merges[0] = {0, 1, 1, 0};
     merges[1] = {2, 3, 9, 0};
     merges[2] = {4, 5, 2, 0};
-    EXPECT_EQ(cut_into_parts(merges, 1), (std::vector<int32_t>{6}));
-    EXPECT_EQ(cut_into_parts(merges, 2), (std::vector<int32_t>{4, 5}));
-    EXPECT_EQ(cut_into_parts(merges, 3), (std::vector<int32_t>{4, 2, 3}));
-    EXPECT_EQ(cut_into_parts(merges, 4), (std::vector<int32_t>{0, 1, 2, 3}));
-}
-
-// ---- The wheel ----
-
-TEST_F(DendrogramTest, WheelStopsGrowAndEndAtTheRoot) {
-    for (int i = 0; i < sized(5000, 500); ++i) {
-        const auto length = static_cast<size_t>(whole(1, 40));
-        std::vector<double> areas(length), heights(length);
-        areas[0] = std::uniform_real_distribution<double>(0.01, 1)(random);
-        for (size_t k = 1; k < length; ++k) {
-            areas[k] = areas[k - 1] * (whole(0, 2) == 0 ? 1 : std::uniform_real_distribution<double>(1, 1.3)(random));
-            heights[k] = heights[k - 1] + (whole(0, 2) == 0 && k > 1 ? 1e-9 : whole(1, 5));
-        }
-        if (length == 2 && whole(0, 1) == 0) heights[1] = 0;  // a convex shape
-        const WheelStops wheel = wheel_stops(areas, heights);
-        ASSERT_FALSE(wheel.stops.empty());
-        ASSERT_LT(wheel.start, wheel.stops.size());
-        ASSERT_EQ(static_cast<size_t>(wheel.stops.back()), length - 1);
-        ASSERT_GE(wheel.stops.front(), 0);
-        const auto area_of = [&](size_t s) { return areas[static_cast<size_t>(wheel.stops[s])]; };
-        for (size_t s = 1; s < wheel.stops.size(); ++s) {
-            ASSERT_GT(wheel.stops[s], wheel.stops[s - 1]);
-            ASSERT_GT(area_of(s), area_of(s - 1)) << "a notch that nothing can be seen of";
-            const bool last = s + 1 == wheel.stops.size();
-            ASSERT_GE(area_of(s), (last ? 1 : 1.1) * area_of(s - 1));
-        }
-        // No visible step is left out: what lies between two stops is less than 10 % larger than the first, or shows
-        // no less than the root.
-        for (size_t s = 0; s + 1 < wheel.stops.size(); ++s)
-            for (int32_t k = wheel.stops[s]; k < wheel.stops[s + 1]; ++k) {
-                const double between = areas[static_cast<size_t>(k)];
-                ASSERT_TRUE(between < 1.1 * area_of(s) || between == areas.back());
-            }
-    }
-}
-
-TEST_F(DendrogramTest, WheelStartsWhereAPartIsClearest) {
-    // A leaf, a finger that stays nearly convex until it is joined to the hand, and the whole.
-    const std::vector<double> areas{0.5, 5, 20, 60, 100}, heights{0, 1e-4, 2e-4, 0.5, 1};
-    const WheelStops wheel = wheel_stops(areas, heights);
-    EXPECT_EQ(wheel.stops, (std::vector<int32_t>{0, 1, 2, 3, 4}));
-    EXPECT_EQ(wheel.stops[wheel.start], 2);
-    const WheelStops only = wheel_stops(std::vector<double>{2}, std::vector<double>{0});
-    EXPECT_EQ(only.stops, (std::vector<int32_t>{0}));
-    EXPECT_EQ(only.start, 0U);
+    EXPECT_EQ(cut_least_concavity(merges, 1), (std::vector<int32_t>{6}));
+    EXPECT_EQ(cut_least_concavity(merges, 2), (std::vector<int32_t>{4, 5}));
+    EXPECT_EQ(cut_least_concavity(merges, 3), (std::vector<int32_t>{4, 2, 3}));
+    EXPECT_EQ(cut_least_concavity(merges, 4), (std::vector<int32_t>{0, 1, 2, 3}));
 }
 
 // ---- The regrouped tree ----
@@ -271,9 +264,9 @@ TEST_F(DendrogramTest, RegroupedMergesAllStayAndHoldNothingDown) {
     for (int i = 0; i < sized(400, 60); ++i) {
         const auto merges = random_tree(whole(2, 40), i % 2 == 0);
         const auto top = static_cast<size_t>(whole(0, static_cast<int>(merges.size())));
-        // The paper's pruning of each part by itself.
+        // Listing 2 for each part by itself, by concavity.
         std::vector<uint8_t> expected(merges.size(), 0);
-        const Tree tree = tree_of(merges);
+        const Tree tree = tree_of(merges, false);
         for (size_t m = merges.size() - top; m < merges.size(); ++m) expected[m] = 1;
         std::vector<uint8_t> held(merges.size(), 0);
         for (size_t m = 0; m < merges.size(); ++m)
@@ -288,7 +281,7 @@ TEST_F(DendrogramTest, RegroupedMergesAllStayAndHoldNothingDown) {
             collect(part, inner);
             for (const int32_t n : inner) expected[static_cast<size_t>(n) - merges.size() - 1] = 1;
         }
-        ASSERT_EQ(prune(merges, top), expected) << "round " << i;
+        ASSERT_EQ(prune_regrouped(merges, top), expected) << "round " << i;
     }
 }
 
@@ -334,7 +327,7 @@ TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
     EXPECT_EQ(likeliest_cut(one, std::vector<double>{1, 1, 2}, std::vector<double>{0, 0, 0.1}), std::vector<int32_t>{2});
 }
 
-TEST_F(DendrogramTest, ScoredStopsDifferAndTheClickTakesTheBest) {
+TEST_F(DendrogramTest, StopsDifferAndTheClickTakesTheBest) {
     for (int i = 0; i < sized(2000, 300); ++i) {
         std::vector<double> areas = {whole(1, 5) / 5.0}, scores = {0};
         const int length = whole(1, 30), below = whole(0, length - 1);
@@ -343,7 +336,7 @@ TEST_F(DendrogramTest, ScoredStopsDifferAndTheClickTakesTheBest) {
             scores.push_back(0);
         }
         for (int k = below; k < length; ++k) scores[static_cast<size_t>(k)] = whole(1, 5) / 5.0;
-        const WheelStops wheel = scored_wheel_stops(areas, scores);
+        const WheelStops wheel = wheel_stops(areas, scores);
         ASSERT_FALSE(wheel.stops.empty());
         ASSERT_EQ(wheel.stops.back(), length - 1);
         ASSERT_LT(wheel.start, wheel.stops.size());

@@ -40,7 +40,7 @@ PAIR_RAMPS, NODE_RAMPS = 16, 12
 DIGITS = 4
 PAIRS_A_MODEL = 1200
 ROUNDS_SEEN = 3
-MOST_OVERLAP = 0.85  # as in scored_wheel_stops()
+MOST_OVERLAP = 0.85  # as in wheel_stops()
 
 
 # ---- A sum of ramps (fitted() in regroup.cpp), and its fit by Adam -------------------------------------------------

@@ -8,7 +8,7 @@ score.py documents them. Through the public Python API, one process a core, with
 built is named and gets no file: the score counts it as a failure. Meshes that have a file already are passed over,
 unless --again.
 
---mode paper: the paper's tree, with wheel and cuts by concavity alone.
+--mode paper: the paper's tree, wheel and cuts.
 --rungs: the rungs of the ladder that are allowed. 4, the wrap alone, beside the default shows what the wrap costs.
 --sdf: not Partwheel's hierarchies but CGAL's segmentation by the shape diameter function, made by the program given
 (sdf_bench, built by scripts/bench), as hierarchies of two levels: what a click on one of its segments would take.
@@ -34,7 +34,8 @@ COUNTS = np.arange(2, 41)
 
 def paths_as_tree(hierarchy, face_count):
     """The wheel of every face, as one tree: (parent, first, last, leaf, start). The nodes of a path that two faces
-    share count once from the root down to where the paths part, so each path is exactly that of the wheel."""
+    share count once from the root down to where the paths part, so each path is exactly that of the wheel. But for stops
+    that add no face to the one before, which the benchmark has no notches for: mode paper has them."""
     parent, first, last, known = [], [], [], {}
     leaf, start = np.empty(face_count, np.int64), np.empty(face_count, np.int64)
     of_leaf = {}
@@ -43,6 +44,9 @@ def paths_as_tree(hierarchy, face_count):
         tetrahedron = int(hierarchy.leaf[face])
         if tetrahedron not in of_leaf:
             stops, at = hierarchy.wheel(face)
+            faces = hierarchy.last[stops] - hierarchy.first[stops]
+            at = len(np.unique(faces[:at + 1])) - 1
+            stops = stops[np.flatnonzero(np.diff(faces, prepend=0))]
             above, nodes = -1, []
             for stop in reversed(stops.tolist()):
                 node = known.setdefault((above, stop), len(parent))

@@ -42,7 +42,7 @@ def parse(arguments):
                        help="wrap a sheet (plane, cloth, car door) as a thin solid instead of refusing it")
     build.add_argument("--threads", type=int, default=0, metavar="N", help="at most so many (default: what helps)")
     build.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="regrouped",
-                       help="whether parts are joined as people would (default), or by concavity alone, as in the paper")
+                       help="whether parts are joined as people would (default), or all is as in the paper")
     return parser.parse_args(arguments)
 
 

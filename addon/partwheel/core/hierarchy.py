@@ -212,7 +212,7 @@ class Hierarchy:
         rungs: the ways allowed to a surface that can be filled, a sum of Rung (0: all); the first that works is taken.
         open_surfaces: wrap a sheet (plane, cloth, car door) as a thin solid, instead of refusing it with NOT_SOLID.
         threads: 0 as many as help, else at most so many; the result is the same.
-        mode: Mode.REGROUPED, joined by what people take for parts, or Mode.PAPER, the paper's tree by concavity alone.
+        mode: Mode.REGROUPED, joined by what people take for parts, or Mode.PAPER, the paper's in every step.
         progress(fraction, stage): called in this thread about ten times a second while the build runs in another;
         returning True cancels the build. If it raises, the build is stopped and the exception goes on.
 
@@ -262,7 +262,8 @@ class Hierarchy:
         return self._ask(load().pw_hierarchy_path, np.int32, _number(face))
 
     def wheel(self, face):
-        """((n,) the stops of the wheel after a click on a source face, growing up to the root; the start's index)."""
+        """((n,) the stops of the wheel after a click on a source face, growing up to the root; the start's index). In
+        mode PAPER all of the path, from the leaf."""
         start = c_size_t()
         stops = self._ask(load().pw_hierarchy_wheel, np.int32, _number(face), after=[byref(start)])
         return stops, start.value
@@ -278,9 +279,13 @@ class Hierarchy:
         return self._ask(load().pw_hierarchy_cut_height, np.int32, float(height))
 
     def cut_parts(self, parts):
-        """(parts + 1,) bounds of the cut into this many parts: the last merges undone; in mode PAPER, the one that has
-        the least total concavity."""
+        """(parts + 1,) bounds of the cut into this many parts: the last parts - 1 merges undone."""
         return self._ask(load().pw_hierarchy_cut_parts, np.int32, _number(parts))
+
+    def cut_least_concavity(self, parts):
+        """(parts + 1,) bounds of the cut into this many parts that have the least concavity in total: what suits
+        approximation by convex hulls, of mode PAPER's tree best."""
+        return self._ask(load().pw_hierarchy_cut_least_concavity, np.int32, _number(parts))
 
     def cut_automatic(self):
         """(parts + 1,) bounds of the cut into the parts that people would most likely take."""

@@ -115,6 +115,7 @@ FUNCTIONS = {
     "pw_hierarchy_faces": (c_int, [c_void_p, c_size_t, POINTER(c_void_p), POINTER(c_size_t)]),
     "pw_hierarchy_cut_height": (c_int, [c_void_p, c_double, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_cut_parts": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t)]),
+    "pw_hierarchy_cut_least_concavity": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_cut_automatic": (c_int, [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_hull": (c_int, [c_void_p, c_size_t, c_size_t, POINTER(c_void_p)]),
     "pw_hierarchy_solid": (c_int, [c_void_p, c_size_t, c_size_t, c_void_p, c_size_t, POINTER(c_void_p)]),

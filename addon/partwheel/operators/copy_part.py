@@ -135,7 +135,8 @@ class MESH_OT_partwheel_split(_AsSolid, bpy.types.Operator):
 
     by: bpy.props.EnumProperty(
         name="By", description="What decides where to cut",
-        items=[("PARTS", "Parts", "Into so many parts, those that are nearest to convex"),
+        items=[("PARTS", "Parts", "Into so many parts, those that were joined last"),
+               ("LEAST_CONCAVITY", "Nearly Convex", "Into so many parts, those that are nearest to convex in total"),
                ("HEIGHT", "Height", "Into the largest parts of at most this concavity")],
     )
     parts: bpy.props.IntProperty(name="Parts", description="How many parts", default=6, min=1, soft_max=64, max=4096)
@@ -153,13 +154,14 @@ class MESH_OT_partwheel_split(_AsSolid, bpy.types.Operator):
         layout = self.layout
         layout.use_property_split = True
         layout.prop(self, "by")
-        layout.prop(self, "parts" if self.by == "PARTS" else "height")
+        layout.prop(self, "height" if self.by == "HEIGHT" else "parts")
         for name in ("explode", "hide", "smooth", "material"):
             layout.prop(self, name)
 
     def work(self, context, obj, hierarchy):
         count = min(self.parts, len(hierarchy.tetrahedra))
-        bounds = hierarchy.cut_parts(count) if self.by == "PARTS" else hierarchy.cut_height(self.height)
+        bounds = (hierarchy.cut_height(self.height) if self.by == "HEIGHT" else hierarchy.cut_parts(count)
+                  if self.by == "PARTS" else hierarchy.cut_least_concavity(count))
         made = composition.split(obj, hierarchy, bounds, self.caps(), self.explode)
         only(context, made)
         if self.hide:

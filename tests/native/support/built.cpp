@@ -120,6 +120,7 @@ public:
 
 private:
     bool leaf(size_t n) const { return n < tets_; }
+    bool papers_tree() const { return a_.score[nodes_ - 1] == 0; }
 
     const Handle& handle_;
     pw_arrays a_;
@@ -163,10 +164,14 @@ void Structure::expect_tree() const {
             tet = a_.tet_last[c];
             face = a_.last[c];
             height = std::max(height, a_.height[c]);
-            // Listing 2 leaves no child as high as its parent; regrouping (n has a score, and is above a part) may.
-            const bool regrouped = a_.score[n] > 0 && a_.score[c] > 0;
-            EXPECT_TRUE(leaf(static_cast<size_t>(c)) || a_.height[c] < a_.height[n] ||
-                        (regrouped && a_.height[c] == a_.height[n]));
+            if (leaf(static_cast<size_t>(c))) continue;
+            // Listing 2 leaves no child that costs as much as its parent, or with regrouping that is as high;
+            // regrouping itself (n has a score, and is above a part) may.
+            if (papers_tree())
+                EXPECT_LT(std::pair(a_.cost_class[c], a_.cost[c]), std::pair(a_.cost_class[n], a_.cost[n]));
+            else
+                EXPECT_TRUE(a_.height[c] < a_.height[n] ||
+                            (a_.score[n] > 0 && a_.score[c] > 0 && a_.height[c] == a_.height[n]));
         }
         ASSERT_EQ(tet, a_.tet_last[n]);
         ASSERT_EQ(face, a_.last[n]);
@@ -208,6 +213,11 @@ void Structure::expect_questions() const {
         for (int32_t n = a_.leaf[f]; n >= 0; n = a_.parent[n]) expected.push_back(n);
         ASSERT_EQ(path(handle_, f), expected);
         const Wheel turned = wheel(handle_, f);
+        if (papers_tree()) {
+            EXPECT_EQ(turned.stops, expected);
+            EXPECT_EQ(turned.start, 0U);
+            continue;
+        }
         ASSERT_FALSE(turned.stops.empty());
         ASSERT_LT(turned.start, turned.stops.size());
         EXPECT_EQ(static_cast<size_t>(turned.stops.back()), nodes_ - 1);
@@ -256,13 +266,15 @@ void Structure::expect_questions() const {
     }
     for (const size_t parts : {size_t{1}, size_t{2}, size_t{5}, size_t{40}, tets_}) {
         if (parts > std::min<size_t>(tets_, 4096)) continue;
-        const auto bounds = filled<int32_t>([&](int32_t* out, size_t capacity, size_t* count) {
-            return pw_hierarchy_cut_parts(handle_.get(), parts, out, capacity, count);
-        });
-        ASSERT_EQ(bounds.size(), parts + 1);
-        EXPECT_EQ(bounds.front(), 0);
-        EXPECT_EQ(static_cast<size_t>(bounds.back()), tets_);
-        for (size_t k = 0; k < parts; ++k) EXPECT_TRUE(clusters.contains({bounds[k], bounds[k + 1]}));
+        for (const auto cut : {pw_hierarchy_cut_parts, pw_hierarchy_cut_least_concavity}) {
+            const auto bounds = filled<int32_t>([&](int32_t* out, size_t capacity, size_t* count) {
+                return cut(handle_.get(), parts, out, capacity, count);
+            });
+            ASSERT_EQ(bounds.size(), parts + 1);
+            EXPECT_EQ(bounds.front(), 0);
+            EXPECT_EQ(static_cast<size_t>(bounds.back()), tets_);
+            for (size_t k = 0; k < parts; ++k) EXPECT_TRUE(clusters.contains({bounds[k], bounds[k + 1]}));
+        }
     }
 }
 

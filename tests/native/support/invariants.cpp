@@ -63,7 +63,7 @@ public:
     void expect_measures() const;
     void expect_faces() const;
     void expect_hulls() const;
-    void expect_star() const;
+    void expect_convex_nodes() const;
 
 private:
     bool leaf(size_t n) const { return n < tets_; }
@@ -197,7 +197,10 @@ void Invariants::expect_hulls() const {
     EXPECT_NEAR(s.hull_volume - s.volume, concavity, 1e-8 * concavity + 1.1 * convex_tolerance * s.hull_volume);
 }
 
-void Invariants::expect_star() const {
+// In mode "paper" whatever is convex stays (Eq. 3), else the root alone.
+void Invariants::expect_convex_nodes() const {
+    for (size_t n = 0; n < nodes_; ++n) EXPECT_EQ(a_.cost_class[n], 0);
+    if (a_.score[nodes_ - 1] == 0) return;
     EXPECT_EQ(nodes_, tets_ == 1 ? 1 : tets_ + 1);
     for (size_t t = 0; t + 1 < nodes_; ++t) EXPECT_EQ(static_cast<size_t>(a_.parent[t]), nodes_ - 1);
 }
@@ -214,7 +217,7 @@ void expect_invariants(const Handle& handle, const TriMesh& mesh, double volume,
     invariants.expect_measures();
     invariants.expect_faces();
     invariants.expect_hulls();
-    if (convex) invariants.expect_star();
+    if (convex) invariants.expect_convex_nodes();
 }
 
 }  // namespace partwheel::test
