@@ -71,8 +71,8 @@ def _read_with_trimesh(path):
 
 
 def _placed(scene, matrix, name):
-    """(points (n,3), triangles (m,3)) of a piece of the scene where the matrix has it, or None if it has no triangles. By
-    hand: Scene.dump() would copy what the piece looks like as well, which fails without the package for pictures."""
+    """(points (n,3), triangles (m,3)) of a piece of the scene where the matrix has it, or None if it has no triangles.
+    By hand: Scene.dump() would copy what the piece looks like as well, which fails without the package for pictures."""
     piece = scene.geometry[name]
     triangles = piece.faces if hasattr(piece, "faces") else _of_strips(piece)
     if not len(triangles):
@@ -85,8 +85,8 @@ def _placed(scene, matrix, name):
 
 
 def _of_strips(cloud):
-    """The triangles of a PLY file's element "tristrips", which trimesh reads but takes for no surface: each corner makes
-    one with the two before it, every other one turned; -1 begins anew."""
+    """The triangles of a PLY file's element "tristrips", which trimesh reads but takes for no surface: each corner
+    makes one with the two before it, every other one turned; -1 begins anew."""
     strips = cloud.metadata.get("_ply_raw", {}).get("tristrips", {}).get("data")
     if strips is None:
         return np.zeros((0, 3), int)
