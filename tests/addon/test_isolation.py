@@ -22,11 +22,14 @@ class Isolation(MeshTest):
         directory = tempfile.TemporaryDirectory()
         cls.addClassCleanup(directory.cleanup)
         cls.library = faults.library(part("core.library").load()._name, directory.name)
+        cls.sound = part("core.worker").ENTRY
+        cls.entry = faults.entry(cls.sound, cls.library, directory.name)
 
     def harm(self, fault, stage):
         """From now on, and to the end of the test, workers come to harm; Blender itself has loaded the real library."""
-        self.addCleanup(os.environ.pop, "PARTWHEEL_LIBRARY", None)
-        os.environ.update(PARTWHEEL_LIBRARY=self.library, PARTWHEEL_FAULT=f"{fault}:{stage}")
+        self.addCleanup(setattr, part("core.worker"), "ENTRY", self.sound)
+        part("core.worker").ENTRY = self.entry
+        os.environ["PARTWHEEL_FAULT"] = f"{fault}:{stage}"
 
     def edited(self, name="cross_quad"):
         """A mesh in Edit Mode with a selection, its active face and a history."""
@@ -142,6 +145,16 @@ class Isolation(MeshTest):
         obj, _ = self.edited()
         self.harm("segv", 1)
         self.refusal(bpy.ops.mesh.partwheel_build)
-        os.environ.pop("PARTWHEEL_LIBRARY")
+        part("core.worker").ENTRY = self.sound
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=3), {"FINISHED"})
         self.assertEqual(len(part("session").hierarchy(obj).order), len(obj.data.polygons))
+
+    def test_what_is_installed_loads_no_other_library(self):
+        """Tests and sanitizers name one in the environment; whoever else can set that must not get it into Blender."""
+        os.environ.update(PARTWHEEL_LIBRARY=self.library, PARTWHEEL_FAULT="segv:0")
+        self.addCleanup(os.environ.pop, "PARTWHEEL_LIBRARY")
+        obj = self.add(*read_off("cross_quad"))
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+        self.assertEqual(len(part("session").hierarchy(obj).order), len(obj.data.polygons))
+        loaded = part("core.library").load.__wrapped__()._name  # once more, as the first time
+        self.assertNotEqual(Path(loaded).resolve(), Path(self.library).resolve())

@@ -291,8 +291,8 @@ def available_memory():
 
 
 def _no_worker(sentence):
-    return WorkerError("worker", f"{sentence} {HARMLESS} Say which Python 3 is to be used: Python in the add-on's "
-                                 "preferences, or the argument python.")
+    return WorkerError("worker", f"{sentence} {HARMLESS} If it stays so, say which Python 3 is to run it: Python in the "
+                                 "add-on's preferences, or the argument python.")
 
 
 def _raising(error):
