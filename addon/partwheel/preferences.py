@@ -29,6 +29,11 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
                                        "for each 60,000 triangles, far more than builds take",
         default=0, min=0, soft_max=60,
     )
+    python: bpy.props.StringProperty(
+        name="Python", description="The program that parts are found with, a Python 3, in a process of its own; empty: "
+                                   "the one that Blender brings, or else one that is installed",
+        default="", subtype="FILE_PATH",
+    )
     show_part: bpy.props.BoolProperty(
         name="Part", description="Tint the part that is held",
         default=True,
@@ -50,7 +55,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
     def draw(self, _context):
         column = self.layout.column()
         column.use_property_split = True
-        for name in ("parts", "save_with_file", "memory_share", "time_limit"):
+        for name in ("parts", "save_with_file", "memory_share", "time_limit", "python"):
             column.prop(self, name)
         draw_overlays(column)
 
@@ -72,7 +77,7 @@ def preferences():
 
 
 class Defaults:
-    parts, save_with_file, memory_share, time_limit = "REGROUPED", True, 80, 0
+    parts, save_with_file, memory_share, time_limit, python = "REGROUPED", True, 80, 0, ""
     show_part, show_next, show_hull, show_cut = True, True, False, False
 
 

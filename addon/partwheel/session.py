@@ -198,7 +198,8 @@ class Build:
         share, seconds = preferences().memory_share / 100, 60 * preferences().time_limit
         self.job = Job(*mesh_arrays.surface(mesh), quality=quality, open_surfaces=self._open_surfaces,
                        mode=Mode[preferences().parts] if mode is None else mode,
-                       memory_limit=int(share * available_memory()), time_limit=seconds or None)
+                       memory_limit=int(share * available_memory()), time_limit=seconds or None,
+                       python=bpy.path.abspath(preferences().python))
         _running = self
 
     def cancel(self):

@@ -4,12 +4,14 @@
 import contextlib
 import os
 import signal
+import subprocess
 import sys
 import tempfile
 import threading
 from pathlib import Path
 
 import bpy
+import common
 from common import MeshTest, alive, flags, part, read_off, until
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "faults"))
@@ -21,12 +23,16 @@ class Isolation(MeshTest):
     def setUpClass(cls):
         directory = tempfile.TemporaryDirectory()
         cls.addClassCleanup(directory.cleanup)
+        cls.directory = Path(directory.name)
         cls.library = faults.library(part("core.library").load()._name, directory.name)
+        cls.sound = part("core.worker").ENTRY
+        cls.entry = faults.entry(cls.sound, cls.library, directory.name)
 
     def harm(self, fault, stage):
         """From now on, and to the end of the test, workers come to harm; Blender itself has loaded the real library."""
-        self.addCleanup(os.environ.pop, "PARTWHEEL_LIBRARY", None)
-        os.environ.update(PARTWHEEL_LIBRARY=self.library, PARTWHEEL_FAULT=f"{fault}:{stage}")
+        self.addCleanup(setattr, part("core.worker"), "ENTRY", self.sound)
+        part("core.worker").ENTRY = self.entry
+        os.environ["PARTWHEEL_FAULT"] = f"{fault}:{stage}"
 
     def edited(self, name="cross_quad"):
         """A mesh in Edit Mode with a selection, its active face and a history."""
@@ -142,6 +148,40 @@ class Isolation(MeshTest):
         obj, _ = self.edited()
         self.harm("segv", 1)
         self.refusal(bpy.ops.mesh.partwheel_build)
-        os.environ.pop("PARTWHEEL_LIBRARY")
+        part("core.worker").ENTRY = self.sound
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=3), {"FINISHED"})
         self.assertEqual(len(part("session").hierarchy(obj).order), len(obj.data.polygons))
+
+    def test_a_hostile_path(self):
+        """Where python and python3 of the PATH are shims that fail, hang, or are not there, Blender started anew finds
+        parts all the same: in Debian's, sys.executable is what the PATH has."""
+        script = self.directory / "build.py"
+        script.write_text("import bpy, sys\n"
+                          f"bpy.ops.preferences.addon_enable(module={common.MODULE!r})\n"
+                          "print('executable', sys.executable)\n"
+                          "bpy.ops.mesh.primitive_cube_add()\n"
+                          "print('built', bpy.ops.mesh.partwheel_build())\n")
+        own = Path(bpy.app.binary_path or "python").name.startswith("blender")
+        command = [bpy.app.binary_path, "-b", "-noaudio", "--factory-startup", "--python"] if own else [sys.executable]
+        for name, does in (("fail", "exit 127"), ("hang", "exec /bin/sleep 1000"), ("none", None)):
+            with self.subTest(name):
+                path = self.directory / name
+                path.mkdir()
+                for program in (path / "python", path / "python3") if does else ():
+                    program.write_text(f"#!/bin/sh\n{does}\n")
+                    program.chmod(0o755)
+                run = subprocess.run([*command, str(script)], capture_output=True, text=True,
+                                     env={**os.environ, "PATH": str(path)})
+                self.assertIn("built {'FINISHED'}", run.stdout, run.stderr)
+                if own and sys.prefix == "/usr":  # it is as told above
+                    self.assertIn(f"executable {path / 'python' if does else None}\n", run.stdout)
+
+    def test_what_is_installed_loads_no_other_library(self):
+        """Tests and sanitizers name one in the environment; whoever else can set that must not get it into Blender."""
+        os.environ.update(PARTWHEEL_LIBRARY=self.library, PARTWHEEL_FAULT="segv:0")
+        self.addCleanup(os.environ.pop, "PARTWHEEL_LIBRARY")
+        obj = self.add(*read_off("cross_quad"))
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+        self.assertEqual(len(part("session").hierarchy(obj).order), len(obj.data.polygons))
+        loaded = part("core.library").load.__wrapped__()._name  # once more, as the first time
+        self.assertNotEqual(Path(loaded).resolve(), Path(self.library).resolve())

@@ -1,10 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reading mesh files: nothing merged, polygons kept, corners welded only where a format keeps them apart."""
 
+import json
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 import shapes
 import trimesh
+from conftest import ROOT
 from partwheel.core import Hierarchy, meshes, polygons
 
 
@@ -42,6 +48,87 @@ def test_other_formats_through_trimesh(suffix, tmp_path, build_shape):
     assert (mesh.welded > 0) == (suffix == "stl")
     # The coordinates were rounded on the way, so only the volume must be the same.
     assert Hierarchy.build(*mesh[:4]).summary.volume == pytest.approx(h.summary.volume, rel=1e-5)
+
+
+POINTS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+TETRAHEDRON = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
+
+
+def corners(vertices, triangles):
+    """The triangles as a set of points, each turned so that its least point is first: whatever the order in a file."""
+    points = [[tuple(vertices[corner]) for corner in triangle] for triangle in triangles]
+    return {tuple(triangle[triangle.index(min(triangle)):] + triangle[:triangle.index(min(triangle))])
+            for triangle in points}
+
+
+def ply(form, elements, *values):
+    """A file with the tetrahedron's points and more elements; values: (format for numpy, numbers)."""
+    header = ["ply", f"format {form} 1.0", "comment TextureFile skin.png", "element vertex 4",
+              *(f"property float {axis}" for axis in "xyz"), *elements, "end_header", ""]
+    rows = [*(("f4", point) for point in POINTS), *values]
+    if form == "ascii":
+        body = "".join(" ".join(map(str, row)) + "\n" for _, row in rows).encode()
+    else:
+        order = {"binary_little_endian": "<", "binary_big_endian": ">"}[form]
+        body = b"".join(np.array(row, order + kind).tobytes() for kind, row in rows)
+    return "\n".join(header).encode() + body
+
+
+def test_textures_are_not_looked_at(tmp_path):
+    """Python's package for pictures may be missing, and so may the pictures, or be none."""
+    seams = "".join(f"f {' '.join(f'{corner + 1}/{side + 1}' for corner in triangle)}\n"
+                    for side, triangle in enumerate(TETRAHEDRON))
+    points = "".join(f"v {x} {y} {z}\n" for x, y, z in POINTS)
+    model = f"{points}vt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\nusemtl skin\n{seams}"
+    (tmp_path / "skin.mtl").write_text("newmtl skin\nKd 1 1 1\nmap_Kd skin.png\n")
+    (tmp_path / "skin.png").write_bytes(b"\x89PNG\r\n\x1a\n")
+    (tmp_path / "a.obj").write_text(f"mtllib skin.mtl\n{model}")
+    (tmp_path / "b.obj").write_text(f"mtllib missing.mtl\n{model}")
+    (tmp_path / "c.obj").write_text(model)
+    (tmp_path / "d.ply").write_bytes(ply(
+        "ascii", ["element face 4", "property list uchar int vertex_indices", "property list uchar float texcoord"],
+        *((None, (3, *triangle, 6, *range(6 * side, 6 * side + 6))) for side, triangle in enumerate(TETRAHEDRON))))
+    (tmp_path / "PIL.py").write_text("raise ImportError('none here')")
+    script = ("import json, sys\nfrom partwheel.core import meshes\n"
+              "for path in sys.argv[1:]:\n"
+              "    mesh = meshes.read(path)\n"
+              "    print(json.dumps([mesh.vertices.tolist(), mesh.triangles.tolist()]))")
+    files = sorted([*tmp_path.glob("*.obj"), *tmp_path.glob("*.ply")])
+    run = subprocess.run([sys.executable, "-c", script, *files], capture_output=True, text=True,
+                         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT / "addon")])})
+    assert run.returncode == 0, run.stderr
+    for file, line in zip(files, run.stdout.splitlines(), strict=True):
+        vertices, triangles = json.loads(line)
+        assert len(vertices) == 4 and corners(vertices, triangles) == corners(POINTS, TETRAHEDRON), file
+
+
+STANFORD = [[0, 2, 1, 3, -1, 2, 0, 3, -1]]
+SEVERAL = [[0, 2, 1, 3], [2, 0, 3, 3]]  # with a triangle that is none
+
+
+@pytest.mark.parametrize(("form", "strips"), [
+    ("ascii", STANFORD), ("binary_little_endian", STANFORD), ("binary_big_endian", STANFORD), ("ascii", SEVERAL),
+    ("binary_little_endian", SEVERAL), ("ascii", [[0, 2, 1, 3], [2, 0, 3]])])
+def test_ply_with_strips_of_triangles(form, strips, tmp_path):
+    path = tmp_path / "strips.ply"
+    path.write_bytes(ply(form, [f"element tristrips {len(strips)}", "property list int int vertex_indices"],
+                         *(("i4", [len(strip), *strip]) for strip in strips)))
+    mesh = meshes.read(path)
+    triangles = [(0, 2, 1), (1, 2, 3), (2, 0, 3)]
+    assert len(mesh.triangles) == 3 and corners(mesh.vertices, mesh.triangles) == corners(POINTS, triangles)
+
+
+def test_instances_stand_where_the_scene_has_them(tmp_path):
+    """A glTF file's nodes turn, scale and mirror the same triangles; a mirror image is turned outside out."""
+    box = trimesh.creation.box()
+    scene = trimesh.Scene()
+    scene.add_geometry(box, geom_name="box", transform=trimesh.transformations.translation_matrix((3, 0, 0)))
+    scene.graph.update("mirrored", geometry="box", matrix=np.diag([-2.0, 1, 1, 1]))
+    scene.export(tmp_path / "boxes.glb")
+    mesh = meshes.read(tmp_path / "boxes.glb")
+    whole = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False)
+    assert sorted(part.volume for part in whole.split()) == pytest.approx([1, 2])
+    assert whole.bounds.tolist() == [[-1, -0.5, -0.5], [3.5, 0.5, 0.5]]
 
 
 def test_every_concave_polygon_is_cut_without_overlap():

@@ -144,13 +144,6 @@ def test_two_at_once(build_shape):
         assert job.result().save() == build_shape(name)[1].save()
 
 
-def test_a_worker_that_can_not_be_started(monkeypatch):
-    monkeypatch.setattr(sys, "executable", "/nowhere/python")
-    with pytest.raises(WorkerError, match="could not be started") as failed:
-        Job(*shapes.cube()).result()
-    assert failed.value.name == "worker"
-
-
 def test_the_worker_is_started_by_the_caller_itself(monkeypatch):
     """A thread with much Python to run is a danger to Blender: see Job."""
     starters, popen = [], subprocess.Popen

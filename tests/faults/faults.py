@@ -14,6 +14,14 @@ def compiled(source, target, *options):
     return str(target)
 
 
+def entry(real, library, directory):
+    """The path of a program in this directory that is the worker's, the real one, but uses this library."""
+    real, path = Path(real).resolve(), Path(directory) / "entry.py"
+    path.write_text(f"import runpy, sys\nsys.path.insert(0, {str(real.parent)!r})\nimport library\n"
+                    f"library.LIBRARY = {str(library)!r}\nrunpy.run_path({str(real)!r}, run_name='__main__')\n")
+    return path
+
+
 def library(real, directory):
     """The path of a library in this directory that is the real one, save for what faults.c says."""
     real = Path(real).resolve()

@@ -10,6 +10,8 @@ from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_size_t, c_uint
 from pathlib import Path
 
 FILE_NAME = {"win32": "partwheel.dll", "darwin": "libpartwheel.dylib"}.get(sys.platform, "libpartwheel.so")
+LIBRARY = Path(__file__).resolve().with_name(FILE_NAME)
+SOURCES = LIBRARY.parent / "../../../native/src"
 
 
 class Status(enum.IntEnum):
@@ -164,7 +166,9 @@ class PartwheelError(Exception):
 @functools.cache
 def load():
     """The native library with every function's types declared. Raises LibraryError."""
-    path = os.environ.get("PARTWHEEL_LIBRARY") or str(Path(__file__).with_name(FILE_NAME))
+    # Another one, for tests and sanitizers, in the source tree alone: what is installed loads what it brings.
+    other = SOURCES.is_dir() and os.environ.get("PARTWHEEL_LIBRARY")
+    path = other or str(LIBRARY)
     try:
         library = ctypes.CDLL(path)
     except OSError as error:

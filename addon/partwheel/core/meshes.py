@@ -49,22 +49,58 @@ def _read_with_trimesh(path):
             "pip install trimesh. OFF files are read without it."
         ) from error
     try:
-        scene = trimesh.load(path, process=False, force="scene")
-        pieces = [piece for piece in scene.dump() if isinstance(piece, trimesh.Trimesh)]
+        suffix = path.suffix.lower().lstrip(".")
+        # Geometry alone: for pictures trimesh would need another package.
+        options = {"fix_texture": False} if suffix == "ply" else {}  # or it splits vertices along texture seams
+        scene = trimesh.load(path, process=False, force="scene", skip_materials=True, **options)
+        pieces = [piece for node in scene.graph.nodes_geometry if (piece := _placed(scene, *scene.graph[node]))]
     except Exception as error:  # trimesh's readers raise whatever their parsing meets
         raise MeshFileError(f"trimesh can't read {path.name} as a mesh: {error}") from error
     if not pieces:
         raise MeshFileError(f"{path.name} holds no triangles; only surfaces can be built.")
-    offsets = np.cumsum([0] + [len(piece.vertices) for piece in pieces])
-    vertices = np.vstack([np.asarray(piece.vertices, np.float64) for piece in pieces])
-    triangles = np.vstack([piece.faces + offset for piece, offset in zip(pieces, offsets)])
+    offsets = np.cumsum([0] + [len(points) for points, _ in pieces])
+    vertices = np.vstack([points for points, _ in pieces])
+    triangles = np.vstack([triangles + offset for (_, triangles), offset in zip(pieces, offsets)])
     welded = 0
-    if path.suffix.lower().lstrip(".") not in INDEXED_FORMATS:
+    if suffix not in INDEXED_FORMATS:
         unique, index = np.unique(vertices + 0.0, axis=0, return_inverse=True)  # + 0.0: -0.0 is 0.0
         welded = len(vertices) - len(unique)
         vertices, triangles = unique, index.reshape(-1)[triangles]
     return Mesh(np.ascontiguousarray(vertices), np.ascontiguousarray(triangles, np.int32),
                 np.arange(len(triangles), dtype=np.int32), len(triangles), welded)
+
+
+def _placed(scene, matrix, name):
+    """(points (n,3), triangles (m,3)) of a piece of the scene where the matrix has it, or None if it has no triangles.
+    By hand: Scene.dump() would copy what the piece looks like as well, which fails without the package for pictures."""
+    piece = scene.geometry[name]
+    triangles = piece.faces if hasattr(piece, "faces") else _of_strips(piece)
+    if not len(triangles):
+        return None
+    points = np.asarray(piece.vertices, np.float64)
+    if (matrix == np.eye(4)).all():
+        return points, triangles
+    turned = np.linalg.det(matrix[:3, :3]) < 0
+    return points @ matrix[:3, :3].T + matrix[:3, 3], triangles[:, ::-1] if turned else triangles
+
+
+def _of_strips(cloud):
+    """The triangles of a PLY file's element "tristrips", which trimesh reads but takes for no surface: each corner
+    makes one with the two before it, every other one turned; -1 begins anew."""
+    strips = cloud.metadata.get("_ply_raw", {}).get("tristrips", {}).get("data")
+    if strips is None:
+        return np.zeros((0, 3), int)
+    lists = strips["vertex_indices"]
+    triangles = []
+    for row in lists["f1"] if lists.dtype.names else lists:
+        for strip in np.split(row, np.flatnonzero(row < 0)):
+            strip = strip[strip >= 0]
+            found = np.column_stack([strip[:-2], strip[1:-1], strip[2:]])
+            found[1::2, :2] = found[1::2, 1::-1]
+            triangles.append(found)
+    triangles = np.vstack(triangles)
+    flat = (triangles == np.roll(triangles, 1, axis=1)).any(axis=1)  # these only steer the strip
+    return triangles[~flat]
 
 
 def _read_off(path):

@@ -6,14 +6,14 @@ side that the other has died. The other side is worker_process.py.
 """
 
 import json
-import signal
 import struct
 import subprocess
-import sys
 import threading
 import time
 from pathlib import Path
 
+from . import interpreter
+from .ending import ending
 from .hierarchy import Hierarchy, checked_surface
 from .library import Mode, PartwheelError, Rung, Status, load
 
@@ -24,6 +24,7 @@ SECONDS, SECONDS_PER_TRIANGLE = 120, 0.002
 WATCH_SECONDS = 0.1  # between two looks at what the worker has taken
 # One wait of result(), which has several: a Ctrl-C that comes just before a wait without end would not be noticed in it.
 WAIT_SECONDS = 0.1
+SEARCH_SECONDS = 0.01  # between two looks whether a Python was found
 # A message to or from the worker: kind, length, then so many bytes.
 MESSAGE = struct.Struct("<cQ")
 
@@ -47,6 +48,8 @@ class Job:
     time_limit: seconds of processor time that one process may take, all its threads together, so that a machine busy
     with other things stops no build; and seconds by the clock in which it may do nothing at all (None: two minutes and
     2 ms a triangle).
+    python: the path of the Python that runs the worker, if it does; "": see interpreter.candidates(). Which one does is
+    found out once, beside what the caller does: the worker starts when one was found and any method is called.
 
     A worker that crashes, exits, or goes beyond a limit is followed by another that begins at the rung of the ladder
     after the one it tried, if there is one; failures holds a WorkerError for each. Every method may be called from any
@@ -54,7 +57,7 @@ class Job:
     """
 
     def __init__(self, vertices, triangles, faces=None, face_count=None, *, quality=0.0, rungs=0, open_surfaces=False,
-                 threads=0, mode=Mode.REGROUPED, memory_limit=None, time_limit=None):
+                 threads=0, mode=Mode.REGROUPED, memory_limit=None, time_limit=None, python=""):
         load()  # a missing library is better told here
         self._arrays, self._face_count = checked_surface(vertices, triangles, faces, face_count)
         self._options = {"quality": float(quality), "open_surfaces": int(open_surfaces), "threads": threads,
@@ -65,26 +68,28 @@ class Job:
         self._time_limit = time_limit or SECONDS + SECONDS_PER_TRIANGLE * len(self._arrays[1])
         self.failures = []
         self._progress = 0.0, "surface"
-        self._work, self._seen_working = 0.0, 0.0  # of this worker: processor time, and when that last grew
-        self._lock = threading.Lock()  # for the two below
+        # Of this worker: whether it has begun to answer; processor time, and when that last grew.
+        self._answered, self._work, self._seen_working = False, 0.0, 0.0
+        self._lock = threading.RLock()  # for the four below
+        self._search, self._python = interpreter.Search(python), None
         self._process = None
         self._cancelled = False
         self._hierarchy = self._error = None
         self._done = threading.Event()  # not is_alive(), which may say no too early after Ctrl-C (bpo-45274)
-        # Not in the thread, which so has little Python left to run: with Python up to 3.11 Blender takes any thread's
-        # hold of the interpreter for its own, and may crash (seen in 3.4) where a script calls an operator under
-        # temp_override() that starts a build.
-        launched = self._launch()
-        self._thread = threading.Thread(target=self._run, args=[launched], name="partwheel-job", daemon=True)
-        self._thread.start()
+        self._thread = None
+        self._begin()
 
     def poll(self):
         """(fraction 0..1 that never falls, name of the stage) while it runs; None once result() won't block."""
+        self._begin()
         return None if self._done.is_set() else self._progress
 
     def wait(self, seconds):
         """Waits so long at most, and says whether the job is done."""
-        return self._done.wait(seconds)
+        end = time.monotonic() + seconds
+        while self.poll() and self._search and time.monotonic() < end:
+            self._done.wait(SEARCH_SECONDS)
+        return self._done.wait(max(0.0, end - time.monotonic()))
 
     def cancel(self):
         """Kills the worker at once. result() then raises PartwheelError with Status.CANCELLED, unless it was done."""
@@ -92,6 +97,7 @@ class Job:
             self._cancelled = True
             if self._process:
                 self._process.kill()
+            self._begin()
 
     def result(self):
         """Waits for the end: the Hierarchy. Raises PartwheelError: what is wrong with the surface, that the build was
@@ -109,8 +115,29 @@ class Job:
 
     @property
     def process_id(self):
-        """Of the worker that runs now, or ran last; None if none could be started."""
+        """Of the worker that runs now, or ran last; None if there is none yet, or none could be started."""
+        self._begin()
         return self._process and self._process.pid
+
+    def _begin(self):
+        """Starts the worker as soon as there is a Python for it, and the job's thread. Not in that thread, which so has
+        little Python left to run: with Python up to 3.11 Blender takes any thread's hold of the interpreter for its
+        own, and may crash (seen in 3.4) where a script calls an operator under temp_override() that starts a build.
+        """
+        with self._lock:
+            if not self._search:
+                return
+            try:
+                self._python = self._search.poll()
+                if not self._python and not self._cancelled:
+                    return
+                launched = self._launch()
+            except interpreter.NoInterpreter as reason:
+                launched = _raising(_no_worker(f"There is no Python to run the worker process: {reason}."))
+            self._search.close()
+            self._search = None
+            self._thread = threading.Thread(target=self._run, args=[launched], name="partwheel-job", daemon=True)
+            self._thread.start()
 
     def _launch(self):
         """Starts a worker process: a function that gives it, or raises why there is none."""
@@ -118,13 +145,10 @@ class Job:
             if self._cancelled:
                 return _raising(PartwheelError(Status.CANCELLED, "The build was cancelled."))
             try:
-                # -I: nothing of this process's Python, such as Blender's paths, reaches the worker. -S, -B: it starts
-                # faster, and writes no bytecode.
-                self._process = process = subprocess.Popen(
-                    [sys.executable, "-I", "-S", "-B", str(ENTRY)], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                    creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0))
+                self._process = process = interpreter.start(self._python, str(ENTRY), stdin=subprocess.PIPE,
+                                                            stdout=subprocess.PIPE)
             except OSError as error:
-                return _raising(WorkerError("worker", f"The worker process could not be started: {error}."))
+                return _raising(_no_worker(f"The worker process could not be started: {error}."))
         return lambda: process
 
     # ---- In the job's thread ---------------------------------------------------------------------------------------
@@ -139,7 +163,8 @@ class Job:
                     return
                 except WorkerError as error:
                     self.failures.append(error)
-                    if error.name == "worker":
+                    if error.name == "worker":  # the next would not start either
+                        interpreter.forget()
                         break
                 launched = None
                 rungs &= -2 * self._rung  # those after it
@@ -152,7 +177,7 @@ class Job:
     def _attempt(self, launched, rungs):
         """One worker process from start to end: the Hierarchy, or raises PartwheelError."""
         process = launched()
-        self._work, self._seen_working = 0.0, time.monotonic()
+        self._answered, self._work, self._seen_working = False, 0.0, time.monotonic()
         over, late = threading.Event(), []
 
         def watch():
@@ -188,7 +213,9 @@ class Job:
             raise WorkerError("time limit", f"The build was still in the stage {self._progress[1]} after "
                                             f"{self._time_limit:g} seconds {late[0]} and was stopped. {HARMLESS} A "
                                             "mesh with fewer faces (Decimate, or a voxel remesh) is faster.")
-        raise WorkerError("crash", f"The worker process {_ending(process.returncode)} in the stage {self._progress[1]}."
+        if not self._answered:
+            raise _no_worker(f"The worker process {ending(process.returncode)} before it began.")
+        raise WorkerError("crash", f"The worker process {ending(process.returncode)} in the stage {self._progress[1]}."
                                    f" {HARMLESS} Merging vertices by distance, or a voxel remesh, often helps.")
 
     def _send(self, pipe, rungs):
@@ -215,6 +242,7 @@ class Job:
             payload = _read(pipe, length)
             if len(payload) < length:
                 return None
+            self._answered = True
             try:
                 if kind == b"H":
                     return self._loaded(payload, seconds)
@@ -225,7 +253,7 @@ class Job:
                     seconds = {str(stage): float(value) for stage, value in values.items()}
                 else:
                     fraction, stage, rung, work = values
-                    self._rung = Rung(rung)
+                    self._rung = max(self._rung, Rung(rung))  # before it tries any, a context tells the first of all
                     if float(work) > self._work:
                         self._work, self._seen_working = float(work), time.monotonic()
                     self._progress = max(self._progress[0], float(fraction)), str(stage)
@@ -262,6 +290,11 @@ def available_memory():
         return 0
 
 
+def _no_worker(sentence):
+    return WorkerError("worker", f"{sentence} {HARMLESS} If it stays so, say which Python 3 is to run it: Python in the "
+                                 "add-on's preferences, or the argument python.")
+
+
 def _raising(error):
     """An answer that is this error."""
     def answer():
@@ -279,15 +312,3 @@ def _read(pipe, length):
         pieces.append(piece)
         length -= len(piece)
     return b"".join(pieces)
-
-
-def _ending(code):
-    """How a process ended, in words."""
-    if code == -getattr(signal, "SIGKILL", 9):
-        return "was killed (SIGKILL, perhaps for want of memory)"
-    if code < 0:
-        try:
-            return f"crashed ({signal.Signals(-code).name})"
-        except ValueError:
-            return f"crashed (signal {-code})"
-    return f"ended without an answer (exit code {code})"

@@ -128,13 +128,11 @@ def build(header, arrays, answers):
     if load().pw_context_create(byref(context)):
         raise MemoryError
     thread = Build(context, header, arrays)
+    report(context, answers)  # that it has begun: one that ends before this could not be started
     thread.start()
-    fraction, stage, rung = c_double(), c_int(), c_int()
     while thread.is_alive():
         thread.join(TICK)
-        load().pw_context_progress(context, byref(fraction), byref(stage))
-        load().pw_context_rung(context, byref(rung))
-        send(answers, b"P", [fraction.value, load().pw_stage_name(stage.value).decode(), rung.value, work()])
+        report(context, answers)
     seconds = (c_double * STAGE_COUNT)()
     load().pw_context_seconds(context, seconds)
     send(answers, b"S", {load().pw_stage_name(each).decode(): seconds[each] for each in Stage})
@@ -142,6 +140,13 @@ def build(header, arrays, answers):
         send(answers, b"E", {"status": thread.status, "message": thread.message})
     else:
         send(answers, b"H", saved(thread.hierarchy))
+
+
+def report(context, answers):
+    fraction, stage, rung = c_double(), c_int(), c_int()
+    load().pw_context_progress(context, byref(fraction), byref(stage))
+    load().pw_context_rung(context, byref(rung))
+    send(answers, b"P", [fraction.value, load().pw_stage_name(stage.value).decode(), rung.value, work()])
 
 
 def work():

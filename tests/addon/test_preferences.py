@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the preferences of builds do, seen from the worker's side: a program in its place says what it was told."""
+
+import sys
+import tempfile
+from pathlib import Path
+
+import bpy
+import common
+from common import BOX, MeshTest, part
+
+# Reads all that the worker is told, and writes the answer that follows below.
+TOLD = """
+import json, os, struct, sys, time
+message = struct.Struct("<cQ")
+header = json.loads(sys.stdin.buffer.read(message.unpack(sys.stdin.buffer.read(message.size))[1]))
+sys.stdin.buffer.read(sum(header["sizes"]))
+def answer(kind, value):
+    text = json.dumps(value).encode()
+    sys.stdout.buffer.write(message.pack(kind, len(text)) + text)
+    sys.stdout.buffer.flush()
+"""
+REFUSES = TOLD + "answer(b'E', {'status': 13, 'message': ''})"
+WORKS = TOLD + "answer(b'P', [0.5, 'cluster', 1, 1e6])\nos.read(0, 1)"  # says that it has worked for days; to the end
+
+
+class Preferences(MeshTest):
+    def setUp(self):
+        super().setUp()
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.directory = Path(directory.name)
+        self.preferences = bpy.context.preferences.addons[common.MODULE].preferences
+        self.add(*BOX)
+
+    def set(self, name, value):
+        self.addCleanup(setattr, self.preferences, name, getattr(self.preferences, name))
+        setattr(self.preferences, name, value)
+
+    def worker(self, program):
+        """From now on workers run this."""
+        entry = self.directory / "entry.py"
+        entry.write_text(program)
+        self.addCleanup(setattr, part("core.worker"), "ENTRY", part("core.worker").ENTRY)
+        part("core.worker").ENTRY = entry
+
+    def refusal(self):
+        with self.assertRaises(RuntimeError) as refused:
+            bpy.ops.mesh.partwheel_build()
+        return str(refused.exception)
+
+    def test_memory_is_a_share_of_what_is_available(self):
+        session = part("session")
+        self.addCleanup(setattr, session, "available_memory", session.available_memory)
+        session.available_memory = lambda: 10 * 2**30
+        self.worker(REFUSES)
+        self.assertIn("It may use 8.0 GiB", self.refusal())
+        for share in (25, 100):
+            self.set("memory_share", share)
+            self.assertIn(f"It may use {share / 10:.1f} GiB", self.refusal())
+
+    def test_the_time_limit_is_in_minutes(self):
+        self.worker(WORKS)
+        self.assertIn("after 120.024 seconds of work", self.refusal())  # two, and 2 ms for each of 12 triangles
+        for minutes in (1, 7):
+            self.set("time_limit", minutes)
+            self.assertIn(f"after {60 * minutes} seconds of work", self.refusal())
+
+    def test_the_python(self):
+        program, log = self.directory / "python", self.directory / "log"
+        program.write_text(f'#!/bin/sh\necho "$@" >> "{log}"\nexec "{sys.executable}" "$@"\n')
+        program.chmod(0o755)
+        self.set("python", str(program))
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+        self.assertIn("worker_process.py", log.read_text())
+
+    def test_all_are_drawn_and_have_defaults_without_the_add_on(self):
+        cls = type(self.preferences)
+        names = set(cls.__annotations__)
+        drawn = set()
+
+        class Layout:
+            def column(self, **_):
+                return self
+
+            def prop(self, _, name):
+                drawn.add(name)
+
+        panel = type("Panel", (), {"layout": Layout()})()
+        cls.draw(panel, bpy.context)
+        self.assertEqual(drawn, names)
+        defaults = part("preferences").Defaults
+        for name in names:
+            self.assertEqual(getattr(defaults, name), cls.bl_rna.properties[name].default, name)

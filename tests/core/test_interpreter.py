@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which Python runs the worker: one that runs, whatever is on the PATH; and where there is none, an error that says what
+to do about it."""
+
+import contextlib
+import os
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapes
+from conftest import ROOT
+from partwheel.core import Hierarchy, PartwheelError, Status, interpreter
+from partwheel.core.ending import ending
+from partwheel.core.worker import Job, WorkerError
+from test_worker import state, until
+
+REAL = sys.executable
+FAILS = "exit 127"
+HANGS = "exec sleep 1000"
+RUNS = f'exec {shlex.quote(REAL)} "$@"'
+ONLY_PROBED = f'case "$*" in *ctypes*) {RUNS};; esac; exit 3'  # does what a probe asks, and no work
+UNLIMITED = {"memory_limit": 0}
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="the shims are scripts of a shell")
+
+
+@pytest.fixture
+def shim(tmp_path):
+    """shim("name", FAILS): a program that first writes its process's number into name.log. Gives its path."""
+    def make(name, does):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(f"#!/bin/sh\necho $$ >> {shlex.quote(str(path))}.log\n{does}\n")
+        path.chmod(0o755)
+        return str(path)
+    return make
+
+
+def calls(path):
+    """The processes' numbers of all its runs so far."""
+    with contextlib.suppress(FileNotFoundError):
+        return [int(line) for line in Path(f"{path}.log").read_text().split()]
+    return []
+
+
+@pytest.fixture
+def pythons(monkeypatch, tmp_path):
+    """pythons(executable, brought=None): this is all that is found from now on."""
+    monkeypatch.setattr(interpreter, "_found", {})
+
+    def found(executable, brought=None):
+        prefix = tmp_path / "prefix"
+        (prefix / "bin").mkdir(parents=True, exist_ok=True)
+        if brought:
+            (prefix / "bin" / "python3").symlink_to(brought)
+        monkeypatch.setattr(sys, "prefix", str(prefix))
+        monkeypatch.setattr(sys, "executable", executable)
+    return found
+
+
+def builds(**options):
+    shape = shapes.cube()
+    job = Job(*shape, **UNLIMITED, **options)
+    return job.result().save() == Hierarchy.build(*shape).save() and job.failures == []
+
+
+def refusal(**options):
+    job = Job(*shapes.cube(), **UNLIMITED, **options)
+    with pytest.raises(WorkerError) as failed:
+        job.result()
+    assert failed.value.name == "worker" and job.failures == [failed.value]  # and the next rung was not tried
+    assert "preferences" in str(failed.value) and str(failed.value).endswith(".")
+    return str(failed.value)
+
+
+def test_the_order(monkeypatch, tmp_path):
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    monkeypatch.setattr(sys, "executable", "/somewhere/python")
+    assert interpreter.candidates() == ("/somewhere/python",)
+    bundled = f"python{sys.version_info.major}.{sys.version_info.minor}"
+    for name in (f"bin/{bundled}", "bin/python.exe", "python.exe"):  # Linux and macOS, Windows, Windows
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.touch()
+        assert interpreter.candidates("/wanted/python") == ("/wanted/python", str(path), "/somewhere/python")
+        path.unlink()
+
+
+def test_a_preferred_python_comes_first(pythons, shim):
+    wanted, other = shim("wanted", RUNS), shim("other", RUNS)
+    pythons(other, other)
+    assert builds(python=wanted) and len(calls(wanted)) == 2 and not calls(other)  # probed, and the worker
+    assert builds(python=wanted) and len(calls(wanted)) == 3  # the worker alone
+
+
+def test_the_python_that_is_brought_comes_before_that_of_the_path(pythons, shim):
+    brought, other = shim("brought", RUNS), shim("other", RUNS)
+    pythons(other, brought)
+    assert builds() and not calls(other)
+
+
+def test_shims_that_fail_are_asked_once(pythons, shim):
+    wanted, brought = shim("wanted", FAILS), shim("brought", FAILS)
+    pythons(REAL, brought)
+    for _ in range(2):
+        assert builds(python=wanted)
+    assert len(calls(wanted)) == len(calls(brought)) == 1
+
+
+def test_a_shim_that_hangs_is_left_behind(pythons, shim, monkeypatch):
+    monkeypatch.setattr(interpreter, "PATIENCE", 0)
+    hangs = shim("hangs", HANGS)
+    pythons(REAL)
+    job = Job(*shapes.cube(), **UNLIMITED, python=hangs)
+    assert job.result().save() == Hierarchy.build(*shapes.cube()).save()
+    assert not any(map(state, calls(hangs)))
+
+
+def test_while_a_shim_hangs_nothing_waits_for_it(pythons, shim):
+    """The caller goes on, and may cancel."""
+    hangs = shim("hangs", HANGS)
+    pythons(hangs)
+    job = Job(*shapes.cube(), **UNLIMITED)
+    until(lambda: calls(hangs))
+    assert job.poll() == (0.0, "surface") and job.process_id is None and not job.wait(0)
+    job.cancel()
+    with pytest.raises(PartwheelError) as stopped:
+        job.result()
+    assert stopped.value.status == Status.CANCELLED and job.poll() is None
+    assert not any(map(state, calls(hangs)))
+
+
+def test_no_python_at_all(pythons, shim, monkeypatch):
+    for executable in (None, ""):
+        pythons(executable)
+        assert "no Python" in refusal()
+    pythons("/nowhere/python")
+    assert "/nowhere/python can't be started (No such file or directory)" in refusal()
+    fails, hangs = shim("fails", FAILS), shim("hangs", HANGS)
+    pythons(fails)
+    assert f"{fails} ended without an answer (exit code 127)" in refusal()
+    monkeypatch.setattr(interpreter, "PATIENCE", 0)
+    monkeypatch.setattr(interpreter, "LIMIT", 0)
+    pythons(hangs)
+    assert f"{hangs} did not answer" in refusal(python=fails)
+
+
+def test_a_python_that_runs_but_not_the_worker(pythons, shim):
+    """It is not what is wrong with the mesh; and the next build looks again."""
+    bad = shim("bad", ONLY_PROBED)
+    pythons(bad)
+    assert "exit code 3" in refusal() and len(calls(bad)) == 2
+    shim("bad", RUNS)
+    assert builds() and len(calls(bad)) == 4
+
+
+def test_one_that_is_gone_by_the_next_build(pythons, shim):
+    first = shim("first", RUNS)
+    pythons(REAL)
+    assert builds(python=first)
+    os.unlink(first)
+    assert "could not be started" in refusal(python=first)
+    assert builds(python=first)
+
+
+@pytest.mark.parametrize("does", [FAILS, HANGS])
+def test_a_hostile_path(shim, does):
+    """As in Debian's Blender, whose sys.executable is what the PATH has, a version manager's shim for instance."""
+    python = shim("bin/python3", does)
+    script = ("import sys, numpy; print(sys.executable)\n"
+              "from partwheel.core.worker import Job\n"
+              "import shapes\n"
+              "print(len(Job(*shapes.cube(), memory_limit=0).result().order))")
+    path = os.pathsep.join([str(ROOT / "addon"), str(ROOT / "tests" / "core"), str(Path(np.__file__).parents[1])])
+    run = subprocess.run(["python3", "-c", script], executable=os.path.realpath(REAL), text=True, capture_output=True,
+                         env={**os.environ, "PATH": str(Path(python).parent), "PYTHONPATH": path})
+    assert run.stdout.split() == [python, "6"], run.stderr
+
+
+@pytest.mark.parametrize(("code", "words"), [
+    (3221225477, "crashed (access violation, 0xC0000005)"), (0xC00000FD, "stack overflow"),
+    (0xC0000374, "heap corruption"), (0xC0000409, "abort"), (0xC0000135, "a library is missing"),
+    (0xC000013A, "ended from outside"), (0xC0001234, "crashed (NTSTATUS, 0xC0001234)"),
+    (3, "ended without an answer (exit code 3)"), (-11, "crashed (SIGSEGV)"), (-9, "was killed (SIGKILL"),
+])
+def test_how_a_process_ended(code, words):
+    assert words in ending(code)
