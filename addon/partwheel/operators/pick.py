@@ -60,8 +60,9 @@ class PartPicker:
         """The part is confirmed; the answer of the operator."""
         return {"FINISHED"}
 
-    def _apply(self, context, obj, faces, face):
-        """Does at once with these faces what otherwise a target and _commit() do; the answer of the operator."""
+    def _apply(self, context, obj, faces, picked):
+        """Does at once with these faces what otherwise a target and _commit() do; the answer of the operator. picked: a
+        wheel.Picked."""
         raise NotImplementedError
 
     hand_offs = ()
@@ -81,7 +82,7 @@ class PartPicker:
         except PartwheelError as error:
             self.report({"ERROR"}, f"Face {self.face_index} can't be picked: {error}")
             return {"CANCELLED"}
-        result = self._apply(context, obj, borders.faces(obj, hierarchy, picked.node, self.snap), picked.face)
+        result = self._apply(context, obj, borders.faces(obj, hierarchy, picked.node, self.snap), picked)
         session.remember_pick(obj, picked.face, picked.node, self.snap)
         return result
 
