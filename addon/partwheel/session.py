@@ -303,8 +303,8 @@ def seen(mesh):
 
 
 def revision(mesh):
-    """A number that is another one after each change of the mesh's geometry, or of its cage, or of what is hidden, that
-    Blender told of. Selecting is none."""
+    """A number that is another one after each change of the mesh's geometry, of what modifiers show of it, be it on the
+    cage, or of what is hidden, that Blender told of. Selecting is none."""
     return _revisions.get(key(mesh), 0), _undos
 
 
@@ -319,7 +319,7 @@ def _edited(_scene, depsgraph):
             if mesh in _entries:
                 _entries[mesh].sure = False
         elif (update.is_updated_geometry and isinstance(update.id, bpy.types.Object) and update.id.type == "MESH"
-              and mesh_arrays.on_cage(update.id)):
+              and (update.id.mode != "EDIT" or mesh_arrays.on_cage(update.id))):
             mesh = key(update.id.original.data)
             _revisions[mesh] = _revisions.get(mesh, 0) + 1
 

@@ -5,10 +5,11 @@ a mask, a vertex group or a paint mask, in the modes that have them."""
 import bmesh
 import bpy
 import numpy as np
-from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
 from .. import mesh_arrays, picking
 from ..linked import changeable, read_only
+from ..prepared import prepared
+from ..seen import NO_FACE
 from ..selection import select_outside_edit_mode
 from .build import idle
 from .pick import PartPicker
@@ -41,14 +42,14 @@ class OBJECT_OT_partwheel_select(bpy.types.Operator):
         if not view:
             self.report({"ERROR"}, "Parts are picked in a 3D view: start this with the mouse over one")
             return {"CANCELLED"}
-        _, region, region_view = view
+        area, region, region_view = view
         point = event.mouse_x - region.x, event.mouse_y - region.y
-        hit, _, _, _, obj, _ = context.scene.ray_cast(
-            context.evaluated_depsgraph_get(), region_2d_to_origin_3d(region, region_view, point),
-            region_2d_to_vector_3d(region, region_view, point))
-        obj = self._target(context, obj.original if hit else context.active_object)
+        hit = picking.surface_under(context, *view, point)
+        obj = self._target(context, area.spaces.active, hit)
         if not obj:
             return {"CANCELLED"}
+        # Edit Mode may show the mesh elsewhere, without its modifiers; meant is the face that is seen now.
+        found = hit and prepared(obj).tree.under(hit.matrix, region, region_view, point)
         if not obj.select_get():
             for other in context.selected_objects:
                 other.select_set(False)
@@ -56,15 +57,17 @@ class OBJECT_OT_partwheel_select(bpy.types.Operator):
         context.view_layer.objects.active = obj
         bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.ed.undo_push(message="Toggle Edit Mode")  # or it would be one step with the pick
-        bpy.ops.mesh.partwheel_select("INVOKE_DEFAULT")
+        bpy.ops.mesh.partwheel_select("INVOKE_DEFAULT", begin=found[0] if found else NO_FACE)
         return {"CANCELLED"}
 
-    def _target(self, context, obj):
-        """The object, if it can be edited, or None and a report."""
-        if obj is None or obj.type != "MESH":
+    def _target(self, context, space, hit):
+        """The object that was hit, or else the active one, if it can be edited; or None and a report."""
+        obj = hit.obj if hit else context.active_object
+        shown = obj is not None and obj.visible_get(viewport=space)
+        if obj is None or obj.type != "MESH" or not (hit or shown):
             reason = "There is no mesh under the mouse"
-        elif obj.name not in context.view_layer.objects:
-            reason = f"{obj.name} is an instance, and its original is not in this view layer: edit it there"
+        elif not shown:
+            reason = f"{obj.name} is an instance, and this 3D view does not show its original: edit it there"
         else:
             reason = read_only(obj)
         if reason:
