@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import bmesh
 import bpy
+import numpy as np
 
 from . import mesh_arrays, stored
 from .core import Hierarchy, Mode, PartwheelError, Status
@@ -125,7 +126,9 @@ class _Opening:
         if not self.unpacking:
             return None
         try:
-            built, opened = self.unpacking.result(now.topology, len(self.mesh.polygons))
+            built, opened = self.unpacking.result(
+                now, mesh_arrays.read(self.mesh.vertices, "co", np.float32, 3),
+                mesh_arrays.polygon_sizes(self.mesh)[0], mesh_arrays.read(self.mesh.loops, "vertex_index", np.int32))
         except stored.Refused as reason:
             print(f"Partwheel: the parts saved with {self.mesh.name} are left aside, for {reason}.")
             return None
