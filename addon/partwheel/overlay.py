@@ -9,8 +9,8 @@ import gpu
 import numpy as np
 from mathutils import Matrix, Vector
 
-from . import mesh_arrays
 from .preferences import preferences
+from .seen import NO_FACE
 
 HOVER = (1.0, 0.8, 0.25, 0.4)
 PART = (1.0, 0.55, 0.1, 0.3)
@@ -79,17 +79,12 @@ def _vertices(**attributes):
 
 
 class Parts:
-    """An edited mesh's visible triangles in the order of its hierarchy's faces."""
+    """What is seen of an object (a seen.Seen): its triangles in the order of its hierarchy's faces."""
 
-    def __init__(self, obj, hierarchy):
-        """The mesh must be up to date, which it is when its hierarchy was asked for."""
-        mesh = obj.data
-        self.hierarchy = hierarchy
-        self.positions = mesh_arrays.shown_positions(obj)
-        triangles, faces = mesh_arrays.triangles(mesh)
-        hidden = mesh_arrays.read(mesh.polygons, "hide", bool)
-        if hidden.any():
-            triangles, faces = triangles[~hidden[faces]], faces[~hidden[faces]]
+    def __init__(self, seen, hierarchy):
+        self.hierarchy, self.positions = hierarchy, seen.positions
+        known = seen.faces != NO_FACE
+        triangles, faces = seen.triangles[known], seen.faces[known]
         rank = np.empty(len(hierarchy.order), np.int32)
         rank[hierarchy.order] = np.arange(len(rank), dtype=np.int32)
         ranks = rank[faces]

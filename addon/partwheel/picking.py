@@ -1,27 +1,33 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The face of a mesh under the mouse: a ray against the cage; what is hidden or clipped from the view is left out."""
+"""What is under the mouse: rays against what a 3D view shows. What is hidden in it, in no local view of it or clipped is
+left out, and what is seen under modifiers leads to the mesh's own faces."""
+
+from typing import NamedTuple
 
 import bmesh
+import bpy
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
-from mathutils import Vector
+from mathutils import Matrix, Vector
 from mathutils.bvhtree import BVHTree
 
 from . import mesh_arrays
+from .seen import NO_FACE, seen
 
 STEP = 1e-5  # how far behind a clipped face the search goes on, as a share of the way there
+BEHIND = 1e-6  # the same behind what a view does not show, as a share of the coordinates, which have 24 bits
 
 
 class FaceTree:
-    """The visible faces of an object's mesh as they are now, to be searched by rays."""
+    """What is seen of an object's faces as they are now, to be searched by rays."""
 
-    def __init__(self, obj):
+    def __init__(self, obj, shown=None):
+        """shown: its seen.Seen, if that is there already; of no use in Edit Mode."""
         if obj.mode == "EDIT":
             self._fill(bmesh.from_edit_mesh(obj.data), mesh_arrays.cage_positions(obj))
-        else:
-            bm = bmesh.new()
-            bm.from_mesh(obj.data)
-            self._fill(bm)
-            bm.free()
+            return
+        shown = shown or seen(obj)
+        self._indices = shown.faces.tolist()
+        self._tree = BVHTree.FromPolygons(shown.positions.tolist(), shown.triangles.tolist(), all_triangles=True)
 
     def _fill(self, bm, cage=None):
         """cage: (V,3) where the vertices are shown, if elsewhere."""
@@ -47,8 +53,8 @@ class FaceTree:
         visible.free()
 
     def under(self, matrix, region, view, point):
-        """(face index, distance along the ray in world units), or None. matrix: the object's to the world. view: a
-        RegionView3D. point: (x, y) in pixels of the region."""
+        """(face index, distance along the ray in world units), or None; NO_FACE: modifiers have put there what is seen.
+        matrix: the object's to the world. view: a RegionView3D. point: (x, y) in pixels of the region."""
         to_local = matrix.inverted_safe()
         eye = region_2d_to_origin_3d(region, view, point)
         towards = to_local.to_3x3() @ region_2d_to_vector_3d(region, view, point)
@@ -67,9 +73,44 @@ def clipped(view, point):
     return view.use_clip_planes and any(Vector(plane).dot((*point, 1.0)) < 0 for plane in list(view.clip_planes)[:4])
 
 
+class Surface(NamedTuple):
+    """A place on a surface, in the world; normal: towards the eye. obj: whose it is; matrix: that object's to the world,
+    or its instance's."""
+
+    location: Vector
+    normal: Vector
+    obj: bpy.types.Object
+    matrix: Matrix
+
+
+def surface_under(context, area, region, view, point, wanted=lambda obj: True):
+    """The Surface that a 3D view shows under a point of its region, or None. wanted(object): whether it is not looked
+    through."""
+    depsgraph = context.evaluated_depsgraph_get()
+    origin = region_2d_to_origin_3d(region, view, point)
+    towards = region_2d_to_vector_3d(region, view, point)
+    while True:
+        found, location, normal, _, obj, matrix = context.scene.ray_cast(depsgraph, origin, towards)
+        if not found:
+            return None
+        obj = obj.original
+        if (wanted(obj) and not clipped(view, location)
+                and _shown_there(area.spaces.active, depsgraph, obj, matrix)):
+            return Surface(location, -normal if normal.dot(towards) > 0 else normal, obj, matrix)
+        origin = location + towards * BEHIND * max(location.length, origin.length)
+
+
+def _shown_there(space, depsgraph, obj, matrix):
+    """Whether a 3D view shows the object, or an instance of it, with this matrix: scene.ray_cast() does not know."""
+    if obj.evaluated_get(depsgraph).matrix_world == matrix and obj.visible_get(viewport=space):
+        return True
+    return any(each.is_instance and each.object.original == obj and each.matrix_world == matrix
+               and each.parent.original.visible_get(viewport=space) for each in depsgraph.object_instances)
+
+
 def nearest(objects, tree_of, region, view, point):
-    """(object, face index) of the first face under a point of the region, or (None, None). tree_of(object): a FaceTree.
-    """
+    """(object, face index) of the first face under a point of the region, or (None, None); the index may be NO_FACE.
+    tree_of(object): a FaceTree."""
     hits = [(tree_of(each).under(each.matrix_world, region, view, point), each) for each in objects]
     hits = [(*found, each) for found, each in hits if found]
     if not hits:

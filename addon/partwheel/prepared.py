@@ -4,7 +4,7 @@
 import bmesh
 import bpy
 
-from . import overlay, picking, session
+from . import overlay, picking, seen, session
 
 _kept = {}  # session.key(mesh) -> Prepared
 
@@ -13,7 +13,9 @@ class Prepared:
     """tree: a picking.FaceTree."""
 
     def __init__(self, obj, stamp):
-        self.stamp, self.tree = stamp, picking.FaceTree(obj)
+        self.stamp = stamp
+        self._seen = None if obj.mode == "EDIT" else seen.seen(obj)  # in Edit Mode its mesh may not be up to date
+        self.tree = picking.FaceTree(obj, self._seen)
         self._hierarchy = self._parts = self._known = None
         self._asked = False
 
@@ -28,7 +30,7 @@ class Prepared:
         """An overlay.Parts, or None without a hierarchy."""
         hierarchy = self.hierarchy(obj)
         if hierarchy and not self._parts:
-            self._parts = overlay.Parts(obj, hierarchy)
+            self._parts = overlay.Parts(self._seen or seen.seen(obj), hierarchy)
         return self._parts
 
 
@@ -50,7 +52,7 @@ def current(obj, parts):
 
 
 def _stamp(obj):
-    return obj.mode, session.revision(obj.data), _counts(obj)
+    return obj.name_full, obj.mode, session.revision(obj.data), _counts(obj)
 
 
 def _counts(obj):

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import bmesh
 import bpy
+import numpy as np
 
 from . import mesh_arrays, stored
 from .core import Hierarchy, Mode, PartwheelError, Status
@@ -125,7 +126,9 @@ class _Opening:
         if not self.unpacking:
             return None
         try:
-            built, opened = self.unpacking.result(now.topology, len(self.mesh.polygons))
+            built, opened = self.unpacking.result(
+                now, mesh_arrays.read(self.mesh.vertices, "co", np.float32, 3),
+                mesh_arrays.polygon_sizes(self.mesh)[0], mesh_arrays.read(self.mesh.loops, "vertex_index", np.int32))
         except stored.Refused as reason:
             print(f"Partwheel: the parts saved with {self.mesh.name} are left aside, for {reason}.")
             return None
@@ -304,8 +307,8 @@ def seen(mesh):
 
 
 def revision(mesh):
-    """A number that is another one after each change of the mesh's geometry, or of its cage, or of what is hidden, that
-    Blender told of. Selecting is none."""
+    """A number that is another one after each change of the mesh's geometry, of what modifiers show of it, be it on the
+    cage, or of what is hidden, that Blender told of. Selecting is none."""
     return _revisions.get(key(mesh), 0), _undos
 
 
@@ -320,7 +323,7 @@ def _edited(_scene, depsgraph):
             if mesh in _entries:
                 _entries[mesh].sure = False
         elif (update.is_updated_geometry and isinstance(update.id, bpy.types.Object) and update.id.type == "MESH"
-              and mesh_arrays.on_cage(update.id)):
+              and (update.id.mode != "EDIT" or mesh_arrays.on_cage(update.id))):
             mesh = key(update.id.original.data)
             _revisions[mesh] = _revisions.get(mesh, 0) + 1
 

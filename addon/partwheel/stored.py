@@ -9,6 +9,8 @@ import hashlib
 import struct
 import threading
 
+import numpy as np
+
 from .core import Hierarchy, PartwheelError
 from .mesh_arrays import Fingerprint
 
@@ -18,6 +20,7 @@ MAGIC, VERSION = b"PWPARTS\0", 2
 # is: zlib would make it a sixth smaller, and opening it would take twice as long.
 HEADER = struct.Struct("<8sI16s16s")
 HASH_SIZE = 16
+SPACING = 0.01  # of the points that a hierarchy's deviation was measured at, as a share of the mesh's diagonal
 
 
 class Refused(Exception):
@@ -43,17 +46,45 @@ class Unpacking:
         except Exception as error:  # whatever it is, result() raises it
             self._error = error
 
-    def result(self, topology, face_count):
-        """(Fingerprint when it was built, Hierarchy). Raises Refused, also when they are of another mesh."""
+    def result(self, now, positions, begin, corners):
+        """(Fingerprint when it was built, Hierarchy). now: the Fingerprint of the mesh; the rest as for check(). Raises
+        Refused, also when they are of another mesh."""
         self._thread.join()
         if self._error:
             raise self._error
         fingerprint, hierarchy = self._opened
-        if fingerprint.topology != topology:
+        if fingerprint.topology != now.topology:
             raise Refused("the mesh has changed since")
-        if len(hierarchy.order) != face_count:
-            raise Refused("it is damaged")
+        check(hierarchy, positions, begin, corners, fingerprint.positions != now.positions)
         return fingerprint, hierarchy
+
+
+def check(hierarchy, positions, begin, corners, moved):
+    """Raises Refused for the hierarchy of another mesh, which nothing but the mesh itself can tell: vertices that it has
+    not, and faces that lie elsewhere than their tetrahedra.
+
+    positions (V,3), begin (F,) the first corner of each polygon, corners (L,) their vertices; moved: whether vertices
+    have been elsewhere when it was built, so that only what is made of them can tell."""
+    known = hierarchy.source >= 0
+    source = hierarchy.source[known]
+    if len(hierarchy.order) != len(begin) or source.max(initial=-1) >= len(positions):
+        raise Refused("it is of another mesh")
+    if not moved and (hierarchy.vertices[known] != positions[source]).any():
+        raise Refused("it is of another mesh")
+    tetrahedra = hierarchy.tetrahedra[hierarchy.leaf]
+    beside = False
+    if hierarchy.summary.rung == "exact":  # a facet of the tetrahedron is a triangle of the polygon
+        behind = np.repeat(hierarchy.source[tetrahedra], np.diff(begin, append=len(corners)), axis=0)
+        shared = (behind == corners[:, None]).any(axis=1)
+        beside = (np.add.reduceat(shared, begin, dtype=np.int32) < 3).any()
+    elif not moved:
+        places = hierarchy.vertices[tetrahedra]
+        low, high = np.minimum.reduceat(positions[corners], begin), np.maximum.reduceat(positions[corners], begin)
+        gap = np.maximum(places.min(axis=1) - high, low - places.max(axis=1)).clip(0)
+        reach = (hierarchy.summary.deviation + SPACING) * np.linalg.norm(high.max(axis=0) - low.min(axis=0))
+        beside = (np.linalg.norm(gap, axis=1) > reach).any()
+    if beside:
+        raise Refused("it is of another mesh")
 
 
 def unpack(data):

@@ -63,21 +63,60 @@ class Paint(MeshTest):
         self.paint(write="MASK", deselect=True)
         self.assertEqual(self.masked(), self.vertices[1] - self.vertices[0])
 
+    def group(self, index):
+        """Vertices of this vertex group; all have weight 1 there."""
+        found = [(vertex.index, each.weight) for vertex in self.obj.data.vertices for each in vertex.groups
+                 if each.group == index]
+        self.assertLessEqual({weight for _, weight in found}, {1})
+        return {vertex for vertex, _ in found}
+
     def test_vertex_group(self):
         self.begin("WEIGHT_PAINT")
-
-        def group():
-            return {vertex.index for vertex in self.obj.data.vertices for each in vertex.groups
-                    if each.group == 0 and each.weight == 1}
-
         self.paint()
-        self.assertEqual(group(), self.vertices[0])
+        self.assertEqual(self.group(0), self.vertices[0])
         self.paint(1100)
-        self.assertEqual((group(), len(self.obj.vertex_groups)), (self.vertices[1], 1))
+        self.assertEqual([self.group(index) for index in range(len(self.obj.vertex_groups))], self.vertices)
+        node = part("session").picked(self.obj).node
+        self.assertEqual(self.obj.vertex_groups.active.name, f"Part {node}")
         self.paint(extend=True)
-        self.assertEqual(group(), self.vertices[0] | self.vertices[1])
+        self.assertEqual(self.group(1), self.vertices[0] | self.vertices[1])
         self.paint(1100, deselect=True)
-        self.assertEqual(group(), self.vertices[0] - self.vertices[1])
+        self.assertEqual([self.group(0), self.group(1)], [self.vertices[0], self.vertices[0] - self.vertices[1]])
+
+    def arm(self, locked):
+        """The hand with weights of the user's."""
+        self.begin("OBJECT")
+        arm = self.obj.vertex_groups.new(name="Arm.L")
+        arm.add(range(1197), 0.37, "REPLACE")
+        arm.lock_weight = locked
+        bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+        return lambda: [arm.weight(vertex) for vertex in range(1197)]
+
+    def test_weights_of_the_user_s_stay(self):
+        """A part gets a vertex group of its own, also where the active one is locked or full."""
+        for locked in (True, False):
+            MeshTest.setUp(self)
+            weights = self.arm(locked)
+            before = weights()
+            self.paint()
+            self.paint()
+            self.assertEqual(weights(), before)
+            self.assertEqual([self.group(1), self.group(2)], [self.vertices[0]] * 2)
+
+    def test_locked_groups_refuse(self):
+        weights = self.arm(locked=True)
+        before = weights()
+        for how in ("extend", "deselect"):
+            with self.assertRaisesRegex(RuntimeError, "Arm.L is locked"):
+                bpy.ops.mesh.partwheel_paint(face_index=900, **{how: True})
+        self.assertEqual((weights(), len(self.obj.vertex_groups)), (before, 1))
+
+    def test_nothing_to_take_the_part_out_of(self):
+        self.begin("WEIGHT_PAINT")
+        with self.assertRaisesRegex(RuntimeError, "no vertex group"):
+            bpy.ops.mesh.partwheel_paint(face_index=900, deselect=True)
+        self.paint(extend=True)  # a new one
+        self.assertEqual(self.group(0), self.vertices[0])
 
     def test_paint_mask(self):
         """In Object Mode: a paint mask that is on, in a paint mode, crashes Blender 5.0.1 without a window at the next
@@ -88,7 +127,7 @@ class Paint(MeshTest):
         for faces, how, expected in ((first, (False, False), self.faces[0]),
                                      (second, (True, False), self.faces[0] | self.faces[1]),
                                      (first, (False, True), self.faces[1])):
-            write(self.obj, faces, *how)
+            write(self.obj, faces, 0, *how)
             self.assertTrue(self.obj.data.use_paint_mask)
             self.assertEqual({p.index for p in self.obj.data.polygons if p.select}, expected)
 
@@ -105,13 +144,30 @@ class Paint(MeshTest):
         self.assertFalse(bpy.ops.object.partwheel_select.poll())
 
     def test_linked_meshes_are_refused_by_name(self):
-        obj = self.add(*BOX, "boxed")
+        """By every operator that would change one, in the same words. In the paint modes it is the local object's mesh
+        that is linked: Blender lets it be put there."""
+        operators = {"WEIGHT_PAINT": [bpy.ops.mesh.partwheel_paint],
+                     "OBJECT": [bpy.ops.mesh.partwheel_remove, bpy.ops.mesh.partwheel_swap,
+                                bpy.ops.object.partwheel_unite]}
+        boxed = self.add(*BOX, "boxed")
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "box.blend")
-            bpy.data.libraries.write(path, {obj})
-            bpy.data.objects.remove(obj)
-            with bpy.data.libraries.load(path, link=True) as (found, wanted):
-                wanted.objects = found.objects
-            linked = self.link(wanted.objects[0])
-            self.assertIn("linked", part("operators.paint").read_only(linked))
-            self.assertIsNone(part("operators.paint").read_only(self.add(*BOX)))
+            bpy.data.libraries.write(path, {boxed})
+            bpy.data.objects.remove(boxed)
+            with bpy.data.libraries.load(path, link=True) as (_, wanted):
+                wanted.meshes = ["boxed"]
+            for mode, refusing in operators.items():
+                obj = self.add(*BOX, "local")
+                own = obj.data
+                bpy.ops.object.mode_set(mode=mode)
+                for operator in refusing:
+                    self.assertTrue(operator.poll(), operator)
+                obj.data = wanted.meshes[0]
+                self.assertEqual(obj.mode, mode)
+                try:
+                    for operator in refusing:
+                        with self.assertRaisesRegex(RuntimeError, "of local.* is linked from another file: make it"):
+                            operator()
+                finally:  # the next test could not leave the mode
+                    obj.data = own
+                    bpy.ops.object.mode_set(mode="OBJECT")

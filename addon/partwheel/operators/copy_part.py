@@ -5,6 +5,7 @@ import bpy
 
 from .. import composition, session, solids
 from ..core import PartwheelError
+from ..linked import changeable
 
 
 class OnParts:
@@ -116,12 +117,7 @@ class MESH_OT_partwheel_remove(_SolidOfPart, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        if not super().poll(context):
-            return False
-        if context.active_object.data.library:
-            cls.poll_message_set("The mesh is linked from another file. Make it local first.")
-            return False
-        return True
+        return super().poll(context) and changeable(cls, context.active_object)
 
     def work(self, context, obj, hierarchy):
         composition.removed(obj, hierarchy, self.node, self.caps(), self.snap)

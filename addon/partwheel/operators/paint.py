@@ -5,9 +5,11 @@ a mask, a vertex group or a paint mask, in the modes that have them."""
 import bmesh
 import bpy
 import numpy as np
-from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
 from .. import mesh_arrays, picking
+from ..linked import changeable, read_only
+from ..prepared import prepared
+from ..seen import NO_FACE
 from ..selection import select_outside_edit_mode
 from .build import idle
 from .pick import PartPicker
@@ -19,17 +21,6 @@ WAYS = {
     "SCULPT": ("FACE_SET", "MASK"), "PAINT_WEIGHT": ("VERTEX_GROUP", "PAINT_MASK"), "PAINT_VERTEX": ("PAINT_MASK",),
     "PAINT_TEXTURE": ("PAINT_MASK",),
 }
-
-
-def read_only(obj):
-    """A sentence why the object's mesh can't be changed, or None."""
-    if obj.data.library:
-        return (f"The mesh of {obj.name} is linked from another file and can't be changed here: make it local first "
-                "(Object > Relations > Make Local)")
-    if obj.data.override_library:
-        return (f"The mesh of {obj.name} is a library override, which Blender does not edit: make it local first "
-                "(Object > Relations > Make Local)")
-    return None
 
 
 class OBJECT_OT_partwheel_select(bpy.types.Operator):
@@ -51,14 +42,14 @@ class OBJECT_OT_partwheel_select(bpy.types.Operator):
         if not view:
             self.report({"ERROR"}, "Parts are picked in a 3D view: start this with the mouse over one")
             return {"CANCELLED"}
-        _, region, region_view = view
+        area, region, region_view = view
         point = event.mouse_x - region.x, event.mouse_y - region.y
-        hit, _, _, _, obj, _ = context.scene.ray_cast(
-            context.evaluated_depsgraph_get(), region_2d_to_origin_3d(region, region_view, point),
-            region_2d_to_vector_3d(region, region_view, point))
-        obj = self._target(context, obj.original if hit else context.active_object)
+        hit = picking.surface_under(context, *view, point)
+        obj = self._target(context, area.spaces.active, hit)
         if not obj:
             return {"CANCELLED"}
+        # Edit Mode may show the mesh elsewhere, without its modifiers; meant is the face that is seen now.
+        found = hit and prepared(obj).tree.under(hit.matrix, region, region_view, point)
         if not obj.select_get():
             for other in context.selected_objects:
                 other.select_set(False)
@@ -66,20 +57,26 @@ class OBJECT_OT_partwheel_select(bpy.types.Operator):
         context.view_layer.objects.active = obj
         bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.ed.undo_push(message="Toggle Edit Mode")  # or it would be one step with the pick
-        bpy.ops.mesh.partwheel_select("INVOKE_DEFAULT")
+        bpy.ops.mesh.partwheel_select("INVOKE_DEFAULT", begin=found[0] if found else NO_FACE)
         return {"CANCELLED"}
 
-    def _target(self, context, obj):
-        """The object, if it can be edited, or None and a report."""
-        if obj is None or obj.type != "MESH":
+    def _target(self, context, space, hit):
+        """The object that was hit, or else the active one, if it can be edited; or None and a report."""
+        obj = hit.obj if hit else context.active_object
+        shown = obj is not None and obj.visible_get(viewport=space)
+        if obj is None or obj.type != "MESH" or not (hit or shown):
             reason = "There is no mesh under the mouse"
-        elif obj.name not in context.view_layer.objects:
-            reason = f"{obj.name} is an instance, and its original is not in this view layer: edit it there"
+        elif not shown:
+            reason = f"{obj.name} is an instance, and this 3D view does not show its original: edit it there"
         else:
             reason = read_only(obj)
         if reason:
             self.report({"WARNING"}, reason)
         return None if reason else obj
+
+
+class NotWritten(Exception):
+    """The part can't become what is wanted. str() says why, as a sentence."""
 
 
 class Preview:
@@ -111,7 +108,8 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         items=(("AUTO", "Usual", "A face set in Sculpt Mode, a vertex group in Weight Paint, else a paint mask"),
                ("FACE_SET", "Face Set", "A new face set"),
                ("MASK", "Mask", "Masked against sculpting"),
-               ("VERTEX_GROUP", "Vertex Group", "Weight 1 in the active vertex group, or in a new one"),
+               ("VERTEX_GROUP", "Vertex Group", "Weight 1 in a new vertex group, named after the part; with Extend in "
+                "the active one, with Deselect none there"),
                ("PAINT_MASK", "Paint Mask", "The only faces that can be painted on")),
     )
 
@@ -121,16 +119,15 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         if context.mode not in WAYS or obj is None or obj.type != "MESH":
             cls.poll_message_set("This is for Sculpt Mode and the paint modes of a mesh")
             return False
-        if read_only(obj):
-            cls.poll_message_set(read_only(obj))
+        if not changeable(cls, obj):
             return False
         if obj.use_dynamic_topology_sculpting:
             cls.poll_message_set("Dynamic topology changes the faces all the time: switch it off first")
             return False
         return idle(cls)
 
-    def _apply(self, context, obj, faces, _face):
-        return self._write(context, obj, faces)
+    def _apply(self, context, obj, faces, picked):
+        return self._write(context, obj, faces, picked.node)
 
     def _objects(self, context):
         return [context.active_object] if context.mode in WAYS else []
@@ -139,23 +136,28 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         return Preview(obj)
 
     def _commit(self, context):
-        return self._write(context, self._object(context), self.faces)
+        return self._write(context, self._object(context), self.faces, self.state.node)
 
-    def _write(self, context, obj, faces):
+    def _write(self, context, obj, faces, node):
         ways = WAYS[context.mode]
         way = ways[0] if self.write == "AUTO" else self.write
         if way not in ways:
             self.report({"ERROR"}, f"There is no {way.replace('_', ' ').lower()} in this mode")
             return {"CANCELLED"}
-        if context.mode != "SCULPT":
-            WRITERS[way](obj, faces, self.extend, self.deselect)
-            return {"FINISHED"}
         # Sculpt Mode keeps data of its own beside the mesh's: it reads the mesh anew when it is entered.
-        bpy.ops.object.mode_set(mode="OBJECT")
+        sculpting = context.mode == "SCULPT"
+        if sculpting:
+            bpy.ops.object.mode_set(mode="OBJECT")
         try:
-            WRITERS[way](obj, faces, self.extend, self.deselect)
+            said = WRITERS[way](obj, faces, node, self.extend, self.deselect)
+        except NotWritten as reason:
+            self.report({"ERROR"}, str(reason))
+            return {"CANCELLED"}
         finally:
-            bpy.ops.object.mode_set(mode="SCULPT")
+            if sculpting:
+                bpy.ops.object.mode_set(mode="SCULPT")
+        if said:
+            self.report({"INFO"}, said)
         return {"FINISHED"}
 
 
@@ -169,7 +171,7 @@ def _part_vertices(mesh, faces):
     return chosen
 
 
-def _write_face_set(obj, faces, _extend, deselect):
+def _write_face_set(obj, faces, _node, _extend, deselect):
     """A set of its own; with deselect the part goes back to the first one."""
     mesh = obj.data
     attribute = mesh.attributes.get(FACE_SET) or mesh.attributes.new(FACE_SET, "INT", "FACE")
@@ -179,7 +181,7 @@ def _write_face_set(obj, faces, _extend, deselect):
     attribute.data.foreach_set("value", values)
 
 
-def _write_mask(obj, faces, extend, deselect):
+def _write_mask(obj, faces, _node, extend, deselect):
     part = _part_vertices(obj.data, faces)
     if bpy.app.version >= (4, 1):
         attribute = obj.data.attributes.get(MASK) or obj.data.attributes.new(MASK, "FLOAT", "POINT")
@@ -203,21 +205,32 @@ def _joined(before, part, extend, deselect):
     return np.where(part, 1, before if extend else 0).astype(np.float32)
 
 
-def _write_vertex_group(obj, faces, extend, deselect):
+def _write_vertex_group(obj, faces, node, extend, deselect):
+    """A new group, which becomes the active one; extend and deselect change the active one, unless it is locked. What
+    was done, as a sentence."""
     part = np.flatnonzero(_part_vertices(obj.data, faces)).tolist()
-    group = obj.vertex_groups.active or obj.vertex_groups.new(name="Part")
-    if not extend and not deselect:
-        group.remove(range(len(obj.data.vertices)))
+    group = obj.vertex_groups.active if extend or deselect else None
+    if group and group.lock_weight:
+        raise NotWritten(f"The vertex group {group.name} is locked. Unlock it, or pick the part alone: it gets a group "
+                         "of its own")
     if deselect:
+        if not group:
+            raise NotWritten(f"{obj.name} has no vertex group that the part could be taken out of")
         group.remove(part)
-    else:
+        return f"The part was taken out of the vertex group {group.name}"
+    if group:
         group.add(part, 1.0, "REPLACE")
+        return f"The part was added to the vertex group {group.name}"
+    group = obj.vertex_groups.new(name=f"Part {node}")
+    group.add(part, 1.0, "REPLACE")
+    return f"The part is the new vertex group {group.name}"
 
 
-def _write_paint_mask(obj, faces, extend, deselect):
+def _write_paint_mask(obj, faces, _node, extend, deselect):
     select_outside_edit_mode(obj.data, faces, extend, deselect)
     obj.data.use_paint_mask = True
 
 
+# What writes the faces of a node: functions of (obj, faces, node, extend, deselect).
 WRITERS = {"FACE_SET": _write_face_set, "MASK": _write_mask, "VERTEX_GROUP": _write_vertex_group,
            "PAINT_MASK": _write_paint_mask}

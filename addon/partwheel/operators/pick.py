@@ -12,6 +12,7 @@ import bpy
 from .. import borders, keys, overlay, picking, session, wheel
 from ..core import PartwheelError
 from ..prepared import prepared
+from ..seen import NO_FACE
 from ..ui import status
 from .build import start
 
@@ -35,6 +36,10 @@ class PartPicker:
     snap: bpy.props.BoolProperty(
         name="Snap Border", description="Move the border of the part to the creases nearby",
         default=False, options={"SKIP_SAVE"},
+    )
+    begin: bpy.props.IntProperty(
+        name="Begin At", description="The face of the active object that is picked first; -1: the one under the mouse",
+        default=NO_FACE, min=NO_FACE, options={"SKIP_SAVE", "HIDDEN"},
     )
     tool: bpy.props.BoolProperty(
         name="From the Toolbar", description="The next click starts with the next part, and other keys go to Blender",
@@ -60,8 +65,9 @@ class PartPicker:
         """The part is confirmed; the answer of the operator."""
         return {"FINISHED"}
 
-    def _apply(self, context, obj, faces, face):
-        """Does at once with these faces what otherwise a target and _commit() do; the answer of the operator."""
+    def _apply(self, context, obj, faces, picked):
+        """Does at once with these faces what otherwise a target and _commit() do; the answer of the operator. picked: a
+        wheel.Picked."""
         raise NotImplementedError
 
     hand_offs = ()
@@ -81,7 +87,7 @@ class PartPicker:
         except PartwheelError as error:
             self.report({"ERROR"}, f"Face {self.face_index} can't be picked: {error}")
             return {"CANCELLED"}
-        result = self._apply(context, obj, borders.faces(obj, hierarchy, picked.node, self.snap), picked.face)
+        result = self._apply(context, obj, borders.faces(obj, hierarchy, picked.node, self.snap), picked)
         session.remember_pick(obj, picked.face, picked.node, self.snap)
         return result
 
@@ -118,12 +124,16 @@ class PartPicker:
     # ---- From nothing to a part
 
     def _begun(self, context, event):
-        obj, face = self._under(context, event)
+        objects = self._objects(context)
+        if not objects:
+            self.report({"WARNING"}, "This 3D view does not show the mesh that is being edited")
+            return {"CANCELLED"}
+        obj, face = (objects[0], self.begin) if self.begin != NO_FACE else self._under(context, event)
         if obj is not None:
             return self._pick(context, event, obj, face)
         if self.tool:
             return self._missed(context)
-        obj = self._objects(context)[0]
+        obj = objects[0]
         if session.hierarchy(obj) is None:
             return self._build(context, obj, None)
         return self._wait(context, "Click a face of the mesh")
@@ -136,7 +146,12 @@ class PartPicker:
         area, region, region_view = view
         point = event.mouse_x - region.x, event.mouse_y - region.y
         shown = [each for each in self._objects(context) if each.visible_get(viewport=area.spaces.active)]
-        return picking.nearest(shown, lambda each: prepared(each).tree, region, region_view, point)
+        obj, face = picking.nearest(shown, lambda each: prepared(each).tree, region, region_view, point)
+        if face == NO_FACE:
+            self.report({"INFO"}, f"What is seen there was made by the modifiers of {obj.name} and belongs to no face of "
+                                  "its mesh")
+            return None, None
+        return obj, face
 
     def _pick(self, context, event, obj, face):
         self.hierarchy = session.hierarchy(obj)

@@ -4,11 +4,10 @@
 import math
 
 import bpy
-from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 from mathutils import Vector
 
 from .. import composition, keys, placement
-from ..picking import view_under
+from ..picking import surface_under, view_under
 from ..ui import status
 
 CONFIRM, CANCEL = keys.CLICK.events | keys.CONFIRM.events, keys.CANCEL.events
@@ -138,18 +137,11 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
         view = view_under(context.window, event.mouse_x, event.mouse_y)
         if not view:
             return None
-        _, region, region_view = view
+        _, region, _ = view
         point = event.mouse_x - region.x, event.mouse_y - region.y
-        origin = region_2d_to_origin_3d(region, region_view, point)
-        direction = region_2d_to_vector_3d(region, region_view, point)
-        depsgraph = context.evaluated_depsgraph_get()
-        while True:
-            found, location, normal, _, obj, _ = context.scene.ray_cast(depsgraph, origin, direction)
-            if not found:
-                return None
-            if obj.name_full != self.part_name and obj.type == "MESH":
-                return location, (-normal if normal.dot(direction) > 0 else normal), obj.name
-            origin = location + direction * 1e-5 * max((location - origin).length, self.own.radius)
+        found = surface_under(context, *view, point,
+                              lambda obj: obj.type == "MESH" and obj.name_full != self.part_name)
+        return found and (found.location, found.normal, found.obj.name)
 
     def _show(self, context):
         if not self.target:

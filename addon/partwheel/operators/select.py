@@ -56,8 +56,8 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
             return False
         return idle(cls)
 
-    def _apply(self, context, obj, faces, face):
-        self._aim(context, obj).select(obj, faces, face, self.extend, self.deselect)
+    def _apply(self, context, obj, faces, picked):
+        self._aim(context, obj).select(obj, faces, picked.face, self.extend, self.deselect)
         return {"FINISHED"}
 
     def _objects(self, context):

@@ -8,6 +8,7 @@ import bpy
 
 from .. import keys, solids, swapping, union
 from ..core import PartwheelError
+from ..linked import changeable
 from ..ui import status
 from .copy_part import OnPart, OnParts, Snaps
 from .place import DEPTH_STEP, PASS, SIZE_STEP, TURN_STEP
@@ -50,12 +51,7 @@ class MESH_OT_partwheel_swap(Snaps, OnPart, OnParts, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        if not super().poll(context):
-            return False
-        if context.active_object.library or context.active_object.data.library:
-            cls.poll_message_set("The object or its mesh is linked from another file. Make it local first.")
-            return False
-        return True
+        return super().poll(context) and changeable(cls, context.active_object)
 
     def work(self, context, obj, hierarchy):
         place = swapping.Place(obj, hierarchy, self.node, self.snap)

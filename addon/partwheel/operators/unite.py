@@ -5,6 +5,7 @@ import bpy
 
 from .. import session, union
 from ..core import PartwheelError
+from ..linked import changeable
 
 
 def find_parts(operator):
@@ -39,10 +40,7 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
             cls.poll_message_set("In Object Mode, select the parts and then the mesh object that they are to become "
                                  "part of.")
             return False
-        if target.data.library:
-            cls.poll_message_set("The active object's mesh is linked from another file. Make it local first.")
-            return False
-        return True
+        return changeable(cls, target)
 
     @staticmethod
     def others(context):

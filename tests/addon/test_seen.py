@@ -1,0 +1,363 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Picking what is seen: meshes under modifiers, poses and sculpted levels; what a 3D view does not show is not picked."""
+
+import bpy
+import numpy as np
+from bpy_extras.view3d_utils import location_3d_to_region_2d
+from common import BOX, MeshTest, part, read_off
+from mathutils import Matrix, Vector
+from test_modal import FakeContext, Tool, camera, event, show, view
+
+
+def positions(mesh):
+    values = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", values)
+    return values.reshape(-1, 3)
+
+
+class Seen(MeshTest):
+    def sphere(self):
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=12, calc_uvs=False)
+        return bpy.context.active_object
+
+    def modified(self, kind, **settings):
+        """A sphere with this modifier."""
+        obj = self.sphere()
+        modifier = obj.modifiers.new(kind, kind)
+        for name, value in settings.items():
+            setattr(modifier, name, value)
+        bpy.context.view_layer.update()
+        return obj
+
+    def tagged(self, obj):
+        """Writes each face's number into the UV map, which modifiers carry along in a way of their own."""
+        layer = obj.data.uv_layers.new(name="number")
+        numbers = np.repeat(np.arange(len(obj.data.polygons)), [face.loop_total for face in obj.data.polygons])
+        layer.data.foreach_set("uv", np.column_stack([numbers, numbers]).astype(np.float32).ravel())
+        obj.data.update()
+        bpy.context.view_layer.update()
+
+    def numbers(self, obj):
+        """(positions, triangles, the tag of each triangle) of what is evaluated; -1: of none, or of several."""
+        mesh = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+        mesh.calc_loop_triangles()
+        tags = np.array([value.uv[0] for value in mesh.uv_layers["number"].data])
+        corners = np.array([triangle.loops[:] for triangle in mesh.loop_triangles])
+        same = (tags[corners] == tags[corners[:, :1]]).all(axis=1)
+        return (positions(mesh).copy(), np.array([triangle.vertices[:] for triangle in mesh.loop_triangles]),
+                np.where(same, tags[corners[:, 0]], -1).astype(int))
+
+    def test_what_is_seen_leads_to_the_mesh_s_own_faces(self):
+        """Under modifiers of all sorts, by tags that are not ours."""
+        for kind, settings in (("DISPLACE", {"strength": 100, "direction": "Z"}), ("SUBSURF", {"levels": 2}),
+                               ("MIRROR", {"use_axis": (False, False, True)}), ("ARRAY", {}), ("BUILD", {"frame_start": 0,
+                               "frame_duration": 2, "use_random_order": True}), ("EDGE_SPLIT", {"split_angle": 0.1}),
+                               ("SOLIDIFY", {"thickness": 0.1}), ("TRIANGULATE", {})):
+            with self.subTest(kind):
+                MeshTest.setUp(self)
+                obj = self.modified(kind, **settings)
+                self.tagged(obj)
+                if kind == "SUBSURF":
+                    obj.modifiers[0].uv_smooth = "NONE"
+                    bpy.context.view_layer.update()
+                places, triangles, tags = self.numbers(obj)
+                found = part("seen").seen(obj)
+                np.testing.assert_array_equal(found.positions, places)
+                np.testing.assert_array_equal(found.triangles, triangles)
+                self.assertGreater((tags >= 0).mean(), 0.85)
+                np.testing.assert_array_equal(found.faces[tags >= 0], tags[tags >= 0])
+
+    def test_the_nearest_face_where_modifiers_make_all_anew(self):
+        """Displaced far away before, so that only the place there can tell."""
+        obj = self.modified("DISPLACE", strength=100, direction="Z", mid_level=0)
+        remesh = obj.modifiers.new("remesh", "REMESH")
+        remesh.mode, remesh.voxel_size = "VOXEL", 0.1
+        bpy.context.view_layer.update()
+        found = part("seen").seen(obj)
+        self.assertGreater(len(found.faces), 1000)
+        self.assertTrue((found.faces >= 0).all())
+        places = found.positions[found.triangles].mean(axis=1) - [0, 0, 100]
+        own = np.array([face.center for face in obj.data.polygons])
+        nearest = np.linalg.norm(places[:, None] - own, axis=2)
+        self.assertLess(nearest[np.arange(len(places)), found.faces].max(), 0.35)  # a face is up to 0.4 across
+        self.assertLess((nearest[np.arange(len(places)), found.faces] - nearest.min(axis=1)).mean(), 0.02)
+
+    def replaced(self):
+        """A sphere whose modifier shows a cube of size 6 instead."""
+        obj = self.sphere()
+        nodes = bpy.data.node_groups.new("cube", "GeometryNodeTree")
+        if hasattr(nodes, "interface"):
+            nodes.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+        else:
+            nodes.outputs.new("NodeSocketGeometry", "Geometry")
+        cube = nodes.nodes.new("GeometryNodeMeshCube")
+        cube.inputs["Size"].default_value = 6, 6, 6
+        nodes.links.new(cube.outputs[0], nodes.nodes.new("NodeGroupOutput").inputs[0])
+        obj.modifiers.new("nodes", "NODES").node_group = nodes
+        bpy.context.view_layer.update()
+        return obj
+
+    def test_what_belongs_to_no_face_says_so(self):
+        obj = self.replaced()
+        self.assertEqual(set(part("seen").seen(obj).faces), {part("seen").NO_FACE})
+        bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+        show(obj)
+        tool = Tool("paint", write="AUTO")
+        self.assertEqual(tool._under(FakeContext(), event("LEFTMOUSE")), (None, None))
+        self.assertIn("belongs to no face", tool.reports[-1][1])
+        bpy.ops.object.mode_set(mode="OBJECT")
+        obj.modifiers.clear()
+        bpy.context.view_layer.update()
+        bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+        self.assertEqual(tool._under(FakeContext(), event("LEFTMOUSE"))[0], obj)
+
+    def test_nothing_of_the_user_s_changes(self):
+        obj = self.modified("SUBSURF", levels=2)
+        for mode in ("WEIGHT_PAINT", "SCULPT", "OBJECT"):
+            bpy.ops.object.mode_set(mode=mode)
+            before = self.everything(obj)
+            part("seen").seen(obj)
+            self.assertEqual(self.everything(obj), before)
+
+    def everything(self, obj):
+        collections = {name: [each.name_full for each in getattr(bpy.data, name)]
+                       for name in ("objects", "meshes", "collections", "scenes", "node_groups", "materials")}
+        return (collections, obj.mode, bpy.context.view_layer.objects.active, bpy.context.selected_objects[:],
+                [each.name for each in obj.data.attributes], bpy.data.is_dirty, obj.data.users,
+                [(each.name, each.show_viewport) for each in obj.modifiers], bpy.context.scene.objects[:])
+
+    def test_multires_as_it_is_sculpted(self):
+        obj = self.modified("MULTIRES")
+        for _ in range(2):
+            bpy.ops.object.multires_subdivide(modifier="MULTIRES")
+        multires = obj.modifiers[0]
+        after = obj.modifiers.new("away", "DISPLACE")  # not shown in Sculpt Mode, as it comes after
+        after.show_viewport = False
+        expected = {}
+        self.tagged(obj)
+        for multires.levels in (1, 2):
+            bpy.context.view_layer.update()
+            expected[multires.levels] = self.numbers(obj)
+        after.show_viewport, multires.levels = True, 0
+        for multires.sculpt_levels in (1, 2):
+            bpy.ops.object.mode_set(mode="SCULPT")
+            bpy.context.view_layer.update()
+            found = part("seen").seen(obj)
+            places, triangles, tags = expected[multires.sculpt_levels]
+            np.testing.assert_allclose(found.positions, places, atol=1e-6)
+            np.testing.assert_array_equal(found.triangles, triangles)
+            np.testing.assert_array_equal(found.faces[tags >= 0], tags[tags >= 0])
+            bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_hidden_faces_are_not_picked_in_paint_modes(self):
+        obj = self.modified("SUBSURF", levels=1)
+        hidden = np.arange(len(obj.data.polygons)) % 3 == 0
+        obj.data.polygons.foreach_set("hide", hidden)
+        obj.data.update()
+        bpy.context.view_layer.update()
+        self.assertTrue(hidden[part("seen").seen(obj).faces].any())
+        bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+        self.assertFalse(hidden[part("seen").seen(obj).faces].any())
+
+    # ---- Picking and drawing
+
+    def posed(self):
+        """The hand, its upper half bent by a bone; in Weight Paint."""
+        obj = self.add(*read_off("hand"))
+        h = self.hierarchy(obj)
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+        low, high = positions(obj.data).min(axis=0), positions(obj.data).max(axis=0)
+        armature = bpy.data.armatures.new("bones")
+        self.addCleanup(lambda: bpy.data.armatures.remove(armature))
+        bones = self.link(bpy.data.objects.new("bones", armature))
+        bpy.ops.object.mode_set(mode="EDIT")
+        bone = armature.edit_bones.new("upper")
+        bone.head, bone.tail = Vector((low + high) / 2), Vector((low + high) / 2) + Vector((0, 0, 1))
+        bpy.ops.object.mode_set(mode="OBJECT")
+        group = obj.vertex_groups.new(name="upper")
+        middle = (low + high)[1] / 2
+        group.add([vertex.index for vertex in obj.data.vertices if vertex.co.y > middle], 1, "REPLACE")
+        obj.modifiers.new("armature", "ARMATURE").object = bones
+        bones.pose.bones["upper"].location = (0, 0, 2 * (high - low).max())
+        bpy.context.view_layer.objects.active = obj
+        bpy.context.view_layer.update()
+        bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+        return obj, h, bones
+
+    def test_a_posed_hand_is_picked_and_drawn_where_it_is(self):
+        obj, h, bones = self.posed()
+        prepared = part("prepared").prepared
+        evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        places = positions(evaluated.to_mesh()).copy()
+        self.assertGreater(np.abs(places - positions(obj.data)).max(), 1)
+        for perspective in (True, False):
+            region, region_view = camera(evaluated, perspective)
+            moved = [face.index for face in obj.data.polygons
+                     if np.abs(places - positions(obj.data))[list(face.vertices)].min(axis=0).max() > 1][::7]
+            right = sum(face == self.face_at(obj, places, face, region, region_view) for face in moved)
+            self.assertGreater(right, len(moved) / 4)  # those that are turned to the camera and not behind others
+        node = h.wheel(700)[0][3]
+        parts = prepared(obj).parts(obj)
+        np.testing.assert_array_equal(parts.positions, places)
+        begin, end = parts.slice(node)
+        drawn = {tuple(sorted(triangle)) for triangle in parts.triangles[begin:end].tolist()}
+        own = {tuple(sorted(obj.data.polygons[face].vertices)) for face in h.faces(node)}
+        self.assertEqual(drawn, own)
+        # Kept as long as nothing has moved.
+        made = prepared(obj)
+        bpy.context.view_layer.update()
+        self.assertIs(prepared(obj), made)
+        bones.pose.bones["upper"].location = (0, 0, 0)
+        bpy.context.view_layer.update()
+        self.assertIsNot(prepared(obj), made)
+        np.testing.assert_allclose(prepared(obj).parts(obj).positions, positions(obj.data), atol=1e-4)
+
+    def face_at(self, obj, places, face, region, region_view):
+        """The face picked at the pixel of a face's middle."""
+        middle = obj.matrix_world @ Vector(places[list(obj.data.polygons[face].vertices)].mean(axis=0))
+        point = location_3d_to_region_2d(region, region_view, middle)
+        found = part("prepared").prepared(obj).tree.under(obj.matrix_world, region, region_view, point)
+        return found and found[0]
+
+    def test_kept_where_other_polygons_are_shown(self):
+        """The double that is made for that must not count as a change."""
+        obj = self.modified("SUBSURF", levels=2)
+        bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+        made = part("prepared").prepared(obj)
+        bpy.context.view_layer.update()
+        self.assertIs(part("prepared").prepared(obj), made)
+
+    def test_two_objects_with_one_mesh(self):
+        """Each is picked where its own modifiers show it."""
+        obj = self.modified("DISPLACE", strength=100, direction="Z", mid_level=0)
+        twin = self.link(bpy.data.objects.new("twin", obj.data))
+        heights = [part("prepared").prepared(each)._seen.positions[:, 2].mean() for each in (obj, twin, obj)]
+        np.testing.assert_allclose(heights, [100, 0, 100], atol=1e-3)
+
+
+class Views(MeshTest):
+    """What a 3D view shows, by scene.ray_cast() behind what it does not."""
+
+    def setUp(self):
+        super().setUp()
+        self.window, self.area, self.region, self.region_view = view()
+        self.space = self.area.spaces.active
+        self.near, self.far = self.box("near", 0), self.box("far", 1)
+
+    def box(self, name, depth):
+        """A box in the middle of the view, the further away the greater depth is."""
+        obj = self.add(*BOX, name)
+        obj.matrix_world = self.place(depth) @ Matrix.Translation((-0.5, -0.5, -0.5))
+        bpy.context.view_layer.update()
+        return obj
+
+    def place(self, depth):
+        turned = self.region_view.view_matrix.inverted().to_3x3().to_4x4()
+        away = turned @ Vector((0, 0, -3 * depth))
+        return Matrix.Translation(self.region_view.view_location + away) @ turned
+
+    def found(self, **more):
+        context = FakeContext()
+        return part("picking").surface_under(context, self.area, self.region, self.region_view,
+                                             (self.region.width // 2, self.region.height // 2), **more)
+
+    def alone(self, obj):
+        """Puts the view into the local view of this object, or out of one."""
+        for other in bpy.context.view_layer.objects:
+            other.select_set(other == obj)
+        with bpy.context.temp_override(window=self.window, area=self.area, region=self.region):
+            bpy.ops.view3d.localview(frame_selected=False)
+        bpy.context.view_layer.update()
+
+    def test_the_first_that_is_shown(self):
+        hit = self.found()
+        self.assertEqual((hit.obj, hit.matrix), (self.near, self.near.matrix_world))
+        eye = self.region_view.view_matrix.inverted().translation
+        self.assertGreater(hit.normal.dot(eye - hit.location), 0)
+        self.assertEqual(self.found(wanted=lambda obj: obj != self.near).obj, self.far)
+
+    def test_local_view(self):
+        self.alone(self.far)
+        self.assertEqual(self.found().obj, self.far)
+        self.alone(self.far)
+        self.assertEqual(self.found().obj, self.near)
+
+    def test_kinds_and_hidden_objects(self):
+        self.near.hide_set(True)
+        bpy.context.view_layer.update()
+        self.assertEqual(self.found().obj, self.far)
+        self.space.show_object_viewport_mesh = False
+        self.addCleanup(setattr, self.space, "show_object_viewport_mesh", True)
+        self.assertIsNone(self.found())
+
+    def test_local_collections(self):
+        collection = bpy.data.collections.new("other")
+        self.addCleanup(bpy.data.collections.remove, collection)
+        bpy.context.scene.collection.children.link(collection)
+        collection.objects.link(self.far)
+        bpy.context.collection.objects.unlink(self.far)
+        self.space.use_local_collections = True
+        self.addCleanup(setattr, self.space, "use_local_collections", False)
+        index = 1 + bpy.context.scene.collection.children.find(collection.name)
+        with bpy.context.temp_override(window=self.window, area=self.area, region=self.region):
+            bpy.ops.object.hide_collection(collection_index=index)  # hides all others in this view
+        bpy.context.view_layer.update()
+        self.assertEqual((self.near.visible_get(viewport=self.space), self.far.visible_get(viewport=self.space)),
+                         (False, True))
+        self.assertEqual(self.found().obj, self.far)
+
+    def test_instances_are_where_their_instancer_is(self):
+        """An instance of the hidden box counts; not in a local view without its instancer."""
+        group = bpy.data.collections.new("group")
+        self.addCleanup(bpy.data.collections.remove, group)
+        group.objects.link(self.far)
+        bpy.context.collection.objects.unlink(self.far)
+        empty = self.link(bpy.data.objects.new("instance", None))
+        empty.instance_type, empty.instance_collection = "COLLECTION", group
+        empty.matrix_world = Matrix.Translation((0.01, 0, 0))
+        bpy.context.view_layer.update()
+        self.near.hide_set(True)
+        bpy.context.view_layer.update()
+        hit = self.found()
+        self.assertEqual(hit.obj, self.far)
+        self.assertAlmostEqual((hit.matrix.translation - self.far.matrix_world.translation).x, 0.01, 4)
+        other = self.box("other", 2)
+        self.alone(other)
+        self.assertEqual(self.found().obj, other)
+        self.alone(other)
+
+    def test_place_goes_onto_what_is_shown(self):
+        placed = self.box("placed", -1)
+        operator = part("operators.place").OBJECT_OT_partwheel_place
+        self.alone(self.far)
+        fake = type("Fake", (), {"part_name": placed.name_full})()
+        location, _, name = operator._surface_under(fake, FakeContext(), event("MOUSEMOVE"))
+        self.assertEqual(name, "far")
+        self.assertLess((location - self.far.matrix_world.translation).length, 2)
+        self.alone(self.far)
+
+    def test_edit_mode_begins_on_what_is_shown(self):
+        operator = part("operators.paint").OBJECT_OT_partwheel_select
+        reports = []
+        fake = type("Fake", (), {"report": lambda self, *what: reports.append(what), "_target": operator._target})()
+        self.alone(self.far)
+        bpy.context.view_layer.objects.active = self.near
+        self.assertEqual(operator.invoke(fake, FakeContext(), event("W")), {"CANCELLED"})
+        self.assertEqual((self.near.mode, self.far.mode, reports), ("OBJECT", "EDIT", []))
+        bpy.ops.object.mode_set(mode="OBJECT")
+        bpy.context.view_layer.objects.active = self.near  # which is not shown
+        self.far.location.x += 100
+        bpy.context.view_layer.update()
+        self.assertEqual(operator.invoke(fake, FakeContext(), event("W")), {"CANCELLED"})
+        self.assertEqual((self.near.mode, self.far.mode), ("OBJECT", "OBJECT"))
+        self.assertIn("no mesh under the mouse", reports[-1][1])
+        self.alone(self.far)
+
+    def test_an_edited_mesh_that_is_not_shown_says_so(self):
+        bpy.context.view_layer.objects.active = self.near
+        bpy.ops.object.mode_set(mode="EDIT")
+        tool = Tool()
+        context = FakeContext()
+        vars(context)["objects_in_mode_unique_data"] = []  # what Blender says in a local view without the mesh
+        self.assertEqual(tool.invoke(context, event("W", ctrl=True)), {"CANCELLED"})
+        self.assertIn("does not show the mesh", tool.reports[-1][1])
