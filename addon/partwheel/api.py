@@ -13,8 +13,8 @@
     api.swap(obj, node, other)         # exchanged for the most compatible part of another object
 
 Nodes are numbers of the object's hierarchy, a core.Hierarchy, which build() returns and hierarchy() finds. The other
-functions build it if there is none. All raise core.PartwheelError, whose text says what is wrong, or ValueError for an
-object that holds no mesh; build() also RuntimeError while another build is under way.
+functions build it if there is none. One build runs at a time: those that are under way already come first. All raise
+core.PartwheelError, whose text says what is wrong, or ValueError for an object that holds no mesh.
 """
 
 import numpy
@@ -32,15 +32,13 @@ def build(obj, quality=0.0, open_surfaces=False, mode=None):
     preferences have it.
     """
     _check(obj)
-    if session.running():
-        raise RuntimeError("Parts are being built already. One build runs at a time: wait for its end, or cancel it.")
-    return session.Build(obj, quality, open_surfaces, mode).finish()
+    return session.build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode).finish()
 
 
 def hierarchy(obj):
     """The Hierarchy of the object's mesh as it is now, built if there is none."""
     _check(obj)
-    return session.hierarchy(obj) or build(obj)
+    return session.hierarchy(obj) or session.build(obj).finish()
 
 
 def path(obj, face):

@@ -65,6 +65,7 @@ class MeshTest(unittest.TestCase):
             for item in list(data):
                 data.remove(item)
         part("session")._after_loading()
+        part("ui.status").Line.lines.clear()
         bpy.context.tool_settings.mesh_select_mode = (False, False, True)
 
     def add(self, vertices, polygons, name="model"):

@@ -20,7 +20,8 @@ import bpy
 
 SLOW = 3  # seconds
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "faults")]
 
 
 def installed(zip_path):
@@ -65,7 +66,7 @@ def main():
         common.ZIP = str(Path(zip_path).resolve())
         common.MODULE = installed(common.ZIP)
         unittest.defaultTestLoader.testNamePatterns = [f"*{name}*" for name in names] or None
-        suite = unittest.defaultTestLoader.discover(str(Path(__file__).resolve().parent), "test_*.py")
+        suite = unittest.defaultTestLoader.discover(str(HERE), "test_*.py")
         run = unittest.TextTestRunner(stream=sys.stdout, verbosity=2, resultclass=Timed).run(suite)
         failures = [f"{test.id()}: {text.strip().splitlines()[-1]}" for test, text in run.failures + run.errors]
         failures += [f"{test.id()} was skipped: {reason}" for test, reason in run.skipped]

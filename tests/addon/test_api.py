@@ -95,10 +95,6 @@ class Api(MeshTest):
         with self.assertRaises(error):
             self.api.faces(obj, 10**6)
         self.assertIsNone(part("session").picked(obj))
-        build = part("session").Build(obj)
-        with self.assertRaises(RuntimeError):
-            self.api.build(obj)
-        build.finish()
 
 
 class PickedLast(MeshTest):

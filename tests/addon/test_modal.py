@@ -16,6 +16,7 @@ import common
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from common import BOX, SHEET, MeshTest, alive, flags, part, read_off, selected, until
+from gate import Gate
 from mathutils import Euler, Matrix, Vector
 
 
@@ -234,6 +235,7 @@ class Modal(ToolTest):
         other_hierarchy = self.hierarchy(other)
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         self.start()
+        self.send("ESC")
         bpy.ops.object.mode_set(mode="OBJECT")
         self.obj.matrix_world = Matrix.Translation((0, 0, -1000))
         other.select_set(True)
@@ -264,7 +266,7 @@ class Modal(ToolTest):
         point, _ = self.centre()
         before = flags(self.obj)
         self.send("LEFTMOUSE", point)
-        self.tool.hierarchy = None  # whatever may go wrong
+        self.tool.target.select = None  # whatever may go wrong
         with contextlib.redirect_stderr(io.StringIO()) as log:
             self.assertEqual(self.send("WHEELUPMOUSE", point), {"CANCELLED"})
         self.assertIn("Traceback", log.getvalue())
@@ -529,12 +531,12 @@ class WhileBuilding(ToolTest):
     def test_an_operator_that_makes_the_mesh_anew_wants_no_build_of_the_former(self):
         session = part("session")
         self.begin("bear")
-        session.drop_outdated_build()
+        session.drop_outdated_builds()
         self.assertTrue(session.running())
         bm = bmesh.from_edit_mesh(self.obj.data)
         bm.verts.ensure_lookup_table()
         bm.verts[0].co.x += 0.01  # as a union with a wider blend has the same polygons, elsewhere
-        session.drop_outdated_build()
+        session.drop_outdated_builds()
         self.assertEqual(self.build_on(), {"CANCELLED"})
         self.nothing_runs()
 
@@ -595,14 +597,6 @@ class WhileBuilding(ToolTest):
         self.assertEqual(kind, {"ERROR"})
         return message
 
-    def test_only_one_at_a_time(self):
-        self.begin()
-        for operator in (bpy.ops.mesh.partwheel_build, bpy.ops.mesh.partwheel_select):
-            self.assertFalse(operator.poll())
-        self.send("ESC")
-        for operator in (bpy.ops.mesh.partwheel_build, bpy.ops.mesh.partwheel_select):
-            self.assertTrue(operator.poll())
-
     def test_blender_ends_the_tool(self):
         self.begin("bear")
         self.tool.cancel(self.context)
@@ -635,6 +629,240 @@ class WhileBuilding(ToolTest):
             self.assertEqual(self.build_on() if over == "TIMER" else self.send(over), answer)
             self.nothing_runs()
             self.assertEqual(part("session").hierarchy(self.obj) is None, over == "ESC")
+
+
+class ManyMeshes(ToolTest):
+    """More clicks than one while parts are being found, on the same mesh and on others. No worker gets on before the
+    gate is opened."""
+
+    def setUp(self):
+        super().setUp()
+        self.session = part("session")
+        self.gate = Gate(part("core.worker"))
+        self.addCleanup(self.gate.remove)
+        self.addCleanup(self.session._after_loading)
+
+    def show_two(self, built=()):
+        """Two meshes side by side, both in Edit Mode; those named have parts already."""
+        self.hierarchies, self.objects = {}, []
+        for side, name in ((-1, "hand"), (1, "homer")):
+            obj = self.add(*read_off(name), name)
+            show(obj)
+            _, _, _, region_view = view()
+            obj.matrix_world = (Matrix.Translation(region_view.view_rotation @ Vector((side, 0, 0))
+                                                   * region_view.view_distance / 6) @ obj.matrix_world)
+            self.hierarchies[obj] = self.hierarchy(obj)
+            if name in built:
+                self.gate.open()
+                part("api").build(obj)
+                self.gate.close()
+            self.objects.append(obj)
+        for obj in self.objects:
+            obj.select_set(True)
+        self.edit(self.objects[1])
+        return self.objects
+
+    def click(self, obj, nth=0, **properties):
+        """A click of the toolbar's tool: (Tool with its context and the part that is meant, its answer)"""
+        self.assertTrue(bpy.ops.mesh.partwheel_select.poll())  # else the click would be Blender's own
+        self.obj, self.h = obj, self.hierarchies[obj]
+        point, face = self.centre(obj, levels=1 + nth)
+        tool, context = Tool(tool=True, **properties), FakeContext()
+        answer = tool.invoke(context, event("LEFTMOUSE", point))
+        vars(tool).update(context=context, face=face)
+        stops, start = self.h.wheel(face)
+        tool.meant = set(self.h.faces(stops[start]).tolist())
+        return tool, answer
+
+    def tick(self, tool, kind="TIMER"):
+        return tool.modal(tool.context, event(kind))
+
+    def until_built(self, tool):
+        """Opens the gate and waits for the answer, of which the tool is not told yet."""
+        self.gate.open()
+        until(lambda: tool.building.build.job.poll() is None)
+
+    def test_another_mesh_is_picked_from_meanwhile(self):
+        hand, homer = self.show_two(built=["homer"])
+        first, answer = self.click(hand)
+        self.assertEqual(answer, {"RUNNING_MODAL"})
+        second, answer = self.click(homer)
+        self.assertEqual((answer, selected(homer)), ({"RUNNING_MODAL"}, second.meant))
+        self.assertEqual(self.tick(first), {"PASS_THROUGH"})
+        self.until_built(first)
+        self.assertEqual(self.tick(first), {"CANCELLED"})
+        self.assertEqual((selected(hand), selected(homer)), (set(), second.meant))  # the last click counts
+        self.assertEqual(self.tick(second, "RET"), {"FINISHED"})
+        third, answer = self.click(hand)
+        self.assertEqual((answer, selected(hand), selected(homer)), ({"RUNNING_MODAL"}, third.meant, set()))
+
+    def test_what_is_said_of_the_part_that_is_held_is_not_talked_over(self):
+        hand, homer = self.show_two(built=["homer"])
+        first, _ = self.click(hand)
+        second, _ = self.click(homer)
+        said = list(first.context.status)
+        self.assertIn("finds the parts of hand", said[-1])
+        self.assertEqual(self.tick(first), {"PASS_THROUGH"})
+        self.assertEqual(first.context.status, said)
+        self.tick(second, "ESC")
+        self.tick(first)
+        self.assertIn("finds the parts of hand", first.context.status[-1])
+        self.tick(first, "ESC")
+        self.assertIsNone(first.context.status[-1])
+
+    def test_builds_queue(self):
+        hand, homer = self.show_two()
+        first, _ = self.click(hand)
+        second, answer = self.click(homer)
+        self.assertEqual(answer, {"RUNNING_MODAL"})
+        self.assertTrue(first.building.build.job)
+        self.assertIsNone(second.building.build.job)  # one worker at a time
+        self.assertEqual(self.tick(second), {"PASS_THROUGH"})
+        self.assertIn("those of hand", second.context.status[-1])
+        self.gate.open()
+        until(lambda: first.building.build.job.poll() is None)
+        self.assertEqual(self.tick(second), {"PASS_THROUGH"})
+        self.assertTrue(second.building.build.job)
+        until(lambda: second.building.build.poll() is None)
+        self.assertEqual((self.tick(first), self.tick(second)), ({"CANCELLED"}, {"RUNNING_MODAL"}))
+        self.assertEqual((selected(hand), selected(homer)), (set(), second.meant))
+        for obj in (hand, homer):
+            self.assertEqual(self.session.hierarchy(obj).save(), self.hierarchies[obj].save())
+        self.assertFalse(self.session.running())
+
+    def test_escape_takes_the_one_that_waits_out_of_the_queue(self):
+        hand, homer = self.show_two()
+        first, _ = self.click(hand)
+        second, _ = self.click(homer)
+        self.assertEqual(self.tick(second, "ESC"), {"CANCELLED"})
+        self.assertIsNone(second.building.build.job)
+        self.assertEqual(self.tick(first), {"PASS_THROUGH"})
+        self.until_built(first)
+        self.tick(first)
+        self.assertIsNotNone(self.session.hierarchy(hand))
+        self.assertIsNone(self.session.hierarchy(homer))
+        self.assertFalse(self.session.running())
+
+    def test_escape_lets_the_next_one_begin(self):
+        hand, homer = self.show_two()
+        first, _ = self.click(hand)
+        second, _ = self.click(homer)
+        self.assertEqual(self.tick(first, "ESC"), {"CANCELLED"})
+        self.assertEqual(self.tick(second), {"PASS_THROUGH"})
+        self.assertTrue(second.building.build.job)
+
+    def test_a_second_click_on_the_same_mesh_joins(self):
+        hand, _ = self.show_two()
+        first, _ = self.click(hand)
+        second, answer = self.click(hand, 1)
+        self.assertEqual(answer, {"RUNNING_MODAL"})
+        self.assertIs(second.building.build, first.building.build)
+        self.assertNotEqual(second.face, first.face)
+        self.assertEqual(self.tick(second), {"PASS_THROUGH"})
+        self.assertEqual((self.tick(first), first.reports), ({"CANCELLED"}, []))  # the second goes on alone
+        self.assertEqual(first.context.timers, [])
+        self.until_built(second)
+        self.assertEqual(self.tick(second), {"RUNNING_MODAL"})
+        self.assertEqual(selected(hand), second.meant)
+
+    def test_an_edited_mesh_is_no_longer_the_same(self):
+        hand, _ = self.show_two()
+        first, _ = self.click(hand)
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.subdivide()
+        second = self.session.build(hand)
+        self.assertIsNot(second, first.building.build)
+        self.assertEqual(self.tick(first), {"CANCELLED"})
+        self.assertTrue(second.job)
+
+    def test_parts_found_anew_while_one_of_the_old_is_held(self):
+        _, homer = self.show_two(built=["homer"])
+        tool, _ = self.click(homer)
+        self.gate.open()
+        part("api").build(homer, quality=1.4)
+        self.assertEqual(self.tick(tool, "WHEELUPMOUSE"), {"CANCELLED"})
+        self.assertEqual(tool.reports[-1][0], {"WARNING"})
+
+    def test_a_click_while_parts_are_found_anew_waits_for_them(self):
+        _, homer = self.show_two(built=["homer"])
+        old = self.session.hierarchy(homer)
+        self.session.build(homer, quality=1.4)
+        tool, answer = self.click(homer)
+        self.assertEqual((answer, selected(homer)), ({"RUNNING_MODAL"}, set()))
+        self.until_built(tool)
+        self.assertEqual(self.tick(tool), {"RUNNING_MODAL"})
+        self.assertIsNot(tool.hierarchy, old)
+        self.assertGreater(len(tool.hierarchy.tetrahedra), len(old.tetrahedra))
+        self.assertTrue(selected(homer))
+
+    def test_scripts_wait_for_their_turn(self):
+        hand, homer = self.show_two()
+        tool, _ = self.click(hand)
+        self.gate.open()
+        self.assertEqual(part("api").build(homer).save(), self.hierarchies[homer].save())
+        until(lambda: tool.building.build.poll() is None)
+        self.assertEqual((self.tick(tool), selected(hand)), ({"RUNNING_MODAL"}, tool.meant))
+
+    def test_a_script_that_wants_other_parts_of_the_same_mesh_has_its_way(self):
+        hand, _ = self.show_two()
+        tool, _ = self.click(hand)
+        self.gate.open()
+        finer = part("api").build(hand, quality=1.4)
+        self.assertEqual(self.tick(tool), {"CANCELLED"})
+        self.assertIs(self.session.hierarchy(hand), finer)
+        self.assertGreater(len(finer.tetrahedra), len(self.hierarchies[hand].tetrahedra))
+        self.assertFalse(self.session.running())
+
+    # ---- Esc, and the answer in the same moment
+
+    def test_escape_before_the_answer_was_shown(self):
+        """The parts are found already, but nobody has been told."""
+        hand, _ = self.show_two()
+        before = flags(hand)
+        tool, _ = self.click(hand)
+        self.until_built(tool)
+        self.assertEqual(self.tick(tool, "ESC"), {"CANCELLED"})
+        self.assertEqual(flags(hand), before)
+        self.assertIsNone(self.session.hierarchy(hand))  # just as when Esc came a moment earlier
+        self.assertIn("Cancelled", tool.reports[-1][1])
+        self.assertFalse(self.session.running())
+
+    def test_escape_right_after_the_answer(self):
+        """The part is selected, though not drawn yet."""
+        hand, _ = self.show_two()
+        before = flags(hand)
+        tool, _ = self.click(hand)
+        self.until_built(tool)
+        self.assertEqual(self.tick(tool), {"RUNNING_MODAL"})
+        self.assertEqual(selected(hand), tool.meant)
+        self.assertEqual(self.tick(tool, "ESC"), {"CANCELLED"})
+        self.assertEqual(flags(hand), before)
+        self.assertFalse(self.session.running())
+
+    def test_escape_while_a_script_has_had_the_answer(self):
+        hand, _ = self.show_two()
+        tool, _ = self.click(hand)
+        self.gate.open()
+        self.assertIsNotNone(part("api").hierarchy(hand))  # waits for the tool's build
+        self.assertEqual(self.tick(tool, "ESC"), {"CANCELLED"})
+        self.assertEqual(selected(hand), set())
+
+    def test_blender_ends_the_tool_and_with_it_the_worker(self):
+        """Even one that would go on as soon as it is waited for."""
+        hand, _ = self.show_two()
+        tool, _ = self.click(hand)
+        job = tool.building.build.job
+        result = job.result
+
+        def waited_for():
+            self.gate.open()
+            return result()
+
+        job.result = waited_for
+        tool.cancel(tool.context)
+        self.assertFalse(alive(job.process_id))
+        self.assertIn("Cancelled", tool.reports[-1][1])
+        self.assertIsNone(self.session.hierarchy(hand))
 
 
 class Pick(MeshTest):

@@ -11,9 +11,9 @@ import bpy
 
 from .. import session
 from ..core import LibraryError, PartwheelError, Status
+from ..ui import status
 
 TICK = 0.1  # seconds between two looks at the worker
-BUSY = "Parts are being built already; Esc over the 3D view stops that"
 
 
 class Building:
@@ -21,24 +21,25 @@ class Building:
 
     hierarchy: None until it is done, and if it fails."""
 
-    def __init__(self, operator, obj, quality=0.0, open_surfaces=False):
-        """Raises LibraryError or PartwheelError when it can't even begin."""
+    def __init__(self, operator, obj, **options):
+        """options: of session.build(). Raises LibraryError or PartwheelError when it can't even begin."""
         self.operator, self.hierarchy = operator, None
         self.began = time.perf_counter()
-        self.build = session.Build(obj, quality, open_surfaces)
-        self.timer = None
+        self.build = session.build(obj, **options)
+        self.timer, self.line = None, status.Line()
         self.printed = 0
 
     # ---- Until it is done
 
     def wait(self, context):
         """For scripts: blocks, and shows progress at the cursor, or in the terminal when there are no windows."""
-        self._begin_progress(context)
         try:
-            while not self.build.job.wait(TICK):
-                self._show(context, *(self.build.job.poll() or (1.0, "")))
-        finally:  # Ctrl-C too
+            while not self.build.wait(TICK):
+                self._show(context, *(self.build.poll() or (1.0, "")))
+        except BaseException:  # Ctrl-C
             self.build.cancel()
+            raise
+        finally:
             self._end_progress(context)
             self._conclude()
         return self.hierarchy
@@ -46,28 +47,33 @@ class Building:
     # ---- Beside Blender's own work
 
     def watch(self, context):
-        """From now on step() is to be called with every event."""
+        """From now on step() is to be called with every event. Another that watches the same build ends: who asked last
+        gets the parts."""
+        self.build.watcher = self
         self.timer = context.window_manager.event_timer_add(TICK, window=context.window)
-        self._begin_progress(context)
         self._tell(context, 0.0, "")
 
     def step(self, context, event):
-        """Looks after the build: whether it is over. Esc cancels it."""
+        """Looks after the build: whether it is over, or another operator goes on with it. Esc cancels it: also if the
+        answer has come before, as long as it was not taken over, by a TIMER, and so shown."""
         if event.type == "ESC" and event.value == "PRESS":
-            self.build.cancel()
-        elif event.type != "TIMER":
+            self.abandon(context)
+            return True
+        if event.type != "TIMER":
             return False
-        progress = self.build.job.poll()
-        if progress and event.type == "TIMER":
+        mine = self.build.watcher is self
+        progress = self.build.poll() if mine else None
+        if progress:
             self._show(context, *progress)
             self._tell(context, *progress)
             return False
         self._stop_watching(context)
-        self._conclude()
+        if mine:
+            self._conclude()
         return True
 
     def abandon(self, context):
-        """Blender ends the operator: the window closes or another file opens."""
+        """The user has pressed Esc; or Blender ends the operator: the window closes or another file opens."""
         self.build.cancel()
         self._stop_watching(context)
         self._conclude()
@@ -75,26 +81,23 @@ class Building:
     def _stop_watching(self, context):
         context.window_manager.event_timer_remove(self.timer)
         self._end_progress(context)
-        if context.workspace:
-            context.workspace.status_text_set(None)
+        self.line.end(context)
 
     def _tell(self, context, fraction, stage):
-        context.workspace.status_text_set(f"Partwheel finds the parts of {self.build.name}: {fraction:.0%} {stage}   "
-                                          "Esc: Cancel")
+        self.line.say(context, f"Partwheel finds the parts of {self.build.name}: {fraction:.0%} {stage}   Esc: Cancel")
 
     # ---- Both
-
-    def _begin_progress(self, context):
-        if not bpy.app.background:
-            context.window_manager.progress_begin(0, 100)
 
     def _end_progress(self, context):
         if not bpy.app.background:
             context.window_manager.progress_end()
 
     def _show(self, context, fraction, stage):
+        if not self.build.job:
+            return  # the cursor tells of the build that runs
         percent = int(fraction * 100)
         if not bpy.app.background:
+            context.window_manager.progress_begin(0, 100)  # each time: another build may have ended it
             context.window_manager.progress_update(percent)
         elif percent >= self.printed + 10:
             print(f"Partwheel: {percent:3d} % {stage}", flush=True)
@@ -131,14 +134,6 @@ def start(operator, obj, **options):
         return None
 
 
-def idle(cls):
-    """For poll(): whether no build is under way; if one is, Blender shows why the operator is grey."""
-    if session.running():
-        cls.poll_message_set(BUSY)
-        return False
-    return True
-
-
 class _Build:
     """What building and finding have in common."""
 
@@ -161,7 +156,7 @@ class _Build:
         if obj is None or obj.type != "MESH" or obj.mode not in {"OBJECT", "EDIT"}:
             cls.poll_message_set("Needs an active mesh object, in Edit Mode or Object Mode")
             return False
-        return idle(cls)
+        return True
 
     def execute(self, context):
         building = self._start(context)

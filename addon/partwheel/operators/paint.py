@@ -11,7 +11,6 @@ from ..linked import changeable, read_only
 from ..prepared import prepared
 from ..seen import NO_FACE
 from ..selection import select_outside_edit_mode
-from .build import idle
 from .pick import PartPicker
 
 FACE_SET = ".sculpt_face_set"
@@ -35,7 +34,7 @@ class OBJECT_OT_partwheel_select(bpy.types.Operator):
         if context.mode != "OBJECT":
             cls.poll_message_set("This is for Object Mode")
             return False
-        return idle(cls)
+        return True
 
     def invoke(self, context, event):
         view = context.window and picking.view_under(context.window, event.mouse_x, event.mouse_y)
@@ -124,7 +123,7 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         if obj.use_dynamic_topology_sculpting:
             cls.poll_message_set("Dynamic topology changes the faces all the time: switch it off first")
             return False
-        return idle(cls)
+        return True
 
     def _apply(self, context, obj, faces, picked):
         return self._write(context, obj, faces, picked.node)

@@ -71,6 +71,7 @@ class PartPicker:
         raise NotImplementedError
 
     hand_offs = ()
+    begun = 0  # how many picks have begun, with the mouse, by whichever operator
 
     # ---- Without a window
 
@@ -98,6 +99,8 @@ class PartPicker:
             self.report({"ERROR"}, "Parts are picked in a 3D view: start this with the mouse over one.")
             return {"CANCELLED"}
         self.state, self.target, self.object_name = wheel.Waiting(), None, ""
+        PartPicker.begun += 1
+        self.number, self.line = PartPicker.begun, status.Line()
         self.scroll, self.drag = keys.Scroll(keys.SCROLL_STEP), None
         result = self._guarded(context, lambda: self._begun(context, event))
         if result == {"RUNNING_MODAL"}:
@@ -134,7 +137,7 @@ class PartPicker:
         if self.tool:
             return self._missed(context)
         obj = objects[0]
-        if session.hierarchy(obj) is None:
+        if self._parts(obj) is None:
             return self._build(context, obj, None)
         return self._wait(context, "Click a face of the mesh")
 
@@ -153,8 +156,13 @@ class PartPicker:
             return None, None
         return obj, face
 
+    @staticmethod
+    def _parts(obj):
+        """The hierarchy of the object's mesh; None if there is none, or a new one is on its way."""
+        return None if session.being_built(obj) else session.hierarchy(obj)
+
     def _pick(self, context, event, obj, face):
-        self.hierarchy = session.hierarchy(obj)
+        self.hierarchy = self._parts(obj)
         if self.hierarchy is None:
             # Which face was meant is known now: the user may turn the view while the parts are being built.
             return self._build(context, obj, face)
@@ -181,7 +189,7 @@ class PartPicker:
             return {"PASS_THROUGH"}
         face, self.state = self.state.face, wheel.Waiting()
         self.hierarchy = self.building.hierarchy
-        if not self.hierarchy:
+        if not self.hierarchy or self.number < PartPicker.begun:  # the last click counts: its part stays selected
             return {"CANCELLED"}
         obj = self._object(context)
         if obj is None or context.area is None:
@@ -208,6 +216,9 @@ class PartPicker:
             self.report({"WARNING"}, "Partwheel stopped: the mesh is no longer being edited as it was.")
             self._end(context)
             return {"CANCELLED"}
+        if self.target and session.known(self._object(context).data) is not self.hierarchy:
+            self.report({"WARNING"}, "Partwheel stopped: the parts were found anew. Pick one of them.")
+            return self._cancelled(context)
         if event.type in keys.SYSTEM:
             return {"PASS_THROUGH"}
         holding = isinstance(self.state, wheel.Picked)
@@ -332,13 +343,12 @@ class PartPicker:
         return self._object(context) is not None and self.target.fits()
 
     def _tell(self, context, header, row):
-        context.workspace.status_text_set(status.drawer(row, self.hand_offs if row is not keys.WAITING else ()))
+        self.line.say(context, status.drawer(row, self.hand_offs if row is not keys.WAITING else ()))
         if context.area:
             context.area.header_text_set(f"Partwheel: {header}")
 
     def _end(self, context):
         overlay.shown.hide()
-        if context.workspace:
-            context.workspace.status_text_set(None)
+        self.line.end(context)
         if context.area:
             context.area.header_text_set(None)

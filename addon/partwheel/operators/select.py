@@ -7,7 +7,6 @@ import bpy
 
 from ..selection import Selections
 from . import proportional
-from .build import idle
 from .pick import PartPicker
 
 
@@ -54,7 +53,7 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
         if context.mode != "EDIT_MESH" or context.edit_object is None:
             cls.poll_message_set("Parts are selected in Edit Mode of a mesh")
             return False
-        return idle(cls)
+        return True
 
     def _apply(self, context, obj, faces, picked):
         self._aim(context, obj).select(obj, faces, picked.face, self.extend, self.deselect)

@@ -10,7 +10,7 @@ from ..linked import changeable
 
 def find_parts(operator):
     """Has the parts of the active object found, whose mesh is a union that this operator made."""
-    session.drop_outdated_build()  # of the union before, when the last operation is repeated with other options
+    session.drop_outdated_builds()  # of the union before, when the last operation is repeated with other options
     try:
         bpy.ops.mesh.partwheel_find("INVOKE_DEFAULT")
     except RuntimeError as error:  # they are united all the same

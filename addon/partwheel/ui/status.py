@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the status bar shows while a modal operator runs: the keys that count now, with Blender's icons if it has them."""
+"""What the status bar shows while a modal operator runs: the keys that count now, with Blender's icons if it has them,
+or how far a build is."""
 
 from itertools import groupby
 
@@ -10,6 +11,30 @@ from .. import keys
 # Some versions have more icons of keys than others.
 ICONS = set(bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys())
 WHEEL = "MOUSE_MMB_SCROLL"
+
+
+class Line:
+    """What one operator says in the status bar. Of several the one is heard that began last: the keys for the part that
+    is held, say, and not how far the build for another mesh is."""
+
+    lines = []
+
+    def __init__(self):
+        self._said = None
+
+    def say(self, context, said):
+        """said: a text or a drawer()."""
+        self._said = said
+        if self not in Line.lines:
+            Line.lines.append(self)
+        if self is Line.lines[-1]:
+            context.workspace.status_text_set(said)
+
+    def end(self, context):
+        if self in Line.lines:
+            Line.lines.remove(self)
+            if context.workspace:
+                context.workspace.status_text_set(Line.lines[-1]._said if Line.lines else None)
 
 
 def drawer(row, hand_offs=()):
