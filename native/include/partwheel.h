@@ -105,7 +105,8 @@ typedef struct pw_build_options {
     /* 0: an open surface that is not meant as a solid (plane, cloth, car door) is refused with PW_ERROR_NOT_SOLID.
      * 1: it is wrapped as a thin solid. */
     int32_t open_surfaces;
-    /* 0: as many threads as help. 1 or more: at most so many. The result is the same, bit for bit. */
+    /* 0: as many threads as help. 1 or more: at most so many. One clusters; others share only what falls into pieces that
+     * have nothing to do with each other. The result is the same, bit for bit, also where the system starts none. */
     int32_t threads;
     /* A pw_mode; the first, 0, is the default. */
     int32_t mode;

@@ -71,7 +71,7 @@ def sizes(report, runs):
         return median(sum(r[part][1] for part in parts) for r in runs)
 
     peak = report["peak"]
-    most = max(peak[stage] for stage in ("tetgen", *STAGES, "cluster_two_threads"))
+    most = max(peak[stage] for stage in ("tetgen", *STAGES))
     return {"tets": report["tets"], "htc_seconds": median(map(htc, runs)), "tetgen_seconds": seconds("tetgen"),
             "build_seconds": seconds(*STAGES), "tetgen_peak": peak["tetgen"], "cluster_peak": peak["cluster"],
             "peak": most, "over_tetgen": (most - peak["tetgen"]) / report["tets"]}

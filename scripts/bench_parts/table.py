@@ -27,23 +27,11 @@ def ratio(report):
     over = f"median of {count} models of 10k to 60k faces"
     rows = [
         row(f"clustering + dendrogram / TetGen, one thread, {over}", report["htc"], 1.0, "{:.2f}"),
-        row("clustering, two threads / one", report["two_threads"], 0.7, "{:.2f}"),
         row("arrays to saved hierarchy, all stages, one thread / TetGen", report["pipeline"], 2.5, "{:.2f}"),
     ]
-    if "two_cores" in report:  # not yet in what was measured before this was
-        rows.insert(2, on_two_cores(report["two_cores"]))
     if "regrouping" in report:
         rows.append(row("what the regrouped mode adds / the stages above", report["regrouping"], 0.1, "{:.2f}"))
     return rows
-
-
-def on_two_cores(found):
-    name = (f"the same while the machine had two whole cores: two clusterings at once, a thread each, took at most "
-            f"{found['whole']} of one ({found['turns']} of {found['of']} turns, in {found['models']} models; the median "
-            f"of all turns is {found['at_once']:.2f})")
-    if not found["turns"]:
-        return name, "", "≤ 0.7", "not seen"
-    return row(name, found["two_threads"], 0.7, "{:.2f}")
 
 
 def scale(report):

@@ -4,9 +4,8 @@
 //
 // One line for a first run, and then one for each line that it is sent: so programs may take turns. A run takes every
 // stage of pw_build from the model's arrays to the saved bytes in one thread, `solid` being the checks of the surface and
-// its filling by TetGen, `hierarchy` with the paper's tree; then, beside that, it clusters the same tetrahedra again with
-// two threads, and in one thread twice at once (`cluster_twice`: on two cores that are free, as long as once), and
-// regroups the tree, which the other mode of pw_build does.
+// its filling by TetGen, `hierarchy` with the paper's tree; then, beside that, it regroups the tree, which the other mode
+// of pw_build does.
 // Seconds are [wall, cpu]. The first line has them as `first`, beside the model's sizes; its `peak` is the most memory in
 // bytes that the process held during each stage, `start` what it held before. In the other runs memory is used again, so
 // that they tell the program's time and not what the system takes to provide memory.
@@ -20,7 +19,6 @@
 #include <exception>
 #include <iostream>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -62,14 +60,6 @@ Run run(const Model& model, double quality) {
     staged("dendrogram", [&] { return prune(tree.merges); });  // as Hierarchy does, once more
     const auto saved = staged("hierarchy", [&] {
         return Hierarchy(solid.surface, mesh, Regrouped{tree, {}}, model.vertices.data()).save();
-    });
-    staged("cluster_two_threads", [&] { return cluster(mesh, progress, 2); });
-    staged("cluster_twice", [&] {
-        const std::jthread other([&] {
-            Progress own;
-            cluster(mesh, own, 1);
-        });
-        return cluster(mesh, progress, 1);
     });
     staged("regroup", [&] { return regroup(mesh, tree, progress); });
     r.tetgen = tetgen_watch();
