@@ -1,0 +1,271 @@
+// Regrouping on bars of square frusta, whose measures are known by formula: the signs of creases, which side is which,
+// the order of joining. tests/core/test_regroup.py compares all of it with a second implementation, on real models.
+#include "regroup.h"
+#include "regroup_fitted.h"
+
+#include "support/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <tuple>
+
+namespace partwheel::test {
+namespace {
+
+// A bar along x in pieces of length 1, whose square cross-sections have these half widths, one more than pieces.
+struct Bar {
+    std::vector<double> half;
+
+    size_t pieces() const { return half.size() - 1; }
+    double unit() const { return std::max(static_cast<double>(pieces()), 2 * *std::ranges::max_element(half)); }
+    double slope(size_t piece) const { return half[piece + 1] - half[piece]; }
+    double volume(size_t piece) const {
+        const double a = half[piece], b = half[piece + 1];
+        return 4 * (a * a + a * b + b * b) / 3 / std::pow(unit(), 3);
+    }
+    double area(size_t piece) const {
+        double sum = 4 * (half[piece] + half[piece + 1]) * std::hypot(1, slope(piece));
+        if (piece == 0) sum += 4 * half.front() * half.front();
+        if (piece + 1 == pieces()) sum += 4 * half.back() * half.back();
+        return sum / unit() / unit();
+    }
+    double interface(size_t border) const { return 4 * half[border] * half[border] / unit() / unit(); }
+    double length(size_t border) const { return 8 * half[border] / unit(); }
+    // The sine of half the angle by which the sides bend there, below 0 where they are concave.
+    double bend(size_t border) const {
+        return std::sin((std::atan(slope(border - 1)) - std::atan(slope(border))) / 2);
+    }
+};
+
+TetMesh mesh_of(const Bar& bar) {
+    TetMesh mesh = tets_of(block({0, 0, 0}, {static_cast<int>(bar.pieces()), 1, 1}));
+    for (Point& p : mesh.vertices)
+        for (size_t k : {1, 2}) p[k] = (p[k] - 0.5) * 2 * bar.half[static_cast<size_t>(p[0])];
+    return tet_mesh(mesh.vertices, mesh.tetrahedra);
+}
+
+// Each piece is one convex cluster, and those are joined in this order of the pieces by merges that are concave, so that
+// the parts are the pieces.
+BinaryTree tree_of(const TetMesh& mesh, const std::vector<size_t>& order) {
+    BinaryTree tree;
+    tree.components = 1;
+    const auto leaves = static_cast<int32_t>(mesh.tetrahedra.size());
+    const auto join = [&](int32_t a, int32_t b, double concavity) {
+        tree.merges.push_back({a, b, concavity, 1});
+        return leaves + static_cast<int32_t>(tree.merges.size()) - 1;
+    };
+    std::vector<int32_t> pieces;
+    for (const size_t piece : order) {
+        int32_t whole = -1;
+        for (int32_t t = 0; t < leaves; ++t) {
+            double x = 0;
+            for (const int32_t v : mesh.tetrahedra[static_cast<size_t>(t)])
+                x += mesh.vertices[static_cast<size_t>(v)][0] / 4;
+            if (static_cast<size_t>(x) == piece) whole = whole < 0 ? t : join(whole, t, 0);
+        }
+        pieces.push_back(whole);
+    }
+    int32_t whole = pieces.front();
+    for (size_t i = 1; i < pieces.size(); ++i) whole = join(whole, pieces[i], 1);
+    return tree;
+}
+
+struct Result {
+    Regrouped regrouped;
+    RegroupTrace trace;
+    std::vector<size_t> part_of_piece;
+
+    PairMeasures pair(size_t piece, size_t next) const {
+        for (const auto& pair : trace.pairs)
+            if (std::minmax(pair.a, pair.b) == std::minmax(part(piece), part(next)))
+                return std::bit_cast<PairMeasures>(pair.measures);
+        throw std::runtime_error("no such pair");
+    }
+    NodeMeasures node(size_t n) const { return std::bit_cast<NodeMeasures>(trace.nodes[n]); }
+    NodeMeasures node_of_piece(size_t piece) const { return node(part_of_piece[piece]); }
+    int32_t part(size_t piece) const { return static_cast<int32_t>(part_of_piece[piece]); }
+};
+
+Result regrouped(const Bar& bar, const std::vector<size_t>& order) {
+    const TetMesh mesh = mesh_of(bar);
+    Progress progress;
+    progress.begin();
+    Result result;
+    result.regrouped = regroup(mesh, tree_of(mesh, order), progress, {}, &result.trace);
+    for (size_t piece = 0; piece < bar.pieces(); ++piece) {
+        const auto at_piece = [&](const Tetrahedron& t) {
+            return std::ranges::all_of(t, [&](int32_t v) {
+                const double x = mesh.vertices[static_cast<size_t>(v)][0];
+                return x >= static_cast<double>(piece) && x <= static_cast<double>(piece + 1);
+            });
+        };
+        const auto first = std::ranges::find_if(mesh.tetrahedra, at_piece) - mesh.tetrahedra.begin();
+        result.part_of_piece.push_back(
+            static_cast<size_t>(result.trace.part_of_tetrahedron[static_cast<size_t>(first)]));
+    }
+    return result;
+}
+
+void expect_near(const auto& a, const auto& b) {
+    const auto x = in_order(a), y = in_order(b);
+    for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], y[i], 1e-9) << "measure " << i;
+}
+
+const Bar waist{{1, 0.5, 1}}, belly{{0.5, 1, 0.5}}, straight{{0.6, 0.6, 0.6}}, cone{{0.4, 0.6, 1.1}}, turned{{1.1, 0.6, 0.4}};
+
+TEST(Regroup, CreasesHaveTheSignAndSizeOfTheBend) {
+    for (const Bar& bar : {waist, belly, straight, cone, turned}) {
+        SCOPED_TRACE(testing::PrintToString(bar.half));
+        const Result r = regrouped(bar, {0, 1});
+        ASSERT_EQ(r.trace.nodes.size(), 3U);
+        const PairMeasures m = r.pair(0, 1);
+        EXPECT_NEAR(m.crease, bar.bend(1), 1e-12);
+        EXPECT_EQ(m.concave, bar.bend(1) < -0.02 ? 1 : 0);
+        for (const size_t piece : {0, 1}) {
+            EXPECT_NEAR(r.node_of_piece(piece).own.crease, bar.bend(1), 1e-12);
+            EXPECT_EQ(r.node_of_piece(piece).own.concave, m.concave);
+            EXPECT_EQ(r.node_of_piece(piece).own.curvature, m.curvature);
+        }
+    }
+    EXPECT_LT(waist.bend(1), -0.4);
+    EXPECT_GT(belly.bend(1), 0.4);
+}
+
+TEST(Regroup, AConcaveCreaseIsALikelierBorderThanAConvexOne) {
+    // The two networks' answer, as a whole and with nothing else changed.
+    const Result w = regrouped(waist, {0, 1}), b = regrouped(belly, {0, 1}), s = regrouped(straight, {0, 1});
+    EXPECT_GT(w.node(2).own.own_cost, s.node(2).own.own_cost + 1);
+    EXPECT_GT(w.node(2).own.own_cost, b.node(2).own.own_cost + 1);
+    for (const PairMeasures& m : {w.pair(0, 1), b.pair(0, 1), s.pair(0, 1)}) {
+        PairMeasures concave = m, convex = m;
+        concave.crease = -0.4;
+        concave.concave = 1;
+        concave.curvature = -0.3;
+        convex.crease = 0.4;
+        convex.concave = 0;
+        convex.curvature = 0.3;
+        EXPECT_GT(fitted(fitted_pair_numbers, in_order(concave)), fitted(fitted_pair_numbers, in_order(convex)) + 1);
+    }
+}
+
+TEST(Regroup, SizesAreThoseOfTheFormula) {
+    for (const Bar& bar : {waist, cone, turned}) {
+        SCOPED_TRACE(testing::PrintToString(bar.half));
+        const PairMeasures m = regrouped(bar, {0, 1}).pair(0, 1);
+        // s is the piece with the smaller area, wherever it stands.
+        const size_t s = bar.area(0) <= bar.area(1) ? 0 : 1, l = 1 - s;
+        const double area = bar.area(0) + bar.area(1), volume = bar.volume(0) + bar.volume(1);
+        const double face = std::log2(bar.interface(1)), length = std::log2(bar.length(1));
+        const auto thick = [&](size_t piece) { return std::log2(bar.volume(piece) / bar.area(piece)); };
+        EXPECT_NEAR(m.area_s, std::log2(bar.area(s) / area), 1e-9);
+        EXPECT_NEAR(m.volume_s, std::log2(bar.volume(s) / volume), 1e-9);
+        EXPECT_NEAR(m.area_both, 0, 1e-9);
+        EXPECT_NEAR(m.volume_both, 0, 1e-9);
+        EXPECT_NEAR(m.area_step, std::log2(bar.area(l) / bar.area(s)), 1e-9);
+        EXPECT_NEAR(m.thickness_step, thick(s) - thick(l), 1e-9);
+        EXPECT_NEAR(m.thickness_s, thick(s) - std::log2(volume) / 3, 1e-9);
+        EXPECT_NEAR(m.thickness_l, thick(l) - std::log2(volume) / 3, 1e-9);
+        EXPECT_NEAR(m.face_to_volume_s, face - 2 * std::log2(bar.volume(s)) / 3, 1e-9);
+        EXPECT_NEAR(m.face_to_volume_l, face - 2 * std::log2(bar.volume(l)) / 3, 1e-9);
+        EXPECT_NEAR(m.face_to_area_s, face - std::log2(bar.area(s)), 1e-9);
+        EXPECT_NEAR(m.length_to_area_s, length - std::log2(bar.area(s)) / 2, 1e-9);
+        EXPECT_NEAR(m.face_to_thick_s, face - length - thick(s), 1e-9);
+        EXPECT_NEAR(m.face_to_thick_l, face - length - thick(l), 1e-9);
+        EXPECT_NEAR(m.outline, 2 * length - face, 1e-9);
+        EXPECT_NEAR(m.gap_s, 0, 1e-12);
+        EXPECT_NEAR(m.gap_l, 0, 1e-12);
+        for (const double whole : {m.length_share_s, m.length_share_l, m.face_share_s, m.face_share_l})
+            EXPECT_EQ(whole, 1);
+    }
+    // The hull of the bar with a waist is the box around it.
+    const double volume = waist.volume(0) + waist.volume(1), hull = 1;  // 2 x 2 x 2, of which the side is the unit
+    const PairMeasures m = regrouped(waist, {0, 1}).pair(0, 1);
+    EXPECT_NEAR(m.gap_both, 1 - volume / hull, 1e-9);
+    EXPECT_NEAR(m.gap_added, m.gap_both, 1e-9);
+    EXPECT_NEAR(m.excess_to_s, std::log2(1e-4 + (hull - volume) / waist.volume(0)), 1e-9);
+}
+
+TEST(Regroup, WhichSideIsNamedFirstDoesNotMatter) {
+    for (const auto& [bar, mirrored] : {std::pair(cone, turned), std::pair(waist, waist)}) {
+        const Result there = regrouped(bar, {0, 1}), back = regrouped(bar, {1, 0}), image = regrouped(mirrored, {0, 1});
+        expect_near(there.pair(0, 1), back.pair(0, 1));
+        expect_near(there.pair(0, 1), image.pair(0, 1));
+        for (const size_t piece : {0, 1}) {
+            expect_near(there.node_of_piece(piece), back.node_of_piece(piece));
+            expect_near(there.node_of_piece(piece), image.node_of_piece(1 - piece));
+        }
+        expect_near(there.node(2), image.node(2));
+        EXPECT_NEAR(there.regrouped.scores[2], image.regrouped.scores[2], 1e-9);
+    }
+}
+
+TEST(Regroup, NodesKnowTheirParentAndSibling) {
+    const Result r = regrouped(cone, {0, 1});
+    const NodeMeasures small = r.node_of_piece(0), large = r.node_of_piece(1), whole = r.node(2);
+    const double area = cone.area(0) + cone.area(1), volume = cone.volume(0) + cone.volume(1);
+    EXPECT_NEAR(small.own.area, std::log2(cone.area(0) / area), 1e-9);
+    EXPECT_NEAR(large.own.volume, std::log2(cone.volume(1) / volume), 1e-9);
+    EXPECT_NEAR(small.sibling_area, std::log2(cone.area(1) / cone.area(0)), 1e-9);
+    EXPECT_NEAR(large.sibling_area, -small.sibling_area, 1e-9);
+    EXPECT_NEAR(small.sibling_volume, std::log2(cone.volume(1) / cone.volume(0)), 1e-9);
+    EXPECT_NEAR(large.sibling_volume, small.sibling_volume, 1e-9);
+    EXPECT_NEAR(small.parent_area, std::log2(area / cone.area(0)), 1e-9);
+    EXPECT_EQ(small.sibling_thickness, large.own.thickness);
+    EXPECT_EQ(small.parent_gap, whole.own.gap);
+    EXPECT_EQ(small.own.own_cost, -8);
+    EXPECT_EQ(whole.own.own_cost, whole.own.worst_cost);
+    EXPECT_EQ(small.parent_cost, whole.own.own_cost);
+    EXPECT_EQ(small.cost_step, whole.own.own_cost + 8);
+    EXPECT_EQ(small.cheapest_above, whole.own.own_cost);
+    EXPECT_EQ(small.dearest_above, whole.own.own_cost);
+    EXPECT_EQ(whole.dearest_above, 8);
+    EXPECT_EQ(whole.parent_cost, 8);
+    EXPECT_EQ(std::pair(small.root, whole.root), std::pair(0.0, 1.0));
+    EXPECT_NEAR(small.parts_when_made, 1, 1e-9);
+    EXPECT_NEAR(whole.parts_when_made, 0, 1e-9);
+    EXPECT_NEAR(small.parts_when_joined, 1, 1e-9);
+    EXPECT_NEAR(whole.parts_when_joined, 0, 1e-9);
+}
+
+TEST(Regroup, TheBorderThatIsNoneIsTakenAwayFirst) {
+    // A waist at one border, next to nothing at the other; then the whole thing turned round.
+    const Bar bar{{1, 0.5, 1, 0.95}}, back{{0.95, 1, 0.5, 1}};
+    for (const std::vector<size_t>& order : {std::vector<size_t>{0, 1, 2}, {2, 1, 0}, {1, 0, 2}}) {
+        for (const auto& [b, near, middle, far, waist_at, seam_at] :
+             {std::tuple(bar, 2, 1, 0, 1, 2), std::tuple(back, 0, 1, 2, 2, 1)}) {
+            const Result r = regrouped(b, order);
+            ASSERT_EQ(r.trace.merges.size(), 2U);
+            using Parts = std::set<int32_t>;
+            const auto joined = [&](size_t j) { return Parts(r.trace.merges[j].begin(), r.trace.merges[j].end()); };
+            const auto part = [&](int piece) { return r.part(static_cast<size_t>(piece)); };
+            EXPECT_EQ(joined(0), (Parts{part(near), part(middle)}));
+            EXPECT_EQ(joined(1), (Parts{part(far), 3}));
+            // What is left of the rim is the waist; the middle has both.
+            const auto w = static_cast<size_t>(waist_at), s = static_cast<size_t>(seam_at);
+            EXPECT_NEAR(r.node(3).own.crease, b.bend(w), 1e-9);
+            EXPECT_NEAR(r.node_of_piece(static_cast<size_t>(middle)).own.crease,
+                        (b.bend(w) * b.length(w) + b.bend(s) * b.length(s)) / (b.length(w) + b.length(s)), 1e-9);
+            // The middle's area is the least, as it has no end.
+            const PairMeasures m = r.pair(static_cast<size_t>(far), static_cast<size_t>(middle));
+            EXPECT_NEAR(m.length_share_s, b.length(w) / (b.length(w) + b.length(s)), 1e-9);
+            EXPECT_NEAR(m.face_share_s, b.interface(w) / (b.interface(w) + b.interface(s)), 1e-9);
+            EXPECT_EQ(std::pair(m.length_share_l, m.face_share_l), std::pair(1.0, 1.0));
+            EXPECT_EQ(r.node(4).own.worst_cost, r.node(4).own.own_cost);
+        }
+    }
+}
+
+TEST(Regroup, ARampIsASoftsign) {
+    const std::vector<double> numbers{0.5, 2, -1, 3, 0.25, 1, 1, -2, 0.125};  // two ramps of two inputs
+    const double z = 0.5 + 2 * 0.3 - 0.7, y = 0.25 + 0.3 + 0.7;
+    EXPECT_NEAR(fitted(numbers, std::vector<double>{0.3, 0.7}), 3 * z / (1 + std::abs(z)) - 2 * y / (1 + y) + 0.125, 1e-15);
+    EXPECT_NEAR(fitted(numbers, std::vector<double>{-3, 0}), 3 * -5.5 / 6.5 - 2 * -2.75 / 3.75 + 0.125, 1e-15);
+}
+
+}  // namespace
+}  // namespace partwheel::test
