@@ -18,7 +18,7 @@ class OnParts:
     def poll(cls, context):
         obj = context.active_object
         if obj is None or obj.type != "MESH" or obj.mode not in {"EDIT", "OBJECT"}:
-            cls.poll_message_set("Needs an active mesh object, in Edit Mode or Object Mode.")
+            cls.poll_message_set("Needs an active mesh object, in Edit Mode or Object Mode")
             return False
         return True
 
@@ -119,7 +119,7 @@ class MESH_OT_partwheel_remove(_SolidOfPart, bpy.types.Operator):
         if not super().poll(context):
             return False
         if context.active_object.data.library:
-            cls.poll_message_set("The mesh is linked from another file. Make it local first.")
+            cls.poll_message_set("The mesh is linked from another file: make it local first")
             return False
         return True
 

@@ -23,7 +23,7 @@ from ..ui import status
 TICK = 0.03  # seconds
 NOTCH = 1.25  # what a notch of the wheel makes of the handle's size
 PATIENCE = 0.05  # seconds that Blender waits for what is done in the background, before it goes on meanwhile
-NO_PART = "Pick a part with Select Part by Wheel first."
+NO_PART = "Pick a part with Select Part by Wheel first"
 
 
 class PARTWHEEL_PG_handle(bpy.types.PropertyGroup):
@@ -84,6 +84,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
     def poll(cls, context):
         obj = context.edit_object
         if context.mode != "EDIT_MESH" or obj is None:
+            cls.poll_message_set("Parts are deformed in Edit Mode of a mesh")
             return False
         if session.state(obj.data)[0] not in {session.State.FITS, session.State.MOVED}:
             cls.poll_message_set(NO_PART)
@@ -135,13 +136,13 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         if self.node < 0:
             picked = session.picked(obj)
             if not picked:
-                raise Refused(NO_PART)
+                raise Refused(f"{NO_PART}.")
             self.node = picked.node
             if not self.properties.is_property_set("snap"):
                 self.snap = picked.snap
         hierarchy = session.hierarchy(obj)
         if not hierarchy or self.node >= len(hierarchy.parent):
-            raise Refused(f"There is no part {self.node}. {NO_PART}")
+            raise Refused(f"There is no part {self.node}. {NO_PART}.")
         return borders.faces(obj, hierarchy, self.node, self.snap)
 
     # ---- With the mouse --------------------------------------------------------------------------------------------

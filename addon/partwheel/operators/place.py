@@ -44,7 +44,7 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
     def poll(cls, context):
         obj = context.active_object
         if context.mode != "OBJECT" or obj is None or obj.type != "MESH":
-            cls.poll_message_set("In Object Mode, make the part to be placed the active object.")
+            cls.poll_message_set("In Object Mode, make the part to be placed the active object")
             return False
         return True
 

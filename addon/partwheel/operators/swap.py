@@ -53,7 +53,7 @@ class MESH_OT_partwheel_swap(Snaps, OnPart, OnParts, bpy.types.Operator):
         if not super().poll(context):
             return False
         if context.active_object.library or context.active_object.data.library:
-            cls.poll_message_set("The object or its mesh is linked from another file. Make it local first.")
+            cls.poll_message_set("The object or its mesh is linked from another file: make it local first")
             return False
         return True
 
