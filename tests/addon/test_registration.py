@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Enabling and disabling the add-on leaves nothing behind, as often as one likes."""
 
+import gc
 import importlib.util
 import inspect
 import os
@@ -12,7 +13,7 @@ import zipfile
 
 import bpy
 import common
-from common import BOX, MeshTest
+from common import BOX, MeshTest, part, read_off
 from run import installed
 
 
@@ -49,9 +50,9 @@ def menu_entries():
 
 
 def timers():
-    return [function for name, module in list(sys.modules.items()) if name.startswith(common.MODULE)
-            for function in vars(module).values() if inspect.isfunction(function)
-            and bpy.app.timers.is_registered(function)]
+    """Wherever they were made: also those that only Blender holds."""
+    return [each for each in gc.get_objects() if inspect.isfunction(each)
+            and (each.__module__ or "").startswith(common.MODULE) and bpy.app.timers.is_registered(each)]
 
 
 def properties():
@@ -184,6 +185,27 @@ class Registration(unittest.TestCase):
                 self.assertFalse(text.endswith("."), text)
                 self.assertFalse(text[0].islower(), text)
                 self.assertNotIn("  ", text)
+
+
+class Timers(MeshTest):
+    def tearDown(self):
+        bpy.ops.preferences.addon_enable(module=common.MODULE)
+
+    def test_no_timer_goes_on(self):
+        """What waits for the end of Blender's proportional tool, to put the user's reach back, waits once, and does so at
+        once where the add-on is disabled meanwhile."""
+        obj = self.add(*read_off("hand"))
+        self.edit(obj)
+        bpy.ops.mesh.partwheel_select(face_index=700)
+        settings = bpy.context.tool_settings
+        settings.proportional_size = users = 0.625
+        for _ in range(2):
+            part("operators.proportional").around("G")(bpy.context)
+            self.assertEqual(len(timers()), 1)
+        self.assertNotEqual(settings.proportional_size, users)  # Blender's tool has ended, and kept ours
+        bpy.ops.preferences.addon_disable(module=common.MODULE)
+        self.assertEqual(timers(), [])
+        self.assertEqual(settings.proportional_size, users)
 
 
 class Polls(MeshTest):
