@@ -9,7 +9,7 @@ import gpu
 import numpy as np
 from mathutils import Matrix, Vector
 
-from . import mesh_arrays
+from . import mesh_arrays, objects
 from .preferences import preferences
 
 HOVER = (1.0, 0.8, 0.25, 0.4)
@@ -242,7 +242,7 @@ class Shown:
         return self._handler is not None
 
     def show(self, obj, parts, node, larger, snapped):
-        self._what = obj.name, parts, node, larger, snapped
+        self._what = obj.name_full, parts, node, larger, snapped
         if not self._handler:
             self._handler = bpy.types.SpaceView3D.draw_handler_add(self._draw, (), "WINDOW", "POST_VIEW")
         redraw()
@@ -255,7 +255,7 @@ class Shown:
 
     def _draw(self):
         context, (name, *what) = bpy.context, self._what
-        obj = bpy.data.objects.get(name)
+        obj = objects.named(name)
         if obj and visible(context, obj):
             draw_held(context, obj, *what)
 

@@ -11,7 +11,7 @@ import numpy as np
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 from mathutils import Matrix, Vector
 
-from .. import borders, handle_gizmo, handle_points, keys, session
+from .. import borders, handle_gizmo, handle_points, keys, objects, session
 from ..background import Background
 from ..core import PartwheelError
 from ..core.joint import REACH
@@ -477,7 +477,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         return self.pen
 
     def _draw(self):
-        obj = bpy.data.objects.get(self.object_name)
+        obj = objects.named(self.object_name)
         if obj is None:
             return
         if self.method == "RIGID":

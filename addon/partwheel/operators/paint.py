@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
-from .. import mesh_arrays, picking
+from .. import mesh_arrays, objects, picking
 from ..selection import select_outside_edit_mode
 from .build import idle
 from .pick import PartPicker
@@ -86,7 +86,7 @@ class Preview:
     """A target that changes nothing before the part is confirmed: the overlay alone shows it."""
 
     def __init__(self, obj):
-        self.name, self.mode, self.faces = obj.name, obj.mode, len(obj.data.polygons)
+        self.name, self.mode, self.faces = obj.name_full, obj.mode, len(obj.data.polygons)
 
     def select(self, *_):
         """What is drawn says it all."""
@@ -95,7 +95,7 @@ class Preview:
         """Nothing was changed."""
 
     def fits(self):
-        obj = bpy.data.objects.get(self.name)
+        obj = objects.named(self.name)
         return obj is not None and obj.mode == self.mode and len(obj.data.polygons) == self.faces
 
 

@@ -7,7 +7,7 @@ import bpy
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 from mathutils import Vector
 
-from .. import composition, keys, placement
+from .. import composition, keys, objects, placement
 from ..picking import view_under
 from ..ui import status
 
@@ -50,7 +50,7 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
 
     def execute(self, context):
         part = context.active_object
-        target = bpy.data.objects.get(self.target)
+        target = objects.wanted(self.target)
         if (self.fit or self.mirror) and (target is None or target.type != "MESH"):
             self.report({"ERROR"}, "Say which mesh object the part is placed on.")
             return {"CANCELLED"}
@@ -102,7 +102,7 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
                 return {"RUNNING_MODAL"}
             if self.mirror:
                 composition.update_matrices()
-                placement.mirrored(part, bpy.data.objects[self.target]).select_set(True)
+                placement.mirrored(part, objects.named(self.target)).select_set(True)
             return self._end(context, {"FINISHED"})
         sign = keys.SIGNS.get(event.type, 0)
         if event.type in keys.TURN.events and event.shift:
@@ -122,7 +122,7 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
 
     def cancel(self, context):
         """Blender itself ends the tool."""
-        part = bpy.data.objects.get(self.part_name)
+        part = objects.named(self.part_name)
         if part:
             placement.put_back(part, self.transform)
         self._end(context, {"CANCELLED"})
@@ -134,7 +134,7 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
             self._show(context)
 
     def _surface_under(self, context, event):
-        """(location, normal towards the eye, object's name) of what is under the mouse behind the part itself."""
+        """(location, normal towards the eye, object's full name) of what is under the mouse behind the part itself."""
         view = view_under(context.window, event.mouse_x, event.mouse_y)
         if not view:
             return None
@@ -148,13 +148,13 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
             if not found:
                 return None
             if obj.name_full != self.part_name and obj.type == "MESH":
-                return location, (-normal if normal.dot(direction) > 0 else normal), obj.name
+                return location, (-normal if normal.dot(direction) > 0 else normal), obj.name_full
             origin = location + direction * 1e-5 * max((location - origin).length, self.own.radius)
 
     def _show(self, context):
         if not self.target:
             return
-        target = bpy.data.objects[self.target]
+        target = objects.named(self.target)
         try:
             placement.put(context.active_object, self.start, self.own, target, self._pose())
         except ValueError as error:
