@@ -12,6 +12,8 @@ import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 ADDON = ROOT / "addon" / "partwheel"
+MANIFEST = ADDON / "blender_manifest.toml"
+PACKAGES = ROOT / "build" / "package"
 LIBRARY = ADDON / "core" / "libpartwheel.so"
 MACHINES = {"x86_64": "x64", "aarch64": "arm64"}
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can hold
@@ -21,20 +23,22 @@ def main():
     version = agreed_version()
     if not LIBRARY.exists():
         sys.exit(f"{LIBRARY} is missing: run scripts/build.")
-    machine = MACHINES.get(platform.machine(), platform.machine())
-    target = ROOT / "build" / "package" / f"partwheel-{version}-linux-{machine}.zip"
+    here = f"linux-{MACHINES.get(platform.machine(), platform.machine())}"
+    target = PACKAGES / f"partwheel-{version}-{here}.zip"
     target.parent.mkdir(parents=True, exist_ok=True)
 
     # Both installers want all files in one folder: for a legacy add-on its name becomes the module's.
-    files = {f"partwheel/{path.relative_to(ADDON).as_posix()}": path for path in ADDON.rglob("*") if wanted(path)}
-    files["partwheel/LICENSE"] = ROOT / "LICENSE"
+    files = {f"partwheel/{path.relative_to(ADDON).as_posix()}": path.read_bytes()
+             for path in ADDON.rglob("*") if wanted(path)}
+    files["partwheel/LICENSE"] = (ROOT / "LICENSE").read_bytes()
+    files["partwheel/blender_manifest.toml"] = manifest_for(here)
     partial = target.with_suffix(".partial")
     with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         # Blender before 4.2 removes what an update replaces only if the zip names its folder. Else it would write over
         # the library while that is in use, and crash.
         archive.writestr(entry("partwheel/", 0o040755), b"")
         for name in sorted(files):
-            archive.writestr(entry(name, 0o100644), files[name].read_bytes())
+            archive.writestr(entry(name, 0o100644), files[name])
     partial.replace(target)
     print(target)
 
@@ -51,10 +55,18 @@ def wanted(path):
     return path.is_file() and not hidden
 
 
+def manifest_for(here):
+    """The manifest, with the platform that the library in the zip is for in place of that in the source."""
+    text, count = re.subn(r"^platforms = .*$", f'platforms = ["{here}"]', MANIFEST.read_text(), flags=re.M)
+    if count != 1:
+        sys.exit(f"{MANIFEST} must have one line that begins with platforms.")
+    return text.encode()
+
+
 def agreed_version():
     """The version, which the header, the manifest and bl_info must agree on."""
     header = re.search(r'^#define PW_VERSION "([^"]+)"', (ROOT / "native/include/partwheel.h").read_text(), re.M)
-    manifest = re.search(r'^version = "([^"]+)"', (ADDON / "blender_manifest.toml").read_text(), re.M)
+    manifest = re.search(r'^version = "([^"]+)"', MANIFEST.read_text(), re.M)
     assignments = (node for node in ast.parse((ADDON / "__init__.py").read_text()).body if isinstance(node, ast.Assign))
     bl_info = next(ast.literal_eval(node.value) for node in assignments if node.targets[0].id == "bl_info")
     versions = {"partwheel.h": header[1], "blender_manifest.toml": manifest[1],

@@ -10,7 +10,7 @@ bl_info = {
     "author": "Partwheel contributors",
     "version": (0, 1, 0),
     "blender": (3, 4, 0),
-    "location": "3D View > Edit Mode > Select > Select Part by Wheel (Ctrl W)",
+    "location": "3D View > Edit Mode > Select > Select Part by Wheel (Shift Ctrl W)",
     "description": "Select meaningful parts of a mesh with one click and the mouse wheel",
     "category": "Mesh",
 }

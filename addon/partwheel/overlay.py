@@ -9,6 +9,7 @@ import gpu
 import numpy as np
 from mathutils import Matrix, Vector
 
+from . import objects
 from .preferences import preferences
 from .seen import NO_FACE
 
@@ -237,7 +238,7 @@ class Shown:
         return self._handler is not None
 
     def show(self, obj, parts, node, larger, snapped):
-        self._what = obj.name, parts, node, larger, snapped
+        self._what = obj.name_full, parts, node, larger, snapped
         if not self._handler:
             self._handler = bpy.types.SpaceView3D.draw_handler_add(self._draw, (), "WINDOW", "POST_VIEW")
         redraw()
@@ -250,7 +251,7 @@ class Shown:
 
     def _draw(self):
         context, (name, *what) = bpy.context, self._what
-        obj = bpy.data.objects.get(name)
+        obj = objects.named(name)
         if obj and visible(context, obj):
             draw_held(context, obj, *what)
 

@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from . import mesh_arrays
+from .objects import named
 
 # Select mode -> what is selected in it: the mesh's elements and the loops' reference to them. The finest mode that is
 # on rules: Blender derives the coarser elements' selection from it.
@@ -155,11 +156,11 @@ class Selections:
 
     def __init__(self, objects, fresh=None):
         """fresh: an object whose mesh is known to be up to date."""
-        self._each = {obj.name: Selection(obj, obj.data if obj == fresh else None) for obj in objects}
+        self._each = {obj.name_full: Selection(obj, obj.data if obj == fresh else None) for obj in objects}
 
     def _objects(self):
         """(object or None, its Selection) of each."""
-        return [(bpy.data.objects.get(name), each) for name, each in self._each.items()]
+        return [(named(name), each) for name, each in self._each.items()]
 
     def any(self):
         """Whether anything is selected."""

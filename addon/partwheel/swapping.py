@@ -12,6 +12,7 @@ from mathutils import Matrix, Vector
 from . import composition, mesh_arrays, placement, session, solids, union
 from .core import compatible
 from .mesh_arrays import read
+from .objects import named
 from .solids import CAP
 
 
@@ -20,7 +21,7 @@ class NotSwapped(Exception):
 
 
 class Offer(NamedTuple):
-    """A part that can stand in. name: of its object; node: of that one's hierarchy, or None for the object as it is,
+    """A part that can stand in. name: its object's, in full; node: of that one's hierarchy, or None for the object as it is,
     one that was cut out as a part before; score: from 1, the same shape, down to 0; shape: a compatible.Shape."""
 
     name: str
@@ -49,7 +50,7 @@ class Place:
             raise NotSwapped("The part is the whole model: nothing would be left to put another part on. Pick a "
                              "smaller one.")
         composition.update_matrices()
-        self.name, self.hierarchy, self.node, self.snap = obj.name, hierarchy, node, snap
+        self.name, self.hierarchy, self.node, self.snap = obj.name_full, hierarchy, node, snap
         self._fits = {}  # (name, node, mirrored) -> matrix, of what was offered
         self._cut = {}  # (name, node) -> Shape, of what was put here
         self.shape = dict(_shapes(obj, hierarchy, [node], snap)).get(node)
@@ -68,14 +69,14 @@ class Place:
                 continue
             having += 1
             hierarchy, parts = parts
-            if other.name == self.name:
+            if other.name_full == self.name:
                 parts = [each for each in parts if each[0] is not None
                          and compatible.overlap(hierarchy, each[0], self.node) == 0]
             shapes = dict(parts)
             for match in compatible.ranked(self.shape, parts, lambda one, two: _same(hierarchy, one, two)):
-                found.append(Offer(other.name, match.key, match.score, shapes[match.key]))
+                found.append(Offer(other.name_full, match.key, match.score, shapes[match.key]))
                 if not self.snap:
-                    self._fits[other.name, match.key, False] = match.matrix
+                    self._fits[other.name_full, match.key, False] = match.matrix
         if not having:
             raise NotSwapped("No other object has parts. Build the parts of the one that the new part comes from, and "
                              "select it too; or paste a part that was copied as a solid.")
@@ -96,16 +97,16 @@ class Place:
             raise NotSwapped(f"That part of {other.name} has no border that could be fitted to this one's.")
         match = compatible.ranked(self.shape, [(node, shape)])[0]
         if not self.snap:
-            self._fits[other.name, node, False] = match.matrix
-        return Offer(other.name, node, match.score, shape)
+            self._fits[other.name_full, node, False] = match.matrix
+        return Offer(other.name_full, node, match.score, shape)
 
     def rest(self):
         """A new mesh: the object's without the part, closed. Raises NotSwapped or PartwheelError."""
-        return composition.rest(bpy.data.objects[self.name], self.hierarchy, self.node, self.snap)
+        return composition.rest(named(self.name), self.hierarchy, self.node, self.snap)
 
     def stand_in(self, offer, adjustment=Adjustment()):
         """A new object beside this part's: the one offered, in this part's place."""
-        obj, source = bpy.data.objects[self.name], bpy.data.objects[offer.name]
+        obj, source = named(self.name), named(offer.name)
         composition.update_matrices()
         if offer.node is None:
             new = bpy.data.objects.new(source.name, source.data.copy())
@@ -124,7 +125,7 @@ class Place:
             self._fits[known] = compatible.fit(self.shape, shape, adjustment.mirror).matrix
         border = placement.Border(Vector(own.middle), Vector(own.normal), own.radius)
         depth = adjustment.depth + compatible.gap(self.shape, shape, self._fits[known])
-        start = Matrix(self._fits[known]) @ bpy.data.objects[offer.name].matrix_world
+        start = Matrix(self._fits[known]) @ named(offer.name).matrix_world
         new.matrix_world = placement.matrix(start, border, border.middle, -border.normal, adjustment.scale,
                                             adjustment.angle, depth)
 
@@ -134,7 +135,7 @@ class Place:
             return offer.shape
         known = offer.name, offer.node
         if known not in self._cut:
-            moved = dict(_shapes(bpy.data.objects[offer.name], _hierarchy_of(offer), [offer.node], snap=True))
+            moved = dict(_shapes(named(offer.name), _hierarchy_of(offer), [offer.node], snap=True))
             shape = moved.get(offer.node)
             self._cut[known] = shape if shape and shape.usable else offer.shape
         return self._cut[known]
@@ -146,7 +147,7 @@ class Place:
         rest, new = self.rest(), None
         try:
             new = self.stand_in(offer, adjustment)
-            return union.unite(bpy.data.objects[self.name], [new], blend, rest)
+            return union.unite(named(self.name), [new], blend, rest)
         finally:
             bpy.data.meshes.remove(rest)
             if new:
@@ -155,7 +156,7 @@ class Place:
 
 def _hierarchy_of(offer):
     """Of the object that the offer's node is of. Raises NotSwapped."""
-    hierarchy = session.hierarchy(bpy.data.objects[offer.name])
+    hierarchy = session.hierarchy(named(offer.name))
     if not hierarchy or offer.node >= len(hierarchy.parent):
         raise NotSwapped(f"{offer.name} was changed and has other parts now. Start again.")
     return hierarchy

@@ -2,6 +2,7 @@
 """What the add-on's tests share: the installed package, meshes, and what is selected."""
 
 import importlib
+import tempfile
 import time
 import unittest
 from pathlib import Path
@@ -81,6 +82,21 @@ class MeshTest(unittest.TestCase):
             other.select_set(other == obj)
         bpy.context.view_layer.objects.active = obj
         return obj
+
+    def linked(self, obj):
+        """The object anew, linked from another file; the one that was here has gone, and its name is that of a box."""
+        with tempfile.TemporaryDirectory() as directory:
+            path = str(Path(directory) / "library.blend")
+            bpy.data.libraries.write(path, {obj})
+            name, matrix = obj.name, obj.matrix_world.copy()
+            bpy.data.objects.remove(obj)
+            with bpy.data.libraries.load(path, link=True) as (_, wanted):
+                wanted.objects = [name]
+        far = self.add(*BOX, name)
+        far.location = 100, 100, 100
+        found = self.link(wanted.objects[0])
+        assert far.name == found.name != found.name_full and found.matrix_world == matrix
+        return found
 
     def edit(self, obj, kinds=("FACE",)):
         """Enters Edit Mode with nothing selected."""

@@ -165,3 +165,16 @@ class Place(SolidTest):
         cube = bpy.context.active_object
         self.place(cube, location=(0, 0, 0), normal=(0, 0, 1), depth=-part("placement").SINK)
         self.assertAlmostEqual(min((cube.matrix_world @ v.co).z for v in cube.data.vertices), 0, places=5)
+
+    def test_a_linked_target_is_not_taken_for_a_local_one_of_its_name(self):
+        """The mirror image comes to the other side of the target that was named, wherever another one is."""
+        target, _, _, copy = self.copied()
+        target.location = 3, 0, 0
+        bpy.context.view_layer.update()
+        linked = self.linked(target)
+        before = set(bpy.data.objects)
+        self.place(copy, target=linked.name_full, location=(7, 0, 0), normal=(1, 0, 0), mirror=True)
+        (mirrored,) = set(bpy.data.objects) - before
+        (x, y, z), image = (part("placement").border(each).middle for each in (copy, mirrored))
+        self.near((x, y, z), (7, 0, 0), places=1)
+        self.near(image, (2 * 3 - x, y, z))

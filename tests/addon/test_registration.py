@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Enabling and disabling the add-on leaves nothing behind, as often as one likes."""
 
+import gc
 import importlib.util
 import inspect
 import os
@@ -12,6 +13,7 @@ import zipfile
 
 import bpy
 import common
+from common import BOX, MeshTest, part, read_off
 from run import installed
 
 
@@ -20,6 +22,16 @@ def keymap_items():
     return sorted((configuration.name, keymap.name, item.idname, item.type, item.ctrl, item.shift, item.alt)
                   for configuration in (configurations.addon, configurations.user) if configuration
                   for keymap in configuration.keymaps for item in keymap.keymap_items)
+
+
+def keymap_data(name):
+    """The module that one of Blender's own keymaps is made by."""
+    path = next(path for path in (os.path.join(root, "presets", "keyconfig", "keymap_data", f"{name}.py")
+                                  for root in bpy.utils.script_paths()) if os.path.exists(path))
+    spec = importlib.util.spec_from_file_location(name, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 def handlers():
@@ -38,9 +50,9 @@ def menu_entries():
 
 
 def timers():
-    return [function for name, module in list(sys.modules.items()) if name.startswith(common.MODULE)
-            for function in vars(module).values() if inspect.isfunction(function)
-            and bpy.app.timers.is_registered(function)]
+    """Wherever they were made: also those that only Blender holds."""
+    return [each for each in gc.get_objects() if inspect.isfunction(each)
+            and (each.__module__ or "").startswith(common.MODULE) and bpy.app.timers.is_registered(each)]
 
 
 def properties():
@@ -124,24 +136,25 @@ class Registration(unittest.TestCase):
                                  {name: len(functions) for name, functions in before[4].items()})
 
     def test_the_shortcut_is_there_and_was_free(self):
-        ours = [item for item in keymap_items() if item[2] == "mesh.partwheel_select"]
-        self.assertIn(("Blender addon", "Mesh", "mesh.partwheel_select", "W", 1, 0, 0),
-                      [tuple(value if isinstance(value, str) else int(value) for value in item) for item in ours])
-        path = next(path for path in (os.path.join(root, "presets", "keyconfig", "keymap_data", "blender_default.py")
-                                      for root in bpy.utils.script_paths()) if os.path.exists(path))
-        spec = importlib.util.spec_from_file_location("blender_default_keys", path)
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-        keymaps = [keymap for mouse in ("LEFT", "RIGHT") for keymap in module.generate_keymaps(
-            module.Params(select_mouse=mouse))]
+        """In all keymaps that come with Blender: the default, for either mouse button; that of Blender 2.7; and the
+        industry compatible one."""
+        (key, *modifiers), = [item[3:] for item in keymap_items()
+                              if item[:3] == ("Blender addon", "Mesh", "mesh.partwheel_select")]
+        pressed = [*map(bool, modifiers), False]
+        default, industry = map(keymap_data, ("blender_default", "industry_compatible_data"))
+        keymaps = {f"default, {mouse}, legacy {legacy}": default.generate_keymaps(
+            default.Params(select_mouse=mouse, legacy=legacy)) for mouse in ("LEFT", "RIGHT") for legacy in (False, True)}
+        keymaps["industry compatible"] = industry.generate_keymaps(industry.Params())
         names = {"Mesh", "3D View", "3D View Generic", "Window", "Screen", "Screen Editing", "Object Non-modal",
                  "User Interface", "Frames"}
-        self.assertTrue(names <= {name for name, _, _ in keymaps})
-        taken = [name for name, _, content in keymaps if name in names or name.startswith("3D View Tool")
-                 for item in content["items"]
-                 if item[1]["type"] == "W" and item[1].get("ctrl") and not item[1].get("shift") and not
-                 item[1].get("alt")]
-        self.assertEqual(taken, [])
+        for title, content in keymaps.items():
+            with self.subTest(title):
+                self.assertTrue(names - {"Object Non-modal"} <= {name for name, _, _ in content})
+                taken = [(name, item[0]) for name, _, values in content
+                         if name in names or name.startswith("3D View Tool") for item in values["items"]
+                         if item[1]["type"] == key and (item[1].get("any") or pressed == [
+                             bool(item[1].get(each)) for each in ("ctrl", "shift", "alt", "oskey")])]
+                self.assertEqual(taken, [])
 
     def test_operators_undo_and_panel(self):
         self.assertEqual(bpy.types.MESH_OT_partwheel_select.bl_options, {"REGISTER", "UNDO"})
@@ -172,3 +185,75 @@ class Registration(unittest.TestCase):
                 self.assertFalse(text.endswith("."), text)
                 self.assertFalse(text[0].islower(), text)
                 self.assertNotIn("  ", text)
+
+
+class Timers(MeshTest):
+    def tearDown(self):
+        bpy.ops.preferences.addon_enable(module=common.MODULE)
+
+    def test_no_timer_goes_on(self):
+        """What waits for the end of Blender's proportional tool, to put the user's reach back, waits once, and does so at
+        once where the add-on is disabled meanwhile."""
+        obj = self.add(*read_off("hand"))
+        self.edit(obj)
+        bpy.ops.mesh.partwheel_select(face_index=700)
+        settings = bpy.context.tool_settings
+        settings.proportional_size = users = 0.625
+        for _ in range(2):
+            part("operators.proportional").around("G")(bpy.context)
+            self.assertEqual(len(timers()), 1)
+            settings.proportional_size = 3  # as Blender's tool does in a window when it ends
+        bpy.ops.preferences.addon_disable(module=common.MODULE)
+        self.assertEqual(timers(), [])
+        self.assertEqual(settings.proportional_size, users)
+
+
+class Polls(MeshTest):
+    def operators(self):
+        """(name, function) of all that the add-on has."""
+        for kind in dir(bpy.types):
+            cls = getattr(bpy.types, kind)
+            if "_OT_partwheel" in kind and issubclass(cls, bpy.types.Operator):
+                space, _, name = kind.lower().partition("_ot_")
+                yield kind, getattr(getattr(bpy.ops, space), name)
+
+    def situations(self):
+        """Puts Blender into one after the other, and names it."""
+        yield "nothing is there"
+        bpy.ops.object.camera_add()
+        yield "a camera"
+        bpy.ops.object.mode_set(mode="OBJECT")
+        obj = self.add(*BOX)
+        yield "a mesh without parts"
+        for mode in ("EDIT", "SCULPT", "WEIGHT_PAINT", "VERTEX_PAINT"):
+            bpy.ops.object.mode_set(mode=mode)
+            yield f"{mode} of a mesh without parts"
+        bpy.ops.sculpt.sculptmode_toggle()
+        bpy.ops.sculpt.dynamic_topology_toggle()
+        yield "dynamic topology"
+        bpy.ops.sculpt.dynamic_topology_toggle()
+        bpy.ops.object.mode_set(mode="OBJECT")
+        with tempfile.TemporaryDirectory() as directory:
+            path = os.path.join(directory, "library.blend")
+            bpy.data.libraries.write(path, {obj})
+            with bpy.data.libraries.load(path, link=True) as (_, wanted):
+                wanted.meshes = [obj.data.name]
+            obj.data = wanted.meshes[0]
+        yield "a linked mesh"
+
+    def test_whatever_can_not_be_done_says_why(self):
+        """What Blender shows over a grey button: as in Blender itself, no period at the end; and it is never silent."""
+        grey = set()
+        for situation in self.situations():
+            for kind, operator in self.operators():
+                if operator.poll():
+                    continue
+                grey.add(kind)
+                with self.subTest(f"{kind}: {situation}"):
+                    with self.assertRaises(RuntimeError) as refused:
+                        operator()
+                    text = str(refused.exception).strip()
+                    self.assertNotIn("context is incorrect", text)
+                    message = text.partition(".poll() ")[2]
+                    self.assertRegex(message, r"^[A-Z].*[^.\s]$")
+        self.assertEqual(grey, {kind for kind, _ in self.operators()})

@@ -229,3 +229,31 @@ class Swap(SolidTest):
         finally:
             union.WAYS = ways
         self.assertEqual(self.everything(), before)
+
+    def test_a_linked_object_is_not_taken_for_a_local_one_of_its_name(self):
+        api = part("api")
+        model, parts, giver, _ = self.both()
+        node = limb(model, parts, 0, 1)
+        expected = api.compatible(model, node, giver)
+        twin = self.twin(model, model.matrix_world)
+        api.build(twin)
+        api.swap(twin, node, giver)
+        linked = self.linked(giver)
+        self.assertEqual(api.compatible(model, node, linked), expected)
+        bpy.context.view_layer.objects.active = model
+        options = {"node": node, "other": linked.name_full, "snap": False, "build": False}
+        self.assertEqual(bpy.ops.mesh.partwheel_swap(**options), {"FINISHED"})
+        self.assertAlmostEqual(volume(model.data) / volume(twin.data), 1, places=6)
+
+    def test_its_own_name_at_another_object(self):
+        """A linked object of the same name is another one, with parts of its own."""
+        api = part("api")
+        model, parts, giver, _ = self.both()
+        node = limb(model, parts, 0, 1)
+        expected = api.compatible(model, node, giver)
+        giver.name, model.name = "same", "other"
+        linked = self.linked(giver)
+        bpy.data.objects["same"].name = "box"
+        model.name = "same"
+        self.assertEqual((model.name, linked.name), ("same", "same"))
+        self.assertEqual(api.compatible(model, node, linked), expected)

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is written in several places says the same in all: header, binding, library, bl_info, manifest."""
 
+import platform
 import re
+import runpy
 import sys
 import tomllib
+import zipfile
 
 import partwheel
+import pytest
 from conftest import ROOT
 from partwheel import core
 from partwheel.core import library
@@ -28,6 +32,20 @@ def test_manifest_is_complete():
     assert len(manifest["tagline"]) <= 64 and manifest["tagline"][-1].isalnum()
     assert manifest["platforms"] == ["linux-x64"] and "SPDX:GPL-3.0-or-later" in manifest["license"]
     assert manifest["blender_version_min"] == "4.2.0" and partwheel.bl_info["blender"] == (3, 4, 0)
+
+
+@pytest.mark.parametrize(("machine", "named"), [("x86_64", "linux-x64"), ("aarch64", "linux-arm64")])
+def test_a_package_says_the_platform_that_it_was_made_on(machine, named, monkeypatch, tmp_path):
+    monkeypatch.setattr(platform, "machine", lambda: machine)
+    names = runpy.run_path(str(ROOT / "scripts" / "package_zip.py"))
+    names["main"].__globals__["PACKAGES"] = tmp_path
+    names["main"]()
+    (package,) = tmp_path.iterdir()
+    assert package.name == f"partwheel-{core.version()}-{named}.zip"
+    with zipfile.ZipFile(package) as archive:
+        manifest = tomllib.loads(archive.read("partwheel/blender_manifest.toml").decode())
+    written = tomllib.loads((ROOT / "addon" / "partwheel" / "blender_manifest.toml").read_text())
+    assert manifest == {**written, "platforms": [named]}
 
 
 def test_every_function_is_bound_with_as_many_arguments():

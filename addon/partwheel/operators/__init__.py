@@ -4,6 +4,7 @@ deform."""
 
 import bpy
 
+from . import proportional
 from .build import MESH_OT_partwheel_build, MESH_OT_partwheel_clear, MESH_OT_partwheel_find
 from .copy_part import MESH_OT_partwheel_copy, MESH_OT_partwheel_remove, MESH_OT_partwheel_split
 from .deform import PARTWHEEL_PG_handle, MESH_OT_partwheel_deform
@@ -21,4 +22,9 @@ CLASSES = (
     PARTWHEEL_PG_handle, MESH_OT_partwheel_deform,
 )
 
-register, unregister = bpy.utils.register_classes_factory(CLASSES)
+register, _unregister_classes = bpy.utils.register_classes_factory(CLASSES)
+
+
+def unregister():
+    proportional.unregister()
+    _unregister_classes()

@@ -19,7 +19,7 @@ class OnParts:
     def poll(cls, context):
         obj = context.active_object
         if obj is None or obj.type != "MESH" or obj.mode not in {"EDIT", "OBJECT"}:
-            cls.poll_message_set("Needs an active mesh object, in Edit Mode or Object Mode.")
+            cls.poll_message_set("Needs an active mesh object, in Edit Mode or Object Mode")
             return False
         return True
 

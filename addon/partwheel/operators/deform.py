@@ -11,7 +11,7 @@ import numpy as np
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 from mathutils import Matrix, Vector
 
-from .. import borders, handle_gizmo, handle_points, keys, session
+from .. import borders, handle_gizmo, handle_points, keys, objects, session
 from ..background import Background
 from ..core import PartwheelError
 from ..core.joint import REACH
@@ -23,7 +23,7 @@ from ..ui import status
 TICK = 0.03  # seconds
 NOTCH = 1.25  # what a notch of the wheel makes of the handle's size
 PATIENCE = 0.05  # seconds that Blender waits for what is done in the background, before it goes on meanwhile
-NO_PART = "Pick a part with Select Part by Wheel first."
+NO_PART = "Pick a part with Select Part by Wheel first"
 
 
 class PARTWHEEL_PG_handle(bpy.types.PropertyGroup):
@@ -84,6 +84,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
     def poll(cls, context):
         obj = context.edit_object
         if context.mode != "EDIT_MESH" or obj is None:
+            cls.poll_message_set("Parts are deformed in Edit Mode of a mesh")
             return False
         if session.state(obj.data)[0] not in {session.State.FITS, session.State.MOVED}:
             cls.poll_message_set(NO_PART)
@@ -135,13 +136,13 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         if self.node < 0:
             picked = session.picked(obj)
             if not picked:
-                raise Refused(NO_PART)
+                raise Refused(f"{NO_PART}.")
             self.node = picked.node
             if not self.properties.is_property_set("snap"):
                 self.snap = picked.snap
         hierarchy = session.hierarchy(obj)
         if not hierarchy or self.node >= len(hierarchy.parent):
-            raise Refused(f"There is no part {self.node}. {NO_PART}")
+            raise Refused(f"There is no part {self.node}. {NO_PART}.")
         return borders.faces(obj, hierarchy, self.node, self.snap)
 
     # ---- With the mouse --------------------------------------------------------------------------------------------
@@ -476,7 +477,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         return self.pen
 
     def _draw(self):
-        obj = bpy.data.objects.get(self.object_name)
+        obj = objects.named(self.object_name)
         if obj is None:
             return
         if self.method == "RIGID":

@@ -6,7 +6,7 @@ import bmesh
 import bpy
 import numpy as np
 
-from .. import mesh_arrays, picking
+from .. import mesh_arrays, objects, picking
 from ..linked import changeable, read_only
 from ..prepared import prepared
 from ..seen import NO_FACE
@@ -82,7 +82,7 @@ class Preview:
     """A target that changes nothing before the part is confirmed: the overlay alone shows it."""
 
     def __init__(self, obj):
-        self.name, self.mode, self.faces = obj.name, obj.mode, len(obj.data.polygons)
+        self.name, self.mode, self.faces = obj.name_full, obj.mode, len(obj.data.polygons)
 
     def select(self, *_):
         """What is drawn says it all."""
@@ -91,7 +91,7 @@ class Preview:
         """Nothing was changed."""
 
     def fits(self):
-        obj = bpy.data.objects.get(self.name)
+        obj = objects.named(self.name)
         return obj is not None and obj.mode == self.mode and len(obj.data.polygons) == self.faces
 
 

@@ -172,14 +172,14 @@ class PartPicker:
         return self._hold(context, obj, picked)
 
     def _hold(self, context, obj, picked):
-        self.object_name, self.target, self.shown = obj.name, self._aim(context, obj), None
+        self.object_name, self.target, self.shown = obj.name_full, self._aim(context, obj), None
         return self._show(context, picked)
 
     def _build(self, context, obj, face):
         self.building = start(self, obj)
         if not self.building:
             return {"CANCELLED"}
-        self.object_name, self.state = obj.name, wheel.Building(face)
+        self.object_name, self.state = obj.name_full, wheel.Building(face)
         self.building.watch(context)
         return {"RUNNING_MODAL"}
 
@@ -201,7 +201,7 @@ class PartPicker:
 
     def _object(self, context):
         """The object that the part belongs to, if it can still be picked from."""
-        return next((each for each in self._objects(context) if each.name == self.object_name), None)
+        return next((each for each in self._objects(context) if each.name_full == self.object_name), None)
 
     def _wait(self, context, header):
         self._tell(context, header, keys.WAITING)

@@ -6,7 +6,7 @@ import math
 import bpy
 from mathutils import Vector
 
-from .. import composition, keys, placement
+from .. import composition, keys, objects, placement
 from ..picking import surface_under, view_under
 from ..ui import status
 
@@ -43,13 +43,13 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
     def poll(cls, context):
         obj = context.active_object
         if context.mode != "OBJECT" or obj is None or obj.type != "MESH":
-            cls.poll_message_set("In Object Mode, make the part to be placed the active object.")
+            cls.poll_message_set("In Object Mode, make the part to be placed the active object")
             return False
         return True
 
     def execute(self, context):
         part = context.active_object
-        target = bpy.data.objects.get(self.target)
+        target = objects.wanted(self.target)
         if (self.fit or self.mirror) and (target is None or target.type != "MESH"):
             self.report({"ERROR"}, "Say which mesh object the part is placed on.")
             return {"CANCELLED"}
@@ -101,7 +101,7 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
                 return {"RUNNING_MODAL"}
             if self.mirror:
                 composition.update_matrices()
-                placement.mirrored(part, bpy.data.objects[self.target]).select_set(True)
+                placement.mirrored(part, objects.named(self.target)).select_set(True)
             return self._end(context, {"FINISHED"})
         sign = keys.SIGNS.get(event.type, 0)
         if event.type in keys.TURN.events and event.shift:
@@ -121,7 +121,7 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
 
     def cancel(self, context):
         """Blender itself ends the tool."""
-        part = bpy.data.objects.get(self.part_name)
+        part = objects.named(self.part_name)
         if part:
             placement.put_back(part, self.transform)
         self._end(context, {"CANCELLED"})
@@ -133,7 +133,7 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
             self._show(context)
 
     def _surface_under(self, context, event):
-        """(location, normal towards the eye, object's name) of what is under the mouse behind the part itself."""
+        """(location, normal towards the eye, object's full name) of what is under the mouse behind the part itself."""
         view = view_under(context.window, event.mouse_x, event.mouse_y)
         if not view:
             return None
@@ -141,12 +141,12 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
         point = event.mouse_x - region.x, event.mouse_y - region.y
         found = surface_under(context, *view, point,
                               lambda obj: obj.type == "MESH" and obj.name_full != self.part_name)
-        return found and (found.location, found.normal, found.obj.name)
+        return found and (found.location, found.normal, found.obj.name_full)
 
     def _show(self, context):
         if not self.target:
             return
-        target = bpy.data.objects[self.target]
+        target = objects.named(self.target)
         try:
             placement.put(context.active_object, self.start, self.own, target, self._pose())
         except ValueError as error:

@@ -14,17 +14,22 @@ TRANSFORMS = {"G": ("translate", "Move"), "R": ("rotate", "Rotate"), "S": ("resi
 REACH = 0.5  # beyond the part, by the square root of its area
 TICK = 0.05  # seconds between two looks for the end of Blender's tool
 
+_waiting = None  # the timer that looks
+
 
 def around(key):
     """start(context) of Blender's own proportional tool: the part moves as one, its surroundings follow."""
     def start(context):
+        global _waiting
+        unregister()  # or the reach that the last tool has left would be taken for the user's
         settings = context.tool_settings
         users, reach = settings.proportional_size, _reach(context.edit_object)
         if np.float32(reach) == np.float32(users):  # or that Blender has kept it would not be seen
             reach *= 1.001
         tool = getattr(bpy.ops.transform, TRANSFORMS[key][0])
         tool("INVOKE_DEFAULT", use_proportional_edit=True, use_proportional_connected=True, proportional_size=reach)
-        bpy.app.timers.register(_putting_back(context.scene.name_full, users), first_interval=0)
+        _waiting = _putting_back(context.scene.name_full, users)
+        bpy.app.timers.register(_waiting, first_interval=0)
     return start
 
 
@@ -62,3 +67,12 @@ def within(key):
     def start(_context):
         bpy.ops.mesh.partwheel_deform("INVOKE_DEFAULT", True, method="PROPORTIONAL", start=key)
     return start
+
+
+def unregister():
+    """No timer goes on; the user's reach is put back, if Blender's tool has ended."""
+    global _waiting
+    if _waiting and bpy.app.timers.is_registered(_waiting):
+        _waiting()
+        bpy.app.timers.unregister(_waiting)
+    _waiting = None

@@ -6,7 +6,7 @@ import math
 
 import bpy
 
-from .. import keys, solids, swapping, union
+from .. import keys, objects, solids, swapping, union
 from ..core import PartwheelError
 from ..linked import changeable
 from ..ui import status
@@ -59,7 +59,7 @@ class MESH_OT_partwheel_swap(Snaps, OnPart, OnParts, bpy.types.Operator):
 
     def _chosen(self, context, place, obj):
         """The Offer that the options name."""
-        other = bpy.data.objects.get(self.other) if self.other else None
+        other = objects.wanted(self.other) if self.other else None
         if self.other and (other is None or other.type != "MESH"):
             raise swapping.NotSwapped(f"There is no mesh object {self.other}.")
         if other and (self.whole or self.other_node >= 0):
@@ -87,7 +87,7 @@ class MESH_OT_partwheel_swap(Snaps, OnPart, OnParts, bpy.types.Operator):
         context.window.cursor_modal_set("WAIT")
         try:
             hierarchy = self.hierarchy(context, obj)
-            other = bpy.data.objects.get(self.other)
+            other = objects.wanted(self.other)
             others = [other] if other else swapping.sources(context, obj)
             if self.was_edited:
                 bpy.ops.object.mode_set(mode="OBJECT")
@@ -105,7 +105,7 @@ class MESH_OT_partwheel_swap(Snaps, OnPart, OnParts, bpy.types.Operator):
 
     def modal(self, context, event):
         obj = context.active_object
-        if obj is None or obj.name != self.place.name or context.mode != "OBJECT":
+        if obj is None or obj.name_full != self.place.name or context.mode != "OBJECT":
             self.report({"WARNING"}, "Swapping stopped: the object is no longer the active one.")
             return self._end(context, {"CANCELLED"})
         if event.type in PASS:
@@ -183,7 +183,7 @@ class Preview:
     which one is seen. The object's own mesh is not touched."""
 
     def __init__(self, place):
-        obj = bpy.data.objects[place.name]
+        obj = objects.named(place.name)
         self.place, self.shown = place, {}
         rest = place.rest()
         self.own, self.rest = obj.data.name, rest.name
@@ -200,7 +200,7 @@ class Preview:
 
     def end(self):
         """All is as it was before; what Blender has let go itself by then is left alone."""
-        obj, own = bpy.data.objects.get(self.place.name), bpy.data.meshes.get(self.own)
+        obj, own = objects.named(self.place.name), bpy.data.meshes.get(self.own)
         if obj and own:
             obj.data = own
         for name in self.shown.values():

@@ -38,7 +38,7 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
         target = context.active_object
         if context.mode != "OBJECT" or target is None or target.type != "MESH":
             cls.poll_message_set("In Object Mode, select the parts and then the mesh object that they are to become "
-                                 "part of.")
+                                 "part of")
             return False
         return changeable(cls, target)
 

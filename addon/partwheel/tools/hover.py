@@ -7,12 +7,12 @@ draws it in every 3D view, for as long as the tool is active and no longer. It n
 
 import bpy
 
-from .. import borders, overlay, picking, wheel
+from .. import borders, objects, overlay, picking, wheel
 from ..prepared import current, prepared
 
 
 class Hover:
-    """What the mouse is over: an object's name, its overlay.Parts, a node, and the faces of it where its border is
+    """What the mouse is over: an object's full name, its overlay.Parts, a node, and the faces of it where its border is
     snapped, else None; or None."""
 
     def __init__(self):
@@ -33,15 +33,15 @@ class Hover:
         if not parts:
             return None
         node, snap = wheel.pick(parts.hierarchy, face).node, snaps(context)
-        if self.what and self.what[:3] == (obj.name, parts, node) and snap == (self.what[3] is not None):
+        if self.what and self.what[:3] == (obj.name_full, parts, node) and snap == (self.what[3] is not None):
             return self.what
-        return obj.name, parts, node, borders.faces(obj, parts.hierarchy, node, True) if snap else None
+        return obj.name_full, parts, node, borders.faces(obj, parts.hierarchy, node, True) if snap else None
 
     def draw(self, context):
         if not self.what or overlay.shown.on:
             return
         name, parts, node, snapped = self.what
-        obj = bpy.data.objects.get(name)
+        obj = objects.named(name)
         if obj and obj.mode == "EDIT" and overlay.visible(context, obj) and current(obj, parts):
             overlay.draw_hover(context, obj, parts, node, snapped)
 

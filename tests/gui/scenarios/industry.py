@@ -10,10 +10,10 @@ def play(stage):
     bpy.ops.preferences.keyconfig_activate(filepath=str(preset))
     yield from stage.open("hand")
     for name, keymap in bpy.data.window_managers[0].keyconfigs.user.keymaps.items():
-        others = [item.idname for item in keymap.keymap_items if item.type == "W" and item.ctrl and not item.shift
+        others = [item.idname for item in keymap.keymap_items if item.type == "W" and item.ctrl and item.shift
                   and not item.alt and item.active and not item.idname.startswith("mesh.partwheel")]
         stage.check(not others or name not in {"Mesh", "3D View", "Window", "Screen", "3D View Generic"},
-                    f"Ctrl W is free in {name}: {others}")
+                    f"Shift Ctrl W is free in {name}: {others}")
 
     face, stops, start = yield from stage.pick(0.5, 0.9, above=2)
     at, x, y = start, stage.mouse.x, stage.mouse.y

@@ -55,7 +55,7 @@ def play(stage):
         x, y, face = place(stage, area)
         stops, start = stage.wheels.stops(face)
         mouse.move(x, y)
-        mouse.key("W", ctrl=True)
+        mouse.key("W", shift=True, ctrl=True)
         yield from stage.selected(stops[start], "after the start in the second window")
         mouse.wheel(1)
         yield from stage.selected(stops[start + 1], "after a notch there")
