@@ -295,7 +295,7 @@ private:
     // What the last survey found, of these arguments, in the order to insert them. The first inserted_ are in the hull at
     // work, if that is loaded_.
     const Hull::Block* surveyed_ = nullptr;
-    const int32_t* surveyed_points_ = nullptr;
+    std::vector<int32_t> surveyed_points_;
     std::vector<Candidate> candidates_;
     std::vector<int32_t> others_;  // scratch of survey()
     size_t inserted_ = 0;
@@ -450,7 +450,7 @@ bool HullKernel::Impl::surely_inside(const View& h, const Point& p) {
 
 void HullKernel::Impl::survey(const Hull& hull, std::span<const int32_t> points) {
     surveyed_ = hull.block_.get();
-    surveyed_points_ = points.data();
+    surveyed_points_.assign(points.begin(), points.end());
     candidates_.clear();
     inserted_ = 0;
     loaded_ = false;
@@ -809,8 +809,11 @@ Hull HullKernel::Impl::unite(const Hull& hull, std::span<const int32_t> points) 
         all.insert(all.end(), points.begin(), points.end());
         return build(all);
     }
-    // Often its volume has just been asked for.
-    if (surveyed_ != hull.block_.get() || surveyed_points_ != points.data()) survey(hull, points);
+    // Often its volume has just been asked for. A hull of this kernel is known by its address: there is no other in its
+    // place before one has been made here, which forgets the survey. One of another kernel's isn't.
+    const bool surveyed = surveyed_ == hull.block_.get() && hull.block_->pool == &pool_ &&
+                          std::ranges::equal(surveyed_points_, points);
+    if (!surveyed) survey(hull, points);
     surveyed_ = nullptr;
     if (!loaded_) load(hull);
     while (inserted_ < candidates_.size()) insert(candidates_[inserted_++].vertex);

@@ -1,4 +1,5 @@
 // The C functions: arguments, capacities, messages, contexts, threads, and input nobody would think of.
+#include "support/alone.h"
 #include "support/built.h"
 #include "support/real_meshes.h"
 #include "support/sizes.h"
@@ -488,6 +489,23 @@ TEST(Api, BuildsInThreadsGiveTheSameBytes) {
         for (std::thread& t : threads) t.join();
         EXPECT_EQ(together, alone);
     }
+}
+
+TEST(Api, BuildsAloneWhereTheSystemStartsNoOther) {
+    const TriMesh mesh = real_mesh("hand.off");
+    const pw_build_options options{sizeof options, 0, PW_RUNG_EXACT, 0, 4, PW_MODE_REGROUPED};
+    const auto built = [&] {
+        pw_hierarchy* made = nullptr;
+        if (pw_build(nullptr, mesh.vertex_data(), mesh.vertices.size(), mesh.triangle_data(), mesh.triangles.size(),
+                     mesh.face_data(), mesh.face_count, &options, &made) != PW_OK) {
+            std::fprintf(stderr, "%s\n", pw_error_message());
+            return std::vector<uint8_t>();
+        }
+        return save(Handle(made));
+    };
+    const std::vector<uint8_t> with_threads = built();
+    ASSERT_FALSE(with_threads.empty());
+    expect_holds_alone([&] { return built() == with_threads; });
 }
 
 TEST(Api, ManyThreadsAskOneHierarchy) {

@@ -405,6 +405,35 @@ TEST_F(HullTest, ManyTouchingTetrahedra) {
     }
 }
 
+// What united_volume() keeps for a unite() is for the same hull and points, not for whatever is in their place.
+TEST_F(HullTest, OthersInTheSamePlaceAreNotTakenForTheFirst) {
+    Points points(40);
+    for (Point& p : points)
+        for (double& x : p) x = whole(0, 1000);
+    HullKernel kernel(points), others(points), fresh(points);
+    const auto expect_united = [&](const Hull& hull, std::span<const int32_t> more) {
+        std::vector<int32_t> all = list(hull.vertices());
+        all.insert(all.end(), more.begin(), more.end());
+        const Hull united = kernel.unite(hull, more), should = fresh.build(all);
+        EXPECT_EQ(list(united.vertices()), list(should.vertices()));
+        EXPECT_NEAR(united.volume(), should.volume(), 1e-9 * should.volume());
+    };
+    std::vector<int32_t> more = numbers(10, 20);
+    const Hull first = kernel.build(numbers(0, 10));
+    (void)kernel.united_volume(first, more);
+    std::ranges::copy(numbers(20, 30), more.begin());
+    expect_united(first, more);
+
+    // Tetrahedra, so that they are of one size.
+    Hull one = others.build(numbers(0, 4));
+    const int32_t* const place = one.vertices().data();
+    (void)kernel.united_volume(one, more);
+    one = {};
+    const Hull another = others.build(numbers(30, 34));
+    ASSERT_EQ(another.vertices().data(), place);
+    expect_united(another, more);
+}
+
 TEST_F(HullTest, SameEveryTime) {
     Points points(100);
     for (Point& p : points)

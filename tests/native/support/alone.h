@@ -1,0 +1,32 @@
+// What is done where the system starts no thread, as it may be where many run already.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <system_error>
+#include <thread>
+
+namespace partwheel::test {
+
+// Expects task() to hold in a child process that may have no second thread. Root may have any, so the child isn't root.
+template <class Task>
+void expect_holds_alone(const Task& task) {
+    constexpr int holds = 0, does_not = 1, not_alone = 2;
+    const auto child = [&] {
+        constexpr uid_t nobody = 65534;
+        constexpr rlimit none{0, 0};
+        if ((geteuid() == 0 && setuid(nobody) != 0) || setrlimit(RLIMIT_NPROC, &none) != 0) return not_alone;
+        try {
+            std::thread([] {}).join();
+            return not_alone;
+        } catch (const std::system_error&) {
+            return task() ? holds : does_not;
+        }
+    };
+    EXPECT_EXIT(_exit(child()), testing::ExitedWithCode(holds), "");
+}
+
+}  // namespace partwheel::test
