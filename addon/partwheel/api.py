@@ -68,8 +68,8 @@ def select(obj, face, level=0, extend=False, snap=False):
 
 
 def cut(obj, parts=None, height=None, least_concavity=None):
-    """(F,) the part of each face, counted from 0, when the whole is cut: give one of the three. parts: into so many, the
-    last merges undone. least_concavity: into so many, those with the least concavity in total, as for convex hulls.
+    """(F,) the part of each face, counted from 0, when the whole is cut: give one of the three. parts: into so many,
+    the last merges undone. least_concavity: into so many, those with the least concavity in total, as for convex hulls.
     height: at this height of the dendrogram. A part inside the solid has no face."""
     built = hierarchy(obj)
     return built.face_labels(_bounds(built, parts, height, least_concavity))

@@ -85,8 +85,8 @@ typedef enum pw_mode {
 /* What the default, PW_MODE_REGROUPED, does otherwise than the paper, and why:
  *  - The top of the tree joins parts in the order that people would, and each of its nodes has a score: concavity alone
  *    joins a leg's halves late and a cup's handle early.
- *  - Listing 2 prunes below that by concavity alone. By Eq. 3 convex nodes within convex nodes stay, since C2 grows; but
- *    where C2 has them divided is no feature of the shape. The nodes of the top all stay.
+ *  - Listing 2 prunes below that by concavity alone. By Eq. 3 convex nodes within convex nodes stay, since C2 grows;
+ *    but where C2 has them divided is no feature of the shape. The nodes of the top all stay.
  *  - A click takes the path's best score, and the wheel stops only where more can be seen. The paper's click takes the
  *    tetrahedron, and each notch the next node of the path.
  *  - Points that were added inside, and noise, leave the parts as they are without. */
@@ -172,8 +172,8 @@ typedef struct pw_arrays {
     const uint8_t *cost_class; /* (N,)   Eq. 3 of the paper: 0 convex, 1 not; 0 for leaves */
     const double *cost;        /* (N,)   Eq. 3: C2 (Eq. 2) in class 0, the concavity (Eq. 1) in class 1; 0 for leaves */
     const double *height;      /* (N,)   the node's place in the dendrogram: its concavity, 0 in class 0; of a regrouped
-                                *         node at least that of its children. From child to parent it grows; in
-                                *         PW_MODE_PAPER (cost_class, cost) does, and convex nodes stay at 0 */
+                                *         node at least that of its children. It never falls from child to parent; in
+                                *         PW_MODE_PAPER (cost_class, cost) grows */
     const double *volume;      /* (N,)   of the node's tetrahedra */
     const double *area;        /* (N,)   of the node's source faces */
     const double *vertices;    /* (V,3)  the surface's, in a canonical order; then points that were added inside */
@@ -220,8 +220,8 @@ PW_API pw_status pw_hierarchy_path(const pw_hierarchy *hierarchy, size_t face, i
  * Each stop holds the face, and has at least 10 % more visible area than the one before, the last perhaps less.
  * start: index into nodes of the part that a click alone takes: the best score.
  *
- * In PW_MODE_PAPER (the paper, section 4) the stops are the whole path, also nodes that add only tetrahedra inside, with
- * no face; and start is 0: the click takes the tetrahedron. */
+ * In PW_MODE_PAPER (the paper, section 4) the stops are the whole path, also nodes that add only tetrahedra inside,
+ * with no face; and start is 0: the click takes the tetrahedron. */
 PW_API pw_status pw_hierarchy_wheel(const pw_hierarchy *hierarchy, size_t face, int32_t *nodes, size_t capacity,
                                     size_t *count, size_t *start);
 
@@ -232,9 +232,9 @@ PW_API pw_status pw_hierarchy_faces(const pw_hierarchy *hierarchy, size_t node, 
  * tetrahedra[bounds[k] : bounds[k+1]], bounds[0] = 0 and bounds[parts] = T. Below, bounds has room for capacity
  * elements and *count becomes parts + 1. */
 
-/* The dendrogram cut by a horizontal line: the largest nodes of at most this height (the paper, section 3.2.3, where the
- * line is at a cost of 1 + height). A height of 0 gives the convex parts, an infinite one the whole. height: a number
- * >= 0. */
+/* The dendrogram cut by a horizontal line: the largest nodes of at most this height (the paper, section 3.2.3, where
+ * the line is at a cost of 1 + height). A height of 0 gives the convex parts, an infinite one the whole. height: a
+ * number >= 0. */
 PW_API pw_status pw_hierarchy_cut_height(const pw_hierarchy *hierarchy, double height, int32_t *bounds,
                                          size_t capacity, size_t *count);
 
@@ -242,9 +242,9 @@ PW_API pw_status pw_hierarchy_cut_height(const pw_hierarchy *hierarchy, double h
 PW_API pw_status pw_hierarchy_cut_parts(const pw_hierarchy *hierarchy, size_t parts, int32_t *bounds, size_t capacity,
                                         size_t *count);
 
-/* Of all cuts of the unpruned tree into this many parts the one whose parts have the least concavity in total: what suits
- * approximation by convex hulls. Beyond the paper, and meant for the tree of PW_MODE_PAPER, which has more convex parts
- * to choose from; it takes O(T parts) time. 1 <= parts <= min(T, 4096). */
+/* Of all cuts of the unpruned tree into this many parts the one whose parts have the least concavity in total: what
+ * suits approximation by convex hulls. Beyond the paper, and meant for the tree of PW_MODE_PAPER, which is made for
+ * convexity; it takes O(T parts) time. 1 <= parts <= min(T, 4096). */
 PW_API pw_status pw_hierarchy_cut_least_concavity(const pw_hierarchy *hierarchy, size_t parts, int32_t *bounds,
                                                   size_t capacity, size_t *count);
 

@@ -1,5 +1,5 @@
-// The binary tree pruned to a dendrogram (the paper's Listing 2), cuts of it, and the stops of the mouse wheel. For the
-// paper's tree all of it is the paper's; for the regrouped one (see regroup.h) it is ours.
+// The binary tree pruned to a dendrogram (the paper's Listing 2; for the regrouped tree, see regroup.h, a rule of ours),
+// cuts of it, and the stops of the mouse wheel in the regrouped tree (in the paper's they are the whole path).
 #pragma once
 
 #include "cluster.h"
@@ -46,10 +46,10 @@ struct WheelStops {
     size_t start = 0;
 };
 
-// Of a regrouped tree. The path runs from a leaf to the root; areas (growing, the first one above 0) and scores (0 below
-// the parts) are those of its nodes. Two nodes of a path overlap (intersection over union) by the quotient of their
-// areas. So, from the best score down, a node is a stop unless it overlaps one that is by more than 85 %; the root is
-// always one. Below the parts, each stop has at most half the area of the next. The click takes the best score.
+// Of a regrouped tree. The path runs from a leaf to the root; areas (growing, the first one above 0) and scores (0
+// below the parts) are those of its nodes. Two nodes of a path overlap (intersection over union) by the quotient of
+// their areas. So, from the best score down, a node is a stop unless it overlaps one that is by more than 85 %; the
+// root is always one. Below the parts, each stop has at most half the area of the next. The click takes the best score.
 WheelStops wheel_stops(std::span<const double> areas, std::span<const double> scores);
 
 }  // namespace partwheel

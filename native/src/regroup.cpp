@@ -363,7 +363,7 @@ PairMeasures Regrouping::measures(const Part& a, const Part& b, const Border& bo
     const double excess = std::max(0.0, hull - volume - gaps);  // the concavity that joining adds
     const double gap = convexity_gap(volume, hull), gap_s = convexity_gap(s.volume, s.hull_volume),
                  gap_l = convexity_gap(l.volume, l.hull_volume);
-    const double length = log2_of(std::max(border.length, 1e-12)), face = log2_of(border.interface);
+    const double length = log2_of(border.length), face = log2_of(border.interface);
     const double thick_s = s.log_volume - s.log_area, thick_l = l.log_volume - l.log_area;
     const double size = log_volume_ / 3;
     return {

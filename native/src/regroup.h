@@ -12,28 +12,29 @@
 //
 // The unit of length is the longest side of the bounding box.
 //
-// Parts. Beginning with the components, the cluster with the largest area x concavity / hull volume (in single precision;
-// where they tie the one of the lowest number) is replaced by its two halves in the paper's tree, until there are 600
-// parts or all are convex. A part has a volume, the area of its outer triangles, and a hull.
+// Parts. Beginning with the components, the cluster with the largest area x concavity / hull volume (in single
+// precision; where they tie the one of the lowest number) is replaced by its two halves in the paper's tree, until
+// there are 600 parts or all are convex. A part has a volume, the area of its outer triangles, and a hull.
 //
-// Folds are the edges of the surface, each between two outer triangles. A fold has a length and a bend: the sine of half
-// the angle between the two normals, below 0 where the surface is concave. The curvature of a vertex is a quotient of
-// two sums: over its folds of length x bend / 2, and over its outer triangles of a third of their area. Four times, all
-// vertices at once, each adds to both of its sums those of the vertices at the other ends of its folds. The quotient
-// times the square root of the whole area is the curvature h.
+// Folds are the edges of the surface, each between two outer triangles. A fold has a length and a bend: the sine of
+// half the angle between the two normals, below 0 where the surface is concave. The curvature of a vertex is a quotient
+// of two sums: over its folds of length x bend / 2, and over its outer triangles of a third of their area. Four times,
+// all vertices at once, each adds to both of its sums those of the vertices at the other ends of its folds. The
+// quotient times the square root of the whole area is the curvature h.
 //
 // Two parts with common facets are a pair. Its border has an interface, the area of those facets; and as sums over the
 // folds between the two: a length, that of the folds; a crease, of length x bend; a concave length, of the folds whose
-// bend is below -0.02; a curvature, of length x h / (4 + |h|) with the mean h of the fold's ends. A part's rim is the sum
-// of its borders. What parts have is added up when they are joined, and where both have a border with a third part,
+// bend is below -0.02; a curvature, of length x h / (4 + |h|) with the mean h of the fold's ends. A part's rim is the
+// sum of its borders. What parts have is added up when they are joined, and where both have a border with a third part,
 // these two borders are; the rim is what is left.
 //
-// Order. The pair that costs least is joined first; costs are in single precision, and the pair of the lowest number goes
-// first where they tie. Hulls take time, so a pair, new or grown, is entered by a guess: what it would cost if the hull
-// of both were no larger than it is known to be (the sum of their hulls, or a hull of parts of both that was made before),
-// but no less than before. When a guess comes first the hull is made, and the pair entered again by what it does cost. Of
-// two pairs that become one, the larger known hull, the lesser cost and the number of the one that the pair's first part
-// had stay. A pair of which one has no area goes before all others, at -1000000 - interface / area of all.
+// Order. The pair that costs least is joined first; costs are in single precision, and the pair of the lowest number
+// goes first where they tie. Hulls take time, so a pair, new or grown, is entered by a guess: what it would cost if the
+// hull of both were no larger than it is known to be (the sum of their hulls, or a hull of parts of both that was made
+// before), but no less than before. When a guess comes first the hull is made, and the pair entered again by what it
+// does cost. Of two pairs that become one, the larger known hull, the lesser cost and the number of the one that the
+// pair's first part had stay. A pair of which one has no area goes before all others, at -1000000 - interface / area of
+// all.
 // Components are joined at last, as in the paper's tree. A mesh of one tetrahedron is one part, of score 1.
 #pragma once
 

@@ -1,13 +1,14 @@
 // What regroup's two networks are told: the measures of a pair of parts, and those of a node of the new tree, by name.
 //
 // s is the part of the two with the smaller area, l the other (areas in single precision; where these tie, s has the
-// lowest tetrahedron). log is to the base 2, at least -20 and at most 20; [a, b] keeps what is before it within a and b;
-// a quotient by 0 is 0, and shares and gaps stay within 0 and 1. regroup.h says what area, interface, crease and so on are.
+// lowest tetrahedron). log is to the base 2, at least -20 and at most 20; [a, b] keeps what is before it within a and
+// b; a quotient by 0 is 0, and shares and gaps stay within 0 and 1. regroup.h says what area, interface, crease and so
+// on are.
 //
 //   thick(p) = log volume(p) - log area(p)
 //   gap(p)   = 1 - volume(p) / hull(p)
-//   excess   = hull(both) - volume(both) - dents(s) - dents(l), dents(p) = hull(p) - volume(p), none of the three below 0:
-//              the concavity that joining adds
+//   dents(p) = hull(p) - volume(p), not below 0
+//   excess   = hull(both) - volume(both) - dents(s) - dents(l), not below 0: the concavity that joining adds
 //   face     = log interface
 #pragma once
 

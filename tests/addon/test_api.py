@@ -83,6 +83,13 @@ class Api(MeshTest):
             with self.assertRaises(ValueError):
                 self.api.cut(obj, **arguments)
 
+    def test_mode_paper_goes_through_the_whole_path(self):
+        obj = self.add(*read_off("hand"))
+        self.api.build(obj, mode=part("core").Mode.PAPER)
+        path = self.api.path(obj, 700).tolist()
+        for level in (0, 1, 5, len(path) - 1):
+            self.assertEqual(self.api.select(obj, 700, level), path[level])
+
     def test_refusals(self):
         error = part("core").PartwheelError
         with self.assertRaises(ValueError):

@@ -40,8 +40,8 @@ class Command(MeshTest):
         for way in ("parts", "least-concavity"):
             bpy.ops.wm.open_mainfile(filepath=self.path)
             expected = part("api").cut(bpy.data.objects["hand"], **{way.replace("-", "_"): 5}).tolist()
-            code, printed = self.run_command("cut", self.path, "--object", "hand", f"--{way}", "5", "--attribute", "limb",
-                                             "--output", self.other)
+            code, printed = self.run_command("cut", self.path, "--object", "hand", f"--{way}", "5",
+                                             "--attribute", "limb", "--output", self.other)
             self.assertEqual(code, 0, printed)
             bpy.ops.wm.open_mainfile(filepath=self.other)
             found = [value.value for value in bpy.data.objects["hand"].data.attributes["limb"].data]

@@ -262,7 +262,7 @@ class Regrouped:
         border, volume, area = pair.border, s.volume + l.volume, s.area + l.area
         excess = max(0.0, hull - volume - s.dents - l.dents)
         gap = within(1 - volume / hull, 0.0, 1.0) if hull > 0 else 0.0
-        face, length = log(border[INTERFACE]), log(max(border[LENGTH], 1e-12))
+        face, length = log(border[INTERFACE]), log(border[LENGTH])
         size = log(self.volume) / 3
         return dict(
             area_s=log(s.area) - log(self.area), area_both=log(area) - log(self.area),

@@ -36,7 +36,7 @@ def signatures(tetrahedra):
 
 @functools.cache
 def both(name):
-    """({set of tetrahedra: score}, {set: the sets of the two that it was joined from}), by the reference and as built."""
+    """({set of tetrahedra: score}, {set: the sets of the two that it was joined from}): the reference's, the build's."""
     shape = OF_SEVERAL_PIECES[name]() if name in OF_SEVERAL_PIECES else shapes.off(name)
     paper = Hierarchy.build(*shape, mode=Mode.PAPER)
     reference = Regrouped(paper.vertices, paper.tetrahedra, paper.merges, paper.summary.components)

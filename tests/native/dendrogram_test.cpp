@@ -12,6 +12,7 @@
 #include <numeric>
 #include <random>
 #include <set>
+#include <span>
 
 namespace partwheel::test {
 namespace {
@@ -172,6 +173,8 @@ TEST_F(DendrogramTest, PruningKeepsWhatGrows) {
 TEST_F(DendrogramTest, ConvexNodesInConvexNodesStayAsEq3HasIt) {
     // C2 of two tetrahedra of four is 2/16, of three 5/16, of all 10/16: it grows. By concavity alone they are equal.
     const std::vector<Merge> convex{merge_of(0, 1, 0), merge_of(4, 2, 0), merge_of(5, 3, 0)};
+    EXPECT_EQ(node_costs(convex),
+              (std::vector<NodeCost>{{false, 2.0 / 16}, {false, 5.0 / 16}, {false, 10.0 / 16}}));
     EXPECT_EQ(prune(convex), (std::vector<uint8_t>{1, 1, 1}));
     EXPECT_EQ(prune_regrouped(convex, 0), (std::vector<uint8_t>{0, 0, 1}));
     // What is concave costs more than anything convex, however little it is: it goes.
@@ -325,6 +328,9 @@ TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
     // What has no score is not divided.
     const std::vector<Merge> one(1, {0, 1, 0, 0});
     EXPECT_EQ(likeliest_cut(one, std::vector<double>{1, 1, 2}, std::vector<double>{0, 0, 0.1}), std::vector<int32_t>{2});
+    // Nor what would leave something without one.
+    EXPECT_EQ(likeliest_cut(one, std::vector<double>{9, 1, 10}, std::vector<double>{1, 0, 0.1}), std::vector<int32_t>{2});
+    EXPECT_EQ(likeliest_cut(one, std::vector<double>{1, 9, 10}, std::vector<double>{0, 1, 0.1}), std::vector<int32_t>{2});
 }
 
 TEST_F(DendrogramTest, StopsDifferAndTheClickTakesTheBest) {
@@ -348,6 +354,14 @@ TEST_F(DendrogramTest, StopsDifferAndTheClickTakesTheBest) {
                 ASSERT_LE(area(s), 0.85 * area(s + 1) * (1 + 1e-12));
             }
         }
+        // Below the parts each stop has at most half the area of the next, and none that has is left out.
+        int32_t next = *std::ranges::find_if(wheel.stops, [&](int32_t n) { return scores[static_cast<size_t>(n)] > 0; });
+        std::vector<int32_t> halves;
+        for (int32_t k = below - 1; k >= 0; --k)
+            if (areas[static_cast<size_t>(k)] <= 0.5 * areas[static_cast<size_t>(next)]) halves.push_back(next = k);
+        std::ranges::reverse(halves);
+        ASSERT_TRUE(std::ranges::equal(halves, std::span(wheel.stops).first(halves.size())));
+        ASSERT_GT(scores[static_cast<size_t>(wheel.stops[halves.size()])], 0);
         // Nothing on the path is better than what the click takes, but for what can't be told from the root.
         const double best = *std::max_element(scores.begin(), scores.end());
         const auto clicked = static_cast<size_t>(wheel.stops[wheel.start]);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <tuple>
@@ -49,8 +50,8 @@ TetMesh mesh_of(const Bar& bar) {
     return tet_mesh(mesh.vertices, mesh.tetrahedra);
 }
 
-// Each piece is one convex cluster, and those are joined in this order of the pieces by merges that are concave, so that
-// the parts are the pieces.
+// Each piece is one convex cluster, and those are joined in this order of the pieces by merges that are concave, so
+// that the parts are the pieces.
 BinaryTree tree_of(const TetMesh& mesh, const std::vector<size_t>& order) {
     BinaryTree tree;
     tree.components = 1;
@@ -116,7 +117,8 @@ void expect_near(const auto& a, const auto& b) {
     for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], y[i], 1e-9) << "measure " << i;
 }
 
-const Bar waist{{1, 0.5, 1}}, belly{{0.5, 1, 0.5}}, straight{{0.6, 0.6, 0.6}}, cone{{0.4, 0.6, 1.1}}, turned{{1.1, 0.6, 0.4}};
+const Bar waist{{1, 0.5, 1}}, belly{{0.5, 1, 0.5}}, straight{{0.6, 0.6, 0.6}};
+const Bar cone{{0.4, 0.6, 1.1}}, turned{{1.1, 0.6, 0.4}};
 
 TEST(Regroup, CreasesHaveTheSignAndSizeOfTheBend) {
     for (const Bar& bar : {waist, belly, straight, cone, turned}) {
@@ -260,10 +262,41 @@ TEST(Regroup, TheBorderThatIsNoneIsTakenAwayFirst) {
     }
 }
 
+TEST(Regroup, TheTreeEndsWithWhatWasJoined) {
+    const Bar bar{{1, 0.5, 1, 0.95}};
+    for (const std::vector<size_t>& order : {std::vector<size_t>{0, 1, 2}, {2, 1, 0}, {1, 0, 2}}) {
+        const TetMesh mesh = mesh_of(bar);
+        const Result r = regrouped(bar, order);
+        const std::vector<Merge>& merges = r.regrouped.tree.merges;
+        const size_t leaves = mesh.tetrahedra.size();
+        ASSERT_EQ(merges.size(), leaves - 1);
+        std::vector<int32_t> lowest(leaves), size(leaves, 1);
+        std::iota(lowest.begin(), lowest.end(), 0);
+        for (const Merge& m : merges) {
+            const auto left = static_cast<size_t>(m.left), right = static_cast<size_t>(m.right);
+            lowest.push_back(std::min(lowest[left], lowest[right]));
+            size.push_back(size[left] + size[right]);
+            if (size.back() > 6) {
+                EXPECT_LT(lowest[left], lowest[right]);
+            }
+        }
+        EXPECT_EQ(size.back(), static_cast<int32_t>(leaves));
+        // Its hull is the box of 2 x 2 x 2 about the waist and the frustum after it.
+        const double volume = (bar.volume(0) + bar.volume(1) + bar.volume(2)) * std::pow(bar.unit(), 3);
+        EXPECT_NEAR(merges.back().hull_volume, 8 + bar.volume(2) * std::pow(bar.unit(), 3), 1e-12);
+        EXPECT_NEAR(merges.back().concavity, merges.back().hull_volume - volume, 1e-7);
+        ASSERT_EQ(r.regrouped.scores.size(), 5U);
+        for (size_t j : {3, 4}) {  // those of the joined come last, and are what the network says
+            const double z = fitted(fitted_node_numbers, in_order(r.node(j)));
+            EXPECT_NEAR(r.regrouped.scores[j], (1 + z / (1 + std::abs(z))) / 2, 1e-12);
+        }
+    }
+}
+
 TEST(Regroup, ARampIsASoftsign) {
     const std::vector<double> numbers{0.5, 2, -1, 3, 0.25, 1, 1, -2, 0.125};  // two ramps of two inputs
     const double z = 0.5 + 2 * 0.3 - 0.7, y = 0.25 + 0.3 + 0.7;
-    EXPECT_NEAR(fitted(numbers, std::vector<double>{0.3, 0.7}), 3 * z / (1 + std::abs(z)) - 2 * y / (1 + y) + 0.125, 1e-15);
+    EXPECT_NEAR(fitted(numbers, std::vector<double>{0.3, 0.7}), 3 * z / (1 + z) - 2 * y / (1 + y) + 0.125, 1e-15);
     EXPECT_NEAR(fitted(numbers, std::vector<double>{-3, 0}), 3 * -5.5 / 6.5 - 2 * -2.75 / 3.75 + 0.125, 1e-15);
 }
 

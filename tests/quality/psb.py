@@ -34,8 +34,8 @@ COUNTS = np.arange(2, 41)
 
 def paths_as_tree(hierarchy, face_count):
     """The wheel of every face, as one tree: (parent, first, last, leaf, start). The nodes of a path that two faces
-    share count once from the root down to where the paths part, so each path is exactly that of the wheel. But for stops
-    that add no face to the one before, which the benchmark has no notches for: mode paper has them."""
+    share count once from the root down to where the paths part, so each path is exactly that of the wheel; but for
+    stops that add no face to the one before, as mode paper has them and the benchmark does not."""
     parent, first, last, known = [], [], [], {}
     leaf, start = np.empty(face_count, np.int64), np.empty(face_count, np.int64)
     of_leaf = {}
