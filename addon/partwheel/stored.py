@@ -78,9 +78,9 @@ def check(hierarchy, positions, begin, corners, moved):
         shared = (behind == corners[:, None]).any(axis=1)
         beside = (np.add.reduceat(shared, begin, dtype=np.int32) < 3).any()
     elif not moved:
-        places = hierarchy.vertices[tetrahedra]
         low, high = np.minimum.reduceat(positions[corners], begin), np.maximum.reduceat(positions[corners], begin)
-        gap = np.maximum(places.min(axis=1) - high, low - places.max(axis=1)).clip(0)
+        ends = [hierarchy.vertices[tetrahedra[:, end]] for end in range(4)]
+        gap = np.maximum(np.minimum.reduce(ends) - high, low - np.maximum.reduce(ends)).clip(0)
         reach = (hierarchy.summary.deviation + SPACING) * np.linalg.norm(high.max(axis=0) - low.min(axis=0))
         beside = (np.linalg.norm(gap, axis=1) > reach).any()
     if beside:
