@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Picking what is seen: meshes under modifiers, poses and sculpted levels; what a 3D view does not show is not picked."""
+"""Picking what is seen: meshes under modifiers, poses, sculpted levels; what a 3D view does not show is not picked."""
 
 import bpy
 import numpy as np
@@ -50,8 +50,9 @@ class Seen(MeshTest):
     def test_what_is_seen_leads_to_the_mesh_s_own_faces(self):
         """Under modifiers of all sorts, by tags that are not ours."""
         for kind, settings in (("DISPLACE", {"strength": 100, "direction": "Z"}), ("SUBSURF", {"levels": 2}),
-                               ("MIRROR", {"use_axis": (False, False, True)}), ("ARRAY", {}), ("BUILD", {"frame_start": 0,
-                               "frame_duration": 2, "use_random_order": True}), ("EDGE_SPLIT", {"split_angle": 0.1}),
+                               ("MIRROR", {"use_axis": (False, False, True)}), ("ARRAY", {}),
+                               ("BUILD", {"frame_start": 0, "frame_duration": 2, "use_random_order": True}),
+                               ("EDGE_SPLIT", {"split_angle": 0.1}),
                                ("SOLIDIFY", {"thickness": 0.1}), ("TRIANGULATE", {})):
             with self.subTest(kind):
                 MeshTest.setUp(self)

@@ -1,5 +1,5 @@
-"""Outside Edit Mode what is seen is picked and tinted: a bent and subdivided hand in Weight Paint, its multires levels in
-Sculpt Mode, its displaced faces in Object Mode; a local view hides what is in front. A vertex group is one undo step."""
+"""Outside Edit Mode what is seen is picked and tinted: a bent and subdivided hand in Weight Paint, its multires levels
+in Sculpt Mode, its displaced faces in Object Mode; not what local view hides. A vertex group is one undo step."""
 import bpy
 import numpy
 from mathutils import Matrix, Vector
@@ -36,7 +36,7 @@ def shown(model):
 
 
 def picked(stage, when, **arguments):
-    """Picks where the mesh is seen now, and checks the tint: (the part's stops, the index of the first, how to go on)."""
+    """Picks where the mesh is seen now, and checks the tint: (the wheel's stops, the index of the part held)."""
     yield from stage.drawn()
     x, y, face = stage.spot(0.5, 0.9, above=1)
     stops, start = stage.wheels.stops(face)
