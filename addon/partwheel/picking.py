@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is under the mouse: rays against what a 3D view shows. What is hidden in it, in no local view of it or clipped is
-left out, and what is seen under modifiers leads to the mesh's own faces."""
+"""What is under the mouse: rays against what a 3D view shows. What is hidden, clipped or not in its local view is left
+out, and what is seen under modifiers leads to the mesh's own faces."""
 
 from typing import NamedTuple
 
@@ -74,8 +74,8 @@ def clipped(view, point):
 
 
 class Surface(NamedTuple):
-    """A place on a surface, in the world; normal: towards the eye. obj: whose it is; matrix: that object's to the world,
-    or its instance's."""
+    """A place on a surface, in the world; normal: towards the eye. obj: whose it is; matrix: that object's to the
+    world, or its instance's."""
 
     location: Vector
     normal: Vector

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is seen of an object: the triangles that Blender draws, with modifiers, poses and shape keys, and the face of the
-object's own mesh that each belongs to.
+"""What is seen of an object: the triangles that Blender draws, with modifiers, poses and shape keys, and the face of
+the object's own mesh that each belongs to.
 
 Where modifiers make other polygons, a double of the object is evaluated for a moment, on whose faces their numbers are
 written: modifiers copy those as any other attribute. The user's own data is not touched.
@@ -17,8 +17,8 @@ from . import mesh_arrays
 
 NO_FACE = -1
 ORIGIN = "partwheel_origin"  # of each face of the double: its number + 1, for 0 is what faces from elsewhere get
-# Modifiers that may lose it, for they make the surface anew about where it was; and how far beside the surface of before
-# a new triangle may lie, as a share of the bounding box's diagonal.
+# Modifiers that may lose it, for they make the surface anew about where it was; and how far beside that of before a new
+# triangle may lie, as a share of the bounding box's diagonal.
 REMAKING, BESIDE = {"NODES", "REMESH", "SKIN"}, 0.03
 
 
@@ -32,8 +32,8 @@ class Seen(NamedTuple):
 
 
 class _Evaluated(NamedTuple):
-    """What modifiers make of a mesh; faces: of its own. origins (F,): as ORIGIN tells, NO_FACE for those from elsewhere;
-    None if it is lost."""
+    """What modifiers make of a mesh; faces: those of the result. origins (F,): as ORIGIN tells, NO_FACE for those from
+    elsewhere; None if it is lost."""
 
     positions: np.ndarray
     triangles: np.ndarray

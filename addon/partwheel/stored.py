@@ -47,7 +47,7 @@ class Unpacking:
             self._error = error
 
     def result(self, now, positions, begin, corners):
-        """(Fingerprint when it was built, Hierarchy). now: the Fingerprint of the mesh; the rest as for check(). Raises
+        """(Fingerprint when it was built, Hierarchy). now: the Fingerprint of the mesh; the rest as for fits(). Raises
         Refused, also when they are of another mesh."""
         self._thread.join()
         if self._error:
@@ -55,36 +55,35 @@ class Unpacking:
         fingerprint, hierarchy = self._opened
         if fingerprint.topology != now.topology:
             raise Refused("the mesh has changed since")
-        check(hierarchy, positions, begin, corners, fingerprint.positions != now.positions)
+        if not fits(hierarchy, positions, begin, corners, fingerprint.positions != now.positions):
+            raise Refused("it is of another mesh")
         return fingerprint, hierarchy
 
 
-def check(hierarchy, positions, begin, corners, moved):
-    """Raises Refused for the hierarchy of another mesh, which nothing but the mesh itself can tell: vertices that it has
-    not, and faces that lie elsewhere than their tetrahedra.
+def fits(hierarchy, positions, begin, corners, moved):
+    """Whether a hierarchy can be of a mesh, which its hashes don't tell: the vertices that it names are there, and each
+    face lies where its tetrahedron is.
 
     positions (V,3), begin (F,) the first corner of each polygon, corners (L,) their vertices; moved: whether vertices
-    have been elsewhere when it was built, so that only what is made of them can tell."""
+    were elsewhere when it was built, so that only their numbers can tell."""
     known = hierarchy.source >= 0
     source = hierarchy.source[known]
     if len(hierarchy.order) != len(begin) or source.max(initial=-1) >= len(positions):
-        raise Refused("it is of another mesh")
+        return False
     if not moved and (hierarchy.vertices[known] != positions[source]).any():
-        raise Refused("it is of another mesh")
+        return False
     tetrahedra = hierarchy.tetrahedra[hierarchy.leaf]
-    beside = False
     if hierarchy.summary.rung == "exact":  # a facet of the tetrahedron is a triangle of the polygon
         behind = np.repeat(hierarchy.source[tetrahedra], np.diff(begin, append=len(corners)), axis=0)
         shared = (behind == corners[:, None]).any(axis=1)
-        beside = (np.add.reduceat(shared, begin, dtype=np.int32) < 3).any()
-    elif not moved:
-        places = hierarchy.vertices[tetrahedra]
-        low, high = np.minimum.reduceat(positions[corners], begin), np.maximum.reduceat(positions[corners], begin)
-        gap = np.maximum(places.min(axis=1) - high, low - places.max(axis=1)).clip(0)
-        reach = (hierarchy.summary.deviation + SPACING) * np.linalg.norm(high.max(axis=0) - low.min(axis=0))
-        beside = (np.linalg.norm(gap, axis=1) > reach).any()
-    if beside:
-        raise Refused("it is of another mesh")
+        return (np.add.reduceat(shared, begin, dtype=np.int32) >= 3).all()
+    if moved:
+        return True
+    low, high = np.minimum.reduceat(positions[corners], begin), np.maximum.reduceat(positions[corners], begin)
+    ends = [hierarchy.vertices[tetrahedra[:, end]] for end in range(4)]
+    gap = np.maximum(np.minimum.reduce(ends) - high, low - np.maximum.reduce(ends)).clip(0)
+    reach = (hierarchy.summary.deviation + SPACING) * np.linalg.norm(high.max(axis=0) - low.min(axis=0))
+    return (np.linalg.norm(gap, axis=1) <= reach).all()
 
 
 def unpack(data):

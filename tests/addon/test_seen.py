@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Picking what is seen: meshes under modifiers, poses and sculpted levels; what a 3D view does not show is not picked."""
+"""Picking what is seen: meshes under modifiers, poses, sculpted levels; what a 3D view does not show is not picked."""
 
 import bpy
 import numpy as np
@@ -50,8 +50,9 @@ class Seen(MeshTest):
     def test_what_is_seen_leads_to_the_mesh_s_own_faces(self):
         """Under modifiers of all sorts, by tags that are not ours."""
         for kind, settings in (("DISPLACE", {"strength": 100, "direction": "Z"}), ("SUBSURF", {"levels": 2}),
-                               ("MIRROR", {"use_axis": (False, False, True)}), ("ARRAY", {}), ("BUILD", {"frame_start": 0,
-                               "frame_duration": 2, "use_random_order": True}), ("EDGE_SPLIT", {"split_angle": 0.1}),
+                               ("MIRROR", {"use_axis": (False, False, True)}), ("ARRAY", {}),
+                               ("BUILD", {"frame_start": 0, "frame_duration": 2, "use_random_order": True}),
+                               ("EDGE_SPLIT", {"split_angle": 0.1}),
                                ("SOLIDIFY", {"thickness": 0.1}), ("TRIANGULATE", {})):
             with self.subTest(kind):
                 MeshTest.setUp(self)
@@ -113,18 +114,32 @@ class Seen(MeshTest):
 
     def test_nothing_of_the_user_s_changes(self):
         obj = self.modified("SUBSURF", levels=2)
+        for name in ("Basis", "smile"):
+            obj.shape_key_add(name=name)
+        settings = bpy.context.scene.tool_settings.sculpt
+        self.addCleanup(setattr, settings, "use_deform_only", settings.use_deform_only)
+        self.addCleanup(bpy.ops.object.mode_set, mode="OBJECT")
+        settings.use_deform_only = False  # or Sculpt Mode would not subdivide it
         for mode in ("WEIGHT_PAINT", "SCULPT", "OBJECT"):
             bpy.ops.object.mode_set(mode=mode)
             before = self.everything(obj)
-            part("seen").seen(obj)
+            self.assertGreater(len(part("seen").seen(obj).faces), 1000)
             self.assertEqual(self.everything(obj), before)
 
     def everything(self, obj):
         collections = {name: [each.name_full for each in getattr(bpy.data, name)]
-                       for name in ("objects", "meshes", "collections", "scenes", "node_groups", "materials")}
+                       for name in ("objects", "meshes", "collections", "scenes", "shape_keys", "actions")}
         return (collections, obj.mode, bpy.context.view_layer.objects.active, bpy.context.selected_objects[:],
                 [each.name for each in obj.data.attributes], bpy.data.is_dirty, obj.data.users,
                 [(each.name, each.show_viewport) for each in obj.modifiers], bpy.context.scene.objects[:])
+
+    def test_strokes_are_seen_at_once(self):
+        """Without modifiers they go into the mesh, and nothing else need know of them."""
+        obj = self.sphere()
+        bpy.ops.object.mode_set(mode="SCULPT")
+        part("seen").seen(obj)
+        obj.data.vertices.foreach_set("co", 2 * positions(obj.data).ravel())
+        np.testing.assert_array_equal(part("seen").seen(obj).positions, positions(obj.data))
 
     def test_multires_as_it_is_sculpted(self):
         obj = self.modified("MULTIRES")

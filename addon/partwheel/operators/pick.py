@@ -151,8 +151,8 @@ class PartPicker:
         shown = [each for each in self._objects(context) if each.visible_get(viewport=area.spaces.active)]
         obj, face = picking.nearest(shown, lambda each: prepared(each).tree, region, region_view, point)
         if face == NO_FACE:
-            self.report({"INFO"}, f"What is seen there was made by the modifiers of {obj.name} and belongs to no face of "
-                                  "its mesh")
+            self.report({"INFO"}, f"What is seen there was made by the modifiers of {obj.name} and belongs to no face "
+                                  "of its mesh")
             return None, None
         return obj, face
 
