@@ -12,6 +12,8 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d, region_2d_to_locat
 from gpu_extras.batch import batch_for_shader
 from mathutils import Vector
 
+from . import shaders
+
 # In pixels of an unscaled interface: where an arrow begins and ends, where a box is, how large a ring, how near counts.
 ARROW, BOX, RING, NEAR = (62, 90), 50, 105, 8
 HEAD, HALF_BOX = 6, 4
@@ -67,12 +69,9 @@ def draw(pivot, region, view):
     """To be called by a draw handler, POST_VIEW."""
     theme = bpy.context.preferences.themes[0].user_interface
     colours = theme.axis_x, theme.axis_y, theme.axis_z
-    shader = gpu.shader.from_builtin("UNIFORM_COLOR")
-    gpu.state.line_width_set(LINE_WIDTH)
+    shader = shaders.lines(LINE_WIDTH)
     gpu.state.blend_set("ALPHA")
-    shader.bind()
     for _, axis, points in _shapes(pivot, region, view):
         shader.uniform_float("color", (*colours[axis], 0.9))
         batch_for_shader(shader, "LINE_STRIP", {"pos": points}).draw(shader)
-    gpu.state.line_width_set(1)
     gpu.state.blend_set("NONE")

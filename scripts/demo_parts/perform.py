@@ -127,7 +127,7 @@ NOTE = """Partwheel's demo left this model in Edit Mode, faces to select, with a
 
 1. The add-on must be installed and enabled: scripts/demo --open MODEL has it in place; elsewhere install the zip of
    build/package by Edit > Preferences > Add-ons > Install.
-2. Put the mouse over the model and press Shift Ctrl W. The first time this builds the hierarchy, which takes a few seconds.
+2. Put the mouse over the model and press Shift Ctrl W. The first time this builds the hierarchy: some seconds.
 3. Turn the wheel: up for a larger part, down for a smaller one. Click to confirm, Esc to go back.
 """
 

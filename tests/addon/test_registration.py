@@ -143,7 +143,8 @@ class Registration(unittest.TestCase):
         pressed = [*map(bool, modifiers), False]
         default, industry = map(keymap_data, ("blender_default", "industry_compatible_data"))
         keymaps = {f"default, {mouse}, legacy {legacy}": default.generate_keymaps(
-            default.Params(select_mouse=mouse, legacy=legacy)) for mouse in ("LEFT", "RIGHT") for legacy in (False, True)}
+                       default.Params(select_mouse=mouse, legacy=legacy))
+                   for mouse in ("LEFT", "RIGHT") for legacy in (False, True)}
         keymaps["industry compatible"] = industry.generate_keymaps(industry.Params())
         names = {"Mesh", "3D View", "3D View Generic", "Window", "Screen", "Screen Editing", "Object Non-modal",
                  "User Interface", "Frames"}
@@ -192,8 +193,8 @@ class Timers(MeshTest):
         bpy.ops.preferences.addon_enable(module=common.MODULE)
 
     def test_no_timer_goes_on(self):
-        """What waits for the end of Blender's proportional tool, to put the user's reach back, waits once, and does so at
-        once where the add-on is disabled meanwhile."""
+        """What waits for the end of Blender's proportional tool, to put the user's reach back, waits once, and does so
+        at once where the add-on is disabled meanwhile."""
         obj = self.add(*read_off("hand"))
         self.edit(obj)
         bpy.ops.mesh.partwheel_select(face_index=700)

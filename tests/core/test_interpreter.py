@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which Python runs the worker: one that runs, whatever is on the PATH; and where there is none, an error that says what
-to do about it."""
+"""Which Python runs the worker: one that runs, whatever is on the PATH; and where there is none, an error that says
+what to do about it."""
 
 import contextlib
 import os
@@ -155,6 +155,13 @@ def test_a_python_that_runs_but_not_the_worker(pythons, shim):
     assert "exit code 3" in refusal() and len(calls(bad)) == 2
     shim("bad", RUNS)
     assert builds() and len(calls(bad)) == 4
+
+
+def test_a_python_that_hangs_with_the_worker(pythons, shim):
+    bad = shim("bad", f'case "$*" in *ctypes*) {RUNS};; esac; {HANGS}')
+    pythons(bad)
+    assert "did not begin in 0.1 seconds" in refusal(time_limit=0.1)
+    assert not any(map(state, calls(bad)))
 
 
 def test_one_that_is_gone_by_the_next_build(pythons, shim):

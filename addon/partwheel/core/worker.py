@@ -209,12 +209,13 @@ class Job:
             return answer()
         if self._cancelled:
             raise PartwheelError(Status.CANCELLED, "The build was cancelled.")
+        if not self._answered:
+            raise _no_worker(f"The worker process did not begin in {self._time_limit:g} seconds." if late else
+                             f"The worker process {ending(process.returncode)} before it began.")
         if late:
             raise WorkerError("time limit", f"The build was still in the stage {self._progress[1]} after "
                                             f"{self._time_limit:g} seconds {late[0]} and was stopped. {HARMLESS} A "
                                             "mesh with fewer faces (Decimate, or a voxel remesh) is faster.")
-        if not self._answered:
-            raise _no_worker(f"The worker process {ending(process.returncode)} before it began.")
         raise WorkerError("crash", f"The worker process {ending(process.returncode)} in the stage {self._progress[1]}."
                                    f" {HARMLESS} Merging vertices by distance, or a voxel remesh, often helps.")
 
@@ -291,8 +292,8 @@ def available_memory():
 
 
 def _no_worker(sentence):
-    return WorkerError("worker", f"{sentence} {HARMLESS} If it stays so, say which Python 3 is to run it: Python in the "
-                                 "add-on's preferences, or the argument python.")
+    return WorkerError("worker", f"{sentence} {HARMLESS} If it stays so, say which Python 3 is to run it: Python in "
+                                 "the add-on's preferences, or the argument python.")
 
 
 def _raising(error):
