@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Compiles the library that goes wrong on purpose (faults.c) around the real one. Linux only."""
 
+import contextlib
 import subprocess
 from pathlib import Path
 
@@ -12,6 +13,13 @@ def compiled(source, target, *options):
     subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-Wall", "-Werror", "-pthread", "-o", target, source, *options],
                    check=True)
     return str(target)
+
+
+def harmed(process):
+    """Whether a worker has come to its harm, and is still there."""
+    with contextlib.suppress(OSError):  # it, or a thread of it, is no more
+        return any(thread.read_text() == "harmed\n" for thread in Path(f"/proc/{process}/task").glob("*/comm"))
+    return False
 
 
 def library(real, directory):
