@@ -55,6 +55,24 @@ class Staleness(MeshTest):
         bpy.ops.object.mode_set(mode="OBJECT")
         self.assertEqual(self.state(obj), self.State.MOVED)
 
+    def test_to_ask_for_it_is_no_edit(self):
+        """Blender writes its edits back into the mesh for that, and tells of geometry. What was made for hovering stays.
+        """
+        obj = self.built()
+        bm = self.edit(obj)
+        prepared, session = part("prepared").prepared, part("session")
+        session.hierarchy(obj)
+        first, revision = prepared(obj), session.revision(obj.data)
+        session.hierarchy(obj)
+        self.assertEqual(session.revision(obj.data), revision)
+        self.assertIs(prepared(obj), first)
+        bm.verts.ensure_lookup_table()
+        bm.verts[0].co.x += 0.01
+        bmesh.update_edit_mesh(obj.data)
+        session.hierarchy(obj)
+        self.assertNotEqual(session.revision(obj.data), revision)
+        self.assertIsNot(prepared(obj), first)
+
     def test_other_edits_do_not(self):
         obj = self.built("hand")
         bm = self.edit(obj)

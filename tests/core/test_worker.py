@@ -2,7 +2,9 @@
 """Job: the same answers as a build in this process; and whatever befalls the worker, an error with a name, no process,
 no file, no open pipe left, and a new attempt on the next rung.
 
-The harm is done by a real library with one function replaced (tests/faults), so the product has no hook for tests.
+The harm is done by a real library with one function replaced (tests/faults), so the product has no hook for tests. How
+fast the machine is must not matter: workers are held where they come to harm, and where a test is about the clock it
+has one of its own.
 """
 
 import _thread
@@ -15,6 +17,7 @@ import sys
 import textwrap
 import threading
 import time
+import types
 from pathlib import Path
 
 import faults
@@ -34,6 +37,7 @@ UNLIMITED = {} if PLAIN else {"memory_limit": 0}
 EXACT = 1  # pw_rung: with it alone there is one attempt
 STAGES = range(len(Stage))
 LIMIT = 400 * 2**20
+NEVER = 600  # seconds until something counts as never happening
 
 
 @pytest.fixture(scope="session")
@@ -61,18 +65,35 @@ def state(process):
     return None if letter == "Z" else letter
 
 
-def ticks(process):
-    """Processor time of a process, in hundredths of a second."""
-    return sum(map(int, Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[11:13]))
-
-
-def until(predicate, seconds=10.0):
-    """Waits for something that must happen; the seconds it took."""
+def until(predicate):
+    """Waits for something that must happen."""
     began = time.monotonic()
     while not predicate():
-        assert time.monotonic() - began < seconds, "not seen in time"
+        assert time.monotonic() - began < NEVER, "never seen"
         time.sleep(0.005)
-    return time.monotonic() - began
+
+
+class Clock:
+    """The clock by which jobs judge workers that do nothing: it stands still unless it is set on."""
+
+    def __init__(self):
+        self.now, self.looks = 1000.0, 0
+
+    def monotonic(self):
+        self.looks += 1
+        return self.now
+
+    def set_on(self, seconds, job):
+        """And waits until the job has looked at it."""
+        self.now, seen = self.now + seconds, self.looks
+        until(lambda: self.looks > seen + 1 or job.poll() is None)
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    clock = Clock()
+    monkeypatch.setattr(worker, "time", types.SimpleNamespace(monotonic=clock.monotonic))
+    return clock
 
 
 @pytest.fixture(autouse=True)
@@ -133,7 +154,7 @@ def test_progress_never_falls():
         job.wait(0.01)
     job.result()
     fractions = [fraction for fraction, _ in seen]
-    assert fractions == sorted(fractions) and fractions[0] == 0 and len(set(fractions)) > 2
+    assert fractions == sorted(fractions)
     assert {stage for _, stage in seen} <= {load().pw_stage_name(stage).decode() for stage in STAGES}
 
 
@@ -179,40 +200,58 @@ if LINUX and PLAIN:
         taken = resource.getrusage(resource.RUSAGE_CHILDREN)
         return taken.ru_utime + taken.ru_stime
 
+    @pytest.mark.parametrize("stage", [Stage.TETRAHEDRA, Stage.CLUSTER, Stage.HIERARCHY])
+    def test_progress_is_told_while_it_builds(harm, stage):
+        harm("sleep", stage)
+        job = Job(*shapes.off("hand"))
+        assert job.poll() == (0.0, "surface")
+        name = load().pw_stage_name(stage).decode()
+        until(lambda: job.poll()[0] > 0 and job.poll()[1] == name)
+        job.cancel()
+
     @pytest.mark.parametrize("stage", STAGES)
-    def test_an_endless_loop_is_ended(harm, stage):
+    def test_an_endless_loop_is_ended(harm, clock, stage):
         harm("loop", stage)
         before = processor_time_of_children()
         job = Job(*shapes.off("hand"), rungs=EXACT, time_limit=1)
         with pytest.raises(WorkerError, match="after 1 seconds of work") as failed:
             job.result()
-        assert failed.value.name == "time limit" and 1 <= processor_time_of_children() - before < 2
+        assert failed.value.name == "time limit" and 1 <= processor_time_of_children() - before
         assert state(job.process_id) is None
 
     @pytest.mark.parametrize("stage", STAGES)
     @pytest.mark.parametrize("fault", ["stop", "sleep"])
-    def test_what_does_nothing_is_ended(harm, fault, stage):
+    def test_what_does_nothing_is_ended(harm, clock, fault, stage):
         harm(fault, stage)
-        began = time.monotonic()
-        job = Job(*shapes.off("hand"), rungs=EXACT, time_limit=1)
-        with pytest.raises(WorkerError, match="after 1 seconds without any work") as failed:
+        job = Job(*shapes.off("hand"), rungs=EXACT, time_limit=60)
+        until(lambda: faults.harmed(job.process_id))
+        clock.set_on(59, job)
+        assert job.poll() and state(job.process_id)
+        while job.poll():  # what it worked before may be told only now
+            clock.set_on(61, job)
+        with pytest.raises(WorkerError, match="after 60 seconds without any work") as failed:
             job.result()
-        assert failed.value.name == "time limit" and 1 <= time.monotonic() - began < 4
-        assert state(job.process_id) is None
+        assert failed.value.name == "time limit" and state(job.process_id) is None
 
-    def test_a_slow_machine_is_no_reason_to_stop_a_build():
+    def test_a_slow_machine_is_no_reason_to_stop_a_build(clock, monkeypatch, tmp_path):
         """The worker is held up, all in all for longer than the limit, though it does not work for so long."""
-        shape = shapes.off("bear")
-        limit, held_up = 4.0, 0.0
-        job = Job(*shape, rungs=EXACT, time_limit=limit)
-        until(lambda: job.process_id)
-        while held_up < limit:
-            os.kill(job.process_id, signal.SIGSTOP)
-            began, before = time.monotonic(), job.poll()
-            time.sleep(0.4 * limit)
-            held_up += time.monotonic() - began
-            os.kill(job.process_id, signal.SIGCONT)
-            until(lambda before=before: job.poll() != before)
+        entry = tmp_path / "slow.py"
+        entry.write_text(textwrap.dedent(f"""
+            import json, os, runpy, time
+            for turn in (1, 2, 3):
+                while not os.path.exists(f"{tmp_path}/{{turn}}"):
+                    time.sleep(0.005)
+                message = json.dumps([turn / 100, "surface", 1, turn / 100]).encode()
+                os.write(1, {MESSAGE.pack(b"P", 0)[:1]!r} + len(message).to_bytes(8, "little") + message)
+            runpy.run_path({str(worker.ENTRY)!r}, run_name="__main__")
+        """))
+        monkeypatch.setattr(worker, "ENTRY", entry)
+        shape = shapes.off("hand")
+        job = Job(*shape, rungs=EXACT, time_limit=60)
+        for turn in (1, 2, 3):
+            clock.set_on(50, job)
+            (tmp_path / str(turn)).touch()
+            until(lambda turn=turn: job.poll() is None or job.poll()[0] >= turn / 100)
         assert job.result().save() == Hierarchy.build(*shape).save() and job.failures == []
 
     @pytest.mark.parametrize("stage", STAGES)
@@ -239,7 +278,7 @@ if LINUX and PLAIN:
         """The worker may notice or not: what it answers is loaded as a sound hierarchy of this mesh or refused."""
         harm("corrupt", stage)
         shape = shapes.off("homer")
-        job = Job(*shape, rungs=EXACT, time_limit=5)
+        job = Job(*shape, rungs=EXACT, time_limit=20)
         try:
             assert len(job.result().order) == shape.face_count
         except PartwheelError as error:
@@ -264,9 +303,9 @@ if LINUX and PLAIN:
     def test_a_worker_gone_mad_is_refused(monkeypatch, tmp_path, written):
         """It writes what is no sound message, and lives on."""
         entry = tmp_path / "mad.py"
-        entry.write_text(f"import os, time\nos.write(1, {written!r})\ntime.sleep(60)")
+        entry.write_text(f"import os, time\nos.write(1, {written!r})\ntime.sleep({NEVER})")
         monkeypatch.setattr(worker, "ENTRY", entry)
-        job = Job(*shapes.cube(), time_limit=20)
+        job = Job(*shapes.cube())
         with pytest.raises(WorkerError, match="damaged answer"):
             job.result()
         assert [failure.name for failure in job.failures] == ["crash"] * 3
@@ -278,9 +317,10 @@ if LINUX and PLAIN:
         assert "standard output" in capfd.readouterr().err
 
     @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGSEGV])
-    def test_killed_from_outside(number):
-        job = Job(*shapes.off("bear"), rungs=EXACT)
-        until(lambda: job.process_id and job.poll()[0] > 0)
+    def test_killed_from_outside(harm, number):
+        harm("loop", 1)
+        job = Job(*shapes.off("hand"), rungs=EXACT)
+        until(lambda: faults.harmed(job.process_id))
         os.kill(job.process_id, number)
         with pytest.raises(WorkerError, match=number.name):
             job.result()
@@ -296,7 +336,7 @@ if LINUX and PLAIN:
         assert len(repaired.order) == shape.face_count
         assert repaired.summary.rung != h.summary.rung == "exact"
 
-    def test_a_rung_that_hangs_is_tried_once(harm):
+    def test_a_rung_that_hangs_is_tried_once(harm, clock):
         harm("loop", 1, rung=4)
         job = Job(*shapes.off("pig"), time_limit=3)  # neither closed nor to be repaired: one process gets to the wrap
         with pytest.raises(WorkerError):
@@ -317,39 +357,46 @@ if LINUX and PLAIN:
     def test_cancel_frees_the_machine(harm, fault, stage):
         harm(fault, stage)
         job = Job(*shapes.off("hand"))
-        until(lambda: job.process_id and state(job.process_id) == {"loop": "R", "stop": "T"}[fault])
-        process, began = job.process_id, time.monotonic()
+        until(lambda: faults.harmed(job.process_id))  # a stopped process can't be asked to end, only killed
+        process = job.process_id
         job.cancel()
-        until(lambda: state(process) is None, 0.5)
         with pytest.raises(PartwheelError) as stopped:
             job.result()
-        assert time.monotonic() - began < 0.5
+        assert state(process) is None
         assert stopped.value.status == Status.CANCELLED and job.failures == [] and job.process_id == process
 
     def test_cancel_at_any_time():
         shape = shapes.off("hand")
         alone = Hierarchy.build(*shape).save()
-        for milliseconds in (0, 1, 5, 10, 20, 30, 40, 60, 80, 100, 150, 1000):
+        for milliseconds in (0, 1, 5, 10, 20, 30, 40, 60, 80, 100, 150):
             job = Job(*shape)
             job.wait(milliseconds / 1000)
             job.cancel()
             try:
                 assert job.result().save() == alone
             except PartwheelError as error:
-                assert error.status == Status.CANCELLED and milliseconds < 1000
+                assert error.status == Status.CANCELLED
             job.cancel()
 
-    def test_ctrl_c_that_interrupts_no_wait(harm):
-        """As one that comes just before: Python has noted it, but is told of it only when it is not waiting."""
+    def test_cancel_when_it_is_done():
+        shape = shapes.off("hand")
+        job = Job(*shape)
+        until(lambda: job.poll() is None)
+        job.cancel()
+        assert job.result().save() == Hierarchy.build(*shape).save()
+
+    def test_ctrl_c_that_interrupts_no_wait(harm, clock):
+        """As one that comes just before: Python has noted it, but is told of it only when it is not waiting. The job
+        does not have to end for that."""
         harm("loop", 1)
-        job = Job(*shapes.off("hand"), time_limit=5)
+        job = Job(*shapes.off("hand"), time_limit=20)
         timer = threading.Timer(0.05, _thread.interrupt_main)
-        began = time.monotonic()
         with pytest.raises(KeyboardInterrupt):
             timer.start()
             job.result()
-        assert time.monotonic() - began < 2
-        until(lambda: state(job.process_id) is None, 1)
+        with pytest.raises(PartwheelError) as ended:
+            job.result()
+        assert ended.value.status == Status.CANCELLED and state(job.process_id) is None
 
     # ---- The end of the parent
 
@@ -374,15 +421,15 @@ if LINUX and PLAIN:
 
     def ends(process, number, worker):
         process.send_signal(number)
-        process.communicate(timeout=10)
-        until(lambda: state(worker) is None, 1)
+        process.communicate()
+        until(lambda: state(worker) is None)
 
     @pytest.mark.parametrize("fault", ["loop", "stop"])
     @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
     def test_the_worker_ends_with_its_parent(harm, fault, number):
         harm(fault, 1)
         process, worker = parent(PARTWHEEL_LIBRARY=os.environ["PARTWHEEL_LIBRARY"])
-        until(lambda: state(worker) == {"loop": "R", "stop": "T"}[fault])
+        until(lambda: faults.harmed(worker))
         ends(process, number, worker)
 
     def test_the_worker_ends_with_its_parent_where_the_system_sends_no_signal(harm, tmp_path):
@@ -391,5 +438,5 @@ if LINUX and PLAIN:
         source = tmp_path / "no_prctl.c"
         source.write_text("int prctl(int option, ...) { return option * 0; }")
         process, worker = parent(LD_PRELOAD=faults.compiled(source, tmp_path / "no_prctl.so"))
-        until(lambda: state(worker) == "R" and Path(f"/proc/{worker}/maps").read_text().count("no_prctl"))
+        until(lambda: faults.harmed(worker) and Path(f"/proc/{worker}/maps").read_text().count("no_prctl"))
         ends(process, signal.SIGKILL, worker)

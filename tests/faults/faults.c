@@ -38,6 +38,7 @@ static void corrupt(void) {
 static void harm(int number) {
     (void)number;
     happened = 1;
+    pthread_setname_np(pthread_self(), "harmed");  // so that tests can see that it has come to that
     if (!strcmp(fault, "segv")) *(volatile int *)8 = 1;
     if (!strcmp(fault, "abort")) abort();
     if (!strcmp(fault, "exit")) _exit(3);  // not exit(), which may wait for ever within a signal's handler

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Compiles the library that goes wrong on purpose (faults.c) around the real one. Linux only."""
 
+import contextlib
 import subprocess
 from pathlib import Path
 
@@ -20,6 +21,13 @@ def entry(real, library, directory):
     path.write_text(f"import runpy, sys\nsys.path.insert(0, {str(real.parent)!r})\nimport library\n"
                     f"library.LIBRARY = {str(library)!r}\nrunpy.run_path({str(real)!r}, run_name='__main__')\n")
     return path
+
+
+def harmed(process):
+    """Whether a worker has come to its harm, and is still there."""
+    with contextlib.suppress(OSError):  # it, or a thread of it, is no more
+        return any(thread.read_text() == "harmed\n" for thread in Path(f"/proc/{process}/task").glob("*/comm"))
+    return False
 
 
 def library(real, directory):

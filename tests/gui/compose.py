@@ -132,7 +132,7 @@ def unite(stage, target, *parts):
     yield from stage.until("the parts are gone", lambda: len(bpy.data.objects) == before - len(parts))
     stage.check(closed(target), "the union is closed")
     yield from stage.until("its parts are found beside that",
-                           lambda: stage.session.state(target.data)[0] == stage.session.State.FITS, 150)
+                           lambda: stage.session.state(target.data)[0] == stage.session.State.FITS)
     last = bpy.data.window_managers[0].operators[-1]
     stage.check(last.bl_idname == "OBJECT_OT_partwheel_unite", "uniting is the last operation, with its panel")
 
@@ -146,7 +146,7 @@ def picked_up_to(stage, x, y, share):
     px, py, _ = view.spot(*(low + (high - low) * [x, y]))
     stage.mouse.move(px, py)
     stage.shortcut("mesh.partwheel_select")
-    yield from stage.until("a part is picked", lambda: stage.selection(), 120)  # its parts may have to be found first
+    yield from stage.until("a part is picked", lambda: stage.selection())  # its parts may have to be found first
     while len(stage.selection()) < share * len(mesh.polygons):
         before = len(stage.selection())
         stage.mouse.wheel(1)

@@ -7,7 +7,8 @@ import pathlib
 import sys
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "faults")]
 from stage import Stage  # noqa: E402
 
 name, driver, *paths = sys.argv[sys.argv.index("--") + 1:]

@@ -15,8 +15,9 @@ def play(stage):
         with stage.override():
             operator("INVOKE_DEFAULT", **arguments)
 
-    mode("OBJECT")
     stage.mouse.move(x, y)
+    stage.mouse.key("TAB")
+    yield from stage.until("Object Mode is there", lambda: stage.object.mode == "OBJECT")
     yield from stage.drawn()
     started(bpy.ops.object.partwheel_select)
     yield from stage.until("Edit Mode is entered", lambda: stage.object.mode == "EDIT")
@@ -25,6 +26,10 @@ def play(stage):
     yield from stage.selected(stops[start + 1], "after a notch")
     stage.mouse.key("RET")
     yield from stage.ended()
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.selected((), "after one Ctrl Z, still in Edit Mode")
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.until("a second leaves Edit Mode", lambda: stage.object.mode == "OBJECT")
 
     mode("SCULPT")
     yield from stage.drawn()

@@ -1,9 +1,12 @@
-"""While the parts are being built Blender goes on: the view turns, undo works, Edit Mode is left; then comes the pick.
+"""While the parts are being built Blender goes on: the view turns, undo works, Edit Mode is left, another mesh is picked
+from; then comes the pick. Workers are held at their beginning until all that has happened.
 """
 import bmesh
+import bpy
 
 
 def play(stage):
+    gate = stage.hold_workers()
     yield from stage.open("bear", build=False)
     session = stage.session
 
@@ -26,12 +29,14 @@ def play(stage):
     yield from stage.until("the selection is undone", lambda: stage.selection() == earlier)
     stage.check(session.running(), "the build is still under way")
     yield from stage.screenshot("turned")
+    gate.open()
     yield from stage.selected(stops[start], "once built, though the view has turned and an undo has come between")
     stage.mouse.wheel(1)
     yield from stage.selected(stops[start + 1], "after a notch up")
     stage.mouse.key("ESC")
     yield from stage.ended()
     yield from stage.selected(earlier, "after Esc")
+    gate.close()
 
     yield from stage.open("bear", build=False)
     stage.select([3])
@@ -46,12 +51,14 @@ def play(stage):
     yield from begin((0.5, 0.8))
     stage.mouse.key("TAB")
     yield from stage.until("Edit Mode is left", lambda: stage.object.mode == "OBJECT")
+    gate.open()
     yield from stage.until("the build ends", lambda: not session.running())
     stage.check(session.state(stage.object.data)[0] == session.State.FITS, "the parts are kept")
     stage.check("The parts are built" in stage.reports(), "that is reported")
     stage.mouse.key("TAB")
     yield from stage.until("Edit Mode is back", lambda: stage.object.mode == "EDIT")
     yield from stage.selected({3}, "after all that")
+    gate.close()
 
     yield from stage.open("bear", build=False)
     yield from begin((0.5, 0.8))
@@ -59,6 +66,53 @@ def play(stage):
     bm.faces.ensure_lookup_table()
     bmesh.ops.poke(bm, faces=[bm.faces[0]])
     bmesh.update_edit_mesh(stage.object.data)
+    gate.open()
     yield from stage.until("a build for another mesh is left aside", lambda: not session.running())
     stage.check("was edited while" in stage.reports(), "that is reported")
     stage.check(session.hierarchy(stage.object) is None, "nothing is kept for a mesh that has changed")
+
+    yield from escape_and_the_answer_at_once(stage, gate, begin)
+    yield from another_mesh(stage, gate)
+    gate.remove()
+
+
+def escape_and_the_answer_at_once(stage, gate, begin):
+    """Esc is pressed when the parts are found, but Blender has not had the time to ask the worker: Esc wins."""
+    gate.close()
+    yield from stage.open("bear", build=False)
+    stage.select([3])
+    yield from begin((0.5, 0.8))
+    build, = stage.session._builds.values()
+    gate.open()
+    while not build.job.wait(1):  # Blender itself is held up
+        pass
+    stage.mouse.key("ESC")
+    yield from stage.settle()
+    stage.check(not stage.session.running(), "nothing is being built")
+    yield from stage.selected({3}, "after Esc and the answer, whichever was first")
+    yield from stage.ended()
+
+
+def another_mesh(stage, gate):
+    """A click of the tool picks from a mesh that has its parts, and is not Blender's own select."""
+    yield from stage.open("hand")
+    gate.close()
+    model = stage.object
+    with stage.override():
+        bpy.ops.object.mode_set(mode="OBJECT")
+        bpy.ops.mesh.primitive_torus_add(location=(100, 0, 0))
+        torus = stage.object
+        bpy.ops.mesh.partwheel_build("INVOKE_DEFAULT")
+        stage.window.view_layer.objects.active = model
+        bpy.ops.object.mode_set(mode="EDIT")
+    yield from stage.until("a build has begun", stage.session.running)
+    stage.use_tool()
+    stops, start = yield from stage.take(stage.spot(0.5, 0.9, above=1), "while another mesh's parts are being found")
+    gate.open()
+    yield from stage.until("these are found", lambda: not stage.session.running())
+    stage.check(stage.session.known(torus.data) is not None, "the parts are kept")
+    yield from stage.selected(stops[start + 1], "the pick is as it was")
+    stage.mouse.wheel(-1)
+    yield from stage.selected(stops[start], "and goes on")
+    stage.mouse.key("RET")
+    yield from stage.ended()

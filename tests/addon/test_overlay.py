@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is tinted in which colour. Without a graphics card: which triangles would be handed to it."""
+
+import bpy
+import numpy as np
+from common import MeshTest, part, read_off
+
+
+class Tints(MeshTest):
+    def setUp(self):
+        super().setUp()
+        self.obj = self.add(*read_off("homer"))
+        self.h = part("api").build(self.obj)
+        self.overlay = part("overlay")
+        self.parts = self.overlay.Parts(self.obj, self.h)
+        self.obj.data.calc_loop_triangles()
+        self.face_of = {frozenset(each.vertices): each.polygon_index for each in self.obj.data.loop_triangles}
+
+    def tinted(self, *what):
+        """{colour: the faces that have it, a list with each as often as it is drawn}"""
+        found = {}
+
+        def draw(_context, _obj, layers):
+            for _, faces, color, _ in layers:
+                found[color] = sorted(found.get(color, []) + faces)
+
+        self.replace(self.overlay, "_draw", draw)
+        self.replace(self.parts, "batch", lambda piece: (None, self.faces(self.parts.triangles[slice(*piece)])))
+        self.replace(self.parts, "of_faces", lambda _name, faces: (None, sorted(faces.tolist())))
+        self.overlay.draw_held(bpy.context, self.obj, self.parts, *what)
+        return found
+
+    def replace(self, owner, name, value):
+        self.addCleanup(setattr, owner, name, getattr(owner, name))
+        setattr(owner, name, value)
+
+    def faces(self, triangles):
+        return [self.face_of[frozenset(triangle)] for triangle in triangles.tolist()]
+
+    def test_the_part_and_what_the_next_notch_adds(self):
+        for face in (100, 3000):
+            stops, _ = self.h.wheel(face)
+            for node, larger in zip(stops, stops[1:]):
+                inside, whole = (set(self.h.faces(each).tolist()) for each in (node, larger))
+                self.assertEqual(self.tinted(node, larger, None), {
+                    self.overlay.PART: sorted(inside), self.overlay.NEXT: sorted(whole - inside)})
+            self.assertEqual(self.tinted(stops[-1], stops[-1], None), {
+                self.overlay.PART: list(range(len(self.h.order)))})
+
+    def test_the_same_with_its_border_in_creases(self):
+        stops, start = self.h.wheel(100)
+        node, larger = stops[start], stops[start + 1]
+        snapped = np.setdiff1d(self.h.faces(larger), self.h.faces(larger)[:5])
+        self.assertEqual(self.tinted(node, larger, snapped), {
+            self.overlay.PART: sorted(snapped.tolist()), self.overlay.NEXT: sorted(self.h.faces(larger)[:5].tolist())})
