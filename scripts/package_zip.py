@@ -64,12 +64,13 @@ def manifest_for(here):
 
 
 def agreed_version():
-    """The version, which the header, the manifest and bl_info must agree on."""
+    """The version, which the header, the binding, the manifest and bl_info must agree on."""
     header = re.search(r'^#define PW_VERSION "([^"]+)"', (ROOT / "native/include/partwheel.h").read_text(), re.M)
+    binding = re.search(r'^VERSION = "([^"]+)"', (ADDON / "core" / "library.py").read_text(), re.M)
     manifest = re.search(r'^version = "([^"]+)"', MANIFEST.read_text(), re.M)
     assignments = (node for node in ast.parse((ADDON / "__init__.py").read_text()).body if isinstance(node, ast.Assign))
     bl_info = next(ast.literal_eval(node.value) for node in assignments if node.targets[0].id == "bl_info")
-    versions = {"partwheel.h": header[1], "blender_manifest.toml": manifest[1],
+    versions = {"partwheel.h": header[1], "library.py": binding[1], "blender_manifest.toml": manifest[1],
                 "bl_info": ".".join(map(str, bl_info["version"]))}
     if len(set(versions.values())) > 1:
         sys.exit(f"The versions differ: {versions}.")

@@ -78,8 +78,8 @@ def threads():
 
 
 def fuzz():
-    """The fuzzers of the C API's two entrances, for some seconds each, watched by the sanitizers."""
-    build("fuzz", "fuzz", "mesh_fuzzer", "saved_fuzzer")
+    """The fuzzers of the C API's three entrances, for some seconds each, watched by the sanitizers."""
+    build("fuzz", "fuzz", "mesh_fuzzer", "saved_fuzzer", "surface_fuzzer")
     build("fuzz", "release", "partwheel")  # makes the seeds
     return pytest("fuzz", "tests/fuzz")
 

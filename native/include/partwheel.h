@@ -11,6 +11,12 @@
  *  - Lengths are in the unit of the caller's coordinates, volumes in that unit cubed. Coordinates are doubles (x, y, z).
  *  - A pw_hierarchy never changes once made: any number of threads may ask it questions at the same time.
  *  - Buffers handed in are only read, and only during the call.
+ *  - A null array goes with a count of 0. More than PW_MAX_COUNT vertices, triangles and the like are refused with
+ *    PW_ERROR_ARGUMENT before anything is read; only the capacity of an array to be filled may be any number.
+ *  - Every struct begins with struct_size, and may get more members at its end in later versions. The caller sets
+ *    struct_size to the struct's sizeof before the call, also where the call fills the struct. So program and library may
+ *    be of different versions: an option that an older program does not know is 0, its default, and a result is left
+ *    out; an option that is newer than the library must be 0, else PW_ERROR_ARGUMENT, and a result becomes 0.
  */
 #ifndef PARTWHEEL_H
 #define PARTWHEEL_H
@@ -34,10 +40,18 @@
 extern "C" {
 #endif
 
+/* The version that a program is compiled for; and as a number that grows, to be compared by the preprocessor. */
 #define PW_VERSION "0.1.0"
+#define PW_VERSION_MAJOR 0
+#define PW_VERSION_MINOR 1
+#define PW_VERSION_PATCH 0
+#define PW_VERSION_NUMBER (PW_VERSION_MAJOR * 10000 + PW_VERSION_MINOR * 100 + PW_VERSION_PATCH)
 
-/* Version of the library, "major.minor.patch". Never null; owned by the library. */
+/* The version of the library that is there, "major.minor.patch". Never null; owned by the library. */
 PW_API const char *pw_version(void);
+
+/* The same as PW_VERSION_NUMBER counts. */
+PW_API int32_t pw_version_number(void);
 
 /* A status in one or two words, lower case, stable ("self-intersection"). Never null; owned by the library. */
 PW_API const char *pw_status_name(pw_status status);
@@ -92,8 +106,7 @@ typedef enum pw_mode {
  *  - Points that were added inside, and noise, leave the parts as they are without. */
 
 typedef struct pw_build_options {
-    /* sizeof(pw_build_options), so that later versions can tell. */
-    size_t struct_size;
+    size_t struct_size; /* sizeof(pw_build_options) */
     /* 0: no points are added inside the solid (the paper's choice; TetGen may still need a few to mesh it at all).
      * 1.1 or more: points are added inside until every tetrahedron's circumradius is at most this many times its
      * shortest edge, away from the surface, which never changes (the paper's Figure 9). 1.4 is usual. But for
@@ -157,6 +170,7 @@ PW_API void pw_hierarchy_free(pw_hierarchy *hierarchy);
  * Nodes: the leaves come first, leaf i being tetrahedron i; then the others, each after its children; the root is
  * the last. */
 typedef struct pw_arrays {
+    size_t struct_size;       /* sizeof(pw_arrays), set by the caller */
     size_t face_count;        /* F, source faces */
     size_t node_count;        /* N, nodes of the dendrogram */
     size_t tetrahedron_count; /* T, leaves */
@@ -188,6 +202,7 @@ typedef struct pw_arrays {
 PW_API pw_status pw_hierarchy_arrays(const pw_hierarchy *hierarchy, pw_arrays *arrays);
 
 typedef struct pw_summary {
+    size_t struct_size;    /* sizeof(pw_summary), set by the caller */
     size_t components;     /* parts of the solid that share no facet with each other */
     size_t cavities;       /* regions enclosed by the solid that are not part of it */
     size_t added_vertices; /* points that the mesher added inside */
@@ -451,7 +466,7 @@ PW_API pw_status pw_deformation_reset(pw_deformation *deformation);
 
 /* Normals of vertices, for shading: of each the sum over its triangles of (a x b) / (|a|^2 |b|^2), with a and b the sides
  * that meet there (Max, "Weights for Computing Vertex Normals from Facet Normals", 1999), made of length 1; 0, 0, 0 where
- * that is nothing.
+ * that is nothing. The unit of the coordinates does not matter.
  *
  * vertices, triangles  as in pw_deformation_create, with the same errors.
  * normals              vertex_count x 3. */

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <exception>
 #include <memory>
 #include <new>
@@ -45,6 +46,7 @@ namespace {
 
 constexpr double smallest_quality = 1.1;
 constexpr size_t most_parts = 4096;
+constexpr size_t most_struct = 4096;  // bytes of a struct of any version: more is a struct_size that was never set
 
 thread_local std::string last_message;
 
@@ -127,19 +129,77 @@ Hierarchy build(const MeshView& mesh, const LadderOptions& options, size_t threa
     return hierarchy;
 }
 
+// What is checked of a count before anything is read or reserved: that all rooms can number so many.
+void require_countable(size_t count, const char* name) {
+    if (count > PW_MAX_COUNT)
+        throw Error(PW_ERROR_ARGUMENT, std::string(name) + " is " + std::to_string(count) + ", but at most " +
+                                           std::to_string(PW_MAX_COUNT) + " can be numbered. Decimate the mesh first.");
+}
+
+// The array that a caller's pointer and count stand for: so many items, each of some numbers.
+template <class Item, class Number>
+std::span<const Item> items(const Number* numbers, size_t count, const char* name, const char* count_name) {
+    if (!numbers && count != 0)
+        throw Error(PW_ERROR_ARGUMENT, std::string(name) + " is null, but " + count_name + " is not 0.");
+    require_countable(count, count_name);
+    return {reinterpret_cast<const Item*>(numbers), count};
+}
+
 std::span<const Point> as_points(const double* vertices, size_t count) {
-    require(vertices != nullptr || count == 0, "vertices is null, but vertex_count is not 0.");
-    return {reinterpret_cast<const Point*>(vertices), count};
+    return items<Point>(vertices, count, "vertices", "vertex_count");
 }
 
 std::span<const Triangle> as_triangles(const int32_t* triangles, size_t count) {
-    require(triangles != nullptr || count == 0, "triangles is null, but triangle_count is not 0.");
-    return {reinterpret_cast<const Triangle*>(triangles), count};
+    return items<Triangle>(triangles, count, "triangles", "triangle_count");
+}
+
+MeshView as_mesh(const double* vertices, size_t vertex_count, const int32_t* triangles, size_t triangle_count,
+                 const int32_t* faces, size_t face_count) {
+    as_points(vertices, vertex_count);
+    as_triangles(triangles, triangle_count);
+    require_countable(face_count, "face_count");
+    return {vertices, vertex_count, triangles, triangle_count, faces, face_count};
+}
+
+// Structs of a program that may be older or newer than the library: see the header's habits. None ends with padding,
+// where a later version's member could lie.
+static_assert(offsetof(pw_build_options, mode) + sizeof(int32_t) == sizeof(pw_build_options));
+static_assert(offsetof(pw_arrays, score) + sizeof(double*) == sizeof(pw_arrays));
+static_assert(offsetof(pw_summary, deviation) + sizeof(double) == sizeof(pw_summary));
+
+template <class Struct>
+size_t size_of(const Struct& callers) {
+    const size_t size = callers.struct_size;
+    require(size >= sizeof size && size <= most_struct && size % alignof(Struct) == 0,
+            "struct_size must be the struct's sizeof. Set it before the call.");
+    return size;
+}
+
+template <class Struct>
+Struct taken(const Struct& callers) {
+    Struct own{};
+    const size_t size = size_of(callers);
+    const auto* bytes = reinterpret_cast<const unsigned char*>(&callers);
+    std::memcpy(&own, bytes, std::min(size, sizeof own));
+    require(std::all_of(bytes + std::min(size, sizeof own), bytes + size, [](unsigned char byte) { return byte == 0; }),
+            "The options ask for what only a later version of Partwheel's library can do. Install that version, or "
+            "leave these options at 0.");
+    return own;
+}
+
+template <class Struct>
+void hand_over(Struct own, Struct& callers) {
+    const size_t size = own.struct_size = size_of(callers);
+    auto* bytes = reinterpret_cast<unsigned char*>(&callers);
+    std::memcpy(bytes, &own, std::min(size, sizeof own));
+    std::fill(bytes + std::min(size, sizeof own), bytes + size, static_cast<unsigned char>(0));
 }
 
 }  // namespace
 
 const char* pw_version(void) { return PW_VERSION; }
+
+int32_t pw_version_number(void) { return PW_VERSION_NUMBER; }
 
 const char* pw_status_name(pw_status status) {
     switch (status) {
@@ -222,11 +282,8 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
                    pw_hierarchy** hierarchy) {
     return guarded([&] {
         require(hierarchy != nullptr, "hierarchy must not be null.");
-        require(vertices != nullptr || vertex_count == 0, "vertices is null, but vertex_count is not 0.");
-        require(triangles != nullptr || triangle_count == 0, "triangles is null, but triangle_count is not 0.");
-        const pw_build_options given = options ? *options : pw_build_options{sizeof given, 0, 0, 0, 0, 0};
-        require(given.struct_size == sizeof given,
-                "pw_build_options::struct_size is not that of this version of the library.");
+        const MeshView mesh = as_mesh(vertices, vertex_count, triangles, triangle_count, faces, face_count);
+        const pw_build_options given = options ? taken(*options) : pw_build_options{};
         require(given.quality == 0 || (given.quality >= smallest_quality && std::isfinite(given.quality)),
                 "quality must be 0, or a number of at least 1.1.");
         require(given.rungs <= (PW_RUNG_EXACT | PW_RUNG_REPAIRED | PW_RUNG_WRAPPED),
@@ -238,7 +295,6 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
         Progress unwatched;
         Progress& progress = context ? context->progress : unwatched;
         const Watch watch(progress);
-        const MeshView mesh{vertices, vertex_count, triangles, triangle_count, faces, face_count};
         const LadderOptions ladder{given.quality, given.rungs, given.open_surfaces == 1,
                                    [&](pw_rung rung) { if (context) context->rung = rung; }};
         *hierarchy = new pw_hierarchy{build(mesh, ladder, static_cast<size_t>(given.threads), given.mode, progress)};
@@ -250,14 +306,14 @@ void pw_hierarchy_free(pw_hierarchy* hierarchy) { delete hierarchy; }
 pw_status pw_hierarchy_arrays(const pw_hierarchy* hierarchy, pw_arrays* arrays) {
     return guarded([&] {
         require(hierarchy != nullptr && arrays != nullptr, "hierarchy and arrays must not be null.");
-        *arrays = hierarchy->hierarchy.arrays();
+        hand_over(hierarchy->hierarchy.arrays(), *arrays);
     });
 }
 
 pw_status pw_hierarchy_summary(const pw_hierarchy* hierarchy, pw_summary* summary) {
     return guarded([&] {
         require(hierarchy != nullptr && summary != nullptr, "hierarchy and summary must not be null.");
-        *summary = hierarchy->hierarchy.summary();
+        hand_over(hierarchy->hierarchy.summary(), *summary);
     });
 }
 
@@ -346,13 +402,11 @@ pw_status pw_hierarchy_solid(const pw_hierarchy* hierarchy, size_t tet_first, si
                              size_t middle_count, pw_mesh** mesh) {
     return guarded([&] {
         require(hierarchy != nullptr && mesh != nullptr, "hierarchy and mesh must not be null.");
-        require(middles != nullptr || middle_count == 0, "middles must not be null, unless there are none.");
+        const auto edges = items<std::array<int32_t, 2>>(middles, middle_count, "middles", "middle_count");
         const size_t count = hierarchy->hierarchy.tetrahedron_count();
         require(tet_first != tet_last && tet_first <= count && tet_last <= count,
                 "The tetrahedra must be a slice that is not empty: tet_first and tet_last differ and are at most their "
                 "number.");
-        std::vector<std::array<int32_t, 2>> edges(middle_count);
-        for (size_t i = 0; i < middle_count; ++i) edges[i] = {middles[2 * i], middles[2 * i + 1]};
         *mesh = new pw_mesh{hierarchy->hierarchy.solid(tet_first, tet_last, edges)};
     });
 }
@@ -374,10 +428,12 @@ pw_status pw_hierarchy_solid_of_faces(const pw_hierarchy* hierarchy, size_t tet_
 pw_status pw_polygon_faults(const int32_t* corners, size_t corner_count, const int32_t* begin, size_t polygon_count,
                             size_t vertex_count, size_t* open, size_t* against, size_t* touching) {
     return guarded([&] {
-        require((corners != nullptr || corner_count == 0) && (begin != nullptr || polygon_count == 0) &&
-                    open != nullptr && against != nullptr && touching != nullptr,
-                "corners, begin, open, against and touching must not be null.");
-        const PolygonFaults faults = polygon_faults({corners, corner_count}, {begin, polygon_count}, vertex_count);
+        require(open != nullptr && against != nullptr && touching != nullptr,
+                "open, against and touching must not be null.");
+        require_countable(vertex_count, "vertex_count");
+        const PolygonFaults faults =
+            polygon_faults(items<int32_t>(corners, corner_count, "corners", "corner_count"),
+                           items<int32_t>(begin, polygon_count, "begin", "polygon_count"), vertex_count);
         *open = faults.open;
         *against = faults.against;
         *touching = faults.touching;
@@ -421,6 +477,7 @@ pw_status pw_hierarchy_load(const uint8_t* bytes, size_t count, pw_hierarchy** h
     return guarded([&] {
         require(hierarchy != nullptr, "hierarchy must not be null.");
         require(bytes != nullptr || count == 0, "bytes is null, but count is not 0.");
+        require(count <= PTRDIFF_MAX, "count is more bytes than any memory has.");
         *hierarchy = new pw_hierarchy{Hierarchy::load({bytes, count})};
     });
 }
@@ -500,10 +557,9 @@ pw_status pw_faired(const double* vertices, size_t vertex_count, const int32_t* 
     return guarded([&] {
         require((vertices != nullptr && free != nullptr && result != nullptr) || vertex_count == 0,
                 "vertices, free and result must not be null.");
-        require(edges != nullptr || edge_count == 0, "edges is null, but edge_count is not 0.");
         const std::vector<Point> places =
             faired(as_points(vertices, vertex_count),
-                   {reinterpret_cast<const std::array<int32_t, 2>*>(edges), edge_count}, {free, vertex_count});
+                   items<std::array<int32_t, 2>>(edges, edge_count, "edges", "edge_count"), {free, vertex_count});
         std::copy(places.begin(), places.end(), reinterpret_cast<Point*>(result));
     });
 }
@@ -513,10 +569,8 @@ pw_status pw_creases_create(const double* vertices, size_t vertex_count, const i
     return guarded([&] {
         require(creases != nullptr, "creases is null.");
         *creases = nullptr;
-        require(vertices != nullptr || vertex_count == 0, "vertices is null, but vertex_count is not 0.");
-        require(triangles != nullptr || triangle_count == 0, "triangles is null, but triangle_count is not 0.");
-        *creases = new pw_creases{
-            Creases({vertices, vertex_count, triangles, triangle_count, faces, face_count})};
+        *creases =
+            new pw_creases{Creases(as_mesh(vertices, vertex_count, triangles, triangle_count, faces, face_count))};
     });
 }
 

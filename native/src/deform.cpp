@@ -439,10 +439,17 @@ void Deformation::positions(std::span<Point> out) const {
 
 void vertex_normals(std::span<const Point> vertices, std::span<const Triangle> triangles, std::span<Point> normals) {
     check(vertices, triangles);
+    // In a unit of about the longest side, fourth powers of lengths stay numbers: a power of two, so nothing is rounded.
+    double longest = 0;
+    for (const auto& [i, j, k] : triangles)
+        for (const Point& side : {vertices[j] - vertices[i], vertices[k] - vertices[j], vertices[i] - vertices[k]})
+            for (const double component : side) longest = std::max(longest, std::abs(component));
+    const double by = longest > 0 ? std::ldexp(1.0, -std::max(std::ilogb(longest), -1022)) : 1;
+
     std::fill(normals.begin(), normals.end(), Point{});
     for (const auto& [i, j, k] : triangles) {
         const Point &a = vertices[i], &b = vertices[j], &c = vertices[k];
-        const Point ab = b - a, bc = c - b, ca = a - c, normal = cross(ab, bc);
+        const Point ab = by * (b - a), bc = by * (c - b), ca = by * (a - c), normal = cross(ab, bc);
         const double one = dot(ab, ab), two = dot(bc, bc), three = dot(ca, ca);
         if (!(one > 0 && two > 0 && three > 0)) continue;
         normals[i] = normals[i] + (1 / (one * three)) * normal;

@@ -35,12 +35,13 @@ std::vector<int32_t> next_corners(std::span<const int32_t> corners, std::span<co
 
 PolygonFaults polygon_faults(std::span<const int32_t> corners, std::span<const int32_t> begin, size_t vertex_count) {
     const std::vector<int32_t> next = next_corners(corners, begin, vertex_count);
+    const size_t in_reach = corners.empty() ? 0 : at(std::ranges::max(corners)) + 1;  // no other vertex has a polygon
 
     // Edges, each at the corner where a polygon begins to run along it, by their lower vertex.
     struct Side {
         int32_t high, corner;
     };
-    std::vector<size_t> first(vertex_count + 2, 0);
+    std::vector<size_t> first(in_reach + 2, 0);
     const auto low = [&](size_t c) { return std::min(corners[c], corners[at(next[c])]); };
     for (size_t c = 0; c < corners.size(); ++c) ++first[at(low(c)) + 2];
     std::partial_sum(first.begin(), first.end(), first.begin());
@@ -50,7 +51,7 @@ PolygonFaults polygon_faults(std::span<const int32_t> corners, std::span<const i
 
     PolygonFaults faults;
     std::vector<int32_t> across(corners.size());
-    for (size_t v = 0; v < vertex_count; ++v) {
+    for (size_t v = 0; v < in_reach; ++v) {
         const auto begin_of = sides.begin() + static_cast<std::ptrdiff_t>(first[v]);
         const auto end_of = sides.begin() + static_cast<std::ptrdiff_t>(first[v + 1]);
         std::sort(begin_of, end_of, [](const Side& a, const Side& b) { return a.high < b.high; });
@@ -69,15 +70,15 @@ PolygonFaults polygon_faults(std::span<const int32_t> corners, std::span<const i
     if (faults.open + faults.against > 0) return faults;
 
     // Around a vertex from corner to corner; a second round about it is a second fan.
-    std::vector<int32_t> rounds(vertex_count, 0);
+    std::vector<int32_t> rounds(in_reach, 0);
     std::vector<bool> seen(corners.size(), false);
     for (size_t start = 0; start < corners.size(); ++start) {
         if (seen[start]) continue;
         ++rounds[at(corners[start])];
         for (size_t c = start; !seen[c]; c = at(next[at(across[c])])) seen[c] = true;
     }
-    faults.touching = static_cast<size_t>(
-        std::count_if(rounds.begin(), rounds.end(), [](int32_t count) { return count != 1; }));
+    const auto simple = static_cast<size_t>(std::ranges::count(rounds, 1));
+    faults.touching = vertex_count - simple;
     return faults;
 }
 

@@ -275,9 +275,6 @@ std::vector<int32_t> order_on_curve(std::span<const Point> vertices) {
 void check_arrays(const MeshView& mesh) {
     if (mesh.vertex_count == 0 || mesh.triangle_count == 0 || mesh.face_count == 0)
         throw Error(PW_ERROR_EMPTY, "The mesh has no faces. Choose a mesh object that has some.");
-    if (std::max({mesh.vertex_count, mesh.triangle_count, mesh.face_count}) > PW_MAX_COUNT)
-        throw Error(PW_ERROR_ARGUMENT, "The mesh is too large: the limit is " + std::to_string(PW_MAX_COUNT) +
-                                           " vertices or triangles. Decimate it first.");
     if (!mesh.faces && mesh.face_count != mesh.triangle_count)
         throw Error(PW_ERROR_ARGUMENT, "Without source faces, face_count must equal triangle_count.");
 

@@ -400,6 +400,16 @@ def test_vertex_normals_of_a_sphere():
     assert (vertex_normals(np.vstack([vertices, [[9, 9, 9]]]), triangles)[-1] == 0).all()
 
 
+@pytest.mark.parametrize("power", [330, 266, 60, -60, -282, -900])  # 2^266 is 1e80, 2^-282 1e-85
+def test_vertex_normals_of_any_unit(power):
+    """Bit for bit those at scale 1, wherever the squares of the lengths are numbers or not."""
+    vertices, triangles = shapes.off("hand")[:2]
+    vertices = vertices.astype(np.float32).astype(float)  # so that none of the scales rounds them
+    expected = vertex_normals(vertices, triangles)
+    np.testing.assert_allclose(np.linalg.norm(expected, axis=1), 1)
+    np.testing.assert_array_equal(vertex_normals(np.ldexp(vertices, power), triangles), expected)
+
+
 def test_distances_on_a_plane_and_apart():
     """On a grid with diagonals the way over edges is up to 8 % too long; never too short."""
     n = 40

@@ -7,7 +7,9 @@ import runpy
 import sys
 import tomllib
 import zipfile
+from pathlib import Path
 
+import faults
 import partwheel
 import pytest
 from conftest import ROOT
@@ -21,8 +23,27 @@ BARE = re.sub(r"/\*.*?\*/", "", HEADER, flags=re.S)
 def test_versions_agree():
     (version,) = re.findall(r'#define PW_VERSION "(.*)"', HEADER)
     manifest = tomllib.loads((ROOT / "addon" / "partwheel" / "blender_manifest.toml").read_text())
-    assert core.version() == version == manifest["version"]
+    assert core.version() == library.VERSION == version == manifest["version"]
     assert ".".join(map(str, partwheel.bl_info["version"])) == version
+
+
+@pytest.mark.parametrize("told, real, why", [
+    ("0.0.9", True, f"it is 0.0.9, not {library.VERSION}"),
+    (library.VERSION + ".1", True, f"it is {library.VERSION}.1, not {library.VERSION}"),
+    (library.VERSION, False, "it has no function "),
+])
+def test_a_library_of_another_version_is_refused(told, real, why, tmp_path, monkeypatch):
+    """Be it the real one but for the version that it tells, or one that lacks functions."""
+    source = tmp_path / "other.c"
+    source.write_text(f'const char *pw_version(void) {{ return "{told}"; }}')
+    path = Path(library.load()._name).resolve()
+    others = ["-Wl,--no-as-needed", path, f"-Wl,-rpath,{path.parent}"] if real else []
+    other = faults.compiled(source, tmp_path / "libother.so", *others)
+    monkeypatch.setenv("PARTWHEEL_LIBRARY", other)
+    with pytest.raises(core.LibraryError) as refused:
+        library.load.__wrapped__()
+    assert other in str(refused.value) and why in str(refused.value)
+    assert "Restart" in str(refused.value) and "anew" in str(refused.value)
 
 
 def test_manifest_is_complete():

@@ -2,17 +2,22 @@
 // may lie beside; it is built, or refused by name, and what is built keeps what the header promises.
 //
 //   byte 0      rungs (0..7), then a bit each: open_surfaces, quality, polygons of two triangles, far away, tiny
-//   byte 1      number of vertices
-//   3 a vertex  coordinates: byte - 120, or from 240 on one of the wild ones
-//   3 a corner  vertices: modulo their number, or from 240 on one that does not exist
+//   byte 1      a bit: mode "paper"; 2: threads; a bit: fine, with edges halved until there are parts to regroup and
+//               noise can be told; 3: noise, in 1/20 of the longest edge
+//   byte 2      number of vertices
+//   3 a vertex, 3 a corner: see bytes.h
+#include "bytes.h"
 #include "support/built.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
+#include <random>
+#include <utility>
 
 using namespace partwheel;
 using namespace partwheel::test;
@@ -20,48 +25,93 @@ using namespace partwheel::test;
 namespace {
 
 constexpr size_t most_triangles = 160;
-constexpr int first_wild = 240;
+constexpr size_t fine_vertices = 540;  // of fewer than 500 no surface is rough
+constexpr double noise_step = 0.05;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr std::array<double, 16> wild = {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity, 1e308, -1e101,
-                                         1e100, 1e20, 0.5, 1.0 / 3, 1e-9, -1e-16, 1e-80, 1e-300, 5e-324, -0.0, 119.99999};
-constexpr std::array<int32_t, 16> missing = {-1, -2, std::numeric_limits<int32_t>::min(),
-                                             std::numeric_limits<int32_t>::max(), 1000, 70000, 256, 255,
-                                             -255, 1 << 30, 12345, 999999999, 1000000000, 1 << 16, -(1 << 16), 300};
 
 struct Input {
     TriMesh mesh;
     pw_build_options options{};
 };
 
+struct Edge {
+    int32_t a = 0, b = 0;
+    double length = 0;
+};
+
+Edge longest_edge(const TriMesh& mesh) {
+    Edge longest;
+    for (const Triangle& t : mesh.triangles)
+        for (size_t k = 0; k < 3; ++k) {
+            const int32_t a = t[k], b = t[(k + 1) % 3];
+            const double size = length(mesh.vertices[at(a)] - mesh.vertices[at(b)]);
+            if (size > longest.length) longest = {a, b, size};
+        }
+    return longest;
+}
+
+// The longest edge halved, in all its triangles, until there are so many vertices.
+void refine(TriMesh& mesh) {
+    while (mesh.vertices.size() < fine_vertices) {
+        const Edge edge = longest_edge(mesh);
+        if (!std::isnormal(edge.length)) return;
+        const auto middle = static_cast<int32_t>(mesh.vertices.size());
+        mesh.vertices.push_back(0.5 * (mesh.vertices[at(edge.a)] + mesh.vertices[at(edge.b)]));
+        for (size_t t = 0, count = mesh.triangles.size(); t < count; ++t)
+            for (size_t k = 0; k < 3; ++k) {
+                const int32_t from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
+                if (std::minmax(from, to) != std::minmax(edge.a, edge.b)) continue;
+                Triangle half = mesh.triangles[t];
+                half[k] = mesh.triangles[t][(k + 1) % 3] = middle;
+                mesh.triangles.push_back(half);
+                mesh.faces.push_back(mesh.faces[t]);
+                break;
+            }
+    }
+}
+
+void disturb(TriMesh& mesh, double deviation) {
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal(0, deviation * longest_edge(mesh).length);
+    for (Point& p : mesh.vertices)
+        for (double& c : p) c += normal(random);
+}
+
+bool indices_exist(const TriMesh& mesh) {
+    const auto exists = [&](int32_t v) { return v >= 0 && at(v) < mesh.vertices.size(); };
+    return std::ranges::all_of(mesh.triangles, [&](const Triangle& t) { return std::ranges::all_of(t, exists); });
+}
+
 Input read(const uint8_t* data, size_t size) {
-    size_t at = 0;
-    const auto next = [&] { return at < size ? data[at++] : uint8_t{0}; };
-    const int flags = next();
-    const size_t vertices = next();
+    Bytes bytes(data, size);
+    const int flags = bytes.next(), more = bytes.next();
+    const size_t vertices = bytes.next();
     Input input;
     input.options = {sizeof(pw_build_options), flags & 16 ? 1.4 : 0, static_cast<uint32_t>(flags & 7),
-                     flags & 8 ? 1 : 0, 1, flags & 32 ? PW_MODE_PAPER : PW_MODE_REGROUPED};
-    const double unit = flags & 128 ? 1e-60 : 1, shift = flags & 64 ? 1e5 : 0;
-    for (size_t v = 0; v < vertices; ++v) {
-        Point& p = input.mesh.vertices.emplace_back();
-        for (double& c : p) {
-            const int byte = next();
-            c = byte < first_wild ? (byte - 120 + shift) * unit : wild[static_cast<size_t>(byte - first_wild)];
-        }
+                     flags & 8 ? 1 : 0, more >> 1 & 3, more & 1 ? PW_MODE_PAPER : PW_MODE_REGROUPED};
+    TriMesh& mesh = input.mesh;
+    mesh = bytes.mesh(vertices, most_triangles, flags & 64 ? 1e5 : 0, flags & 128 ? 1e-60 : 1);
+    if (flags & 32) pair_triangles(mesh);
+    if (more & 8 && indices_exist(mesh)) {
+        const bool polygons = !mesh.faces.empty();
+        if (!polygons) mesh.faces.resize(mesh.triangles.size());
+        refine(mesh);
+        if (!polygons) mesh.faces.clear(), mesh.face_count = mesh.triangles.size();
+        disturb(mesh, noise_step * (more >> 4 & 7));
     }
-    while (at + 3 <= size && input.mesh.triangles.size() < most_triangles) {
-        Triangle& t = input.mesh.triangles.emplace_back();
-        for (int32_t& corner : t) {
-            const int byte = next();
-            corner = byte >= first_wild ? missing[static_cast<size_t>(byte - first_wild)]
-                     : vertices == 0    ? 0
-                                        : byte % static_cast<int>(vertices);
-        }
-        if (flags & 32) input.mesh.faces.push_back(static_cast<int32_t>(input.mesh.triangles.size() - 1) / 2);
-    }
-    input.mesh.name = "fuzzed";
-    input.mesh.face_count = flags & 32 ? (input.mesh.triangles.size() + 1) / 2 : input.mesh.triangles.size();
     return input;
+}
+
+// For the test that seeds go the way they claim.
+void tell(const Input& input, pw_status status, const Handle& handle) {
+    if (!std::getenv("PARTWHEEL_FUZZ_TELL")) return;
+    const char* rungs[] = {"", "exact", "repaired", "", "wrapped"};
+    std::fprintf(stderr, "told: %s %s, %s, %s, %d threads, %s, %s\n", pw_status_name(status),
+                 handle ? rungs[summary(handle).rung] : "not built",
+                 input.options.mode == PW_MODE_PAPER ? "paper" : "regrouped",
+                 input.mesh.faces.empty() ? "triangles" : "polygons", input.options.threads,
+                 input.options.quality > 0 ? "points inside" : "no points inside",
+                 input.mesh.vertices.size() >= fine_vertices ? "fine" : "coarse");
 }
 
 bool sound(const TriMesh& mesh) {
@@ -115,7 +165,8 @@ void expect_answer(const Handle& handle, const Input& input) {
     }
     expect_structure(handle);
     pw_mesh* solid = nullptr;
-    EXPECT_EQ(pw_hierarchy_solid(handle.get(), 0, a.tetrahedron_count, nullptr, 0, &solid), PW_OK) << pw_error_message();
+    EXPECT_EQ(pw_hierarchy_solid(handle.get(), 0, a.tetrahedron_count, nullptr, 0, &solid), PW_OK)
+        << pw_error_message();
     pw_mesh_free(solid);
     const std::vector<uint8_t> bytes = save(handle);
     const Built loaded = try_load(bytes);
@@ -139,6 +190,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const pw_status status = pw_build(nullptr, vertices, mesh.vertices.size(), triangles, mesh.triangles.size(),
                                       mesh.face_data(), mesh.face_count, &input.options, &made);
     const Handle handle(made);
+    tell(input, status, handle);
     if (status == PW_OK) {
         expect_answer(handle, input);
         return 0;

@@ -4,9 +4,62 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
+#include <memory>
+#include <vector>
 
 using namespace partwheel::test;
+
+namespace {
+
+// The surface, and where it comes from: indices that exist, and coordinates that are the hierarchy's or between them.
+void expect_solid(const Handle& handle, pw_status status, pw_mesh* made) {
+    const std::unique_ptr<pw_mesh, void (*)(pw_mesh*)> solid(made, pw_mesh_free);
+    EXPECT_TRUE(status == PW_OK || status == PW_ERROR_DATA || status == PW_ERROR_EMPTY) << pw_error_message();
+    if (status != PW_OK) return;
+    const pw_arrays a = arrays(handle);
+    const double* vertices = nullptr;
+    const int32_t *triangles = nullptr, *ends = nullptr, *faces = nullptr, *beyond = nullptr;
+    size_t vertex_count = 0, triangle_count = 0;
+    ASSERT_EQ(pw_mesh_arrays(made, &vertices, &vertex_count, &triangles, &triangle_count), PW_OK);
+    ASSERT_EQ(pw_mesh_origins(made, &ends, &faces, &beyond), PW_OK);
+    const auto below = [](int32_t i, size_t count) { return i >= 0 && static_cast<size_t>(i) < count; };
+    for (size_t i = 0; i < 3 * triangle_count; ++i) EXPECT_TRUE(below(triangles[i], vertex_count));
+    for (size_t i = 0; i < 2 * vertex_count; ++i) EXPECT_TRUE(below(ends[i], a.vertex_count));
+    for (size_t i = 0; i < 3 * vertex_count; ++i) EXPECT_TRUE(std::isfinite(vertices[i]));
+    for (size_t t = 0; t < triangle_count; ++t) {
+        EXPECT_TRUE(faces[t] == -1 || below(faces[t], a.face_count));
+        EXPECT_TRUE(beyond[t] == -1 || below(beyond[t], a.tetrahedron_count));
+    }
+}
+
+// The slice, and the rest: by themselves, with a vertex in the middle of edges, and with every other face.
+void expect_solids(const Handle& handle, size_t first, size_t last) {
+    const pw_hierarchy* h = handle.get();
+    const pw_arrays a = arrays(handle);
+    const int32_t* tetrahedron = a.tetrahedra + 4 * first;
+    const std::array<int32_t, 8> middles = {tetrahedron[0], tetrahedron[1], -1, 0, 1 << 30, 1, 0, 0};
+    std::vector<uint8_t> inside(a.face_count);
+    for (size_t f = 0; f < inside.size(); ++f) inside[f] = f % 2 == 0;
+    pw_mesh* made = nullptr;
+    pw_status status = pw_hierarchy_solid(h, first, last, nullptr, 0, &made);
+    expect_solid(handle, status, made);
+    made = nullptr;
+    status = pw_hierarchy_solid(h, last, first, middles.data(), middles.size() / 2, &made);
+    expect_solid(handle, status, made);
+    made = nullptr;
+    status = pw_hierarchy_solid_of_faces(h, first, last, inside.data(), inside.size(), &made);
+    expect_solid(handle, status, made);
+    made = nullptr;
+    status = pw_hierarchy_solid_of_faces(h, last, first, inside.data(), inside.size(), &made);
+    expect_solid(handle, status, made);
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
     GTEST_FLAG_SET(throw_on_failure, true);  // out of the fuzzer: a crash for libFuzzer
@@ -20,6 +73,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         EXPECT_TRUE(loaded.message.ends_with('.')) << loaded.message;
         return 0;
     }
+    if (std::getenv("PARTWHEEL_FUZZ_TELL")) std::fputs("told: loaded\n", stderr);  // for the test of seeds
     const pw_arrays a = arrays(loaded.handle);
     const pw_summary s = summary(loaded.handle);
     const double infinity = std::numeric_limits<double>::infinity();
@@ -30,11 +84,20 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     for (size_t t = 0; t < a.tetrahedron_count; t += 1 + a.tetrahedron_count / 20) {
         const HullMesh part = hull(loaded.handle, t, t + 1), rest = hull(loaded.handle, t, a.tetrahedron_count);
         EXPECT_GE(rest.vertices.size(), part.vertices.empty() ? 0U : 1U);
-        pw_mesh* solid = nullptr;
-        const pw_status status = pw_hierarchy_solid(loaded.handle.get(), t, a.tetrahedron_count, nullptr, 0, &solid);
-        EXPECT_TRUE(status == PW_OK || status == PW_ERROR_DATA || status == PW_ERROR_EMPTY) << pw_error_message();
-        pw_mesh_free(solid);
+        expect_solids(loaded.handle, t, t + 1);
     }
+    for (size_t n = a.tetrahedron_count; n < a.node_count; n += 1 + a.node_count / 20) {
+        const auto first = static_cast<size_t>(a.tet_first[n]), last = static_cast<size_t>(a.tet_last[n]);
+        (void)hull(loaded.handle, first, last);
+        expect_solids(loaded.handle, first, last);
+    }
+    std::vector<int32_t> bounds(a.tetrahedron_count + 1);
+    size_t count = 0;
+    EXPECT_EQ(pw_hierarchy_cut_automatic(loaded.handle.get(), bounds.data(), bounds.size(), &count), PW_OK);
+    EXPECT_TRUE(count >= 2 && count <= bounds.size());
+    EXPECT_EQ(bounds[0], 0);
+    EXPECT_EQ(static_cast<size_t>(bounds[count - 1]), a.tetrahedron_count);
+    for (size_t k = 1; k < count; ++k) EXPECT_LT(bounds[k - 1], bounds[k]);
     // What is saved loads, and is saved as the same again. (These bytes may have said it at greater length.)
     const std::vector<uint8_t> saved = save(loaded.handle);
     const Built again = try_load(saved);

@@ -3,10 +3,18 @@
 
 import numpy as np
 from conftest import ROOT
-from partwheel.core import Hierarchy, PartwheelError, meshes
+from partwheel.core import Hierarchy, Mode, PartwheelError, meshes
 
 DEMO = ROOT / "build" / "deps" / "meshes"
 MOST_VERTICES, MOST_TRIANGLES = 239, 160  # that the mesh fuzzer can say
+# Kind of a seed of the mesh fuzzer -> the first two bytes, which ask for it: see mesh_fuzzer.cpp.
+KINDS = {
+    "exact": (1, 0), "repaired": (3, 1 << 1), "inside": (1 + 16, 2 << 1), "polygons": (1 + 32, 3 << 1),
+    "paper": (1 + 32, 1), "fine": (1, 8), "rough": (1, 8 + (2 << 4)), "crossing": (3, 8 + (6 << 4)),
+}
+LARGE = {"fine", "rough", "crossing"}  # kinds that take long, of the cube alone
+# Kind of a saved hierarchy -> how it is built.
+SAVED = {"regrouped": {}, "inside": {"quality": 1.4}, "paper": {"mode": Mode.PAPER}}
 MOST_FILE, MOST_SAVED = 40_000, 8_000  # bytes of a file of the demo, and of a saved hierarchy: small ones run faster
 CUBE = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float), np.array(
     [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
@@ -29,25 +37,50 @@ def small():
             yield path.name, mesh.vertices, mesh.triangles
 
 
-def as_bytes(vertices, triangles, flags):
-    """The bytes that the mesh fuzzer takes for this mesh, rounded to its grid; see mesh_fuzzer.cpp."""
+def on_grid(vertices):
+    """The bytes of the coordinates, rounded to the grid of bytes.h."""
     low, size = vertices.min(axis=0), max(np.ptp(vertices, axis=0).max(), 1e-300)
-    grid = np.round((vertices - low) / size * 239).astype(np.uint8)
-    return bytes([flags, len(vertices)]) + grid.tobytes() + triangles.astype(np.uint8).tobytes()
+    return np.round((vertices - low) / size * 239).astype(np.uint8).tobytes()
+
+
+def for_mesh(vertices, triangles, kind):
+    """What the mesh fuzzer reads: see mesh_fuzzer.cpp."""
+    return bytes([*KINDS[kind], len(vertices)]) + on_grid(vertices) + triangles.astype(np.uint8).tobytes()
+
+
+def for_surface(vertices, triangles, flags):
+    """What the surface fuzzer reads: the part and the handle are on one side, what stays on the other, and the handle
+    is moved a little, twice. See surface_fuzzer.cpp."""
+    axis = np.ptp(vertices, axis=0).argmax()
+    along = (vertices[:, axis] - vertices[:, axis].min()) / max(np.ptp(vertices[:, axis]), 1e-300)
+    handle, free, fixed = 0, 2, 6
+    roles = np.where(along < 0.25, fixed, np.where(along > 0.75, handle, free)).astype(np.uint8)
+    faces = triangles[::2] if flags & 1 else triangles
+    part = (along[faces].mean(axis=1) > 0.5).astype(np.uint8)
+    moves = bytes([0, *[120] * 3, 130, *[120] * 8]) + bytes([0, 120, 140, *[120] * 10])
+    return (bytes([flags, len(vertices), len(triangles)]) + on_grid(vertices) + triangles.astype(np.uint8).tobytes()
+            + roles.tobytes() + part.tobytes() + moves)
 
 
 def write(directory):
-    """Fills directory/mesh and directory/saved; returns their numbers of files."""
-    for name in ("mesh", "saved"):
-        (directory / name).mkdir(parents=True)
+    """Fills directory/FUZZER/KIND for each fuzzer; returns their numbers of files."""
+    def put(fuzzer, kind, name, data):
+        path = directory / fuzzer / kind / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
+
     for name, vertices, triangles in small():
         if len(vertices) <= MOST_VERTICES and len(triangles) <= MOST_TRIANGLES:
-            for flags in (1, 3, 1 + 16, 1 + 32):
-                (directory / "mesh" / f"{name}-{flags}").write_bytes(as_bytes(vertices, triangles, flags))
-        try:
-            saved = Hierarchy.build(vertices, triangles, rungs=3).save()
-        except PartwheelError:
-            continue
-        if len(saved) <= MOST_SAVED:
-            (directory / "saved" / name).write_bytes(saved)
-    return [len(list((directory / name).iterdir())) for name in ("mesh", "saved")]
+            for kind in KINDS:
+                if name == "cube" or kind not in LARGE:
+                    put("mesh", kind, name, for_mesh(vertices, triangles, kind))
+            for flags, kind in enumerate(("triangles", "polygons")):
+                put("surface", kind, name, for_surface(vertices, triangles, flags))
+        for kind, options in SAVED.items():
+            try:
+                saved = Hierarchy.build(vertices, triangles, rungs=3, **options).save()
+            except PartwheelError:
+                continue
+            if len(saved) <= MOST_SAVED:
+                put("saved", kind, name, saved)
+    return [sum(path.is_file() for path in each.rglob("*")) for each in directory.iterdir()]

@@ -14,13 +14,36 @@ import subprocess
 import pytest
 import seeds
 from conftest import ROOT
+from partwheel.core import Hierarchy, PartwheelError
 
-SECONDS = int(os.environ.get("PARTWHEEL_FUZZ", 20))
+SECONDS = int(os.environ.get("PARTWHEEL_FUZZ", 15))
 FOUND = ROOT / "tests" / "fuzz" / "found"
 WORK = ROOT / "build" / "test" / "fuzz"
 LIMITS = {  # bytes of an input, seconds for one input
     "mesh": (1200, 120),
     "saved": (seeds.MOST_SAVED, 20),
+    "surface": (1500, 20),
+}
+# Fuzzer, kind of seed -> what the fuzzer tells of the cube's; functions of the library that run; and that do not.
+REACHED = {
+    ("mesh", "exact"): ("ok exact, regrouped, triangles, 0 threads, no points inside, coarse",
+                        ["cluster(", "regroup("], ["carried(", "smoothed(", "displaced("]),
+    ("mesh", "repaired"): ("ok exact, regrouped, triangles, 1 threads, no points inside, coarse", ["repair("], []),
+    ("mesh", "inside"): ("ok exact, regrouped, triangles, 2 threads, points inside, coarse",
+                         ["plain_filling(", "carried("], ["smoothed("]),
+    ("mesh", "polygons"): ("ok exact, regrouped, polygons, 3 threads, no points inside, coarse", ["regroup("], []),
+    ("mesh", "paper"): ("ok exact, paper, polygons, 0 threads, no points inside, coarse", ["cluster("], ["regroup("]),
+    ("mesh", "fine"): ("ok exact, regrouped, triangles, 0 threads, no points inside, fine",
+                       ["roughness(", "regroup("], ["smoothed("]),
+    ("mesh", "rough"): ("ok exact, regrouped, triangles, 0 threads, no points inside, fine",
+                        ["smoothed(", "carried("], ["displaced("]),
+    ("mesh", "crossing"): ("ok repaired, regrouped, triangles, 0 threads, no points inside, fine",
+                           ["displaced(", "smoothed("], ["repair("]),
+    **{("saved", kind): ("loaded", ["Hierarchy::finish(", "Facets::solid(", "Facets::with_faces(", "bounds_of("], [])
+       for kind in seeds.SAVED},
+    **{("surface", kind): ("normals distances faults fair snapped deformed",
+                           ["faired(", "minimum_cut(", "Deformation::iterate("], [])
+       for kind in ("triangles", "polygons")},
 }
 
 
@@ -29,11 +52,12 @@ def corpora():
     """Where the seeds are; what an earlier run found interesting stays beside them."""
     directory = WORK / "seeds"
     shutil.rmtree(directory, ignore_errors=True)
-    assert min(seeds.write(directory)) >= 10
+    counts = seeds.write(directory)
+    assert len(counts) == len(LIMITS) and min(counts) >= 10
     return directory
 
 
-def run(name, *arguments, seconds):
+def run(name, *arguments, seconds, **environment):
     """A fuzzer with these arguments, and the limits of one input; seconds by the clock for all of it."""
     fuzzer = ROOT / "build" / "fuzz" / f"{name}_fuzzer"
     assert fuzzer.exists(), f"{fuzzer} is not there: scripts/build fuzz"
@@ -41,7 +65,7 @@ def run(name, *arguments, seconds):
         [fuzzer, *arguments, f"-timeout={LIMITS[name][1]}", "-rss_limit_mb=4096"],
         capture_output=True, text=True, errors="replace", timeout=seconds,
         env=os.environ | {"LSAN_OPTIONS": f"suppressions={ROOT / 'cmake' / 'lsan.supp'}:print_suppressions=0",
-                          "UBSAN_OPTIONS": "print_stacktrace=1"})
+                          "UBSAN_OPTIONS": "print_stacktrace=1"} | environment)
 
 
 @pytest.mark.parametrize("path", sorted(FOUND.glob("*/*")), ids=lambda path: path.name)
@@ -49,6 +73,32 @@ def test_what_was_found_is_mended(path):
     name = path.parent.name
     result = run(name, path, seconds=LIMITS[name][1] + 60)
     assert result.returncode == 0, result.stderr[-6000:]
+
+
+@pytest.mark.parametrize("name, kind", REACHED)
+def test_seeds_go_where_they_claim(name, kind, corpora):
+    """By what the compiler counts: each function that ran."""
+    told, reached, passed_by = REACHED[name, kind]
+    result = run(name, corpora / name / kind, "-runs=0", "-print_coverage=1", seconds=600, PARTWHEEL_FUZZ_TELL="1")
+    assert result.returncode == 0, result.stderr[-6000:]
+    assert f"told: {told}\n" in result.stderr, re.findall("told: .*", result.stderr)
+    ran = re.findall(r"^COVERED_FUNC: .*?(?:\d+/\d+) (.*)$", result.stderr, re.M)
+    for function in reached:
+        assert any(f"partwheel::{function}" in each for each in ran), f"{function}) was not reached"
+    for function in passed_by:
+        assert not any(f"partwheel::{function}" in each for each in ran), f"{function}) was reached"
+
+
+def test_forged_hierarchies_get_in_here_alone(corpora, tmp_path):
+    """The last bytes are the hash: the fuzzer's library does not compare it, the one that is shipped does."""
+    for path in (corpora / "saved" / "regrouped").iterdir():
+        forged = bytearray(path.read_bytes())
+        forged[-1] ^= 0xFF
+        (tmp_path / path.name).write_bytes(forged)
+        with pytest.raises(PartwheelError, match="damaged"):
+            Hierarchy.load(bytes(forged))
+    result = run("saved", tmp_path, "-runs=0", seconds=600, PARTWHEEL_FUZZ_TELL="1")
+    assert result.stderr.count("told: loaded\n") == len(list(tmp_path.iterdir())), result.stderr[-3000:]
 
 
 @pytest.mark.parametrize("name", LIMITS)

@@ -48,6 +48,7 @@ void expect_argument_error(pw_status status) {
 
 TEST(Api, Names) {
     EXPECT_STREQ(pw_version(), PW_VERSION);
+    EXPECT_EQ(pw_version_number(), PW_VERSION_NUMBER);
     std::set<std::string> names;
     for (int s = PW_OK; s <= PW_ERROR_NOT_SOLID; ++s) names.insert(pw_status_name(static_cast<pw_status>(s)));
     EXPECT_EQ(names.size(), static_cast<size_t>(PW_ERROR_NOT_SOLID) + 1);
@@ -74,8 +75,8 @@ TEST(Api, NullsAreErrors) {
     size_t count = 0, start = 0;
     int32_t room[64];
     const int32_t* faces = nullptr;
-    pw_arrays a;
-    pw_summary s;
+    pw_arrays a{};
+    pw_summary s{};
     pw_mesh* made = nullptr;
     pw_hierarchy* loaded = nullptr;
 
@@ -187,8 +188,6 @@ TEST(Api, BuildChecksItsOptionsAndSizes) {
     };
     for (const double quality : {-1.0, 0.5, 1.0, 1.0999, std::nan(""), HUGE_VAL, -HUGE_VAL, 5e-324})
         expect_argument_error(status({sizeof(pw_build_options), quality, 0, 0, 0, 0}));
-    for (const size_t size : {size_t{0}, sizeof(pw_build_options) - 1, sizeof(pw_build_options) + 1, huge})
-        expect_argument_error(status({size, 0, 0, 0, 0, 0}));
     for (const uint32_t rungs : {8U, 15U, ~0U})
         expect_argument_error(status({sizeof(pw_build_options), 0, rungs, 0, 0, 0}));
     for (const int32_t open : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, open, 0, 0}));

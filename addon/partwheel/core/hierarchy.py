@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Hierarchy: a mesh's tree of nearly convex parts, built by the native library, as numpy arrays and questions."""
 
-import ctypes
 import operator
 import threading
 import weakref
@@ -220,8 +219,8 @@ class Hierarchy:
         """
         arrays, face_count = checked_surface(vertices, triangles, faces, face_count)
         context = _Context()
-        options = BuildOptions(ctypes.sizeof(BuildOptions), quality, _number(rungs), bool(open_surfaces),
-                               _number(threads), _number(mode))
+        options = BuildOptions(quality=quality, rungs=_number(rungs), open_surfaces=bool(open_surfaces),
+                               threads=_number(threads), mode=_number(mode))
         build = _Build(context, arrays, face_count, options)
 
         def report():

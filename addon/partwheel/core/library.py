@@ -9,6 +9,7 @@ import sys
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_size_t, c_uint8, c_uint32, c_void_p
 from pathlib import Path
 
+VERSION = "0.1.0"  # of partwheel.h, as declared here
 FILE_NAME = {"win32": "partwheel.dll", "darwin": "libpartwheel.dylib"}.get(sys.platform, "libpartwheel.so")
 LIBRARY = Path(__file__).resolve().with_name(FILE_NAME)
 SOURCES = LIBRARY.parent / "../../../native/src"
@@ -65,7 +66,14 @@ class Mode(enum.IntEnum):
 STAGE_COUNT = len(Stage)
 
 
-class BuildOptions(ctypes.Structure):
+class _Sized(ctypes.Structure):
+    """A struct that begins with its size: see the habits in partwheel.h."""
+
+    def __init__(self, **fields):
+        super().__init__(struct_size=ctypes.sizeof(self), **fields)
+
+
+class BuildOptions(_Sized):
     """pw_build_options."""
 
     _fields_ = [
@@ -74,7 +82,7 @@ class BuildOptions(ctypes.Structure):
     ]
 
 
-class Arrays(ctypes.Structure):
+class Arrays(_Sized):
     """pw_arrays. Its pointers are kept as addresses: hierarchy.py makes numpy views of them."""
 
     COUNTS = ("face_count", "node_count", "tetrahedron_count", "vertex_count")
@@ -82,21 +90,22 @@ class Arrays(ctypes.Structure):
         "order", "leaf", "parent", "first", "last", "tet_first", "tet_last", "cost_class", "cost", "height", "volume",
         "area", "vertices", "source", "tetrahedra", "merges", "score",
     )
-    _fields_ = [(name, c_size_t) for name in COUNTS] + [(name, c_void_p) for name in POINTERS]
+    _fields_ = [(name, c_size_t) for name in ("struct_size", *COUNTS)] + [(name, c_void_p) for name in POINTERS]
 
 
-class SummaryStruct(ctypes.Structure):
+class SummaryStruct(_Sized):
     """pw_summary."""
 
     _fields_ = [
-        ("components", c_size_t), ("cavities", c_size_t), ("added_vertices", c_size_t), ("volume", c_double),
-        ("hull_volume", c_double), ("rung", c_int), ("deviation", c_double),
+        ("struct_size", c_size_t), ("components", c_size_t), ("cavities", c_size_t), ("added_vertices", c_size_t),
+        ("volume", c_double), ("hull_volume", c_double), ("rung", c_int), ("deviation", c_double),
     ]
 
 
 # Name -> result, arguments. Handles, and buffers that numpy owns, pass as addresses (c_void_p).
 FUNCTIONS = {
     "pw_version": (c_char_p, []),
+    "pw_version_number": (c_int32, []),
     "pw_status_name": (c_char_p, [c_int]),
     "pw_stage_name": (c_char_p, [c_int]),
     "pw_error_message": (c_char_p, []),
@@ -180,12 +189,21 @@ def load():
         try:
             function = getattr(library, name)
         except AttributeError as error:
-            raise LibraryError(
-                f"{path} has no function {name}: it is another version than this add-on. Install the add-on anew."
-            ) from error
+            raise _other_version(path, f"it has no function {name}") from error
         function.restype = result
         function.argtypes = arguments
+    found = library.pw_version().decode()
+    if found != VERSION:
+        raise _other_version(path, f"it is {found}, not {VERSION}")
     return library
+
+
+def _other_version(path, why):
+    # A program that had the library loaded when the add-on was updated goes on with the old one.
+    return LibraryError(
+        f"{path} is another version of Partwheel's library than this add-on is for: {why}. Restart the program. If "
+        "that does not help, install the add-on anew, or build the library again (scripts/build)."
+    )
 
 
 def version():

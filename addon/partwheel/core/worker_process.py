@@ -113,9 +113,7 @@ class Build(threading.Thread):
 
     def run(self):
         vertices, triangles, *faces = ((c_uint8 * len(array)).from_buffer(array) for array in self.arrays)
-        options = BuildOptions(struct_size=ctypes.sizeof(BuildOptions))
-        for name, value in self.header["options"].items():
-            setattr(options, name, value)
+        options = BuildOptions(**self.header["options"])
         self.status = load().pw_build(
             self.context, ctypes.addressof(vertices), len(vertices) // 24, ctypes.addressof(triangles),
             len(triangles) // 12, ctypes.addressof(faces[0]) if faces else None, self.header["face_count"],

@@ -51,12 +51,14 @@ Handle build(const TriMesh& mesh, double quality, int32_t mode) {
 
 pw_arrays arrays(const Handle& handle) {
     pw_arrays a{};
+    a.struct_size = sizeof a;
     require_ok(pw_hierarchy_arrays(handle.get(), &a));
     return a;
 }
 
 pw_summary summary(const Handle& handle) {
     pw_summary s{};
+    s.struct_size = sizeof s;
     require_ok(pw_hierarchy_summary(handle.get(), &s));
     return s;
 }

@@ -1,0 +1,168 @@
+// Counts that no array has: every function that takes one refuses it by name, before it reads or reserves anything.
+#include "support/built.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+
+namespace partwheel::test {
+namespace {
+
+constexpr size_t most = std::numeric_limits<size_t>::max();
+constexpr size_t impossible[] = {size_t{PW_MAX_COUNT} + 1, size_t{1} << 31, (size_t{1} << 32) + 1, most / 24 + 1,
+                                 most / 12 + 1, most / 3 + 1, most / 2 + 1, most - 1, most};
+
+struct Call {
+    const char* what;
+    std::function<pw_status(size_t)> made_with;  // this count
+};
+
+// The arrays are those of a cube: whoever reads as many as the count says, ends the process.
+class Counts : public testing::Test {
+protected:
+    TriMesh mesh = without_faces(cube());
+    const double* v = mesh.vertex_data();
+    const int32_t* t = mesh.triangle_data();
+    std::array<uint8_t, 12> bytes{1};
+    std::array<int32_t, 12> numbers{};
+    std::array<double, 36> places{};
+    Handle handle = build(mesh);
+    const pw_hierarchy* h = handle.get();
+    pw_hierarchy* built = nullptr;
+    pw_mesh* made = nullptr;
+    pw_creases* creases = nullptr;
+    pw_deformation* deformation = nullptr;
+    size_t open = 77, against = 77, touching = 77;
+
+    pw_status make(size_t vertices, size_t triangles, const int32_t* faces, size_t face_count) {
+        return pw_build(nullptr, v, vertices, t, triangles, faces, face_count, nullptr, &built);
+    }
+    pw_status crease(size_t vertices, size_t triangles, const int32_t* faces, size_t face_count) {
+        return pw_creases_create(v, vertices, t, triangles, faces, face_count, &creases);
+    }
+    pw_status faults(const int32_t* corners, size_t corner_count, const int32_t* begin, size_t polygons,
+                     size_t vertices) {
+        return pw_polygon_faults(corners, corner_count, begin, polygons, vertices, &open, &against, &touching);
+    }
+};
+
+TEST_F(Counts, ImpossibleOnesAreRefusedByName) {
+    numbers = {0, 1, 2, 0, 2, 1, 3, 4, 5, 5, 4, 3};
+    const Call calls[] = {
+        {"build: vertices", [&](size_t n) { return make(n, 12, nullptr, 12); }},
+        {"build: triangles", [&](size_t n) { return make(8, n, nullptr, n); }},
+        {"build: faces", [&](size_t n) { return make(8, 12, numbers.data(), n); }},
+        {"creases: vertices", [&](size_t n) { return crease(n, 12, nullptr, 12); }},
+        {"creases: triangles", [&](size_t n) { return crease(8, n, nullptr, n); }},
+        {"creases: faces", [&](size_t n) { return crease(8, 12, numbers.data(), n); }},
+        {"solid: middles", [&](size_t n) { return pw_hierarchy_solid(h, 0, 1, numbers.data(), n, &made); }},
+        {"solid: slice", [&](size_t n) { return pw_hierarchy_solid(h, 0, n, nullptr, 0, &made); }},
+        {"solid of faces: slice",
+         [&](size_t n) { return pw_hierarchy_solid_of_faces(h, n, 0, bytes.data(), 12, &made); }},
+        {"solid of faces: faces",
+         [&](size_t n) { return pw_hierarchy_solid_of_faces(h, 0, 1, bytes.data(), n, &made); }},
+        {"hull: slice", [&](size_t n) { return pw_hierarchy_hull(h, 0, n, &made); }},
+        {"cut: parts", [&](size_t n) { return pw_hierarchy_cut_parts(h, n, numbers.data(), 12, &open); }},
+        {"polygons: nothing but vertices", [&](size_t n) { return faults(nullptr, 0, nullptr, 0, n); }},
+        {"polygons: vertices", [&](size_t n) { return faults(t, 36, numbers.data(), 1, n); }},
+        {"polygons: corners", [&](size_t n) { return faults(t, n, numbers.data(), 1, 8); }},
+        {"polygons: polygons", [&](size_t n) { return faults(t, 36, numbers.data(), n, 8); }},
+        {"faired: vertices", [&](size_t n) { return pw_faired(v, n, t, 6, bytes.data(), places.data()); }},
+        {"faired: edges", [&](size_t n) { return pw_faired(v, 8, t, n, bytes.data(), places.data()); }},
+        {"faired: edges of no vertices", [&](size_t n) { return pw_faired(nullptr, 0, t, n, nullptr, nullptr); }},
+        {"deformation: vertices",
+         [&](size_t n) { return pw_deformation_create(v, n, t, 12, numbers.data(), &deformation); }},
+        {"deformation: triangles",
+         [&](size_t n) { return pw_deformation_create(v, 8, t, n, numbers.data(), &deformation); }},
+        {"normals: vertices", [&](size_t n) { return pw_vertex_normals(v, n, t, 12, places.data()); }},
+        {"normals: triangles", [&](size_t n) { return pw_vertex_normals(v, 8, t, n, places.data()); }},
+        {"distances: vertices",
+         [&](size_t n) { return pw_surface_distances(v, n, t, 12, bytes.data(), places.data()); }},
+        {"distances: triangles",
+         [&](size_t n) { return pw_surface_distances(v, 8, t, n, bytes.data(), places.data()); }},
+    };
+    for (const Call& call : calls)
+        for (const size_t count : impossible) {
+            EXPECT_EQ(call.made_with(count), PW_ERROR_ARGUMENT) << call.what << ", " << count;
+            EXPECT_TRUE(std::string(pw_error_message()).ends_with('.')) << pw_error_message();
+        }
+    EXPECT_TRUE(!built && !made && !creases && !deformation);
+    EXPECT_EQ(open + against + touching, 3 * 77U);
+}
+
+TEST_F(Counts, OfWhatIsThereAreComparedNotBelieved) {
+    ASSERT_EQ(pw_creases_create(v, 8, t, 12, nullptr, 12, &creases), PW_OK);
+    const int32_t roles[] = {0, 0, 0, 0, PW_VERTEX_FREE, -2, -2, -2};
+    ASSERT_EQ(pw_deformation_create(v, 8, t, 12, roles, &deformation), PW_OK);
+    const Call calls[] = {
+        {"creases", [&](size_t n) { return pw_creases_snap(creases, bytes.data(), n, bytes.data()); }},
+        {"positions", [&](size_t n) { return pw_deformation_positions(deformation, places.data(), n); }},
+        {"handle", [&](size_t n) { return pw_deformation_move(deformation, n, places.data()); }},
+        {"face", [&](size_t n) { return pw_hierarchy_path(h, n, numbers.data(), 12, &open); }},
+        {"node", [&](size_t n) {
+             const int32_t* faces = nullptr;
+             return pw_hierarchy_faces(h, n, &faces, &open);
+         }},
+    };
+    for (const Call& call : calls)
+        for (const size_t count : impossible)
+            EXPECT_EQ(call.made_with(count), PW_ERROR_ARGUMENT) << call.what << ", " << count;
+    pw_creases_free(creases);
+    pw_deformation_free(deformation);
+}
+
+// As much room as can be said is room enough.
+TEST_F(Counts, OfRoomMayBeAnything) {
+    std::vector<int32_t> room(64);
+    size_t count = 0, start = 0;
+    EXPECT_EQ(pw_hierarchy_path(h, 0, room.data(), most, &count), PW_OK);
+    EXPECT_EQ(pw_hierarchy_wheel(h, 0, room.data(), most, &count, &start), PW_OK);
+    EXPECT_EQ(pw_hierarchy_cut_height(h, 0, room.data(), most, &count), PW_OK);
+    EXPECT_EQ(pw_hierarchy_cut_parts(h, 2, room.data(), most, &count), PW_OK);
+    EXPECT_EQ(pw_hierarchy_cut_automatic(h, room.data(), most, &count), PW_OK);
+    std::vector<uint8_t> saved = save(handle);
+    EXPECT_EQ(pw_hierarchy_save(h, saved.data(), most, &count), PW_OK);
+    EXPECT_EQ(saved, save(handle));
+}
+
+// A count beside a null pointer is refused whatever it is; none beside null is an answer or a status by name.
+TEST_F(Counts, OfNothingAtAll) {
+    for (const size_t n : {size_t{1}, size_t{PW_MAX_COUNT}, most / 3 + 1, most}) {
+        EXPECT_EQ(pw_build(nullptr, nullptr, n, t, 12, nullptr, 12, nullptr, &built), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_build(nullptr, v, 8, nullptr, n, nullptr, n, nullptr, &built), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_creases_create(nullptr, n, t, 12, nullptr, 12, &creases), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_creases_create(v, 8, nullptr, n, nullptr, n, &creases), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_hierarchy_solid(h, 0, 1, nullptr, n, &made), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(faults(nullptr, n, numbers.data(), 1, 8), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(faults(t, 36, nullptr, n, 8), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_faired(nullptr, n, t, 6, bytes.data(), places.data()), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_faired(v, 8, nullptr, n, bytes.data(), places.data()), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_deformation_create(nullptr, n, t, 12, numbers.data(), &deformation), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_deformation_create(v, 8, nullptr, n, numbers.data(), &deformation), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_deformation_create(v, n, t, 12, nullptr, &deformation), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_vertex_normals(nullptr, n, t, 12, places.data()), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_vertex_normals(v, 8, nullptr, n, places.data()), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_surface_distances(nullptr, n, t, 12, bytes.data(), places.data()), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_surface_distances(v, 8, nullptr, n, bytes.data(), places.data()), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(pw_hierarchy_load(nullptr, n, &built), PW_ERROR_ARGUMENT);
+    }
+    // So many bytes there are in no memory; fewer are read.
+    for (const size_t n : {most / 2 + 1, most})
+        EXPECT_EQ(pw_hierarchy_load(bytes.data(), n, &built), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(make(0, 0, nullptr, 0), PW_ERROR_EMPTY);
+    EXPECT_EQ(crease(0, 0, nullptr, 0), PW_ERROR_EMPTY);
+    EXPECT_EQ(pw_faired(nullptr, 0, nullptr, 0, nullptr, nullptr), PW_OK);
+    EXPECT_EQ(pw_deformation_create(nullptr, 0, nullptr, 0, nullptr, &deformation), PW_ERROR_EMPTY);
+    EXPECT_EQ(pw_vertex_normals(nullptr, 0, nullptr, 0, nullptr), PW_ERROR_EMPTY);
+    EXPECT_EQ(pw_surface_distances(nullptr, 0, nullptr, 0, nullptr, nullptr), PW_ERROR_EMPTY);
+    // Vertices of no polygon take no memory: as many as can be numbered are counted in no time.
+    EXPECT_EQ(faults(nullptr, 0, nullptr, 0, PW_MAX_COUNT), PW_OK);
+    EXPECT_EQ(touching, size_t{PW_MAX_COUNT});
+    EXPECT_TRUE(!built && !made && !creases && !deformation);
+}
+
+}  // namespace
+}  // namespace partwheel::test
