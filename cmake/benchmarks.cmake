@@ -4,7 +4,7 @@ add_library(partwheel_measured OBJECT tests/bench/measured.cpp tests/bench/tetge
 target_compile_definitions(partwheel_measured PRIVATE PW_BUILDING)
 target_link_libraries(partwheel_measured PUBLIC partwheel_engine PRIVATE partwheel_tetgen)
 # The library's call of TetGen goes through tetgen_watch.cpp, which measures it.
-target_link_options(partwheel_measured INTERFACE LINKER:--wrap=_Z14tetrahedralizePcP8tetgenioS1_S1_S1_)
+target_link_options(partwheel_measured INTERFACE LINKER:--wrap=_Z14tetrahedralizeP14tetgenbehaviorP8tetgenioS2_S2_S2_)
 
 file(GLOB programs CONFIGURE_DEPENDS tests/bench/*_bench.cpp)
 foreach(source ${programs})

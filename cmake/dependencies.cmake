@@ -71,6 +71,9 @@ else()
     set_source_files_properties("${tetgen_include}/predicates.cxx" PROPERTIES COMPILE_OPTIONS -fno-sanitize=address)
   endif()
   target_compile_definitions(partwheel_tetgen PRIVATE NDEBUG PARTWHEEL_COMPILES_TETGEN)
+  # Not in predicates.cxx, where it is defined.
+  set_source_files_properties("${tetgen_include}/tetgen.cxx" PROPERTIES
+                              COMPILE_DEFINITIONS orient3d=partwheel_tetgen_orient3d)
   target_compile_options(partwheel_tetgen PRIVATE "SHELL:-include \"${PROJECT_SOURCE_DIR}/native/src/tetgen_host.h\"")
 endif()
 file(STRINGS "${tetgen_include}/tetgen.h" line REGEX "^// Version [0-9]")

@@ -73,8 +73,8 @@ PW_API pw_status pw_context_create(pw_context **context);
 PW_API void pw_context_free(pw_context *context);
 
 /* Asks the running build (or, if none runs, the next one) to stop with PW_ERROR_CANCELLED. Honoured within 100 ms,
- * except while TetGen or the self-intersection test runs, which can't be interrupted: at the end of that stage. Run
- * builds in a process of their own where that matters. */
+ * except while the self-intersection test runs or TetGen's result is read, which can't be interrupted: at the end of
+ * that. Run builds in a process of their own where that matters. */
 PW_API pw_status pw_context_cancel(pw_context *context);
 
 /* fraction: 0..1 of the whole build, never falling during a build. stage: where it is. Either may be null. */
@@ -211,8 +211,8 @@ typedef struct pw_summary {
     pw_rung rung;          /* how the surface used came from the caller's */
     double deviation;      /* the largest distance from the caller's surface to the one used, relative to the diagonal
                               of the caller's bounding box: 0 on the exact rung, else measured at points of every triangle
-                              about 1/100 of the diagonal apart. Parts of the caller's surface that lie inside the
-                              solid, such as the back of an eye, count as well */
+                              about 1/100 of the diagonal apart, further if there were millions of them. Parts of the
+                              caller's surface that lie inside the solid, such as the back of an eye, count as well */
 } pw_summary;
 
 PW_API pw_status pw_hierarchy_summary(const pw_hierarchy *hierarchy, pw_summary *summary);

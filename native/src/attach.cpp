@@ -7,8 +7,9 @@
 #include <CGAL/Simple_cartesian.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
+#include <iterator>
 #include <vector>
 
 namespace partwheel {
@@ -19,8 +20,8 @@ using Kernel = CGAL::Simple_cartesian<double>;  // distances are measured, nothi
 using Triangles = std::vector<Kernel::Triangle_3>;
 using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_triangle_primitive<Kernel, Triangles::iterator>>>;
 
-// Beyond so many samples of one mesh they stand further apart.
-constexpr double most_samples = 1e6;
+// A cancellation is asked for after so many.
+constexpr size_t samples_between_polls = 256;
 
 // A distance of less than this, relative to the diagonal, is none.
 constexpr double rounding = 1e-12;
@@ -41,6 +42,46 @@ bool is_outside(const Tree& tree, const Point& p) {
     return tree.number_of_intersected_primitives(ray) % 2 == 0;
 }
 
+// A triangle of the source: from `corner` its longest side goes along `u`, `v` goes to the corner opposite.
+struct Sampled {
+    Point corner, u, v;
+    double length = 0, area;  // length: of u
+
+    Sampled(const Surface& source, size_t triangle) : area(source.pieces[triangle].area) {
+        for (size_t k = 0; k < 3; ++k) {
+            const auto at = [&](size_t i) { return source.vertices[partwheel::at(source.triangles[triangle][i % 3])]; };
+            const Point side = at(k + 1) - at(k);
+            if (k > 0 && partwheel::length(side) <= length) continue;
+            corner = at(k);
+            u = side;
+            v = at(k + 2) - corner;
+            length = partwheel::length(side);
+        }
+    }
+
+    // Calls `piece` with the middle and the area of each piece, none of which is longer or wider than the spacing: the
+    // triangle is cut into strips along its longest side, and each of these across.
+    template <class Function>
+    void cut(double spacing, const Function& piece) const {
+        const auto parts = [&](double way) { return std::max(1.0, std::ceil(way / spacing)); };
+        const double strips = length > 0 ? parts(2 * area / length) : 1;
+        for (double strip = 0; strip < strips; ++strip) {
+            const double below = 1 - strip / strips, above = 1 - (strip + 1) / strips;  // lengths, relative to u's
+            const double middle = 1 - below + (below + 2 * above) / (below + above) / (3 * strips);
+            const double count = parts(below * length);
+            for (double i = 0; i < count; ++i)
+                piece(corner + ((i + 0.5) / count * (1 - middle)) * u + middle * v,
+                      area * (below + above) / strips / count);
+        }
+    }
+};
+
+// With this spacing there are at most `most_samples` more pieces than triangles: with spacing s one of length l and
+// height h <= l has no more than (l / s) (h / s / 2 + 1) + h / s + 1 <= area / s^2 + 2 l / s + 1 of them.
+double least_spacing(double area, double lengths) {
+    return (lengths + std::sqrt(lengths * lengths + area * most_samples)) / most_samples;
+}
+
 }  // namespace
 
 Attached attach(const Surface& source, Surface& surface, Progress& progress) {
@@ -52,13 +93,20 @@ Attached attach(const Surface& source, Surface& surface, Progress& progress) {
     Tree tree(triangles.begin(), triangles.end());
     tree.build();
 
-    double area = 0;
-    for (const Piece& piece : source.pieces) area += piece.area;
+    double area = 0, lengths = 0;
+    for (size_t t = 0; t < source.triangles.size(); ++t) {
+        const Sampled sampled(source, t);
+        area += sampled.area;
+        lengths += sampled.length;
+    }
     const double size = diagonal(source);
-    const double spacing = std::max(size * sample_spacing, std::sqrt(2 * area / most_samples));
+    const double spacing = std::max(size * sample_spacing, least_spacing(area, lengths));
     Tree::Point_and_primitive_id nearest(triangles[0].vertex(0), triangles.begin());
     double farthest = 0, outside = near_enough * size, distance = 0, hidden = 0;
+    size_t samples = 0, t = 0;
     const auto find = [&](const Point& p) {
+        if (samples++ % samples_between_polls == 0)
+            progress.advance(0.9 + 0.1 * static_cast<double>(t) / static_cast<double>(source.triangles.size()));
         nearest = tree.closest_point_and_primitive(to_cgal(p), nearest);
         distance = std::sqrt(CGAL::squared_distance(nearest.first, to_cgal(p)));
         farthest = std::max(farthest, distance);
@@ -66,35 +114,22 @@ Attached attach(const Surface& source, Surface& surface, Progress& progress) {
         return static_cast<int32_t>(nearest.second - triangles.begin());
     };
 
-    const auto count = static_cast<double>(source.pieces.size());
+    for (const Point& p : source.vertices) find(p);
     surface.pieces.clear();
-    for (size_t s = 0; s < source.pieces.size(); ++s) {
-        if (s % 256 == 0) progress.advance(0.9 + 0.1 * static_cast<double>(s) / count);
-        const Triangle& t = source.triangles[s];
-        const auto at = [&](size_t k) { return source.vertices[static_cast<size_t>(t[k])]; };
-        const Point u = at(1) - at(0), v = at(2) - at(0);
-        for (size_t k = 0; k < 3; ++k) find(at(k));
-        // Cut into n^2 equal triangles, of which each is a piece.
-        const double longest = std::max({length(u), length(v), length(u - v)});
-        const auto n = static_cast<int>(std::max(1.0, std::ceil(longest / spacing)));
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < 2 * (n - i) - 1; ++j) {
-                const double a = (i + (j % 2 == 0 ? 1.0 : 2.0) / 3) / n, b = (j / 2 + (j % 2 == 0 ? 1.0 : 2.0) / 3) / n;
-                Point p = at(0);
-                for (size_t k = 0; k < 3; ++k) p[k] += a * u[k] + b * v[k];
-                surface.pieces.push_back({source.pieces[s].face, find(p), source.pieces[s].area / n / n});
-                if (distance > hidden_beyond * size) hidden += surface.pieces.back().area;
-            }
-    }
+    for (; t < source.triangles.size(); ++t)
+        Sampled(source, t).cut(spacing, [&](const Point& p, double piece) {
+            surface.pieces.push_back({source.pieces[t].face, find(p), piece});
+            if (distance > hidden_beyond * size) hidden += piece;
+        });
     surface.face_count = source.face_count;
     surface.deviation = farthest < rounding * size ? 0 : farthest / size;
     return {outside > near_enough * size ? outside / size : 0, area > 0 ? hidden / area : 0};
 }
 
 std::string percent(double share) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2g %%", 100 * share);
-    return text;
+    char text[32];  // printf would write a comma where the host's locale has one
+    char* const end = std::to_chars(text, std::end(text), 100 * share, std::chars_format::general, 2).ptr;
+    return std::string(text, end) + " %";
 }
 
 }  // namespace partwheel

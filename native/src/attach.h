@@ -5,8 +5,9 @@
 
 namespace partwheel {
 
-// Samples of a source triangle are at most this part of the bounding box's diagonal apart.
-inline constexpr double sample_spacing = 1.0 / 100;
+// A source triangle is sampled in the middle of pieces that are at most this part of the bounding box's diagonal long
+// and wide; larger ones where there would be so many more pieces than triangles.
+inline constexpr double sample_spacing = 1.0 / 100, most_samples = 1e6;
 
 // Less than this, relative to the diagonal, is not looked at more closely.
 inline constexpr double near_enough = 1.0 / 200;

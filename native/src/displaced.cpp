@@ -22,6 +22,10 @@ constexpr double nudge = 1e-3;
 // Passes of smoothing until a surface doesn't cross itself, one after the other, as multiples of the noise.
 constexpr double uncrossing_passes[] = {45, 70, 110};
 
+// No vertex is moved further than this, relative to the diagonal: enough for noise of a deviate of 1 %, and what would
+// need more is better wrapped.
+constexpr double farthest_moved = 1.0 / 20;
+
 // The vertices that are at the place of another.
 std::vector<size_t> at_one_place(const std::vector<Point>& vertices) {
     std::vector<size_t> order(vertices.size()), found;
@@ -95,6 +99,7 @@ std::optional<Surface> displaced(const Surface& source, Progress& progress) {
         for (size_t i = 0; i < 3; ++i) high[i] = std::max(high[i], source.vertices[v][i]);
     }
     surface.deviation = farthest / length(high);
+    if (surface.deviation > farthest_moved) return {};
     surface.rung = PW_RUNG_REPAIRED;
     surface.account =
         account + " The surface used is at most " + percent(surface.deviation) + " of the model's size away.";

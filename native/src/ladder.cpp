@@ -5,7 +5,7 @@
 #include "repair.h"
 #include "wrap.h"
 
-#include <stdexcept>
+#include <CGAL/exceptions.h>
 
 namespace partwheel {
 
@@ -38,7 +38,7 @@ Solid step(const Surface& source, pw_rung rung, double coarseness, const LadderO
             solid.surface = moved ? std::move(*moved) : repair(source, progress);
         }
         if (rung == PW_RUNG_WRAPPED) solid.surface = wrap(source, options.open_surfaces, coarseness, progress);
-    } catch (const std::logic_error&) {  // an assertion of CGAL's, or of what it uses
+    } catch (const CGAL::Failure_exception&) {
         throw Error(PW_ERROR_SELF_INTERSECTION,
                     "The mesh is too broken to be repaired or wrapped. Remesh it and try again.");
     }

@@ -7,7 +7,7 @@
 #include <tetgen.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
 #include <iostream>
 #include <limits>
 #include <mutex>
@@ -19,7 +19,17 @@
 
 namespace {
 
-uint32_t tetgen_random = 1;  // guarded by the lock in run_tetgen()
+// TetGen's call that runs; guarded by the lock in run_tetgen().
+uint32_t tetgen_random = 1;
+uint64_t tetgen_steps = 0, most_tetgen_steps = 0;
+partwheel::Progress* tetgen_progress = nullptr;
+
+class Endless : public partwheel::Error {  // thrown from inside TetGen
+public:
+    Endless()
+        : Error(PW_ERROR_TETRAHEDRA,
+                "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.") {}
+};
 
 }  // namespace
 
@@ -30,6 +40,12 @@ void partwheel_tetgen_srand(unsigned seed) { tetgen_random = seed % 2147483646u 
 int partwheel_tetgen_rand() {  // Park and Miller's generator
     tetgen_random = static_cast<uint32_t>(uint64_t{tetgen_random} * 48271 % 2147483647);
     return static_cast<int>(tetgen_random);
+}
+
+double partwheel_tetgen_orient3d(double* a, double* b, double* c, double* d) {
+    if (++tetgen_steps > most_tetgen_steps) throw Endless();
+    if (tetgen_steps % 4096 == 0) tetgen_progress->advance(0);
+    return orient3d(a, b, c, d);
 }
 
 namespace partwheel {
@@ -85,9 +101,36 @@ struct InputOrder {
     }
 };
 
-// TetGen keeps the surface (Y), trusts our test for intersections rather than its own angle tolerance (p///180), is
-// quiet (Q), writes no boundary faces (F: its own code for that is unsafe) and tells neighbours (n).
-void run_tetgen(const Surface& surface, const InputOrder& order, double quality, tetgenio& out) {
+// A call of TetGen may take so many steps, calls of orient3d(), for each vertex, unless quality is asked for. Of clean
+// models most take less than 300, none of 172 more than 3,000; a thin and needle-edged one comes to no end.
+constexpr uint64_t most_steps = 4000;
+
+// What TetGen is to do. Its switches are text, in which numbers are read as the host's locale writes them.
+// improve: flat tetrahedra are flipped, and split by points inside, until they are less so.
+tetgenbehavior behaviour(double quality, bool improve) {
+    tetgenbehavior b;
+    b.plc = 1;
+    b.nobisect = 1;             // the surface is kept
+    b.collinear_ang_tol = 180;  // our test for intersections is trusted
+    b.quiet = 1;
+    b.nofacewritten = 1;  // its own code for boundary faces is unsafe
+    b.neighout = 1;
+    if (quality > 0) {
+        b.quality = 1;
+        b.minratio = quality;
+        b.mindihedral = 0;
+    } else {
+        b.optmaxdihedral = 179.9;
+    }
+    if (!improve) {  // no tetrahedron is too flat
+        b.optmaxdihedral = 180;
+        b.opt_max_asp_ratio = HUGE_VAL;
+    }
+    return b;
+}
+
+void run_tetgen(const Surface& surface, const InputOrder& order, double quality, bool improve, tetgenio& out,
+                Progress& progress) {
     tetgenio in;
     in.firstnumber = 0;
     in.numberofpoints = static_cast<int>(surface.vertices.size());
@@ -113,18 +156,18 @@ void run_tetgen(const Surface& surface, const InputOrder& order, double quality,
         const Triangle& t = surface.triangles[static_cast<size_t>(order.triangles[i])];
         for (size_t k = 0; k < 3; ++k) p.vertexlist[k] = place[static_cast<size_t>(t[k])];
     }
-    char switches[64];
-    if (quality > 0)
-        std::snprintf(switches, sizeof switches, "p///180YQFnq%.17g/0", quality);
-    else
-        std::snprintf(switches, sizeof switches, "p///180YQFn");
+    tetgenbehavior b = behaviour(quality, improve);
     // TetGen's predicates keep global state: builds in other threads wait here.
     static std::mutex one_at_a_time;
     const std::scoped_lock lock(one_at_a_time);
     const Silence silence;
     partwheel_tetgen_srand(1);
+    tetgen_steps = 0;
+    most_tetgen_steps =
+        quality > 0 ? std::numeric_limits<uint64_t>::max() : most_steps * (surface.vertices.size() + 100);
+    tetgen_progress = &progress;
     try {
-        tetrahedralize(switches, &in, &out);
+        tetrahedralize(&b, &in, &out);
     } catch (int code) {
         throw_failure(code);
     }
@@ -344,22 +387,26 @@ void keep_solid(const Surface& surface, TetMesh& mesh) {
 
 TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress) {
     // Now and then TetGen fails, or leaves a point that it had to add on the surface. That depends on the order of its
-    // input: another order mostly helps.
-    constexpr uint64_t attempts = 16;
+    // input: another order mostly helps, at the latest the third. What comes to no end does so mostly when improving.
+    constexpr uint64_t attempts = 4;
+    bool improve = true;
     for (uint64_t attempt = 0;; ++attempt) {
         try {
             const InputOrder order(surface, attempt);
             tetgenio out;
-            run_tetgen(surface, order, quality, out);
+            run_tetgen(surface, order, quality, improve, out, progress);
             progress.advance(0.9);
             TetMesh mesh = read(surface, order, out);
             keep_solid(surface, mesh);
             progress.advance(1);
             return mesh;
+        } catch (const Endless&) {
+            if (attempt + 1 == attempts) throw;
+            improve = false;
         } catch (const Error& e) {
             if (e.status() != PW_ERROR_TETRAHEDRA || attempt + 1 == attempts) throw;
-            progress.advance(0);
         }
+        progress.advance(0);
     }
 }
 

@@ -4,13 +4,13 @@
 #include <tetgen.h>
 
 // The linker's names for the function that the library calls and for TetGen's own.
-#define PW_TETGEN_CALL _Z14tetrahedralizePcP8tetgenioS1_S1_S1_
+#define PW_TETGEN_CALL _Z14tetrahedralizeP14tetgenbehaviorP8tetgenioS2_S2_S2_
 #define PW_JOINED(a, b) a##b
 #define PW_NAME(prefix, call) PW_JOINED(prefix, call)
 
 extern "C" {
-void PW_NAME(__real_, PW_TETGEN_CALL)(char*, tetgenio*, tetgenio*, tetgenio*, tetgenio*);
-void PW_NAME(__wrap_, PW_TETGEN_CALL)(char*, tetgenio*, tetgenio*, tetgenio*, tetgenio*);
+void PW_NAME(__real_, PW_TETGEN_CALL)(tetgenbehavior*, tetgenio*, tetgenio*, tetgenio*, tetgenio*);
+void PW_NAME(__wrap_, PW_TETGEN_CALL)(tetgenbehavior*, tetgenio*, tetgenio*, tetgenio*, tetgenio*);
 }
 
 namespace partwheel::bench {
@@ -22,7 +22,7 @@ TetgenWatch& tetgen_watch() {
 
 }  // namespace partwheel::bench
 
-void PW_NAME(__wrap_, PW_TETGEN_CALL)(char* switches, tetgenio* in, tetgenio* out, tetgenio* added, tetgenio* sizes) {
+void PW_NAME(__wrap_, PW_TETGEN_CALL)(tetgenbehavior* how, tetgenio* in, tetgenio* out, tetgenio* added, tetgenio* sizes) {
     using namespace partwheel::bench;
     struct Booking {  // also when TetGen throws
         Seconds began = Seconds::now();
@@ -33,5 +33,5 @@ void PW_NAME(__wrap_, PW_TETGEN_CALL)(char* switches, tetgenio* in, tetgenio* ou
             ++watch.calls;
         }
     } const booking;
-    PW_NAME(__real_, PW_TETGEN_CALL)(switches, in, out, added, sizes);
+    PW_NAME(__real_, PW_TETGEN_CALL)(how, in, out, added, sizes);
 }

@@ -1,0 +1,271 @@
+// How much the ladder's rooms do, and how often they ask whether they are to stop: counted, for seconds tell nothing. The
+// linker sends the rooms' calls of Progress and of TetGen here (--wrap in cmake/tests.cmake).
+#include "attach.h"
+#include "ladder.h"
+#include "support/real_meshes.h"
+#include "support/shapes.h"
+#include "support/sizes.h"
+
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/exceptions.h>
+#include <gtest/gtest.h>
+#include <tetgen.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+// The linker's names.
+#define PW_ADVANCE _ZN9partwheel8Progress7advanceEd
+#define PW_TETGEN _Z14tetrahedralizeP14tetgenbehaviorP8tetgenioS2_S2_S2_
+#define PW_JOINED(a, b) a##b
+#define PW_NAME(prefix, call) PW_JOINED(prefix, call)
+
+namespace partwheel::test {
+namespace {
+
+size_t polls = 0, tetgen_calls = 0;  // since they were last set to 0
+std::function<void()> when_repairing;  // at each poll in that stage
+std::function<void(const std::function<void()>&)> around_tetgen;  // is given each call
+
+}  // namespace
+}  // namespace partwheel::test
+
+extern "C" {
+void PW_NAME(__real_, PW_ADVANCE)(partwheel::Progress*, double);
+void PW_NAME(__wrap_, PW_ADVANCE)(partwheel::Progress* progress, double part) {
+    using namespace partwheel::test;
+    ++polls;
+    if (when_repairing && progress->stage() == PW_STAGE_REPAIR) when_repairing();
+    PW_NAME(__real_, PW_ADVANCE)(progress, part);
+}
+void PW_NAME(__real_, PW_TETGEN)(tetgenbehavior*, tetgenio*, tetgenio*, tetgenio*, tetgenio*);
+void PW_NAME(__wrap_, PW_TETGEN)(tetgenbehavior* how, tetgenio* in, tetgenio* out, tetgenio* added, tetgenio* sizes) {
+    using namespace partwheel::test;
+    ++tetgen_calls;
+    const auto call = [=] { PW_NAME(__real_, PW_TETGEN)(how, in, out, added, sizes); };
+    around_tetgen ? around_tetgen(call) : call();
+}
+}
+
+namespace partwheel::test {
+namespace {
+
+// A cylinder's side, each of its polygons one long thin quad.
+TriMesh open_cylinder(int segments) {
+    TriMesh mesh;
+    mesh.name = "open cylinder of " + std::to_string(segments);
+    for (int i = 0; i < segments; ++i) {
+        const double angle = 2 * std::numbers::pi * i / segments;
+        const int32_t a = 2 * i, b = 2 * ((i + 1) % segments);
+        for (const double z : {0.0, 4.0}) mesh.vertices.push_back({std::cos(angle), std::sin(angle), z});
+        mesh.triangles.push_back({a, b, b + 1});
+        mesh.triangles.push_back({a, b + 1, a + 1});
+    }
+    return without_faces(mesh);
+}
+
+struct Attaching {
+    Surface source, surface;
+    Attached result;
+};
+
+Attaching attaching(const TriMesh& source, const TriMesh& surface) {
+    Attaching a;
+    a.source = read_mesh(source.view());
+    a.surface = read_mesh(surface.view());
+    for (Point& p : a.surface.vertices) p = a.source.frame.to_working(a.surface.frame.to_caller(p));
+    Progress progress;
+    progress.begin();
+    polls = 0;
+    a.result = attach(a.source, a.surface, progress);
+    return a;
+}
+
+TEST(Work, SliversAreSampledAlongOnly) {
+    const TriMesh cylinder = open_cylinder(sized(1000, 100));
+    const Attaching a = attaching(cylinder, cylinder);
+    const double along = std::ceil(4.001 / (std::hypot(2, 2, 4) * sample_spacing));
+    EXPECT_LE(static_cast<double>(a.surface.pieces.size()), along * static_cast<double>(cylinder.triangles.size()));
+    EXPECT_EQ(a.surface.deviation, 0);
+}
+
+// However long, thin and many.
+TEST(Work, SamplesAreBounded) {
+    for (const TriMesh& mesh :
+         {open_cylinder(sized(20000, 10000)), stretched(torus(sized(300, 30), 90, 2, 0.6), {1, 1, 99})}) {
+        const Attaching a = attaching(mesh, cube());
+        EXPECT_LE(static_cast<double>(a.surface.pieces.size()),
+                  most_samples + static_cast<double>(mesh.triangles.size())) << mesh.name;
+    }
+}
+
+// Also within one large triangle.
+TEST(Work, ACancellationIsAskedForByTheSample) {
+    for (const TriMesh& mesh : {tetrahedron(), cube(), open_cylinder(300)}) {
+        const Attaching a = attaching(mesh, cube());
+        EXPECT_GE(polls, a.surface.pieces.size() / 500) << mesh.name << ", " << a.surface.pieces.size() << " pieces";
+        EXPECT_GT(a.surface.pieces.size(), 1000U);
+    }
+}
+
+// ---- What is measured, against points that are ten times as dense, each held against every triangle
+
+using Kernel = CGAL::Simple_cartesian<double>;
+
+struct Nearest {
+    double distance = HUGE_VAL;
+    int32_t triangle = -1;
+};
+
+Nearest nearest(const Surface& surface, const Point& p) {
+    Nearest best;
+    for (size_t t = 0; t < surface.triangles.size(); ++t) {
+        const auto at = [&](size_t k) {
+            const Point& q = surface.vertices[static_cast<size_t>(surface.triangles[t][k])];
+            return Kernel::Point_3(q[0], q[1], q[2]);
+        };
+        const Kernel::Triangle_3 triangle(at(0), at(1), at(2));
+        const double d = std::sqrt(CGAL::squared_distance(Kernel::Point_3(p[0], p[1], p[2]), triangle));
+        if (d < best.distance) best = {d, static_cast<int32_t>(t)};
+    }
+    return best;
+}
+
+TEST(Work, WhatIsAttachedIsWhatIsNearest) {
+    // Surfaces around them: from outside, what is nearest is often an edge, which is two triangles'.
+    const TriMesh box = stretched(moved(cube(), {-0.5, -0.5, -0.25}), {3, 3, 6});
+    for (const auto& [mesh, used] :
+         {std::pair{without_faces(sphere(7, 12)), stretched(sphere(5, 9), {2, 1.5, 1.3})},
+          std::pair{open_cylinder(40), box}, std::pair{without_faces(cube()), moved(box, {0.2, 0.3, 0.1})}}) {
+        SCOPED_TRACE(mesh.name);
+        const Attaching a = attaching(mesh, used);
+        double farthest = 0, wrong = 0, whole = 0;
+        std::map<std::pair<int32_t, int32_t>, double> share;  // of the area, by face and triangle
+        for (const Piece& piece : a.surface.pieces) share[{piece.face, piece.triangle}] += piece.area;
+        const double fine = sample_spacing / sized(3, 1);
+        Point high{};
+        for (const Point& p : a.source.vertices)
+            for (size_t k = 0; k < 3; ++k) high[k] = std::max(high[k], p[k]);
+        const double size = std::hypot(high[0], high[1], high[2]);
+        for (size_t t = 0; t < a.source.triangles.size(); ++t) {
+            const auto at = [&](size_t k) { return a.source.vertices[static_cast<size_t>(a.source.triangles[t][k])]; };
+            const auto mix = [&](double x, double y) {
+                Point p;
+                for (size_t k = 0; k < 3; ++k) p[k] = at(0)[k] + x * (at(1)[k] - at(0)[k]) + y * (at(2)[k] - at(0)[k]);
+                return p;
+            };
+            const double area = a.source.pieces[t].area;
+            const int n = std::max(3, static_cast<int>(std::ceil(std::sqrt(2 * area) / (fine * size))));
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; j < n; ++j) {  // a square's middles, folded
+                    double x = (i + 0.5) / n, y = (j + 0.25) / n;
+                    if (x + y > 1) x = 1 - x, y = 1 - y;
+                    const Nearest to = nearest(a.surface, mix(x, y));
+                    farthest = std::max(farthest, to.distance);
+                    share[{a.source.pieces[t].face, to.triangle}] -= area / n / n;
+                }
+            for (size_t k = 0; k < 3; ++k) farthest = std::max(farthest, nearest(a.surface, at(k)).distance);
+            whole += area;
+        }
+        for (const auto& [key, rest] : share) wrong += std::fabs(rest) / 2;
+        // A sample is nowhere further off than half of a piece's diagonal.
+        EXPECT_NEAR(a.surface.deviation, farthest / size, 0.75 * sample_spacing);
+        EXPECT_LT(wrong, 0.05 * whole);
+    }
+}
+
+// ---- TetGen
+
+// Each rung, and each of the wraps, a few times.
+TEST(Work, CallsOfTetGenAreFew) {
+    for (const int code : {2, 3}) {
+        around_tetgen = [code](const auto&) { throw code; };
+        tetgen_calls = 0;
+        Progress progress;
+        progress.begin();
+        EXPECT_THROW((void)climb(cube().view(), {0, PW_RUNG_EXACT, false, {}}, progress), Error);
+        EXPECT_GE(tetgen_calls, 3U);  // the third helps rotor.off
+        EXPECT_LE(tetgen_calls, 4U);
+        tetgen_calls = 0;
+        progress.begin();
+        EXPECT_THROW((void)climb(cube().view(), {0, 0, false, {}}, progress), Error);
+        EXPECT_LE(tetgen_calls, 20U);
+        around_tetgen = {};
+    }
+}
+
+TEST(Work, AnotherOrderHelps) {
+    Progress progress;
+    progress.begin();
+    tetgen_calls = 0;
+    const Solid solid = climb(real_mesh("rotor.off").view(), {0, PW_RUNG_EXACT, false, {}}, progress);
+    EXPECT_EQ(solid.surface.rung, PW_RUNG_EXACT);
+    EXPECT_GT(tetgen_calls, 1U);
+}
+
+// Closed and clean, thin and needle-edged: TetGen's improvement of it comes to no end.
+TEST(Work, ACleanModelDoesNotHang) {
+    const std::string path = PARTWHEEL_MESHES "/../../../../shared/meshes/ring.off";
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "the model that hangs is not there: " << path;
+    const TriMesh ring = real_mesh("../../../../shared/meshes/ring.off");
+    Progress progress;
+    progress.begin();
+    tetgen_calls = 0;
+    const Solid solid = climb(ring.view(), {0, PW_RUNG_EXACT, false, {}}, progress);
+    EXPECT_EQ(solid.surface.rung, PW_RUNG_EXACT);
+    EXPECT_EQ(tetgen_calls, 2U);
+    double volume = 0;
+    for (const auto& [a, b, c, d] : solid.mesh.tetrahedra) {
+        const auto at = [&](int32_t v) { return solid.mesh.vertices[static_cast<size_t>(v)]; };
+        volume += six_volumes(at(a), at(b), at(c), at(d)) / 6;
+    }
+    EXPECT_NEAR(solid.surface.frame.volume_to_caller(volume), enclosed_volume(ring), 1e-9 * enclosed_volume(ring));
+}
+
+// Asked for when TetGen has begun, and heeded before it returns.
+TEST(Work, TetGenIsCancelledWithinItsCall) {
+    Progress progress;
+    progress.begin();
+    bool returned = false;
+    around_tetgen = [&](const std::function<void()>& call) {
+        progress.cancel();
+        call();
+        returned = true;
+    };
+    try {
+        (void)climb(torus(60, 40, 2, 0.5).view(), {0, PW_RUNG_EXACT, false, {}}, progress);
+        ADD_FAILURE() << "built";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.status(), PW_ERROR_CANCELLED);
+    }
+    EXPECT_FALSE(returned);
+    around_tetgen = {};
+}
+
+// ---- Mistakes
+
+TEST(Work, OnlyAssertionsOfCgalLeadToTheNextRung) {
+    const TriMesh mesh = without_faces(cube());
+    const LadderOptions repaired{0, PW_RUNG_REPAIRED, false, {}};
+    Progress progress;
+    progress.begin();
+    when_repairing = [] { throw CGAL::Assertion_exception("CGAL", "a == b", "file", 1, "message"); };
+    try {
+        (void)climb(mesh.view(), repaired, progress);
+        ADD_FAILURE() << "built";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.status(), PW_ERROR_SELF_INTERSECTION);
+    }
+    when_repairing = [] { throw std::out_of_range("our own"); };
+    EXPECT_THROW((void)climb(mesh.view(), repaired, progress), std::out_of_range);
+    when_repairing = {};
+}
+
+}  // namespace
+}  // namespace partwheel::test
