@@ -3,7 +3,8 @@
 #ifndef PARTWHEEL_TYPES_H
 #define PARTWHEEL_TYPES_H
 
-/* Largest number of vertices, triangles, faces or tetrahedra that one hierarchy holds: what int32_t can number. */
+/* Largest number of vertices, triangles, faces or tetrahedra that one hierarchy holds: what int32_t can number. A mesh
+ * that takes more than 2^29 - 16 tetrahedra is not built, but refused with PW_ERROR_MEMORY. */
 #define PW_MAX_COUNT 1000000000
 
 typedef enum pw_status {

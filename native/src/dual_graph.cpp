@@ -1,6 +1,7 @@
 // Clusters and edges: priced by hulls from hulls, contracted.
 #include "dual_graph.h"
 
+#include "numbered.h"
 #include "parallel.h"
 
 #include <algorithm>
@@ -47,7 +48,7 @@ void DualGraph::price_all(Progress& progress, size_t threads) {
 }
 
 int32_t DualGraph::add_edge(int32_t a, int32_t b) {
-    const auto edge = static_cast<int32_t>(edges_.size());
+    const int32_t edge = numbered(edges_.size());  // many are added where components are joined
     edges_.push_back({.a = a, .b = b});
     at(a).links.push_back({b, edge}, links_);
     at(b).links.push_back({a, edge}, links_);

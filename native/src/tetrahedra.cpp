@@ -1,6 +1,7 @@
 // The closed surface filled with tetrahedra by TetGen.
 #include "tetrahedra.h"
 
+#include "numbered.h"
 #include "predicates.h"
 #include "tetgen_host.h"
 
@@ -172,6 +173,7 @@ void run_tetgen(const Surface& surface, const InputOrder& order, double quality,
         throw_failure(code);
     }
     if (out.numberoftetrahedra <= 0 || !out.tetrahedronlist || !out.neighborlist) throw_failure(2);
+    check_tetrahedra(static_cast<size_t>(out.numberoftetrahedra));
 }
 
 // Keys sorted by counting: their order, equal ones as they come, and where each value's begin in it.

@@ -1,0 +1,36 @@
+// What can be numbered, to the last one; what can't is refused by name.
+#include "numbered.h"
+
+#include <gtest/gtest.h>
+
+namespace partwheel::test {
+namespace {
+
+template <class Call>
+void expect_too_many(const Call& call) {
+    try {
+        call();
+        FAIL() << "taken";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.status(), PW_ERROR_MEMORY);
+        EXPECT_NE(std::string(error.what()).find("Decimate"), std::string::npos);
+    }
+}
+
+TEST(Numbered, UpToTheLastThatAnInt32Holds) {
+    EXPECT_EQ(numbered(0), 0);
+    EXPECT_EQ(numbered(2147483647), 2147483647);
+    for (const size_t n : {size_t{2147483648}, size_t{4294967296}, ~size_t{0}}) expect_too_many([&] { (void)numbered(n); });
+}
+
+// Four numbers for each tetrahedron, and room to spare, are below 2^31.
+TEST(Numbered, AsManyTetrahedraAsTheHeaderSays) {
+    constexpr size_t most = 536870896;
+    static_assert(most == (size_t{1} << 29) - 16 && 4 * most + 63 == 2147483647);
+    EXPECT_NO_THROW(check_tetrahedra(most));
+    expect_too_many([] { check_tetrahedra(most + 1); });
+    expect_too_many([] { check_tetrahedra(2147483647); });  // the most that TetGen can tell
+}
+
+}  // namespace
+}  // namespace partwheel::test
