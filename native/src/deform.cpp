@@ -276,6 +276,7 @@ void Deformation::factorize(std::span<const Triangle> triangles) {
     for (size_t t = 0; t < triangles.size(); ++t)
         for (size_t k = 0; k < 3; ++k) {
             const int32_t i = triangles[t][(k + 1) % 3], j = triangles[t][(k + 2) % 3];
+            if (i == j) continue;  // no edge
             const double weight = cot_[t][k];
             const int32_t a = unknown_[i], b = unknown_[j];
             if (a >= 0) entries.emplace_back(a, a, weight);

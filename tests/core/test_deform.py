@@ -400,6 +400,22 @@ def test_vertex_normals_of_a_sphere():
     assert (vertex_normals(np.vstack([vertices, [[9, 9, 9]]]), triangles)[-1] == 0).all()
 
 
+def test_a_triangle_that_names_a_vertex_twice_pulls_nothing():
+    """Only its one edge counts: no iteration raises the energy, and what is at rest stays there."""
+    vertices = np.array([(-36, 119, -36), (49, 0, -120), (-120, 0, -120), (-120, 0, 49), (49, 0, 49), (-36, -120, -36)])
+    triangles = np.array([(0, 4, 1), (1, 5, 2), (2, 3, 0), (3, 5, 4), (1, 1, 0), (3, 4, 0), (4, 5, 1), (3, 2, 5)])
+    roles = np.array([0, FREE, FREE, FREE, FREE, FIXED])
+    deformation = Deformation(vertices, triangles, roles)
+    deformation.iterate(3)
+    np.testing.assert_allclose(deformation.positions(), vertices, atol=1e-9)
+    deformation.move(0, turn((1, 0, 0), 10))
+    before = deformation.energy()
+    for _ in range(5):
+        deformation.iterate(1)
+        assert (after := deformation.energy()) <= before
+        before = after
+
+
 @pytest.mark.parametrize("power", [330, 266, 60, -60, -282, -900])  # 2^266 is 1e80, 2^-282 1e-85
 def test_vertex_normals_of_any_unit(power):
     """Bit for bit those at scale 1, wherever the squares of the lengths are numbers or not."""
