@@ -3,7 +3,7 @@
 # that a second call is quick and needs no network. Debian 12; Ubuntu 24.04 (not tried).
 #
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
-#   setup_core      build/venv/core: Python with numpy, trimesh, pytest, libigl, pyfqmr
+#   setup_core      build/venv/core: Python with numpy, trimesh, pytest, libigl, pyfqmr; a locale for its tests
 #   setup_bench     build/venv/bench: numpy, scipy, matplotlib for the benchmarks; build/venv/peers: what they compare with
 #   setup_bpy       build/venv/bpy-VERSION for each of $bpy_versions
 #   setup_blender   the distribution's Blender
@@ -128,6 +128,11 @@ fill_tetgen() {
     tar -xzf "$archive" -C "$1" --strip-components=1 && rm "$archive"
 }
 
+# A locale in which numbers have a comma, for tests: LOCPATH=build/deps/locales finds it.
+fill_locales() {
+    logged localedef -i de_DE -f UTF-8 "$1/de_DE.UTF-8"
+}
+
 # venv NAME PYTHON REQUIREMENT...: build/venv/NAME with these installed.
 venv() {
     local name=$1 python=$2 directory=$root/build/venv/$1
@@ -150,7 +155,8 @@ setup_build() {
 }
 
 setup_core() {
-    start_setup && packages python3 python3-venv ca-certificates || return
+    start_setup && packages python3 python3-venv ca-certificates locales || return
+    into "$deps/locales" fill_locales || return
     venv core /usr/bin/python3 numpy scipy trimesh pytest libigl manifold3d pyfqmr
 }
 

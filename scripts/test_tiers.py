@@ -58,13 +58,14 @@ def native():
 
 
 def sanitizers():
-    """The native tests and the core tests again, watched by AddressSanitizer and UndefinedBehaviorSanitizer."""
+    """The native tests and the core tests again, watched by AddressSanitizer and UndefinedBehaviorSanitizer; the latter
+    in a host program whose numbers have a comma."""
     build("sanitizers", "asan")
     result = ctest("sanitizers-native", "asan")
     # Python isn't linked with the runtimes, so they are loaded before it; its own leaks are not looked at.
     runtimes = " ".join(output_of("g++", f"-print-file-name={name}") for name in ("libasan.so", "libstdc++.so"))
     result += pytest("sanitizers-core", "tests/core", LD_PRELOAD=runtimes, ASAN_OPTIONS="detect_leaks=0",
-                     UBSAN_OPTIONS="print_stacktrace=1", PARTWHEEL_TEST_LIGHT="1",
+                     UBSAN_OPTIONS="print_stacktrace=1", PARTWHEEL_TEST_LIGHT="1", PARTWHEEL_TEST_COMMA="1",
                      PARTWHEEL_LIBRARY=str(ROOT / "build/asan/libpartwheel.so"))
     return result
 

@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes partwheel.core importable from the checkout, and builds each shape of shapes.py once for all tests."""
+"""Makes partwheel.core importable from the checkout, and builds each shape of shapes.py once for all tests.
+
+PARTWHEEL_TEST_COMMA=1 runs all of them in a locale in which numbers have a comma, as some host programs do.
+"""
 
 import functools
+import locale
 import os
 import sys
 from pathlib import Path
@@ -13,6 +17,25 @@ sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "tests" / "faults"), str(Path(__
 
 import shapes  # noqa: E402
 from partwheel.core import Hierarchy, Mode  # noqa: E402
+
+
+def set_comma():
+    """Numbers have a comma from now on in this process, as C prints and reads them. Fails where there is no locale."""
+    os.environ["LOCPATH"] = str(ROOT / "build" / "deps" / "locales")  # in which setup puts it
+    locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
+    assert locale.localeconv()["decimal_point"] == ","
+
+
+if os.environ.get("PARTWHEEL_TEST_COMMA"):
+    set_comma()
+
+
+@pytest.fixture
+def comma():
+    before = locale.setlocale(locale.LC_ALL)
+    set_comma()
+    yield
+    locale.setlocale(locale.LC_ALL, before)
 
 
 @functools.cache

@@ -1,6 +1,7 @@
 // The ladder: which rung a mesh comes to rest on, and that what is used there is sound, against independent checks.
 #include "ladder.h"
 
+#include "displaced.h"
 #include "support/built.h"
 #include "support/real_meshes.h"
 #include "support/reference_surface.h"
@@ -149,6 +150,27 @@ TEST(Ladder, NoiseIsSmoothed) {
     EXPECT_GT(solid.surface.deviation, 0);
     EXPECT_LT(solid.surface.deviation, 0.06 * std::sqrt(3.0) / 5);
     EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(clean)), 0.02 * std::fabs(enclosed_volume(clean)));
+}
+
+// This hand's wrist is so coarse that smoothing moves it by 14 % of the diagonal; the noise is no more than of others.
+TEST(Ladder, SmoothingMovesNothingFar) {
+    Progress progress;
+    progress.begin();
+    size_t smoothed = 0, left = 0;
+    for (const char* file : {"hand.off", "elephant.off"}) {
+        const TriMesh clean = real_mesh(file);
+        const Surface surface = read_mesh(clean.view());
+        Point high{};  // the lower corner is the origin
+        for (const Point& p : surface.vertices)
+            for (size_t k = 0; k < 3; ++k) high[k] = std::max(high[k], p[k]);
+        const double diagonal = length(high) * surface.frame.scale;
+        const TriMesh noisy = perturbed(clean, 0.003 * std::sqrt(3.0) * diagonal, 1);
+        const std::optional<Surface> moved = displaced(read_mesh(noisy.view()), progress);
+        EXPECT_LE(moved ? moved->deviation : 0, 0.05) << file;
+        ++(moved ? smoothed : left);
+    }
+    EXPECT_EQ(smoothed, 1U);
+    EXPECT_EQ(left, 1U);
 }
 
 TEST(Ladder, AWrapHoldsAllOfTheSource) {

@@ -5,6 +5,7 @@
 #include "support/real_meshes.h"
 #include "support/shapes.h"
 #include "support/sizes.h"
+#include "tetgen_host.h"
 
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/exceptions.h>
@@ -226,6 +227,25 @@ TEST(Work, ACleanModelDoesNotHang) {
         volume += six_volumes(at(a), at(b), at(c), at(d)) / 6;
     }
     EXPECT_NEAR(solid.surface.frame.volume_to_caller(volume), enclosed_volume(ring), 1e-9 * enclosed_volume(ring));
+}
+
+// The same without that model: a call whose steps come to no end is followed by one without improvement.
+TEST(Work, StepsOfTetGenAreBounded) {
+    const TriMesh mesh = torus(16, 8, 2, 0.6);
+    double steps = 0;
+    tetgen_calls = 0;
+    around_tetgen = [&](const std::function<void()>& call) {
+        double a[] = {0, 0, 0}, b[] = {1, 0, 0}, c[] = {0, 1, 0}, d[] = {0, 0, 1};
+        for (; tetgen_calls == 1; ++steps) partwheel_tetgen_orient3d(a, b, c, d);
+        call();
+    };
+    Progress progress;
+    progress.begin();
+    EXPECT_EQ(climb(mesh.view(), {0, PW_RUNG_EXACT, false, {}}, progress).surface.rung, PW_RUNG_EXACT);
+    around_tetgen = {};
+    EXPECT_EQ(tetgen_calls, 2U);
+    EXPECT_GT(steps, 200 * static_cast<double>(mesh.vertices.size()));
+    EXPECT_LT(steps, 5000 * static_cast<double>(mesh.vertices.size()));
 }
 
 // Asked for when TetGen has begun, and heeded before it returns.

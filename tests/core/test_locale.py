@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A host program may have set any locale: numbers given to the mesher, and those in sentences, are the same in all."""
+
+import shapes
+from partwheel.core import Hierarchy, Rung
+
+
+def answers():
+    """Saved bytes with points inside, and an account that has numbers."""
+    shape = shapes.SHAPES["torus"]()
+    saved = Hierarchy.build(*shape, quality=1.4).save()
+    return bytes(saved), Hierarchy.build(*shape, rungs=Rung.WRAPPED).account
+
+
+def test_numbers_do_not_depend_on_the_locale(request):
+    saved, account = answers()
+    request.getfixturevalue("comma")
+    german_saved, german_account = answers()
+    assert german_saved == saved
+    assert german_account == account and "." in account.partition("at most ")[2].partition(" %")[0]
