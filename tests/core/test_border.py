@@ -3,7 +3,6 @@
 
 import itertools
 import os
-import time
 
 import numpy as np
 import pytest
@@ -65,23 +64,18 @@ def test_parts_of_a_real_mesh(name):
     assert after < 0.97 * before
 
 
-if "libasan" not in os.environ.get("LD_PRELOAD", ""):  # times mean nothing there, and memory is kept
-    def test_time_at_100000_faces():
-        """50 ms promised, for processor time of the median; here four times that, for slow and busy machines."""
+if "libasan" not in os.environ.get("LD_PRELOAD", ""):  # memory is kept there
+    def test_100000_faces():
+        """What that takes is measured by scripts/bench_felt."""
         vertices, triangles, *_ = shapes.off("bear")
         while len(triangles) < 80000:
             vertices, triangles = halved(vertices, triangles)
         middle = np.median(vertices, axis=0)
         height = vertices[triangles].mean(axis=1) - middle
-        seconds = []
         for axis, offset in itertools.product(range(3), (-0.1, 0, 0.2)):
             part = height[:, axis] > offset * np.ptp(vertices[:, axis])
-            began = time.process_time()
             snapped = snapped_border(vertices, triangles, None, None, part)
-            seconds.append(time.process_time() - began)
             assert (snapped != part).any()
-        print(f"{len(triangles)} faces: median {1e3 * np.median(seconds):.0f} ms, most {1e3 * max(seconds):.0f} ms")
-        assert np.median(seconds) < 0.2
 
 
 def halved(vertices, triangles):

@@ -16,7 +16,7 @@ STAGES = ["surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy
 
 def run(*arguments, python=(sys.executable,), **environment):
     return subprocess.run(
-        [*python, "-m", "partwheel.core", *map(str, arguments)], capture_output=True, text=True, timeout=120,
+        [*python, "-m", "partwheel.core", *map(str, arguments)], capture_output=True, text=True, timeout=1800,
         env={**os.environ, "PYTHONPATH": str(ROOT / "addon"), **environment},
     )
 

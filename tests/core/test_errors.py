@@ -155,7 +155,7 @@ if "libasan" not in os.environ.get("LD_PRELOAD", ""):
                     print(error.name)
         """)
         path = os.pathsep.join([str(ROOT / "addon"), str(ROOT / "tests" / "core")])
-        run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=300,
+        run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=1800,
                              env={**os.environ, "PYTHONPATH": path})
         assert run.returncode == 0, run.stderr
         results = run.stdout.split("\n")[:-1]

@@ -246,7 +246,7 @@ if LINUX and PLAIN:
             runpy.run_path({str(worker.ENTRY)!r}, run_name="__main__")
         """))
         monkeypatch.setattr(worker, "ENTRY", entry)
-        shape = shapes.off("hand")
+        shape = shapes.cube()  # which the pipe holds, so that the job listens before the worker has read it
         job = Job(*shape, rungs=EXACT, time_limit=60)
         for turn in (1, 2, 3):
             clock.set_on(50, job)

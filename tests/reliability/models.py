@@ -57,7 +57,7 @@ def primitives():
             clean = {"PATH": os.environ["PATH"], "HOME": made, "LANG": "C.UTF-8"}
             subprocess.run(["blender", "-b", "-noaudio", "--factory-startup", "--python-exit-code", "9", "--python",
                             Path(__file__).with_name("primitives.py"), "--", made], env=clean, check=True,
-                           stdout=subprocess.DEVNULL, timeout=120)
+                           stdout=subprocess.DEVNULL, timeout=1800)
             directory.mkdir()
             for path in Path(made).glob("*.npz"):
                 path.rename(directory / path.name)

@@ -14,7 +14,7 @@ def alive(process):
 
 
 def play(stage):
-    x, y, stops, start = yield from close_to(stage)
+    x, y, stops, start = yield from close_to(stage, "large")
     session = stage.session
     stage.select([3])
     stage.mouse.move(x, y)
@@ -51,10 +51,10 @@ def play(stage):
         stage.check(not bpy.data.is_dirty, "a file just opened counts as saved")
 
 
-def close_to(stage):
+def close_to(stage, name):
     """The model without its parts, seen from so close that a face is large enough to be clicked safely: (x, y, stops,
     start) of one."""
-    yield from stage.open("large", build=False)
+    yield from stage.open(name, build=False)
     stage.view_3d.view_perspective = "ORTHO"  # so that nothing is behind the eye
     stage.view_3d.view_distance /= 8
     yield from stage.drawn()
