@@ -156,8 +156,8 @@ class MESH_OT_partwheel_split(_AsSolid, bpy.types.Operator):
 
     def work(self, context, obj, hierarchy):
         count = min(self.parts, len(hierarchy.tetrahedra))
-        bounds = (hierarchy.cut_height(self.height) if self.by == "HEIGHT" else hierarchy.cut_parts(count)
-                  if self.by == "PARTS" else hierarchy.cut_least_concavity(count))
+        into = {"PARTS": hierarchy.cut_parts, "LEAST_CONCAVITY": hierarchy.cut_least_concavity}
+        bounds = hierarchy.cut_height(self.height) if self.by == "HEIGHT" else into[self.by](count)
         made = composition.split(obj, hierarchy, bounds, self.caps(), self.explode)
         only(context, made)
         if self.hide:
