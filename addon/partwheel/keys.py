@@ -53,16 +53,18 @@ MOVES = frozenset({"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"})
 TURNS = {**dict.fromkeys(LARGER.events, 1), **dict.fromkeys(SMALLER.events, -1)}
 
 WAITING = (CLICK, NAVIGATE, CANCEL)
-PICKED = (LARGER, SMALLER, NUMBER, SNAP_BORDER, CONFIRM, NAVIGATE, CANCEL)
+# While a part is held, with what is done with it, and then the ends.
+PICKED = (LARGER, SMALLER, NUMBER, SNAP_BORDER)
 # With the toolbar's tool a click goes on to the next part, and 1, 2 and 3 are Blender's.
-HELD = (LARGER, SMALLER, SNAP_BORDER, CLICK._replace(label="Next Part"), CONFIRM, NAVIGATE, CANCEL)
+HELD = (LARGER, SMALLER, CLICK._replace(label="Next Part"), SNAP_BORDER)
+ENDS = (CONFIRM, NAVIGATE, CANCEL)
 # Shift, Ctrl and a letter, of those that no keymap of Blender's has for anything in Edit Mode.
 COMMANDS = (
-    Command("mesh.partwheel_deform", "D", "Drag a Handle", {"method": "RIGID"}),
-    Command("mesh.partwheel_deform", "J", "Turn at the Joint", {"method": "JOINT"}),
-    Command("mesh.partwheel_move", "G", "Move Proportionally"),
-    Command("mesh.partwheel_deform", "P", "Move within the Part", {"method": "PROPORTIONAL", "start": "G"}),
-    Command("mesh.partwheel_copy", "C", "Copy as Solid"),
+    Command("mesh.partwheel_deform", "D", "Drag Handle", {"method": "RIGID"}),
+    Command("mesh.partwheel_deform", "J", "Turn Joint", {"method": "JOINT"}),
+    Command("mesh.partwheel_move", "G", "Move"),
+    Command("mesh.partwheel_deform", "P", "Move Within", {"method": "PROPORTIONAL", "start": "G"}),
+    Command("mesh.partwheel_copy", "C", "Copy"),
     Command("mesh.partwheel_remove", "X", "Remove"),
 )
 

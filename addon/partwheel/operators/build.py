@@ -68,15 +68,15 @@ class Building:
         return True
 
     def abandon(self, context):
-        """Ends it, if it isn't over."""
-        if self.timer:
-            self.build.cancel()
-            self._stop_watching(context)
-            self._conclude()
+        """Ends it before it is over."""
+        self.build.cancel()
+        self._stop_watching(context)
+        self._conclude()
 
     def _stop_watching(self, context):
-        context.window_manager.event_timer_remove(self.timer)
-        self.timer = None
+        if self.timer:
+            context.window_manager.event_timer_remove(self.timer)
+            self.timer = None
         self._end_progress(context)
         if context.workspace:
             context.workspace.status_text_set(None)
@@ -188,7 +188,8 @@ class _Build(InView):
     def _handle(self, context, event):
         if not self.building.step(context, event):
             return {"PASS_THROUGH"}
-        return {"FINISHED"} if self.building.hierarchy else {"CANCELLED"}
+        building, self.building = self.building, None
+        return {"FINISHED"} if building.hierarchy else {"CANCELLED"}
 
     def _take_back(self, context):
         if self.building:

@@ -97,11 +97,11 @@ class InView:
             if told and context.area:
                 context.area.header_text_set(None)
 
-    def _tell(self, context, header, row, commands=()):
+    def _tell(self, context, header, row):
         """A line in the view's header, and in the status bar the keys that count, see status.drawer()."""
-        if (header, row, commands) != self._told:  # each time both bars are drawn anew
-            self._told = header, row, commands
-            context.workspace.status_text_set(status.drawer(row, commands))
+        if (header, row) != self._told:  # each time both bars are drawn anew
+            self._told = header, row
+            context.workspace.status_text_set(status.drawer(row))
             if context.area:
                 context.area.header_text_set(f"Partwheel: {header}")
 

@@ -235,7 +235,8 @@ class PartPicker(InView):
         share = self.hierarchy.area[state.node] / self.hierarchy.area[-1]
         number = state.typed + "_" if state.typed else state.index + 1
         self._tell(context, f"Part {number} of {len(state.stops)}, {len(self.faces):,} faces, {share:.1%} of the area"
-                            + ", border in creases" * self.snap, keys.HELD if self.tool else keys.PICKED, self.commands)
+                            + ", border in creases" * self.snap,
+                   (keys.HELD if self.tool else keys.PICKED) + self.commands + keys.ENDS)
         return {"RUNNING_MODAL"}
 
     def _tool_snaps(self, context):

@@ -11,20 +11,27 @@ ICONS = set(bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum
 WHEEL = "MOUSE_MMB_SCROLL"
 
 
-def drawer(row, commands=()):
-    """A function for WorkSpace.status_text_set(): these keys.Key, and the keys.Command that the user has keys for."""
+def drawer(row):
+    """A function for WorkSpace.status_text_set(): these keys.Key, and keys.Command as far as the user has keys for them.
+    Modifiers that several have are shown before the first."""
     def draw(header, _context):
-        for key in row:
-            icons = (WHEEL, *key.icons) if key is keys.LARGER and WHEEL in ICONS else key.icons
-            _entry(header.layout, icons, f"{key.names}: {key.label}" if key.names else key.label)
-        for command in commands:
-            item = keymap.item(command)
-            held = item and [f"EVENT_{name.upper()}" for name in ("shift", "ctrl", "alt") if getattr(item, name)]
-            if item and f"EVENT_{item.type}" in ICONS:
-                _entry(header.layout, [*held, f"EVENT_{item.type}"], command.label)
-            elif item:
-                _entry(header.layout, [], f"{item.to_string()}: {command.label}")
+        before = []
+        for icons, text in filter(None, map(_shown, row)):
+            held, before = before if icons[:-1] == before else [], icons[:-1]
+            _entry(header.layout, icons[len(held):], text)
     return draw
+
+
+def _shown(key):
+    """(icons, text), or None."""
+    if isinstance(key, keys.Key):
+        icons = [WHEEL] * (key is keys.LARGER and WHEEL in ICONS) + list(key.icons)
+        return icons, f"{key.names}: {key.label}" if key.names else key.label
+    item = keymap.item(key)
+    if item and f"EVENT_{item.type}" in ICONS:
+        held = [f"EVENT_{name.upper()}" for name in ("shift", "ctrl", "alt") if getattr(item, name)]
+        return [*held, f"EVENT_{item.type}"], key.label
+    return item and ([], f"{item.to_string()}: {key.label}")
 
 
 def _entry(layout, icons, text):
