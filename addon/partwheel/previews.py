@@ -6,7 +6,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 MARK = "partwheel_preview"
-SHOWN, HIDDEN, HIDDEN_SELECTED = range(3)
+SHOWN, HIDDEN, SELECTED, ACTIVE = 0, 1, 2, 4  # what was hidden, with what it was before
 
 
 def show(obj):
@@ -22,14 +22,14 @@ def show(obj):
 
 
 def hide(obj):
-    """Until end()."""
-    obj[MARK] = HIDDEN_SELECTED if obj.select_get() else HIDDEN
+    """Until end(). Blender may then have no active object."""
+    obj[MARK] = HIDDEN | SELECTED * obj.select_get() | ACTIVE * (obj == bpy.context.view_layer.objects.active)
     obj.hide_viewport = True
 
 
 @persistent
 def end(*_):
-    """No preview is left, and what was hidden is seen again, and selected if it was."""
+    """No preview is left, and what was hidden is seen again, selected and active if it was."""
     for obj in [obj for obj in bpy.data.objects if MARK in obj and not obj.library]:
         if obj[MARK] == SHOWN:
             mesh = obj.data
@@ -39,8 +39,9 @@ def end(*_):
         obj.hide_viewport = False
         layer = bpy.context.view_layer
         layer.update()
-        if obj[MARK] == HIDDEN_SELECTED and obj.name in layer.objects:
-            obj.select_set(True)
+        if obj.name in layer.objects:
+            obj.select_set(bool(obj[MARK] & SELECTED))
+            layer.objects.active = obj if obj[MARK] & ACTIVE else layer.objects.active
         del obj[MARK]
 
 

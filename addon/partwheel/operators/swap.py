@@ -101,8 +101,9 @@ class MESH_OT_partwheel_swap(InView, Snaps, OnPart, OnParts, bpy.types.Operator)
         return {"RUNNING_MODAL"}
 
     def _still_there(self, context):
-        obj = context.active_object
-        return obj is not None and obj.name == self.place.name and context.mode == "OBJECT"
+        active = context.view_layer.objects.active  # none while it is hidden, in some versions
+        return (self.place.name in context.view_layer.objects and (active is None or active.name == self.place.name)
+                and context.mode == "OBJECT")
 
     def _handle(self, context, event):
         if not self.preview.there():  # a file was saved meanwhile, or a step undone
