@@ -25,11 +25,12 @@ if "register" in globals():
 
 
 def register():
-    from . import command, operators, preferences, prepared, session, tools, ui
+    from . import command, operators, preferences, prepared, previews, session, tools, ui
 
     preferences.register()
     session.register()
     prepared.register()
+    previews.register()
     operators.register()
     ui.register()
     tools.register()
@@ -37,13 +38,14 @@ def register():
 
 
 def unregister():
-    from . import command, operators, overlay, preferences, prepared, session, tools, ui
+    from . import command, operators, overlay, preferences, prepared, previews, session, tools, ui
 
     command.unregister()
     tools.unregister()
     ui.unregister()
     operators.unregister()
     overlay.unregister()
+    previews.unregister()
     prepared.unregister()
     session.unregister()
     preferences.unregister()

@@ -2,7 +2,8 @@
 """Which event does what while a part is being picked, placed or deformed, and how the status bar names it. No bpy here.
 
 A modal operator written in Python can't have a keymap that users edit, so this table is it: modal() looks events up
-here, and the status bar is drawn from the same rows.
+here, and the status bar is drawn from the same rows. What starts another operator with the part is in Blender's own
+keymap, where users can edit it: COMMANDS.
 """
 
 from typing import NamedTuple
@@ -18,6 +19,15 @@ class Key(NamedTuple):
     names: str = ""
 
 
+class Command(NamedTuple):
+    """An operator on the part that was picked last, and its key, which is pressed with Shift and Ctrl."""
+
+    operator: str
+    key: str
+    label: str
+    options: dict = {}
+
+
 LARGER = Key("LARGER", frozenset({"WHEELUPMOUSE", "PAGE_UP", "NUMPAD_PLUS", "UP_ARROW"}), "Larger",
              names="Wheel Up, ↑")
 SMALLER = Key("SMALLER", frozenset({"WHEELDOWNMOUSE", "PAGE_DOWN", "NUMPAD_MINUS", "DOWN_ARROW"}), "Smaller",
@@ -25,7 +35,7 @@ SMALLER = Key("SMALLER", frozenset({"WHEELDOWNMOUSE", "PAGE_DOWN", "NUMPAD_MINUS
 CONFIRM = Key("CONFIRM", frozenset({"RET", "NUMPAD_ENTER"}), "Confirm", ("EVENT_RETURN",))
 CANCEL = Key("CANCEL", frozenset({"RIGHTMOUSE", "ESC"}), "Cancel", ("EVENT_ESC", "MOUSE_RMB"))
 CLICK = Key("CLICK", frozenset({"LEFTMOUSE"}), "Pick a Part", ("MOUSE_LMB",))
-SNAP_BORDER = Key("SNAP_BORDER", frozenset({"TAB"}), "Snap Border", ("EVENT_SHIFT", "EVENT_TAB"))  # with Shift
+SNAP_BORDER = Key("SNAP_BORDER", frozenset("E"), "Snap Border", ("EVENT_SHIFT", "EVENT_CTRL", "EVENT_E"))
 ERASE = Key("ERASE", frozenset({"BACK_SPACE"}), "")
 DIGITS = dict(zip(("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE"), "0123456789"))
 NUMBER = Key("NUMBER", frozenset(DIGITS), "Part by Number", names="0-9")
@@ -43,9 +53,20 @@ MOVES = frozenset({"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"})
 TURNS = {**dict.fromkeys(LARGER.events, 1), **dict.fromkeys(SMALLER.events, -1)}
 
 WAITING = (CLICK, NAVIGATE, CANCEL)
-PICKED = (LARGER, SMALLER, NUMBER, SNAP_BORDER, CONFIRM, NAVIGATE, CANCEL)
-# With the toolbar's tool a click goes on to the next part.
-HELD = (LARGER, SMALLER, NUMBER, SNAP_BORDER, CLICK._replace(label="Next Part"), CONFIRM, NAVIGATE, CANCEL)
+# While a part is held, with what is done with it, and then the ends.
+PICKED = (LARGER, SMALLER, NUMBER, SNAP_BORDER)
+# With the toolbar's tool a click goes on to the next part, and 1, 2 and 3 are Blender's.
+HELD = (LARGER, SMALLER, CLICK._replace(label="Next Part"), SNAP_BORDER)
+ENDS = (CONFIRM, NAVIGATE, CANCEL)
+# Shift, Ctrl and a letter, of those that no keymap of Blender's has for anything in Edit Mode.
+COMMANDS = (
+    Command("mesh.partwheel_deform", "D", "Drag Handle", {"method": "RIGID"}),
+    Command("mesh.partwheel_deform", "J", "Turn Joint", {"method": "JOINT"}),
+    Command("mesh.partwheel_move", "G", "Move"),
+    Command("mesh.partwheel_deform", "P", "Move Within", {"method": "PROPORTIONAL", "start": "G"}),
+    Command("mesh.partwheel_copy", "C", "Copy"),
+    Command("mesh.partwheel_remove", "X", "Remove"),
+)
 
 # While a part is deformed: between two movements of the handle, and during one.
 DRAG = Key("DRAG", frozenset({"LEFTMOUSE"}), "Drag the Handle, or Put It Elsewhere", ("MOUSE_LMB_DRAG",))

@@ -237,10 +237,11 @@ class Shown:
     def on(self):
         return self._handler is not None
 
-    def show(self, obj, parts, node, larger, snapped):
+    def show(self, drawing, obj, parts, node, larger, snapped):
+        """drawing: InView._drawing of the operator that shows it."""
         self._what = obj.name_full, parts, node, larger, snapped
         if not self._handler:
-            self._handler = bpy.types.SpaceView3D.draw_handler_add(self._draw, (), "WINDOW", "POST_VIEW")
+            self._handler = bpy.types.SpaceView3D.draw_handler_add(drawing(self._draw), (), "WINDOW", "POST_VIEW")
         redraw()
 
     def hide(self):

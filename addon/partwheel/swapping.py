@@ -114,7 +114,11 @@ class Place:
         else:
             new = composition.copied(source, _hierarchy_of(offer), offer.node, snap=self.snap,
                                      collection=composition.home(obj))
-        self.put(new, offer, adjustment)
+        try:
+            self.put(new, offer, adjustment)
+        except Exception:
+            dispose(new)
+            raise
         return new
 
     def put(self, new, offer, adjustment):

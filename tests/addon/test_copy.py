@@ -8,6 +8,23 @@ from common import part, read_off
 from solid_case import SolidTest, arrays, caps, volume
 
 
+def angles(mesh):
+    """The angle between the caps of a mesh and its own surface, on average over their borders; and what it would be if
+    each were a cone around the mean of its border."""
+    bm = bmesh.new()
+    bm.from_mesh(mesh)
+    bm.faces.ensure_lookup_table()
+    marks = caps(mesh)
+    border = [edge for edge in bm.edges if len({marks[face.index] for face in edge.link_faces}) == 2]
+    found = [numpy.mean([edge.calc_face_angle() for edge in border])]
+    bmesh.ops.delete(bm, geom=[bm.faces[index] for index in numpy.flatnonzero(marks)], context="FACES")
+    filled = bmesh.ops.holes_fill(bm, edges=border)["faces"]
+    bmesh.ops.poke(bm, faces=filled, center_mode="MEAN")
+    found.append(numpy.mean([edge.calc_face_angle() for edge in border]))
+    bm.free()
+    return found
+
+
 class Copy(SolidTest):
     def test_is_closed_and_of_the_parts_volume(self):
         for name in ("dragknob", "hand", "torus"):
@@ -139,6 +156,14 @@ class Copy(SolidTest):
             smooth = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=node, smooth=True).data
             self.assertSolid(smooth)
             self.assertEqual((~caps(smooth)).sum(), (~caps(flat)).sum())
+
+    def test_smooth_caps_go_on_as_the_surface_does(self):
+        """They meet it at a far smaller angle than a plain cone over the same border does."""
+        for name in ("hand", "dragknob", "torus"):
+            obj, hierarchy = self.built(name)
+            copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy, node=self.nodes(hierarchy)[-1], smooth=True).data
+            angle, cone = angles(copy)
+            self.assertLess(angle, 0.85 * cone, name)
 
     def test_cap_material(self):
         obj, hierarchy = self.built("hand")

@@ -119,8 +119,8 @@ class RandomEvents(ToolTest):
 
     def actions(self):
         if self.model.held:
-            return [self.turn] * 6 + [self.digit, self.digit, self.erase, self.drag, self.confirm, self.cancel,
-                                      self.next_click, self.other_key, self.snap]
+            own = [self.next_click] if self.tool.tool else [self.digit, self.digit, self.erase]
+            return [self.turn] * 6 + own + [self.drag, self.confirm, self.cancel, self.other_key, self.snap]
         can = [self.click] * 3 + [self.beside]
         if self.model.at > max(0, len(self.model.steps) - DEEP):
             can += [self.undo]
@@ -128,8 +128,9 @@ class RandomEvents(ToolTest):
             can += [self.redo]
         return can
 
-    def begin(self, point, how):
-        self.tool, self.context = Tool(tool=True, **how), FakeContext()
+    def begin(self, point, how, tool=True):
+        """With the toolbar's tool or without it, where digits are Blender's."""
+        self.tool, self.context = Tool(tool=tool, **how), FakeContext()
         return self.tool.invoke(self.context, event("LEFTMOUSE", point))
 
     def finish(self, answer, expected):
@@ -140,7 +141,7 @@ class RandomEvents(ToolTest):
 
     def click(self):
         (point, face), how = self.random.choice(self.spots), self.random.choice(HOWS)
-        self.assertEqual(self.begin(point, how), {"RUNNING_MODAL"})
+        self.assertEqual(self.begin(point, how, self.random.random() < 0.5), {"RUNNING_MODAL"})
         self.send("LEFTMOUSE", point, "RELEASE")
         self.model.click(face, how)
         return face, how
@@ -167,7 +168,7 @@ class RandomEvents(ToolTest):
         return digit
 
     def snap(self):
-        self.send("TAB", shift=True)
+        self.send("E", shift=True, ctrl=True)
         self.model.snap()
 
     def erase(self):
@@ -203,7 +204,7 @@ class RandomEvents(ToolTest):
         return self.click()
 
     def other_key(self):
-        self.finish(self.send(self.random.choice(("TAB", "A", "E", "SPACE"))), {"FINISHED", "PASS_THROUGH"})
+        self.finish(self.send(self.random.choice(("TAB", "A", "E", "X"))), {"FINISHED", "PASS_THROUGH"})
         self.model.confirm()
 
     def undo(self):

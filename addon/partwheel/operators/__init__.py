@@ -10,6 +10,7 @@ from .copy_part import MESH_OT_partwheel_copy, MESH_OT_partwheel_remove, MESH_OT
 from .deform import PARTWHEEL_PG_handle, MESH_OT_partwheel_deform
 from .paint import MESH_OT_partwheel_paint, OBJECT_OT_partwheel_select
 from .place import OBJECT_OT_partwheel_place
+from .proportional import MESH_OT_partwheel_move
 from .select import MESH_OT_partwheel_select
 from .swap import MESH_OT_partwheel_swap
 from .unite import OBJECT_OT_partwheel_unite
@@ -19,7 +20,7 @@ CLASSES = (
     MESH_OT_partwheel_select, OBJECT_OT_partwheel_select, MESH_OT_partwheel_paint,
     MESH_OT_partwheel_copy, MESH_OT_partwheel_remove, MESH_OT_partwheel_split,
     OBJECT_OT_partwheel_place, OBJECT_OT_partwheel_unite, MESH_OT_partwheel_swap,
-    PARTWHEEL_PG_handle, MESH_OT_partwheel_deform,
+    PARTWHEEL_PG_handle, MESH_OT_partwheel_deform, MESH_OT_partwheel_move,
 )
 
 register, _unregister_classes = bpy.utils.register_classes_factory(CLASSES)

@@ -12,6 +12,7 @@ import bpy
 from .. import session
 from ..core import LibraryError, PartwheelError, Status
 from ..ui import status
+from .in_view import InView
 
 TICK = 0.1  # seconds between two looks at the worker
 
@@ -73,13 +74,15 @@ class Building:
         return True
 
     def abandon(self, context):
-        """The user has pressed Esc; or Blender ends the operator: the window closes or another file opens."""
+        """Ends it before it is over."""
         self.build.cancel()
         self._stop_watching(context)
         self._conclude()
 
     def _stop_watching(self, context):
-        context.window_manager.event_timer_remove(self.timer)
+        if self.timer:
+            context.window_manager.event_timer_remove(self.timer)
+            self.timer = None
         self._end_progress(context)
         self.line.end(context)
 
@@ -134,7 +137,7 @@ def start(operator, obj, **options):
         return None
 
 
-class _Build:
+class _Build(InView):
     """What building and finding have in common."""
 
     quality: bpy.props.FloatProperty(
@@ -162,23 +165,30 @@ class _Build:
         building = self._start(context)
         return {"FINISHED"} if building and building.wait(context) else {"CANCELLED"}
 
-    def invoke(self, context, _event):
-        if context.window is None:
-            return self.execute(context)
+    building = None
+
+    def invoke(self, context, event):
+        return self._started(context, event) if context.window else self.execute(context)
+
+    def _begin(self, context, _event):
         self.building = self._start(context)
         if not self.building:
             return {"CANCELLED"}
         self.building.watch(context)
-        context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context, event):
+    def _still_there(self, _context):
+        return True  # the build itself knows
+
+    def _handle(self, context, event):
         if not self.building.step(context, event):
             return {"PASS_THROUGH"}
-        return {"FINISHED"} if self.building.hierarchy else {"CANCELLED"}
+        building, self.building = self.building, None
+        return {"FINISHED"} if building.hierarchy else {"CANCELLED"}
 
-    def cancel(self, context):
-        self.building.abandon(context)
+    def _take_back(self, context):
+        if self.building:
+            self.building.abandon(context)
 
     def _start(self, context):
         return start(self, context.active_object, quality=self.quality, open_surfaces=self.open_surfaces)

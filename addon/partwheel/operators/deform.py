@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """mesh.partwheel_deform: a picked part follows a handle that is dragged, turned and scaled; all beyond it stays."""
 
-import contextlib
-import traceback
 from dataclasses import dataclass, field
 
 import bmesh
@@ -18,7 +16,7 @@ from ..core.joint import REACH
 from ..deforming import METHODS, Pen, Refused, Region
 from ..movement import DIGITS, Movement
 from ..picking import FaceTree, view_of, view_under
-from ..ui import status
+from .in_view import InView, waiting
 
 TICK = 0.03  # seconds
 NOTCH = 1.25  # what a notch of the wheel makes of the handle's size
@@ -42,12 +40,14 @@ class Handle:
     matrix: np.ndarray = field(default_factory=lambda: np.eye(4))  # in the object's space
 
 
-class MESH_OT_partwheel_deform(bpy.types.Operator):
+class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     """Drag a handle of the part that was picked last: the part follows like a soft body, all beyond it stays"""
 
     bl_idname = "mesh.partwheel_deform"
     bl_label = "Deform Part"
     bl_options = {"REGISTER", "UNDO"}
+    refusals = Refused, PartwheelError  # faces too thin, for instance
+    task, changed = None, False  # what goes on in the background; whether anything was moved
 
     node: bpy.props.IntProperty(
         name="Part", description="Node of the hierarchy; -1: the part that was picked last", default=-1, min=-1,
@@ -114,7 +114,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
                 shape = METHODS[self.method](regions[-1], self._patches(regions[-1], handles))
                 shape.jump([np.array(each.matrix).reshape(4, 4) for each in handles])
                 Pen(obj, regions[-1]).write(obj, shape.points())
-        except (Refused, PartwheelError) as error:
+        except self.refusals as error:
             _restored(obj, regions)
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -147,33 +147,25 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
 
     # ---- With the mouse --------------------------------------------------------------------------------------------
 
-    def invoke(self, context, event):
-        if context.window is None or context.area is None or context.area.type != "VIEW_3D":
-            self.report({"ERROR"}, "Parts are deformed in a 3D view: start this with the mouse over one.")
-            return {"CANCELLED"}
+    def _begin(self, context, event):
         obj = context.edit_object
-        try:
-            with _waiting(context):
-                self.faces = self._faces(obj)
-                self.regions = [self._region(obj, self.faces)]
-                picked = session.picked(obj)
-                self.placed = [self._handle_of(obj, picked and picked.face)]
-                self.task, self.confirmed, self.behind, self.settling = None, False, False, False
-                self._hold()
-        except (Refused, PartwheelError) as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        self._at_end.callback(lambda: self.task and self.task.abandon())
+        with waiting(context):
+            self.faces = self._faces(obj)
+            self.regions = [self._region(obj, self.faces)]
+            picked = session.picked(obj)
+            self.placed = [self._handle_of(obj, picked and picked.face)]
+            self.confirmed, self.behind, self.settling, self.recompute = False, False, False, False
+            self._hold()
         self.pen = None
         self.object_name, self.turns = obj.name_full, []
         self.movement, self.base = None, None  # that is under way; the last handle's matrix when it began
         self.counts = len(obj.data.vertices), len(obj.data.polygons)
-        self.changed, self.recompute, self.told = False, False, None
-        self.timer = context.window_manager.event_timer_add(TICK, window=context.window)
-        self.drawing = bpy.types.SpaceView3D.draw_handler_add(self._draw, (), "WINDOW", "POST_VIEW")
+        self._tick_every(context, TICK)
+        self._draw_with(self._draw)
         if self.start != "NONE":
-            self._begin(context, event, self.start)
-        self._tell(context)
-        context.window_manager.modal_handler_add(self)
+            self._begin_movement(context, event, self.start)
+        self._tell_state(context)
         return {"RUNNING_MODAL"}
 
     @property
@@ -181,29 +173,9 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         """What deforms now: of the last turn."""
         return self.regions[-1]
 
-    def modal(self, context, event):
-        """One step; whatever goes wrong in it, the mesh is put back and the tool ends, with a report."""
-        try:
-            return self._handle(context, event)
-        except PartwheelError as error:  # faces too thin, for instance
-            self.report({"ERROR"}, str(error))
-            return self._cancelled(context)
-        except Exception as error:  # any: a tool that dies in the middle leaves the mesh half deformed
-            traceback.print_exc()
-            self.report({"ERROR"}, f"Partwheel stopped: {error}. The full report is in the system console.")
-            return self._cancelled(context)
-
-    def cancel(self, context):
-        """Blender itself ends the tool: the window closes or another file opens."""
-        self._cancelled(context)
-
     def _handle(self, context, event):
-        if not self._still_there(context):
-            self.report({"WARNING"}, "Partwheel stopped: the mesh is no longer being edited as it was.")
-            self._end(context)
-            return {"CANCELLED"}
         if event.type in keys.CANCEL.events and event.value == "PRESS":
-            return self._cancelled(context)
+            return {"CANCELLED"}
         if event.type == "TIMER":
             return self._tick(context)
         passed = keys.NAVIGATE.events | keys.SYSTEM
@@ -230,23 +202,23 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             grabbed = handle_gizmo.under(self._pivot(context.edit_object), region, view, mouse)
             if grabbed:
                 kind, axis = grabbed
-                self._begin(context, event, kind, dragging=True, axis=axis)
-                self._tell(context)
+                self._begin_movement(context, event, kind, dragging=True, axis=axis)
+                self._tell_state(context)
                 return {"RUNNING_MODAL"}
             vertex = self._vertex_under(context, event)
             if vertex is None:
                 return self._confirmed(context)
             if self.method == "RIGID":
                 self._place(context, vertex, event.shift)
-            self._begin(context, event, "R" if self.method == "JOINT" else "G", dragging=True)
+            self._begin_movement(context, event, "R" if self.method == "JOINT" else "G", dragging=True)
         elif event.type in {"G", "R", "S"}:
-            self._begin(context, event, event.type)
+            self._begin_movement(context, event, event.type)
         elif event.type in keys.RECOMPUTE.events:
             self.recompute = True
             return self._confirmed(context)
         elif event.type in keys.HANDLE_SIZE.events:
             self._resize(context, event.type == "WHEELUPMOUSE")
-        self._tell(context)
+        self._tell_state(context)
         return {"RUNNING_MODAL"}
 
     def _vertex_under(self, context, event):
@@ -368,7 +340,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
 
     # ---- During a movement
 
-    def _begin(self, context, event, kind, dragging=False, axis=None):
+    def _begin_movement(self, context, event, kind, dragging=False, axis=None):
         self.movement = Movement(kind, self._pivot(context.edit_object), dragging, axis)
         self.base = self.placed[-1].matrix
         self._track(context, event)
@@ -398,7 +370,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         if movement.dragging and (event.type, event.value) == ("LEFTMOUSE", "RELEASE"):
             self._follow(context, event)
             self.movement = None
-            self._tell(context)
+            self._tell_state(context)
             return {"RUNNING_MODAL"}
         if event.value not in {"PRESS", "DOUBLE_CLICK"}:
             return {"RUNNING_MODAL"}
@@ -408,13 +380,13 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             if self.start != "NONE":  # it was started for this movement
                 return self._confirmed(context)
         elif event.type in {"G", "R", "S"}:
-            self._begin(context, event, event.type)
+            self._begin_movement(context, event, event.type)
         elif event.type in {"X", "Y", "Z"}:
             movement.constrain("XYZ".index(event.type), event.shift, context.edit_object.matrix_world)
             self._follow(context, event)
         elif movement.type(event.type):
             self._follow(context, event)
-        self._tell(context)
+        self._tell_state(context)
         return {"RUNNING_MODAL"}
 
     def _track(self, context, event):
@@ -436,7 +408,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         self.behind = True
         if self._ready(context) and self.behind:
             self._shape_follows(context)
-        self._tell(context)
+        self._tell_state(context)
 
     def _shape_follows(self, context):
         self.behind = False
@@ -453,14 +425,14 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
     def _tick(self, context):
         """While the mouse rests the part goes on towards its shape of rest."""
         if not self._ready(context):
-            self._tell(context)
+            self._tell_state(context)
             return {"PASS_THROUGH"}
         if self.confirmed:
             return self._confirmed(context)
         if self.settling:
             self.settling = self.shape.go_on()
             self._show(context, done=not self.settling)
-        self._tell(context)
+        self._tell_state(context)
         return {"PASS_THROUGH"}
 
     def _show(self, context, done=False):
@@ -489,7 +461,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         if not self.movement:
             handle_gizmo.draw(self._pivot(obj), bpy.context.region, bpy.context.region_data)
 
-    def _tell(self, context):
+    def _tell_state(self, context):
         count = len(self.patches[-1])
         what = {"RIGID": f"Handle of {count} {'vertex' if count == 1 else 'vertices'}", "PROPORTIONAL": "The Part",
                 "JOINT": f"Joint of {self.reach:.2g} radii"}[self.method]
@@ -497,11 +469,7 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
             what = self.movement.told()
         if self.task:
             what += ": getting ready" if not self.confirmed else ": settling"
-        shown = self.movement is not None, what
-        if shown != self.told:  # both bars are drawn anew each time
-            self.told = shown
-            context.workspace.status_text_set(status.drawer(keys.MOVING if self.movement else keys.DEFORMING))
-            context.area.header_text_set(f"Partwheel: {what}")
+        self._tell(context, what, keys.MOVING if self.movement else keys.DEFORMING)
 
     # ---- The end
 
@@ -509,10 +477,9 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         """Ends, once the part has its shape of rest."""
         self.confirmed = True
         if not self._ready(context, PATIENCE):
-            self._tell(context)
+            self._tell_state(context)
             return {"RUNNING_MODAL"}
         if not self.changed:
-            self._end(context)
             return {"CANCELLED"}
         if self.settling:
             self.settling = False
@@ -524,18 +491,13 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
                 each = self.handles.add()
                 each.turn, each.vertex, each.radius = turn, handle.vertex, handle.radius
                 each.matrix = handle.matrix.ravel()
-        self._end(context)
         if self.recompute and bpy.ops.mesh.partwheel_build.poll():
             bpy.ops.mesh.partwheel_build("INVOKE_DEFAULT")
         return {"FINISHED"}
 
-    def _cancelled(self, context):
-        try:
-            if self.changed and self._still_there(context):
-                _restored(context.edit_object, self.regions)
-        finally:
-            self._end(context)
-        return {"CANCELLED"}
+    def _take_back(self, context):
+        if self.changed and self._still_there(context):
+            _restored(context.edit_object, self.regions)
 
     def _still_there(self, context):
         obj = context.edit_object
@@ -544,32 +506,8 @@ class MESH_OT_partwheel_deform(bpy.types.Operator):
         bm = bmesh.from_edit_mesh(obj.data)
         return (len(bm.verts), len(bm.faces)) == self.counts
 
-    def _end(self, context):
-        if self.task:
-            self.task.abandon()
-            self.task = None
-        if self.timer:
-            context.window_manager.event_timer_remove(self.timer)
-            bpy.types.SpaceView3D.draw_handler_remove(self.drawing, "WINDOW")
-            self.timer = None
-        if context.workspace:
-            context.workspace.status_text_set(None)
-        if context.area:
-            context.area.header_text_set(None)
-            context.area.tag_redraw()
-
 
 def _restored(obj, regions):
     """Puts the mesh back to before the first of these, made one after the other."""
     for region in reversed(regions):
         Pen(obj, region).restore(obj)
-
-
-@contextlib.contextmanager
-def _waiting(context):
-    """What takes a while has Blender's cursor for it."""
-    context.window.cursor_modal_set("WAIT")
-    try:
-        yield
-    finally:
-        context.window.cursor_modal_restore()

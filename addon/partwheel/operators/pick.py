@@ -5,19 +5,17 @@ the part around it, until it is confirmed or cancelled.
 What happens to the part meanwhile, and once it is confirmed, is the business of a target (see PartPicker._aim).
 """
 
-import traceback
-
 import bpy
 
 from .. import borders, keys, overlay, picking, session, wheel
 from ..core import PartwheelError
 from ..prepared import prepared
 from ..seen import NO_FACE
-from ..ui import status
 from .build import start
+from .in_view import InView
 
 
-class PartPicker:
+class PartPicker(InView):
     """Mixed into an operator. level and face_index: what Repeat Last and the panel of the last operation use."""
 
     face_index: bpy.props.IntProperty(name="Face", description="The face that was clicked", default=0, min=0)
@@ -70,8 +68,9 @@ class PartPicker:
         wheel.Picked."""
         raise NotImplementedError
 
-    hand_offs = ()
     begun = 0  # how many picks have begun, with the mouse, by whichever operator
+    commands = ()  # keys.COMMANDS that the status bar shows while a part is held
+    state, target, object_name = wheel.Waiting(), None, ""
 
     # ---- Without a window
 
@@ -92,41 +91,12 @@ class PartPicker:
         session.remember_pick(obj, picked.face, picked.node, self.snap)
         return result
 
-    # ---- With the mouse
+    # ---- With the mouse: from nothing to a part
 
-    def invoke(self, context, event):
-        if context.window is None or context.area is None or context.area.type != "VIEW_3D":
-            self.report({"ERROR"}, "Parts are picked in a 3D view: start this with the mouse over one.")
-            return {"CANCELLED"}
-        self.state, self.target, self.object_name = wheel.Waiting(), None, ""
+    def _begin(self, context, event):
         PartPicker.begun += 1
-        self.number, self.line = PartPicker.begun, status.Line()
+        self.number = PartPicker.begun
         self.scroll, self.drag = keys.Scroll(keys.SCROLL_STEP), None
-        result = self._guarded(context, lambda: self._begun(context, event))
-        if result == {"RUNNING_MODAL"}:
-            context.window_manager.modal_handler_add(self)
-        return result
-
-    def modal(self, context, event):
-        return self._guarded(context, lambda: self._handle(context, event))
-
-    def cancel(self, context):
-        """Blender itself ends the operator: the window closes or another file opens. What was not confirmed is taken
-        back, as by Blender's own tools."""
-        self._cancelled(context)
-
-    def _guarded(self, context, step):
-        """One step; whatever goes wrong in it, the selection is put back and the tool ends, with a report."""
-        try:
-            return step()
-        except Exception as error:  # any: a tool that dies in the middle leaves Blender with its keys and its selection
-            traceback.print_exc()
-            self.report({"ERROR"}, f"Partwheel stopped: {error}. The full report is in the system console.")
-            return self._cancelled(context)
-
-    # ---- From nothing to a part
-
-    def _begun(self, context, event):
         objects = self._objects(context)
         if not objects:
             self.report({"WARNING"}, "This 3D view does not show the mesh that is being edited")
@@ -173,6 +143,8 @@ class PartPicker:
 
     def _hold(self, context, obj, picked):
         self.object_name, self.target, self.shown = obj.name_full, self._aim(context, obj), None
+        self.object_name, self.target, self.shown = obj.name_full, self._aim(context, obj), None
+        self._at_end.callback(overlay.shown.hide)
         return self._show(context, picked)
 
     def _build(self, context, obj, face):
@@ -212,13 +184,9 @@ class PartPicker:
     def _handle(self, context, event):
         if isinstance(self.state, wheel.Building):
             return self._built_on(context, event)
-        if not self._still_there(context):
-            self.report({"WARNING"}, "Partwheel stopped: the mesh is no longer being edited as it was.")
-            self._end(context)
-            return {"CANCELLED"}
         if self.target and session.known(self._object(context).data) is not self.hierarchy:
             self.report({"WARNING"}, "Partwheel stopped: the parts were found anew. Pick one of them.")
-            return self._cancelled(context)
+            return {"CANCELLED"}
         if event.type in keys.SYSTEM:
             return {"PASS_THROUGH"}
         holding = isinstance(self.state, wheel.Picked)
@@ -238,7 +206,7 @@ class PartPicker:
         if event.value not in {"PRESS", "DOUBLE_CLICK"}:  # Blender may call a quick second press a double click
             return {"RUNNING_MODAL"}
         if event.type in keys.CANCEL.events:
-            return self._cancelled(context)
+            return {"CANCELLED"}
         return self._key_while_holding(context, event, over) if holding else self._key_while_waiting(context, event)
 
     def _key_while_waiting(self, context, event):
@@ -253,23 +221,21 @@ class PartPicker:
     def _key_while_holding(self, context, event, over):
         if event.type in keys.TURNS:
             return self._show(context, self.state.turned(keys.TURNS[event.type]))
-        if event.type in keys.DIGITS:
+        if event.type in keys.DIGITS and not self.tool:
             return self._show(context, self.state.with_digit(keys.DIGITS[event.type]))
-        if event.type in keys.ERASE.events:
+        if event.type in keys.ERASE.events and not self.tool:
             return self._show(context, self.state.without_digit())
-        if event.type in keys.SNAP_BORDER.events and event.shift:
+        if event.type in keys.SNAP_BORDER.events and event.shift and event.ctrl:
             self.snap = not self.snap
             self._tool_snaps(context)
             return self._show(context, self.state)
         if event.type in keys.CONFIRM.events or (event.type == "LEFTMOUSE" and over and not self.tool):
             return self._confirmed(context)
-        for each in self.hand_offs:
-            if (event.type, bool(event.shift)) == (each.key, each.shift) and not event.ctrl:
-                return self._handed_on(context, each)
-        if self.tool and event.type not in keys.MODIFIERS:
-            # A click starts with the next part, in the keymap of the tool; any other key means what it always means.
-            return self._confirmed(context) | {"PASS_THROUGH"}
-        return {"RUNNING_MODAL"}
+        if event.type in keys.MODIFIERS or (event.type == "LEFTMOUSE" and not self.tool):
+            return {"RUNNING_MODAL"}
+        # Any other key means what it always means, the commands on parts among them; a click starts with the next part,
+        # in the keymap of the tool.
+        return self._confirmed(context) | {"PASS_THROUGH"}
 
     def _dragged(self, context, event):
         """Up or down with the button, or a pen, still down."""
@@ -289,12 +255,13 @@ class PartPicker:
             self.faces = borders.faces(obj, self.hierarchy, state.node, self.snap)
             self.target.select(obj, self.faces, state.face, self.extend, self.deselect)
             if not bpy.app.background:
-                overlay.shown.show(obj, prepared(obj).parts(obj), state.node, state.next,
+                overlay.shown.show(self._drawing, obj, prepared(obj).parts(obj), state.node, state.next,
                                    self.faces if self.snap else None)
         share = self.hierarchy.area[state.node] / self.hierarchy.area[-1]
         number = state.typed + "_" if state.typed else state.index + 1
         self._tell(context, f"Part {number} of {len(state.stops)}, {len(self.faces):,} faces, {share:.1%} of the area"
-                            + ", border in creases" * self.snap, keys.HELD if self.tool else keys.PICKED)
+                            + ", border in creases" * self.snap,
+                   (keys.HELD if self.tool else keys.PICKED) + self.commands + keys.ENDS)
         return {"RUNNING_MODAL"}
 
     def _tool_snaps(self, context):
@@ -310,45 +277,17 @@ class PartPicker:
         # What the panel of the last operation, and Repeat Last, do again.
         self.face_index, self.level = self.state.face, self.state.level
         session.remember_pick(obj, self.state.face, self.state.node, self.snap)
-        result = self._commit(context)
-        self._end(context)
-        return result
+        return self._commit(context)
 
-    def _handed_on(self, context, hand_off):
-        """Confirms and starts another operator at once. Blender's own undo step for a finished operator would come
-        after that one has begun to change the mesh, so the step is made here, and the answer that makes none is given.
-        """
-        self._confirmed(context)
-        bpy.ops.ed.undo_push(message=self.bl_label)
-        try:
-            hand_off.start(context)
-        except RuntimeError as refused:  # the other operator's own report of an error
-            self.report({"ERROR"}, str(refused).removeprefix("Error: ").strip())
-        return {"CANCELLED"}
-
-    def _cancelled(self, context):
+    def _take_back(self, context):
         if isinstance(self.state, wheel.Building):
             self.building.abandon(context)
-            return {"CANCELLED"}
-        try:
-            if self.target and self._still_there(context):
-                self.target.restore()
-        finally:
-            self._end(context)
-        return {"CANCELLED"}
+        elif self.target and self._still_there(context):
+            self.target.restore()
 
     def _still_there(self, context):
+        if isinstance(self.state, wheel.Building):
+            return True
         if not self.target:
             return bool(self._objects(context))
         return self._object(context) is not None and self.target.fits()
-
-    def _tell(self, context, header, row):
-        self.line.say(context, status.drawer(row, self.hand_offs if row is not keys.WAITING else ()))
-        if context.area:
-            context.area.header_text_set(f"Partwheel: {header}")
-
-    def _end(self, context):
-        overlay.shown.hide()
-        self.line.end(context)
-        if context.area:
-            context.area.header_text_set(None)

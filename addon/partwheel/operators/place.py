@@ -8,19 +8,21 @@ from mathutils import Vector
 
 from .. import composition, keys, objects, placement
 from ..picking import surface_under, view_under
-from ..ui import status
+from .in_view import InView
 
 CONFIRM, CANCEL = keys.CLICK.events | keys.CONFIRM.events, keys.CANCEL.events
 PASS = keys.NAVIGATE.events | keys.SYSTEM
 SIZE_STEP, TURN_STEP, DEPTH_STEP = 1.05, math.radians(5), 0.05
 
 
-class OBJECT_OT_partwheel_place(bpy.types.Operator):
+class OBJECT_OT_partwheel_place(InView, bpy.types.Operator):
     """Place the active part on a surface: it follows the mouse, its border on the surface and turned to it"""
 
     bl_idname = "object.partwheel_place"
     bl_label = "Place Part"
     bl_options = {"REGISTER", "UNDO"}
+    lost = "the part is no longer the active object"
+    transform = None  # its own, before
 
     target: bpy.props.StringProperty(name="Onto", description="The object that the part is placed on")
     location: bpy.props.FloatVectorProperty(name="Location", description="Where its border goes", subtype="TRANSLATION")
@@ -67,24 +69,21 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
 
     # ---- With the mouse --------------------------------------------------------------------------------------------
 
-    def invoke(self, context, event):
-        if context.window is None or context.area is None or context.area.type != "VIEW_3D":
-            self.report({"ERROR"}, "Parts are placed in a 3D view: start this with the mouse over one.")
-            return {"CANCELLED"}
+    def _begin(self, context, event):
         part = context.active_object
         self.part_name, self.transform = part.name_full, placement.own_transform(part)
         self.start, self.own = part.matrix_world.copy(), placement.anchor(part)
         self.target, self.scale = "", 1
-        self._tell(context, "Move the mouse over a surface")
+        self._before_saving(self._put_back)
+        self._tell(context, "Move the mouse over a surface", keys.PLACING)
         self._follow(context, event)
-        context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context, event):
+    def _still_there(self, context):
         part = context.active_object
-        if part is None or part.name_full != self.part_name or context.mode != "OBJECT":
-            self.report({"WARNING"}, "Placing stopped: the part is no longer the active object.")
-            return self._end(context, {"CANCELLED"})
+        return part is not None and part.name_full == self.part_name and context.mode == "OBJECT"
+
+    def _handle(self, context, event):
         if event.type in PASS:
             return {"PASS_THROUGH"}
         if event.type == "MOUSEMOVE":
@@ -93,16 +92,15 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
         if event.value not in {"PRESS", "DOUBLE_CLICK"}:
             return {"RUNNING_MODAL"}
         if event.type in CANCEL:
-            placement.put_back(part, self.transform)
-            return self._end(context, {"CANCELLED"})
+            return {"CANCELLED"}
         if event.type in CONFIRM:
             if not self.target:
-                self._tell(context, "There is no surface under the mouse yet")
+                self._tell(context, "There is no surface under the mouse yet", keys.PLACING)
                 return {"RUNNING_MODAL"}
             if self.mirror:
                 composition.update_matrices()
-                placement.mirrored(part, objects.named(self.target)).select_set(True)
-            return self._end(context, {"FINISHED"})
+                placement.mirrored(context.active_object, objects.named(self.target)).select_set(True)
+            return {"FINISHED"}
         sign = keys.SIGNS.get(event.type, 0)
         if event.type in keys.TURN.events and event.shift:
             self.angle += sign * TURN_STEP
@@ -119,12 +117,13 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
         self._show(context)
         return {"RUNNING_MODAL"}
 
-    def cancel(self, context):
-        """Blender itself ends the tool."""
-        part = objects.named(self.part_name)
+    def _take_back(self, _context):
+        self._put_back()
+
+    def _put_back(self):
+        part = self.transform and objects.named(self.part_name)
         if part:
             placement.put_back(part, self.transform)
-        self._end(context, {"CANCELLED"})
 
     def _follow(self, context, event):
         hit = self._surface_under(context, event)
@@ -152,19 +151,8 @@ class OBJECT_OT_partwheel_place(bpy.types.Operator):
         except ValueError as error:
             self.fit = False
             placement.put(context.active_object, self.start, self.own, target, self._pose())
-            self._tell(context, str(error))
+            self._tell(context, str(error), keys.PLACING)
             return
         state = [f"Onto {target.name}", f"size {self.scale:.2f}", f"turn {math.degrees(self.angle):.0f}°",
                  f"depth {self.depth:.2f}"]
-        self._tell(context, ", ".join(state + ["fitted"] * self.fit + ["with mirror copy"] * self.mirror))
-
-    def _tell(self, context, header):
-        context.workspace.status_text_set(status.drawer(keys.PLACING))
-        context.area.header_text_set(f"Partwheel: {header}")
-
-    def _end(self, context, result):
-        if context.workspace:
-            context.workspace.status_text_set(None)
-        if context.area:
-            context.area.header_text_set(None)
-        return result
+        self._tell(context, ", ".join(state + ["fitted"] * self.fit + ["with mirror copy"] * self.mirror), keys.PLACING)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A picked part moved, turned or scaled proportionally: by Blender's own tools, or within the part alone by ours.
+"""mesh.partwheel_move: a picked part is moved by Blender's own tool with proportional editing.
 
-Blender's tools are told by the call to be proportional, connected, and how far they reach: by the part's size. They keep
-the reach as the user's new setting when they end, so it is put back then.
+It is told by the call to be proportional, connected, and how far it reaches: by the part's size. It keeps the reach as
+the user's new setting when it ends, so that is put back then.
 """
 
 import bpy
@@ -10,27 +10,41 @@ import numpy as np
 
 from .. import mesh_arrays, session
 
-TRANSFORMS = {"G": ("translate", "Move"), "R": ("rotate", "Rotate"), "S": ("resize", "Scale")}
 REACH = 0.5  # beyond the part, by the square root of its area
 TICK = 0.05  # seconds between two looks for the end of Blender's tool
 
 _waiting = None  # the timer that looks
 
 
-def around(key):
-    """start(context) of Blender's own proportional tool: the part moves as one, its surroundings follow."""
-    def start(context):
+class MESH_OT_partwheel_move(bpy.types.Operator):
+    """Move the part that was picked last; its surroundings follow, as far as suits its size. R turns and S scales it"""
+
+    bl_idname = "mesh.partwheel_move"
+    bl_label = "Move Part Proportionally"
+    bl_options = {"INTERNAL"}
+
+    @classmethod
+    def poll(cls, context):
+        if context.mode != "EDIT_MESH" or not session.has_pick(context.edit_object):
+            cls.poll_message_set("Pick a part first, in Edit Mode")
+            return False
+        return True
+
+    def invoke(self, context, _event):
+        if not session.picked(context.edit_object):
+            self.report({"ERROR"}, "The mesh was changed: pick the part anew.")
+            return {"CANCELLED"}
         global _waiting
         unregister()  # or the reach that the last tool has left would be taken for the user's
         settings = context.tool_settings
         users, reach = settings.proportional_size, _reach(context.edit_object)
         if np.float32(reach) == np.float32(users):  # or that Blender has kept it would not be seen
             reach *= 1.001
-        tool = getattr(bpy.ops.transform, TRANSFORMS[key][0])
-        tool("INVOKE_DEFAULT", use_proportional_edit=True, use_proportional_connected=True, proportional_size=reach)
+        bpy.ops.transform.translate("INVOKE_DEFAULT", use_proportional_edit=True, use_proportional_connected=True,
+                                    proportional_size=reach)
         _waiting = _putting_back(context.scene.name_full, users)
         bpy.app.timers.register(_waiting, first_interval=0)
-    return start
+        return {"FINISHED"}
 
 
 def _reach(obj):
@@ -60,13 +74,6 @@ def _transforming():
     if not all(hasattr(window, "modal_operators") for window in windows):
         return True
     return any(each.bl_idname.startswith("TRANSFORM_OT") for window in windows for each in window.modal_operators)
-
-
-def within(key):
-    """start(context) of ours: the part follows less and less towards its border, and nothing beyond it moves."""
-    def start(_context):
-        bpy.ops.mesh.partwheel_deform("INVOKE_DEFAULT", True, method="PROPORTIONAL", start=key)
-    return start
 
 
 def unregister():

@@ -1,43 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """mesh.partwheel_select: a click picks a face, the wheel grows and shrinks the part around it."""
 
-from typing import Callable, NamedTuple
-
 import bpy
 
+from .. import keys
 from ..selection import Selections
-from . import proportional
 from .pick import PartPicker
-
-
-def _at_once(operator):
-    """Runs an operator that ends at once. Blender makes no undo step for one that another operator has called."""
-    if operator() == {"FINISHED"}:
-        bpy.ops.ed.undo_push(message=operator.get_rna_type().name)
-
-
-class HandOff(NamedTuple):
-    """A key that confirms the part that is held and starts another operator with it."""
-
-    key: str  # Blender's name of the event type
-    shift: bool
-    label: str  # what it does
-    start: Callable  # start(context): called once the pick is confirmed, remembered and an undo step of its own
-    group: str = ""  # what the status bar says of several that stand together
-
-
-HANDOFFS = [
-    HandOff("D", False, "Drag a Handle", lambda context: bpy.ops.mesh.partwheel_deform("INVOKE_DEFAULT", True)),
-    HandOff("J", False, "Turn at the Joint",
-            lambda context: bpy.ops.mesh.partwheel_deform("INVOKE_DEFAULT", True, method="JOINT")),
-    *(HandOff(key, False, f"{label} Proportionally", proportional.around(key), "Transform Proportionally")
-      for key, (_, label) in proportional.TRANSFORMS.items()),
-    *(HandOff(key, True, f"{label} within the Part", proportional.within(key), "Transform within the Part")
-      for key, (_, label) in proportional.TRANSFORMS.items()),
-    HandOff("C", False, "Copy as Solid", lambda context: _at_once(bpy.ops.mesh.partwheel_copy)),
-    HandOff("X", False, "Remove", lambda context: _at_once(bpy.ops.mesh.partwheel_remove)),
-    HandOff("D", True, "Duplicate", lambda context: bpy.ops.mesh.duplicate_move("INVOKE_DEFAULT")),
-]
 
 
 class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
@@ -46,7 +14,7 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
     bl_idname = "mesh.partwheel_select"
     bl_label = "Select Part by Wheel"
     bl_options = {"REGISTER", "UNDO"}
-    hand_offs = HANDOFFS
+    commands = keys.COMMANDS
 
     @classmethod
     def poll(cls, context):

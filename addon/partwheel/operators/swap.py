@@ -1,28 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """mesh.partwheel_swap: the picked part is exchanged for a compatible one of another object. The wheel goes through what
-is offered; meanwhile the object shows what would be left of it, and the part offered stands in its place."""
+is offered; meanwhile one sees what would be left of the object, and the part offered stands in its place."""
 
 import math
 
 import bpy
 
-from .. import keys, objects, solids, swapping, union
+from .. import composition, keys, objects, previews, solids, swapping, union
 from ..core import PartwheelError
 from ..linked import changeable
-from ..ui import status
 from .copy_part import OnPart, OnParts, Snaps
+from .in_view import InView, waiting
 from .place import DEPTH_STEP, PASS, SIZE_STEP, TURN_STEP
 from .unite import find_parts
 
 CONFIRM, CANCEL = keys.CLICK.events | keys.CONFIRM.events, keys.CANCEL.events
 
 
-class MESH_OT_partwheel_swap(Snaps, OnPart, OnParts, bpy.types.Operator):
+class MESH_OT_partwheel_swap(InView, Snaps, OnPart, OnParts, bpy.types.Operator):
     """Exchange the picked part for one of another object that fits its border; the wheel goes through what there is"""
 
     bl_idname = "mesh.partwheel_swap"
     bl_label = "Swap with Compatible Part"
     refusals = PartwheelError, solids.NotClosed, swapping.NotSwapped, union.NotUnited
+    lost = "the object is no longer the active one"
+    was_edited, preview = False, None
 
     other: bpy.props.StringProperty(
         name="From", description="The object that the new part comes from; none: those selected, or else all others",
@@ -67,9 +69,9 @@ class MESH_OT_partwheel_swap(Snaps, OnPart, OnParts, bpy.types.Operator):
         return place.offers([other] if other else swapping.sources(context, obj))[0]
 
     def _swap(self, place, offer):
-        place.swap(offer, self._adjustment(), self.blend)
         self.other, self.whole = offer.name, offer.node is None
         self.other_node = -1 if self.whole else offer.node
+        place.swap(offer, self._adjustment(), self.blend)
         if self.build:
             find_parts(self)
 
@@ -78,42 +80,37 @@ class MESH_OT_partwheel_swap(Snaps, OnPart, OnParts, bpy.types.Operator):
 
     # ---- With the wheel --------------------------------------------------------------------------------------------
 
-    def invoke(self, context, event):
-        if context.window is None or context.area is None or context.area.type != "VIEW_3D":
-            self.report({"ERROR"}, "Parts are swapped in a 3D view: start this with the mouse over one.")
-            return {"CANCELLED"}
+    def _begin(self, context, _event):
         obj = context.active_object
-        self.was_edited, self.preview = obj.mode == "EDIT", None
-        context.window.cursor_modal_set("WAIT")
-        try:
+        with waiting(context):
             hierarchy = self.hierarchy(context, obj)
             other = objects.wanted(self.other)
             others = [other] if other else swapping.sources(context, obj)
+            self.was_edited = obj.mode == "EDIT"
             if self.was_edited:
                 bpy.ops.object.mode_set(mode="OBJECT")
             self.place = swapping.Place(obj, hierarchy, self.node, self.snap)
             self.offers, self.index = self.place.offers(others), 0
             self.preview = Preview(self.place)
+            self._before_saving(previews.end)
             self._show(context)
-        except self.refusals as error:
-            self.report({"ERROR"}, str(error))
-            return self._end(context, {"CANCELLED"})
-        finally:
-            context.window.cursor_modal_restore()
-        context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context, event):
-        obj = context.active_object
-        if obj is None or obj.name_full != self.place.name or context.mode != "OBJECT":
-            self.report({"WARNING"}, "Swapping stopped: the object is no longer the active one.")
-            return self._end(context, {"CANCELLED"})
+    def _still_there(self, context):
+        active = context.view_layer.objects.active  # none while it is hidden, in some versions
+        obj = objects.named(self.place.name)
+        return (obj is not None and context.view_layer.objects.get(obj.name) == obj and active in (None, obj)
+                and context.mode == "OBJECT")
+
+    def _handle(self, context, event):
+        if not self.preview.there():  # a file was saved meanwhile, or a step undone
+            self._show(context)
         if event.type in PASS:
             return {"PASS_THROUGH"}
         if event.value not in {"PRESS", "DOUBLE_CLICK"}:
             return {"RUNNING_MODAL"}
         if event.type in CANCEL:
-            return self._end(context, {"CANCELLED"})
+            return {"CANCELLED"}
         if event.type in CONFIRM:
             return self._confirmed(context)
         sign = keys.TURNS.get(event.type, 0)
@@ -129,31 +126,18 @@ class MESH_OT_partwheel_swap(Snaps, OnPart, OnParts, bpy.types.Operator):
             self.index = min(max(self.index + sign, 0), len(self.offers) - 1)
         else:
             return {"RUNNING_MODAL"}
-        return self._try(context, lambda: self._show(context))
-
-    def cancel(self, context):
-        """Blender itself ends the tool."""
-        self._end(context, {"CANCELLED"})
+        self._show(context)
+        return {"RUNNING_MODAL"}
 
     def _show(self, context, problem=""):
         offer = self.offers[self.index]
         self.preview.show(offer, self._adjustment())
         state = [f"{offer.name}, part {self.index + 1} of {len(self.offers)}", f"{offer.score:.0%} alike",
                  f"size {self.scale:.2f}", f"turn {math.degrees(self.angle):.0f}°", f"depth {self.depth:.2f}"]
-        context.workspace.status_text_set(status.drawer(keys.SWAPPING))
-        context.area.header_text_set(f"Partwheel: {problem or ', '.join(state + ['mirrored'] * self.mirror)}")
-
-    def _try(self, context, step):
-        """One step; what goes wrong in it ends the tool, and all is as before."""
-        try:
-            step()
-        except self.refusals as error:
-            self.report({"ERROR"}, str(error))
-            return self._end(context, {"CANCELLED"})
-        return {"RUNNING_MODAL"}
+        self._tell(context, problem or ", ".join(state + ["mirrored"] * self.mirror), keys.SWAPPING)
 
     def _confirmed(self, context):
-        self.preview.end()
+        previews.end()
         if self.was_edited:
             # Undo steps of Edit Mode hold its mesh alone.
             bpy.ops.ed.undo_push(message="Leave Edit Mode")
@@ -161,51 +145,42 @@ class MESH_OT_partwheel_swap(Snaps, OnPart, OnParts, bpy.types.Operator):
             self._swap(self.place, self.offers[self.index])
         except self.refusals as error:  # another part may do
             self.report({"ERROR"}, str(error))
-            self.preview = Preview(self.place)
-            return self._try(context, lambda: self._show(context, str(error)))
-        self.was_edited = False
-        return self._end(context, {"FINISHED"})
+            self._show(context, str(error))
+            return {"RUNNING_MODAL"}
+        return {"FINISHED"}
 
-    def _end(self, context, result):
-        if self.preview:
-            self.preview.end()
+    def _take_back(self, context):
+        previews.end()
         if self.was_edited and context.active_object and context.active_object.mode == "OBJECT":
             bpy.ops.object.mode_set(mode="EDIT")
-        if context.workspace:
-            context.workspace.status_text_set(None)
-        if context.area:
-            context.area.header_text_set(None)
-        return result
 
 
 class Preview:
-    """The object with another mesh, what is left of it without the part; and beside it the parts offered so far, of
-    which one is seen. The object's own mesh is not touched."""
+    """In place of the object one with what is left of it without the part; and beside it the parts offered so far, of
+    which one is seen. The object itself is hidden and not touched."""
 
     def __init__(self, place):
-        obj = objects.named(place.name)
-        self.place, self.shown = place, {}
-        rest = place.rest()
-        self.own, self.rest = obj.data.name, rest.name
-        obj.data = rest
+        self.place, self.rest, self.shown = place, "", {}
+
+    def there(self):
+        return self.rest in bpy.data.objects
 
     def show(self, offer, adjustment):
+        if not self.there():
+            self._begin()
         wanted = offer.name, offer.node
         for each, name in self.shown.items():
             bpy.data.objects[name].hide_viewport = each != wanted
         if wanted in self.shown:
             self.place.put(bpy.data.objects[self.shown[wanted]], offer, adjustment)
         else:
-            self.shown[wanted] = self.place.stand_in(offer, adjustment).name
+            self.shown[wanted] = previews.show(self.place.stand_in(offer, adjustment)).name
 
-    def end(self):
-        """All is as it was before; what Blender has let go itself by then is left alone."""
-        obj, own = objects.named(self.place.name), bpy.data.meshes.get(self.own)
-        if obj and own:
-            obj.data = own
-        for name in self.shown.values():
-            if name in bpy.data.objects:
-                swapping.dispose(bpy.data.objects[name])
-        if self.rest in bpy.data.meshes:
-            bpy.data.meshes.remove(bpy.data.meshes[self.rest])
-        self.shown, self.rest = {}, ""
+    def _begin(self):
+        obj = objects.named(self.place.name)
+        mesh = self.place.rest()
+        rest = obj.copy()  # with its modifiers and materials
+        rest.data = mesh
+        composition.home(obj).objects.link(rest)
+        self.rest, self.shown = previews.show(rest).name, {}
+        previews.hide(obj)

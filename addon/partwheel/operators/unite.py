@@ -10,10 +10,10 @@ from ..linked import changeable
 
 def find_parts(operator):
     """Has the parts of the active object found, whose mesh is a union that this operator made."""
-    session.drop_outdated_builds()  # of the union before, when the last operation is repeated with other options
     try:
+        session.drop_outdated_builds()  # of the union before, when the last operation is repeated with other options
         bpy.ops.mesh.partwheel_find("INVOKE_DEFAULT")
-    except RuntimeError as error:  # they are united all the same
+    except Exception as error:  # any: they are united all the same
         operator.report({"WARNING"}, str(error))
 
 

@@ -3,8 +3,6 @@
 
 import bpy
 
-from ..operators.proportional import TRANSFORMS
-
 
 class VIEW3D_PT_partwheel_deform(bpy.types.Panel):
     bl_label = "Deform"
@@ -22,7 +20,7 @@ class VIEW3D_PT_partwheel_deform(bpy.types.Panel):
         column.label(text="Within the part, proportionally:")
         row = column.row(align=True)
         row.operator_context = "INVOKE_REGION_WIN"
-        for key, (_, label) in TRANSFORMS.items():
+        for key, label in (("G", "Move"), ("R", "Rotate"), ("S", "Scale")):
             button = row.operator("mesh.partwheel_deform", text=label)
             button.method, button.start = "PROPORTIONAL", key
 

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The shortcut: Shift Ctrl W (W for wheel) over a mesh in Edit Mode, which all keymaps of Blender 3.4 to 5.2 leave free
-there. Ctrl W is Save in the one of Blender 2.7."""
+"""The shortcuts in Edit Mode: Shift Ctrl W (W for wheel) over a mesh, and what is done with the part that was picked
+last. All keymaps of Blender 3.4 to 5.2 leave them free there; Ctrl W is Save in the one of Blender 2.7."""
 
 import bpy
+
+from .. import keys
 
 _items = []
 
@@ -13,9 +15,23 @@ def register():
         return
     keymap = configuration.keymaps.new(name="Mesh", space_type="EMPTY")
     _items.append((keymap, keymap.keymap_items.new("mesh.partwheel_select", "W", "PRESS", shift=True, ctrl=True)))
+    for command in keys.COMMANDS:
+        item = keymap.keymap_items.new(command.operator, command.key, "PRESS", shift=True, ctrl=True)
+        for name, value in command.options.items():
+            setattr(item.properties, name, value)
+        _items.append((keymap, item))
 
 
 def unregister():
     for keymap, item in _items:
         keymap.keymap_items.remove(item)
     _items.clear()
+
+
+def item(command):
+    """The KeyMapItem that starts a keys.Command as the user has set it, or None."""
+    configuration = bpy.context.window_manager.keyconfigs.user
+    keymap = configuration and configuration.keymaps.get("Mesh")
+    return next((each for each in (keymap.keymap_items if keymap else ()) if each.active
+                 and each.idname == command.operator
+                 and all(getattr(each.properties, name) == value for name, value in command.options.items())), None)

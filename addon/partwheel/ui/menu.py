@@ -5,9 +5,7 @@ import bpy
 
 
 def draw_handoffs(layout):
-    move = layout.operator("transform.translate", text="Move Part Proportionally")
-    move.use_proportional_edit = True
-    move.use_proportional_connected = True
+    layout.operator("mesh.partwheel_move")
     layout.operator("mesh.duplicate_move", text="Duplicate Part")
 
 

@@ -2,11 +2,10 @@
 """What the status bar shows while a modal operator runs: the keys that count now, with Blender's icons if it has them,
 or how far a build is."""
 
-from itertools import groupby
-
 import bpy
 
 from .. import keys
+from . import keymap
 
 # Some versions have more icons of keys than others.
 ICONS = set(bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys())
@@ -37,15 +36,27 @@ class Line:
                 context.workspace.status_text_set(Line.lines[-1]._said if Line.lines else None)
 
 
-def drawer(row, hand_offs=()):
-    """A function for WorkSpace.status_text_set(): these keys.Key, and what hands the part on."""
+def drawer(row):
+    """A function for WorkSpace.status_text_set(): these keys.Key, and keys.Command as far as the user has keys for them.
+    Modifiers that several have are shown before the first."""
     def draw(header, _context):
-        for key in row:
-            icons = (WHEEL, *key.icons) if key is keys.LARGER and WHEEL in ICONS else key.icons
-            _entry(header.layout, icons, f"{key.names}: {key.label}" if key.names else key.label)
-        for (shift, label), some in groupby(hand_offs, key=lambda each: (each.shift, each.group or each.label)):
-            _entry(header.layout, ["EVENT_SHIFT"] * shift + [f"EVENT_{each.key}" for each in some], label)
+        before = []
+        for icons, text in filter(None, map(_shown, row)):
+            held, before = before if icons[:-1] == before else [], icons[:-1]
+            _entry(header.layout, icons[len(held):], text)
     return draw
+
+
+def _shown(key):
+    """(icons, text), or None."""
+    if isinstance(key, keys.Key):
+        icons = [WHEEL] * (key is keys.LARGER and WHEEL in ICONS) + list(key.icons)
+        return icons, f"{key.names}: {key.label}" if key.names else key.label
+    item = keymap.item(key)
+    if item and f"EVENT_{item.type}" in ICONS:
+        held = [f"EVENT_{name.upper()}" for name in ("shift", "ctrl", "alt") if getattr(item, name)]
+        return [*held, f"EVENT_{item.type}"], key.label
+    return item and ([], f"{item.to_string()}: {key.label}")
 
 
 def _entry(layout, icons, text):

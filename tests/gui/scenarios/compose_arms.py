@@ -10,7 +10,7 @@ def play(stage):
     yield from picked_up_to(stage, 0.02, 0.6, 0.03)
     yield from stage.screenshot("1-picked")
     bear = stage.object
-    stage.mouse.key("C")
+    stage.mouse.key("C", shift=True, ctrl=True)
     yield from stage.until("the copy is there", lambda: stage.object != bear and stage.object.mode == "OBJECT")
     stage.check(closed(stage.object), "the copy is closed")
     yield from stage.screenshot("2-copied")
@@ -23,7 +23,7 @@ def play(stage):
     for side in (0.02, 0.98):
         yield from picked_up_to(stage, side, 0.62, 0.06)
         before = len(homer.data.polygons)
-        stage.mouse.key("X")
+        stage.mouse.key("X", shift=True, ctrl=True)
         yield from stage.until("the arm is gone", lambda before=before: len(homer.data.polygons) != before)
         stage.select(())
     stage.mouse.key("TAB")

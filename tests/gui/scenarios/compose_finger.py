@@ -13,7 +13,7 @@ def play(stage):
     yield from finger(stage, 0.25, 0.78)
     yield from stage.screenshot("1-picked")
     count = len(stage.selection())
-    stage.mouse.key("C")
+    stage.mouse.key("C", shift=True, ctrl=True)
     yield from stage.until("the copy is there, in Object Mode",
                            lambda: stage.object != hand and stage.object.mode == "OBJECT")
     stage.mouse.key("Z", ctrl=True)
@@ -36,7 +36,7 @@ def play(stage):
     yield from enter(stage, hand)
     yield from finger(stage, 0.97, 0.62)
     gone = len(stage.selection())
-    stage.mouse.key("X")
+    stage.mouse.key("X", shift=True, ctrl=True)
     yield from stage.until("the other finger is gone", lambda: len(stage.coordinates()) < len(stage.wheels.vertices))
     stage.mouse.key("Z", ctrl=True)
     yield from stage.until("one undo step brings it back, selected", lambda: stage.object.mode == "EDIT" and

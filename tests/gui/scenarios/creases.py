@@ -1,4 +1,4 @@
-"""Borders in creases: Shift Tab snaps the border of the held part and back, the tool goes on so, C copies so."""
+"""Borders in creases: Shift Ctrl E snaps the border of the held part and back, the tool goes on so, Shift Ctrl C copies so."""
 import bpy
 import numpy
 
@@ -18,8 +18,8 @@ def play(stage):
     stops, start = yield from stage.take(stage.spot(0.95, 0.6, above=3), "its own border", notches=2)
     stage.check(snapped(stops[start + 2]) != stops[start + 2], "snapping changes this part")
     yield from stage.screenshot("0-own")
-    stage.mouse.key("TAB", shift=True)
-    yield from stage.selected(snapped(stops[start + 2]), "after Shift Tab")
+    stage.mouse.key("E", shift=True, ctrl=True)
+    yield from stage.selected(snapped(stops[start + 2]), "after Shift Ctrl E")
     stage.check(tool.operator_properties("mesh.partwheel_select").snap, "the header of the tool says so")
     yield from stage.screenshot("1-snapped")
     stage.mouse.wheel(1)
@@ -38,10 +38,10 @@ def play(stage):
     stage.mouse.click(shift=True)
     both = snapped(stops[start + 2]) | snapped(others[begin])
     yield from stage.selected(both, "the next click is snapped too")
-    stage.mouse.key("TAB", shift=True)
-    yield from stage.selected(snapped(stops[start + 2]) | others[begin], "after Shift Tab again")
+    stage.mouse.key("E", shift=True, ctrl=True)
+    yield from stage.selected(snapped(stops[start + 2]) | others[begin], "after Shift Ctrl E again")
     stage.check(not tool.operator_properties("mesh.partwheel_select").snap, "the header of the tool says so")
-    stage.mouse.key("C")
+    stage.mouse.key("C", shift=True, ctrl=True)
     yield from stage.until("there is a copy", lambda: len(bpy.data.objects) == 2)
     yield from stage.until("Object Mode is there", lambda: bpy.context.mode == "OBJECT")
     copy = next(copy for copy in bpy.data.objects if copy != model)

@@ -24,7 +24,7 @@ def held(stage, x, y, faces):
     stage.mouse.wheel(index - start)
     yield from stage.selected(stops[index], f"at stop {index}")
     before = stage.coordinates()
-    stage.mouse.key("D")
+    stage.mouse.key("D", shift=True, ctrl=True)
     yield from stage.settle()
     return stops[index], before
 

@@ -1,4 +1,4 @@
-"""J while a part is held: a leg turns at its joint and keeps its shape, what is near the joint bends; the wheel makes the
+"""Shift Ctrl J while a part is held: a leg turns at its joint and keeps its shape, what is near the joint bends; the wheel makes the
 joint larger; Esc while all is being made ready, and later; typed numbers; one undo step; "Recompute" one key away."""
 import numpy
 
@@ -11,7 +11,7 @@ def held(stage):
     stage.mouse.wheel(index - start)
     yield from stage.selected(stops[index], f"at stop {index}")
     before = stage.coordinates()
-    stage.mouse.key("J")
+    stage.mouse.key("J", shift=True, ctrl=True)
     return stops[index], before
 
 

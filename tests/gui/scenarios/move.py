@@ -1,4 +1,4 @@
-"""G hands the part on to Blender's proportional move, which reaches by its size; Esc leaves the mesh as it was."""
+"""Shift Ctrl G hands the part on to Blender's proportional move, which reaches by its size; Esc leaves the mesh as it was."""
 import numpy
 
 
@@ -21,7 +21,7 @@ def play(stage):
         stage.mouse.move(x, y)
         stage.shortcut("mesh.partwheel_select")
         yield from stage.selected(part, "after the start")
-        stage.mouse.key("G")
+        stage.mouse.key("G", shift=True, ctrl=True)
         yield from stage.settle()
         stage.mouse.move(x - 20, y + 10)
         stage.mouse.move(x - 80, y + 30)

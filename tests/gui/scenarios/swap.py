@@ -1,5 +1,6 @@
 """A part exchanged for a compatible one: Homer's arm for one of the bear's limbs, chosen with the wheel among those that
-are offered. Esc brings everything back to the last bit; a click swaps, as one undo step."""
+are offered. Meanwhile the object itself is hidden and untouched, also in a file saved then. Esc brings everything back to
+the last bit; a click swaps, as one undo step."""
 import bpy
 import numpy
 from mathutils import Matrix, Quaternion, Vector
@@ -21,19 +22,29 @@ def play(stage):
 
     before = scene()
     yield from begun(stage, homer)
-    stage.check(len(bpy.data.objects) == 3 and homer.data.name != "homer", "a part stands in, on what is left")
-    first = shown(homer, bear)
+    stage.check(homer.hide_viewport and (places(homer), homer.data.name) == before[1]["homer"][:2],
+                "Homer is hidden, and untouched")
+    saved = str(stage.file("meanwhile.blend"))
+    with stage.override():
+        bpy.ops.wm.save_as_mainfile(filepath=saved, copy=True)
+    with bpy.data.libraries.load(saved) as (held, _):
+        stage.check((set(held.objects), set(held.meshes)) == ({"homer", "bear"}, {"homer", "bear"}),
+                    f"a file saved meanwhile has nothing of it ({held.objects}, {held.meshes})")
+    stage.check(not homer.hide_viewport, "nor that anything was hidden")
+    stage.mouse.move(stage.mouse.x + 3, stage.mouse.y)
+    yield from stage.until("and then it goes on", lambda: len(bpy.data.objects) == 4)
+    first = shown()
     yield from stage.screenshot("2-first")
     stage.mouse.wheel(1)
-    yield from stage.until("the wheel offers another one", lambda: shown(homer, bear) != first)
-    second = shown(homer, bear)
+    yield from stage.until("the wheel offers another one", lambda: shown() != first)
+    second = shown()
     where = bpy.data.objects[second].matrix_world.copy()
     stage.mouse.wheel(2, shift=True)
     yield from stage.until("Shift turns it", lambda: bpy.data.objects[second].matrix_world != where)
     stage.mouse.key("M")
     yield from stage.until("M mirrors it", lambda: bpy.data.objects[second].matrix_world.is_negative)
     stage.mouse.wheel(-1)
-    yield from stage.until("the wheel goes back to the first", lambda: shown(homer, bear) == first)
+    yield from stage.until("the wheel goes back to the first", lambda: shown() == first)
     stage.mouse.key("ESC")
     yield from stage.until("Esc is Edit Mode again", lambda: homer.mode == "EDIT")
     stage.check(stage.selection() == picked, "with the part selected")
@@ -82,12 +93,12 @@ def giver(stage):
 def begun(stage, homer):
     """The last entry of the menu Mesh, with the mouse in the view."""
     yield from choose(stage, "VIEW3D_MT_edit_mesh", 0)
-    yield from stage.until("a part stands in", lambda: len(bpy.data.objects) == 3)
+    yield from stage.until("a part stands in", lambda: len(bpy.data.objects) == 4)
 
 
-def shown(*known):
+def shown():
     """The name of the part that can be seen."""
-    return next(obj.name for obj in bpy.data.objects if obj not in known and not obj.hide_viewport)
+    return next(obj.name for obj in bpy.data.objects if obj.name.startswith("bear part") and not obj.hide_viewport)
 
 
 def scene():

@@ -24,6 +24,12 @@ def play(stage):
     stage.mouse.scroll(-PIXELS)
     yield from stage.selected(stops[start + 2], "after a scroll back")
     stage.check(stage.view_state() == view, "the view has not moved meanwhile")
+    stage.mouse.key("RET")
+    yield from stage.ended()
+
+    stage.select(())
+    stage.shortcut("mesh.partwheel_select")  # where digits are not Blender's
+    yield from stage.selected(stops[start], "by its key")
     two, few = len(stops) // 10, len(stops) % 10
     stage.check(two > 0, "there are more than nine parts")
     stage.mouse.key(DIGITS[two])

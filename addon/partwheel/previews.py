@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects that only show what a tool would do, and the object that is hidden for them. All of it is marked, and goes when
+the tool ends; should Blender end first and save by itself, when that file is opened."""
+
+import bpy
+from bpy.app.handlers import persistent
+
+MARK = "partwheel_preview"
+SHOWN, HIDDEN, SELECTED, ACTIVE = 0, 1, 2, 4  # what was hidden, with what it was before
+
+
+def show(obj):
+    """A new object with a mesh of its own is a preview from now on; it."""
+    obj[MARK] = SHOWN
+    for each in (obj, obj.data):
+        if hasattr(each, "is_runtime_data"):  # from Blender 4.2 on: files are written without it
+            each.is_runtime_data = True
+    view = bpy.context.space_data
+    if view and view.type == "VIEW_3D" and view.local_view:
+        obj.local_view_set(view, True)
+    return obj
+
+
+def hide(obj):
+    """Until end(). Blender may then have no active object."""
+    obj[MARK] = HIDDEN | SELECTED * obj.select_get() | ACTIVE * (obj == bpy.context.view_layer.objects.active)
+    obj.hide_viewport = True
+
+
+@persistent
+def end(*_):
+    """No preview is left, and what was hidden is seen again, selected and active if it was."""
+    for obj in [obj for obj in bpy.data.objects if MARK in obj and not obj.library]:
+        if obj[MARK] == SHOWN:
+            mesh = obj.data
+            bpy.data.objects.remove(obj)
+            bpy.data.meshes.remove(mesh)
+            continue
+        obj.hide_viewport = False
+        layer = bpy.context.view_layer
+        layer.update()
+        if obj.name in layer.objects:
+            obj.select_set(bool(obj[MARK] & SELECTED))
+            layer.objects.active = obj if obj[MARK] & ACTIVE else layer.objects.active
+        del obj[MARK]
+
+
+def register():
+    bpy.app.handlers.load_post.append(end)
+
+
+def unregister():
+    bpy.app.handlers.load_post.remove(end)
+    end()
