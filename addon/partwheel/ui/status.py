@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the status bar shows while a modal operator runs: the keys that count now, with Blender's icons if it has them."""
+"""What the status bar shows while a modal operator runs: the keys that count now, with Blender's icons if it has
+them."""
 
 import bpy
 
@@ -12,8 +13,8 @@ WHEEL = "MOUSE_MMB_SCROLL"
 
 
 def drawer(row):
-    """A function for WorkSpace.status_text_set(): these keys.Key, and keys.Command as far as the user has keys for them.
-    Modifiers that several have are shown before the first."""
+    """A function for WorkSpace.status_text_set(): these keys.Key, and keys.Command as far as the user has keys for
+    them. Modifiers that several have are shown before the first."""
     def draw(header, _context):
         before = []
         for icons, text in filter(None, map(_shown, row)):
