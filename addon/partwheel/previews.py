@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that only show what a tool would do, and the object that is hidden for them. All of it is marked, and goes when
-the tool ends; should Blender end first and save by itself, when that file is opened."""
+"""Objects that only show what a tool would do, and the object that is hidden for them. All of it is marked, and goes
+when the tool ends; should Blender end first and save by itself, when that file is opened."""
 
 import bpy
 from bpy.app.handlers import persistent

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An exception in any step of any modal operator: afterwards all is as it was before it began, and nothing of it is left.
+"""An exception in any step of any modal operator: afterwards all is as it was before it began, and nothing of it is
+left.
 
-A profile function raises where the operators' modules call one of the add-on's functions for the n-th time in a step, so
-the place is not one that the operator knows of.
-"""
+A profile function raises where the operators' modules call one of the add-on's functions for the n-th time in a step,
+so the place is not one that the operator knows of. """
 
 import contextlib
 import inspect
@@ -28,8 +28,8 @@ class Fault(Exception):
 
 
 class Calls:
-    """While it is entered, calls of the add-on's functions from its operators are listed by name. fault: a number or a name,
-    of the one at which a Fault is raised."""
+    """While it is entered, calls of the add-on's functions from its operators are listed by name. fault: a number or a
+    name, of the one at which a Fault is raised."""
 
     def __init__(self, fault=None):
         self.names, self.fault, self.raised = [], fault, False
@@ -46,8 +46,10 @@ class Calls:
     def _called(self, frame, what, _):
         code = frame.f_code
         # Not where a generator goes on: what is raised there comes before its own "finally".
-        if what != "call" or not frame.f_back.f_code.co_filename.startswith(self.callers) or not code.co_filename.startswith(self.package) or (
-                code.co_flags & inspect.CO_GENERATOR or code.co_name in OURS or code.co_name.startswith("<")):
+        if what != "call" or not (frame.f_back.f_code.co_filename.startswith(self.callers)
+                                  and code.co_filename.startswith(self.package)):
+            return
+        if code.co_flags & inspect.CO_GENERATOR or code.co_name in OURS or code.co_name.startswith("<"):
             return
         self.names.append(code.co_name)
         if self.fault in (len(self.names) - 1, code.co_name):
@@ -79,8 +81,8 @@ class Faults(SolidTest):
                     for each in [getattr(bpy.app.handlers, name)] if isinstance(each, list)}
         counts = {name: len(each) for name in dir(bpy.data)
                   for each in [getattr(bpy.data, name)] if isinstance(each, bpy.types.bpy_prop_collection)}
-        objects = {obj.name: (obj.data.name, obj.mode, obj.select_get(), obj.hide_viewport, obj.hide_get(), list(obj.keys()),
-                              tuple(map(tuple, obj.matrix_world))) for obj in bpy.data.objects}
+        objects = {obj.name: (obj.data.name, obj.mode, obj.select_get(), obj.hide_viewport, obj.hide_get(),
+                              list(obj.keys()), tuple(map(tuple, obj.matrix_world))) for obj in bpy.data.objects}
         meshes = {}
         for mesh in bpy.data.meshes:
             bm = bmesh.from_edit_mesh(mesh) if mesh.is_editmode else None

@@ -357,8 +357,8 @@ class Modal(ToolTest):
         self.assertEqual(selected(self.obj), everything - set(self.h.faces(stops[start + 1]).tolist()))
 
     def test_other_keys_are_blenders(self):
-        """With the toolbar's tool and without: the part is confirmed, and the key goes on to Blender's keymaps, where the
-        commands on parts are."""
+        """With the toolbar's tool and without: the part is confirmed, and the key goes on to Blender's keymaps, where
+        the commands on parts are."""
         self.start()
         point, face = self.centre()
         self.send("ESC")
@@ -367,8 +367,8 @@ class Modal(ToolTest):
         self.assertEqual(len(set(each.key for each in part("keys").COMMANDS)), 6)
         for tool in (True, False):
             digits = ["ONE", "TWO", "THREE"] * tool
-            for kind, more in [(kind, {}) for kind in plain + digits] + ours + [("TAB", {"shift": True}),
-                                                                                 ("D", {"shift": True})]:
+            blenders = [(kind, {}) for kind in plain + digits] + [("TAB", {"shift": True}), ("D", {"shift": True})]
+            for kind, more in blenders + ours:
                 self.tool, self.context = Tool(tool=tool), FakeContext()
                 self.assertEqual(self.tool.invoke(self.context, event("LEFTMOUSE", point)), {"RUNNING_MODAL"})
                 self.assertEqual(self.send("LEFT_SHIFT", point), {"RUNNING_MODAL"})

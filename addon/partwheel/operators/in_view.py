@@ -124,7 +124,8 @@ class InView:
         self._at_end.callback(lambda: handler in handlers and handlers.remove(handler))  # opening a file removes them
 
     def _drawing(self, function):
-        """function, whose errors end the operator at its next event, instead of being printed whenever Blender draws."""
+        """function, whose errors end the operator at its next event, instead of being printed whenever Blender
+        draws."""
         broken = self._broken
 
         def draw():

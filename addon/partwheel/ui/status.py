@@ -37,8 +37,8 @@ class Line:
 
 
 def drawer(row):
-    """A function for WorkSpace.status_text_set(): these keys.Key, and keys.Command as far as the user has keys for them.
-    Modifiers that several have are shown before the first."""
+    """A function for WorkSpace.status_text_set(): these keys.Key, and keys.Command as far as the user has keys for
+    them. Modifiers that several have are shown before the first."""
     def draw(header, _context):
         before = []
         for icons, text in filter(None, map(_shown, row)):

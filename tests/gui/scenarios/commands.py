@@ -1,5 +1,6 @@
-"""The part's own commands: after Copy and Remove by their keys there is the panel of the last operation, with Snap Border;
-adjusting it does the operation anew, and one undo step takes it back. By the tool, and by the modal operator."""
+"""The part's own commands: after Copy and Remove by their keys there is the panel of the last operation, with Snap
+Border; adjusting it does the operation anew, and one undo step takes it back. By the tool, and by the modal
+operator."""
 import bpy
 
 
@@ -44,7 +45,8 @@ def play(stage):
     stage.mouse.key("C", shift=True, ctrl=True)
     yield from stage.until("there is a copy", lambda: len(bpy.data.objects) == 2)
     yield from stage.settle()
-    stage.check(last().bl_idname == "MESH_OT_partwheel_copy" and hasattr(last().properties, "snap"), "its panel is there")
+    stage.check(last().bl_idname == "MESH_OT_partwheel_copy" and hasattr(last().properties, "snap"),
+                "there is its panel")
     yield from opened(stage, "copied")
     snapped = len(stage.object.data.polygons)
     yield from adjusted(stage, snap=not last().properties.snap)
@@ -63,7 +65,8 @@ def play(stage):
     stage.mouse.key("X", shift=True, ctrl=True)
     yield from stage.until("the part is gone", lambda: len(stage.coordinates()) < whole)
     yield from stage.settle()
-    stage.check(last().bl_idname == "MESH_OT_partwheel_remove" and hasattr(last().properties, "snap"), "its panel is there")
+    stage.check(last().bl_idname == "MESH_OT_partwheel_remove" and hasattr(last().properties, "snap"),
+                "there is its panel")
     yield from opened(stage, "removed")
     snapped = len(stage.coordinates())
     yield from adjusted(stage, snap=not last().properties.snap)

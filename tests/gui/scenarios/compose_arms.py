@@ -1,5 +1,5 @@
-"""Features composed, as the arms in the paper's Figure 8: Homer's arms removed (X), an arm of the bear copied (C), placed
-with its mirror image, united, and a part of the result picked."""
+"""Features composed, as the arms in the paper's Figure 8: Homer's arms removed (X), an arm of the bear copied (C),
+placed with its mirror image, united, and a part of the result picked."""
 import bpy
 
 from compose import activate, caps, closed, enter, picked_up_to, place_over, unite, volume

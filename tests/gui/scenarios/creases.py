@@ -1,4 +1,5 @@
-"""Borders in creases: Shift Ctrl E snaps the border of the held part and back, the tool goes on so, Shift Ctrl C copies so."""
+"""Borders in creases: Shift Ctrl E snaps that of the held part and back, the tool goes on so, and copies are made
+so."""
 import bpy
 import numpy
 

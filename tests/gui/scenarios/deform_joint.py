@@ -1,5 +1,6 @@
-"""Shift Ctrl J while a part is held: a leg turns at its joint and keeps its shape, what is near the joint bends; the wheel makes the
-joint larger; Esc while all is being made ready, and later; typed numbers; one undo step; "Recompute" one key away."""
+"""Shift Ctrl J while a part is held: a leg turns at its joint and keeps its shape, what is near the joint bends; the
+wheel makes the joint larger; Esc while all is being made ready, and later; typed numbers; one undo step; "Recompute"
+one key away."""
 import numpy
 
 from scenarios.deform import confirmed, inner

@@ -1,4 +1,4 @@
-"""Shift Ctrl P while a part is held: it moves within its border, in proportion to the distance from it; Esc, then a click."""
+"""Shift Ctrl P: the held part moves within its border, in proportion to the distance from it; Esc, then a click."""
 import numpy
 
 from scenarios.deform import inner

@@ -1,4 +1,5 @@
-"""Shift Ctrl G hands the part on to Blender's proportional move, which reaches by its size; Esc leaves the mesh as it was."""
+"""Shift Ctrl G: Blender moves the part with proportional editing, which reaches by its size; Esc leaves the mesh as it
+was."""
 import numpy
 
 

@@ -1,6 +1,6 @@
-"""A part exchanged for a compatible one: Homer's arm for one of the bear's limbs, chosen with the wheel among those that
-are offered. Meanwhile the object itself is hidden and untouched, also in a file saved then. Esc brings everything back to
-the last bit; a click swaps, as one undo step."""
+"""A part exchanged for a compatible one: Homer's arm for one of the bear's limbs, chosen with the wheel among those
+that are offered. Meanwhile the object itself is hidden and untouched, also in a file saved then. Esc brings everything
+back to the last bit; a click swaps, as one undo step."""
 import bpy
 import numpy
 from mathutils import Matrix, Quaternion, Vector

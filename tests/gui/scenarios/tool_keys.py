@@ -1,5 +1,5 @@
-"""In the tool Blender's keys mean what they mean in Blender, while a part is held: 2 is for edges, G moves the part alone, C
-selects by a circle, X opens Delete; the part's own commands are shown in the status bar."""
+"""In the tool Blender's keys mean what they mean in Blender, while a part is held: 2 is for edges, G moves the part
+alone, C selects by a circle, X opens Delete; the part's own commands are shown in the status bar."""
 import bpy
 import numpy
 
