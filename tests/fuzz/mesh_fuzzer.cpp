@@ -3,7 +3,7 @@
 //
 //   byte 0      rungs (0..7), then a bit each: open_surfaces, quality, polygons of two triangles, far away, tiny
 //   byte 1      a bit: mode "paper"; 2: threads; a bit: fine, with edges halved until there are parts to regroup and
-//               noise can be told; 3: noise, in 1/20 of the longest edge
+//               noise can be told, and not wrapped, which takes long; 3: noise, in 1/20 of the longest edge
 //   byte 2      number of vertices
 //   3 a vertex, 3 a corner: see bytes.h
 #include "bytes.h"
@@ -96,6 +96,7 @@ Input read(const uint8_t* data, size_t size) {
         const bool polygons = !mesh.faces.empty();
         if (!polygons) mesh.faces.resize(mesh.triangles.size());
         refine(mesh);
+        input.options.rungs = flags & 3 ? flags & 3U : PW_RUNG_EXACT | PW_RUNG_REPAIRED;
         if (!polygons) mesh.faces.clear(), mesh.face_count = mesh.triangles.size();
         disturb(mesh, noise_step * (more >> 4 & 7));
     }

@@ -24,11 +24,11 @@ LIMITS = {  # bytes of an input, seconds for one input
     "saved": (seeds.MOST_SAVED, 20),
     "surface": (1500, 20),
 }
-# Fuzzer, kind of seed -> what the fuzzer tells of the cube's; functions of the library that run; and that do not.
+# Fuzzer, kind of seed -> what the fuzzer tells of one at least; functions of the library that run; and that do not.
 REACHED = {
     ("mesh", "exact"): ("ok exact, regrouped, triangles, 0 threads, no points inside, coarse",
                         ["cluster(", "regroup("], ["carried(", "smoothed(", "displaced("]),
-    ("mesh", "repaired"): ("ok exact, regrouped, triangles, 1 threads, no points inside, coarse", ["repair("], []),
+    ("mesh", "repaired"): ("ok repaired, regrouped, triangles, 1 threads, no points inside, coarse", ["attach("], []),
     ("mesh", "inside"): ("ok exact, regrouped, triangles, 2 threads, points inside, coarse",
                          ["plain_filling(", "carried("], ["smoothed("]),
     ("mesh", "polygons"): ("ok exact, regrouped, polygons, 3 threads, no points inside, coarse", ["regroup("], []),
@@ -38,7 +38,7 @@ REACHED = {
     ("mesh", "rough"): ("ok exact, regrouped, triangles, 0 threads, no points inside, fine",
                         ["smoothed(", "carried("], ["displaced("]),
     ("mesh", "crossing"): ("ok repaired, regrouped, triangles, 0 threads, no points inside, fine",
-                           ["displaced(", "smoothed("], ["repair("]),
+                           ["displaced(", "smoothed("], ["attach("]),
     **{("saved", kind): ("loaded", ["Hierarchy::finish(", "Facets::solid(", "Facets::with_faces(", "bounds_of("], [])
        for kind in seeds.SAVED},
     **{("surface", kind): ("normals distances faults fair snapped deformed",
