@@ -11,7 +11,7 @@ from mathutils import Matrix, Vector
 from mathutils.bvhtree import BVHTree
 
 from . import mesh_arrays
-from .seen import NO_FACE, seen
+from .seen import seen
 
 STEP = 1e-5  # how far behind a clipped face the search goes on, as a share of the way there
 BEHIND = 1e-6  # the same behind what a view does not show, as a share of the coordinates, which have 24 bits

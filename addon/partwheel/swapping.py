@@ -9,11 +9,10 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from . import composition, mesh_arrays, placement, session, solids, union
+from . import composition, mesh_arrays, placement, session, union
 from .core import compatible
 from .mesh_arrays import read
 from .objects import named
-from .solids import CAP
 
 
 class NotSwapped(Exception):

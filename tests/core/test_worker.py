@@ -8,7 +8,6 @@ has one of its own.
 """
 
 import _thread
-import contextlib
 import os
 import resource
 import signal

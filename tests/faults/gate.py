@@ -3,7 +3,6 @@
 machine is. Linux only.
 """
 
-import os
 import tempfile
 from pathlib import Path
 

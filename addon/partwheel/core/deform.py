@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Deformation: a surface follows handles as rigidly as possible; and distances along a surface. Native, with numpy."""
 
-import ctypes
 import math
 from ctypes import byref, c_double, c_void_p
 

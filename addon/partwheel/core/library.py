@@ -6,7 +6,7 @@ import enum
 import functools
 import os
 import sys
-from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_size_t, c_uint8, c_uint32, c_void_p
+from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_size_t, c_uint32, c_void_p
 from pathlib import Path
 
 VERSION = "0.1.0"  # of partwheel.h, as declared here

@@ -1,5 +1,4 @@
 """The toolbar's tool: hover shows, a click picks, the wheel grows, the next click goes on; undo goes pick by pick."""
-import bpy
 
 
 def play(stage):
