@@ -5,16 +5,15 @@
 #include "support/sizes.h"
 
 #include <gtest/gtest.h>
-#include <pthread.h>
 
 #include <atomic>
 #include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <random>
 #include <set>
 #include <thread>
@@ -340,29 +339,39 @@ TEST(Api, ProgressNeverFallsAndStagesFollowEachOther) {
         std::thread watcher;
         std::vector<std::pair<double, pw_stage>> seen;
         std::atomic<bool> watching{false};
+        using Clock = std::chrono::steady_clock;
+        const auto since = [](Clock::time_point then) {
+            return std::chrono::duration<double>(Clock::now() - then).count();
+        };
+        double ran = 0;  // so long the build was surely running: from when it was first seen to
         watcher = std::thread([&] {
             double fraction = 0;
             pw_stage stage = PW_STAGE_SURFACE;
             double last = -1;
+            std::optional<Clock::time_point> running;
             // A context used before still tells of the last build until the next begins: wait for the fall to 0.
             while (!done) {
+                const double until_now = running ? since(*running) : 0;
                 EXPECT_EQ(pw_context_progress(context.get(), &fraction, &stage), PW_OK);
                 watching = true;
                 if (fraction != last) seen.emplace_back(fraction, stage);
                 last = fraction;
+                if (fraction > 0 && fraction < 1) {
+                    if (!running) running = Clock::now();
+                    ran = until_now;
+                }
                 std::this_thread::yield();
             }
         });
         while (!watching) std::this_thread::yield();
-        const auto begin = std::chrono::steady_clock::now();
+        const auto begin = Clock::now();
         const Built built = try_build(mesh, 0, context.get());
-        const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        const double wall = since(begin);
         done = true;
         watcher.join();
         ASSERT_EQ(built.status, PW_OK) << built.message;
 
         if (round > 0 && !seen.empty() && seen.front().first == 1) seen.erase(seen.begin());
-        ASSERT_GT(seen.size(), 1U);
         for (size_t i = 1; i < seen.size(); ++i) {
             EXPECT_GT(seen[i].first, seen[i - 1].first);
             EXPECT_GE(seen[i].second, seen[i - 1].second);
@@ -379,7 +388,7 @@ TEST(Api, ProgressNeverFallsAndStagesFollowEachOther) {
             sum += s;
         }
         EXPECT_LE(sum, wall);
-        EXPECT_GE(sum, 0.5 * wall);
+        EXPECT_GE(sum, ran - 1e-6);
     }
 }
 
@@ -420,53 +429,39 @@ TEST(Api, CancelBeforeABuildStopsTheNextOneOnly) {
     EXPECT_EQ(try_build(cube(), 0, context.get()).status, PW_OK);
 }
 
-double cpu_seconds(clockid_t clock) {
-    timespec t{};
-    clock_gettime(clock, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 TEST(Api, CancelFromAnotherThreadWhileClustering) {
     // Of the second model the clusters are wide open: each step takes long.
     const TriMesh bear = real_mesh(light() ? "hand.off" : "bear_bis.off"), cheese = real_mesh("cheese.off");
-    const Context context = new_context();
     for (const auto& run : {std::pair(&bear, 0.5), {&bear, 0.8}, {&bear, 0.95}, {&cheese, 0.5}}) {
         const TriMesh& mesh = *run.first;
         const double at = run.second;
         SCOPED_TRACE(mesh.name);
+        const Context context = new_context();
         std::atomic<bool> done{false};
         pw_status status = PW_OK;
-        clockid_t clock{};
-        std::atomic<bool> running{false};
-        double ended = 0;
         std::thread builder([&] {
-            pthread_getcpuclockid(pthread_self(), &clock);
-            running = true;
             status = try_build(mesh, 0, context.get()).status;
-            ended = cpu_seconds(clock);
             done = true;
         });
-        while (!running) std::this_thread::yield();
-        double fraction = 0;
+        double fraction = 0, asked = 0;
         pw_stage stage = PW_STAGE_SURFACE;
-        bool began = false;  // the last build's progress stands until this one begins
-        while (!done) {
+        while (!done && !(stage == PW_STAGE_CLUSTER && fraction >= at)) {
             EXPECT_EQ(pw_context_progress(context.get(), &fraction, &stage), PW_OK);
-            began = began || fraction < at;
-            if (began && stage == PW_STAGE_CLUSTER && fraction >= at) break;
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            std::this_thread::yield();
         }
-        const bool too_late = done;
-        const double asked = cpu_seconds(clock);
         EXPECT_EQ(pw_context_cancel(context.get()), PW_OK);
+        EXPECT_EQ(pw_context_progress(context.get(), &asked, nullptr), PW_OK);
         builder.join();
-        ASSERT_FALSE(too_late) << "the build was over before it could be cancelled";
+        EXPECT_EQ(pw_context_progress(context.get(), &fraction, &stage), PW_OK);
+        if (asked == 1) continue;  // this thread has slept until the build was over
         EXPECT_EQ(status, PW_ERROR_CANCELLED) << "at " << at;
-        // In the builder's own time, as other programs may keep it from running. Freeing its memory counts too.
-        EXPECT_LT(ended - asked, sized(0.1, 2.0)) << "at " << at;
+        // It has come to the next place where it asks at most: every 256 merges, of about as many as there are faces.
+        if (stage == PW_STAGE_CLUSTER) {
+            EXPECT_LE(fraction, asked + 256 / static_cast<double>(mesh.triangles.size())) << "at " << at;
+        }
+        // The context is as good as new.
+        EXPECT_EQ(try_build(cube(), 0, context.get()).status, PW_OK);
     }
-    // The context is as good as new.
-    EXPECT_EQ(try_build(cube(), 0, context.get()).status, PW_OK);
 }
 
 // ---- Threads ----
