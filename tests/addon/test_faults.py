@@ -155,7 +155,7 @@ class Faults(SolidTest):
 
     def ready(self, tool, context):
         """The tick at which what was done in the background is done."""
-        until(lambda: not tool.task or not tool.task._thread.is_alive(), 600)
+        until(lambda: not tool.task or not tool.task._thread.is_alive())
         return tool.modal(context, event("TIMER"))
 
     def test_select(self):

@@ -17,9 +17,7 @@ class Line:
     is held, say, and not how far the build for another mesh is."""
 
     lines = []
-
-    def __init__(self):
-        self._said = None
+    _said = None
 
     def say(self, context, said):
         """said: a text or a drawer()."""
