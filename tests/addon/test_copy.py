@@ -238,7 +238,7 @@ class Copy(SolidTest):
         hierarchy = part("core").Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=4)
         share = hierarchy.area / hierarchy.area[-1]
         filled = []
-        for node in rng.choice(numpy.flatnonzero((share > 0.01) & (share < 0.8)), 12, replace=False).tolist():
+        for node in rng.choice(numpy.flatnonzero((share > 0.01) & (share < 0.8)), 48, replace=False).tolist():
             ends = int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])
             copy = part("solids").part(obj, hierarchy, *ends)
             self.assertSolid(copy)

@@ -201,7 +201,7 @@ class Timers(MeshTest):
         settings = bpy.context.tool_settings
         settings.proportional_size = users = 0.625
         for _ in range(2):
-            part("operators.proportional").around("G")(bpy.context)
+            part("operators.proportional").MESH_OT_partwheel_move.invoke(None, bpy.context, None)
             self.assertEqual(len(timers()), 1)
             settings.proportional_size = 3  # as Blender's tool does in a window when it ends
         bpy.ops.preferences.addon_disable(module=common.MODULE)
