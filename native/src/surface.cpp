@@ -25,6 +25,10 @@ namespace {
 constexpr double largest_coordinate = 1e100;
 constexpr double smallest_model = 1e-80;
 
+// A working coordinate that is less counts as 0: the predicates are exact as long as a product of three differences can
+// have all its digits.
+constexpr double least_working = 0x1p-280;
+
 // The longest side of a model's bounding box is this part of the grid's that its vertices are sorted by: no round number,
 // so that no cell ends where models tend to have vertices, which rounding would then put on either side.
 constexpr double part_of_grid = 0.7390851332151607;
@@ -312,8 +316,11 @@ Frame Frame::around(std::span<const Point> points) {
 }
 
 Point Frame::to_working(const Point& p) const {
-    const Point d = p - origin;
-    return {d[0] / scale, d[1] / scale, d[2] / scale};
+    const auto working = [&](size_t k) {
+        const double x = (p[k] - origin[k]) / scale;
+        return std::fabs(x) < least_working ? 0 : x;
+    };
+    return {working(0), working(1), working(2)};
 }
 
 Point Frame::to_caller(const Point& p) const {

@@ -432,3 +432,16 @@ def test_numbers_of_nothing_are_refused(build_shape):
         with pytest.raises(PartwheelError) as refused:
             call()
         assert refused.value.status == Status.ARGUMENT and str(refused.value)
+
+
+@pytest.mark.parametrize("name", ["cube", "L", "jack"])
+def test_coordinates_whose_products_are_no_numbers(name):
+    """As a transform leaves them where there should be 0: the tree is the one with 0."""
+    shape = shapes.SHAPES[name]()
+    vertices = shape.vertices - shape.vertices.min(axis=0)
+    almost = np.where(vertices == 0, np.random.default_rng(1).random(vertices.shape) * 1e-319, vertices)
+    plain, tiny = (Hierarchy.build(*shape._replace(vertices=each), rungs=1) for each in (vertices, almost))
+    for array in ("order", "parent", "tetrahedra", "merges", "height"):
+        np.testing.assert_array_equal(getattr(tiny, array), getattr(plain, array))
+    for node in range(len(plain.parent)):
+        np.testing.assert_array_equal(tiny.hull(node)[1], plain.hull(node)[1])
