@@ -3,9 +3,10 @@
 #ifndef PARTWHEEL_TYPES_H
 #define PARTWHEEL_TYPES_H
 
-/* Largest number of vertices, triangles, faces or tetrahedra that one hierarchy holds: what int32_t can number. A mesh
- * that takes more than 2^29 - 16 tetrahedra is not built, but refused with PW_ERROR_MEMORY. */
-#define PW_MAX_COUNT 1000000000
+/* Largest number of vertices, triangles, faces, edges or tetrahedra in one call or hierarchy: an int32_t can number four
+ * things of each, as a tetrahedron's corners. A mesh that takes more than 2^29 - 16 tetrahedra is refused with
+ * PW_ERROR_MEMORY. */
+#define PW_MAX_COUNT 500000000
 
 typedef enum pw_status {
     PW_OK = 0,

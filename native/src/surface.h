@@ -63,7 +63,8 @@ struct Surface {
     std::string account;
 };
 
-// Throws an Error where the caller's arrays are no mesh: no faces, too many, an index or a coordinate that can't be.
+// Throws an Error where the caller's arrays are no mesh: no faces, an index or a coordinate that can't be. The API has
+// seen to it that there are not too many.
 void check_arrays(const MeshView& mesh);
 
 // The caller's arrays in canonical order, good or bad. Throws an Error where they aren't a mesh with an extent.

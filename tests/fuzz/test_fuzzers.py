@@ -39,7 +39,8 @@ REACHED = {
                         ["smoothed(", "carried("], ["displaced("]),
     ("mesh", "crossing"): ("ok repaired, regrouped, triangles, 0 threads, no points inside, fine",
                            ["displaced(", "smoothed("], ["attach("]),
-    **{("saved", kind): ("loaded", ["Hierarchy::finish(", "Facets::solid(", "Facets::with_faces(", "bounds_of("], [])
+    **{("saved", kind): ("loaded", ["Hierarchy::finish(", "Facets::solid(", "Facets::with_faces(",
+                                    "Hierarchy::cut_automatic("], [])
        for kind in seeds.SAVED},
     **{("surface", kind): ("normals distances faults fair snapped deformed",
                            ["faired(", "minimum_cut(", "Deformation::iterate("], [])
