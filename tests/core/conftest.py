@@ -7,6 +7,7 @@ PARTWHEEL_TEST_COMMA=1 runs all of them in a locale in which numbers have a comm
 import functools
 import locale
 import os
+import signal
 import sys
 from pathlib import Path
 
@@ -25,6 +26,9 @@ def set_comma():
     locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
     assert locale.localeconv()["decimal_point"] == ","
 
+
+# A shell lets what it starts in its background ignore Ctrl C, which tests send.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 if os.environ.get("PARTWHEEL_TEST_COMMA"):
     set_comma()
