@@ -143,7 +143,6 @@ class PartPicker(InView):
 
     def _hold(self, context, obj, picked):
         self.object_name, self.target, self.shown = obj.name_full, self._aim(context, obj), None
-        self.object_name, self.target, self.shown = obj.name_full, self._aim(context, obj), None
         self._at_end.callback(overlay.shown.hide)
         return self._show(context, picked)
 
