@@ -3,6 +3,7 @@
 what to do about it."""
 
 import contextlib
+import errno
 import os
 import shlex
 import subprocess
@@ -138,7 +139,7 @@ def test_no_python_at_all(pythons, shim, monkeypatch):
         pythons(executable)
         assert "no Python" in refusal()
     pythons("/nowhere/python")
-    assert "/nowhere/python can't be started (No such file or directory)" in refusal()
+    assert f"/nowhere/python can't be started ({os.strerror(errno.ENOENT)})" in refusal()
     fails, hangs = shim("fails", FAILS), shim("hangs", HANGS)
     pythons(fails)
     assert f"{fails} ended without an answer (exit code 127)" in refusal()

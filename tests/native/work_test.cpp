@@ -89,7 +89,7 @@ Attaching attaching(const TriMesh& source, const TriMesh& surface) {
 }
 
 TEST(Work, SliversAreSampledAlongOnly) {
-    const TriMesh cylinder = open_cylinder(sized(1000, 100));
+    const TriMesh cylinder = open_cylinder(sized(1000, 200));
     const Attaching a = attaching(cylinder, cylinder);
     const double along = std::ceil(4.001 / (std::hypot(2, 2, 4) * sample_spacing));
     EXPECT_LE(static_cast<double>(a.surface.pieces.size()), along * static_cast<double>(cylinder.triangles.size()));
