@@ -102,7 +102,7 @@ def play(stage):
     old = stage.session.known(stage.object.data)
     stage.mouse.key("P")
     yield from stage.until("the parts are found anew",
-                           lambda: stage.session.known(stage.object.data) is not old, 120)
+                           lambda: stage.session.known(stage.object.data) is not old)
     yield from stage.ended()
     shift = stage.coordinates() - before
     farthest = shift[numpy.linalg.norm(shift, axis=1).argmax()]
