@@ -23,6 +23,8 @@ def play(stage):
         stage.shortcut("mesh.partwheel_select")
         yield from stage.selected(part, "after the start")
         stage.mouse.key("G", shift=True, ctrl=True)
+        for held in ("LEFT_SHIFT", "LEFT_CTRL"):  # which Blender's tool takes for precise and for snapping meanwhile
+            stage.mouse.release(held)
         yield from stage.settle()
         stage.mouse.move(x - 20, y + 10)
         stage.mouse.move(x - 80, y + 30)
