@@ -28,17 +28,16 @@ class Command(NamedTuple):
     options: dict = {}
 
 
-LARGER = Key("LARGER", frozenset({"WHEELUPMOUSE", "PAGE_UP", "NUMPAD_PLUS", "UP_ARROW"}), "Larger",
-             names="Wheel Up, ↑")
-SMALLER = Key("SMALLER", frozenset({"WHEELDOWNMOUSE", "PAGE_DOWN", "NUMPAD_MINUS", "DOWN_ARROW"}), "Smaller",
-              names="Wheel Down, ↓")
+TURNS = {"WHEELUPMOUSE": 1, "PAGE_UP": 1, "NUMPAD_PLUS": 1, "UP_ARROW": 1,
+         "WHEELDOWNMOUSE": -1, "PAGE_DOWN": -1, "NUMPAD_MINUS": -1, "DOWN_ARROW": -1}
+RESIZE = Key("RESIZE", frozenset(TURNS), "Larger, Smaller", names="Wheel, ↑↓")
 CONFIRM = Key("CONFIRM", frozenset({"RET", "NUMPAD_ENTER"}), "Confirm", ("EVENT_RETURN",))
 CANCEL = Key("CANCEL", frozenset({"RIGHTMOUSE", "ESC"}), "Cancel", ("EVENT_ESC", "MOUSE_RMB"))
 CLICK = Key("CLICK", frozenset({"LEFTMOUSE"}), "Pick a Part", ("MOUSE_LMB",))
 SNAP_BORDER = Key("SNAP_BORDER", frozenset("E"), "Snap Border", ("EVENT_SHIFT", "EVENT_CTRL", "EVENT_E"))
 ERASE = Key("ERASE", frozenset({"BACK_SPACE"}), "")
 DIGITS = dict(zip(("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE"), "0123456789"))
-NUMBER = Key("NUMBER", frozenset(DIGITS), "Part by Number", names="0-9")
+NUMBER = Key("NUMBER", frozenset(DIGITS), "Number", names="0-9")
 NAVIGATE = Key("NAVIGATE", frozenset({
     "MIDDLEMOUSE", "MOUSEPAN", "MOUSEZOOM", "MOUSEROTATE", "TRACKPADPAN", "TRACKPADZOOM", "NDOF_MOTION", "HOME",
     "NUMPAD_0", "NUMPAD_1", "NUMPAD_2", "NUMPAD_3", "NUMPAD_4", "NUMPAD_5", "NUMPAD_6", "NUMPAD_7", "NUMPAD_8",
@@ -50,13 +49,11 @@ MODIFIERS = frozenset({"LEFT_SHIFT", "RIGHT_SHIFT", "LEFT_CTRL", "RIGHT_CTRL", "
 BUTTONS = frozenset({"LEFTMOUSE", "RIGHTMOUSE"})  # with Alt they navigate too, in some keymaps
 MOVES = frozenset({"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"})
 
-TURNS = {**dict.fromkeys(LARGER.events, 1), **dict.fromkeys(SMALLER.events, -1)}
-
 WAITING = (CLICK, NAVIGATE, CANCEL)
-# While a part is held, with what is done with it, and then the ends.
-PICKED = (LARGER, SMALLER, NUMBER, SNAP_BORDER)
+# While a part is held; then COMMANDS, and the ends: as many as fit in a window 1280 pixels wide.
+PICKED = (RESIZE, NUMBER, SNAP_BORDER)
 # With the toolbar's tool a click goes on to the next part, and 1, 2 and 3 are Blender's.
-HELD = (LARGER, SMALLER, CLICK._replace(label="Next Part"), SNAP_BORDER)
+HELD = (RESIZE, CLICK._replace(label="Next Part"), SNAP_BORDER)
 ENDS = (CONFIRM, NAVIGATE, CANCEL)
 # Shift, Ctrl and a letter, of those that no keymap of Blender's has for anything in Edit Mode.
 COMMANDS = (

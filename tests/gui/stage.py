@@ -22,7 +22,7 @@ from mathutils import Euler, Matrix, Quaternion, Vector
 from events import DRIVERS
 from gate import Gate
 from model import Wheels
-from view import View
+from view import View, picture
 
 WAIT = 600  # seconds until something counts as never happening, far more than a machine under load needs for it
 TICK = 0.01
@@ -448,6 +448,13 @@ class Stage:
         """Saves the screen as build/gui/SCENARIO-NAME.png once all is drawn; returns its path."""
         yield from self.drawn()
         return self._picture(name)
+
+    def bar_fits(self, path):
+        """Checks on a picture that the status bar says something, and that the window doesn't cut it off: beyond its
+        end there is more room than between any two of its entries."""
+        bar = picture(path)[3:17, :-2, :3]
+        self.check(numpy.ptp(bar[:, :100]) > 0.2, "the status bar says something")
+        self.check(numpy.ptp(bar[:, -24:]) < 0.05, "all that it says can be seen")
 
     def file(self, name):
         """A path for a file that the scenario makes; it is gone after the run."""

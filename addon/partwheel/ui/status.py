@@ -9,7 +9,6 @@ from . import keymap
 
 # Some versions have more icons of keys than others.
 ICONS = set(bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys())
-WHEEL = "MOUSE_MMB_SCROLL"
 
 
 class Line:
@@ -48,8 +47,7 @@ def drawer(row):
 def _shown(key):
     """(icons, text), or None."""
     if isinstance(key, keys.Key):
-        icons = [WHEEL] * (key is keys.LARGER and WHEEL in ICONS) + list(key.icons)
-        return icons, f"{key.names}: {key.label}" if key.names else key.label
+        return list(key.icons), f"{key.names}: {key.label}" if key.names else key.label
     item = keymap.item(key)
     if item and f"EVENT_{item.type}" in ICONS:
         held = [f"EVENT_{name.upper()}" for name in ("shift", "ctrl", "alt") if getattr(item, name)]

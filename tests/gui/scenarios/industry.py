@@ -29,7 +29,7 @@ def play(stage):
         stage.mouse.wheel(1 if at > start else -1)
         yield from stage.selected(stops[at], f"after a notch, after Alt and {button}")
         stage.check(stage.view_state() == moved, "the wheel selects and does not zoom")
-    yield from stage.screenshot("held")
+    stage.bar_fits((yield from stage.screenshot("held")))
     stage.mouse.click("RIGHTMOUSE")
     yield from stage.selected((), "after right click")
     yield from stage.ended()

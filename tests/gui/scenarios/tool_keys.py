@@ -13,7 +13,7 @@ def play(stage):
 
     stops, start = yield from stage.take(spot, "edges")
     part = stops[start + 1]
-    yield from stage.screenshot("0-held")
+    stage.bar_fits((yield from stage.screenshot("0-held")))
     stage.mouse.key("TWO")
     yield from stage.until("2 is for edges", lambda: tuple(settings.mesh_select_mode) == (False, True, False))
     yield from stage.selected(part, "in that mode")
