@@ -117,14 +117,14 @@ def play(stage):
             if stage.object.data.total_face_sel != before:  # not at the end of the path
                 drawing.append(sum(software.take()))
                 notches.append(sum(handle.take()) + sum(draws.take()) - drawing[-1])
-        stage.mouse.key("TAB", shift=True)
+        stage.mouse.key("E", shift=True, ctrl=True)
         yield from stage.settle()
         handle.take()
         for step in (1,) * 6 + (-1,) * 6:
             stage.mouse.wheel(step)
             yield from stage.settle()
         snapped += handle.take()
-        stage.mouse.key("TAB", shift=True)
+        stage.mouse.key("E", shift=True, ctrl=True)
         stage.mouse.key("ESC")
         yield from stage.settle()
         stage.select(())
