@@ -74,7 +74,7 @@ else()
   # Not in predicates.cxx, where it is defined.
   set_source_files_properties("${tetgen_include}/tetgen.cxx" PROPERTIES
                               COMPILE_DEFINITIONS orient3d=partwheel_tetgen_orient3d)
-  target_compile_options(partwheel_tetgen PRIVATE "SHELL:-include \"${PROJECT_SOURCE_DIR}/native/src/tetgen_host.h\"")
+  target_compile_options(partwheel_tetgen PRIVATE "SHELL:-include \"${PROJECT_SOURCE_DIR}/native/src/fill/tetgen_host.h\"")
 endif()
 file(STRINGS "${tetgen_include}/tetgen.h" line REGEX "^// Version [0-9]")
 string(REGEX MATCH "[0-9]+(\\.[0-9]+)+" found "${line}")

@@ -14,8 +14,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 ADDON = ROOT / "addon" / "partwheel"
 MANIFEST = ADDON / "blender_manifest.toml"
 PACKAGES = ROOT / "build" / "package"
-LIBRARY = ADDON / "core" / "libpartwheel.so"
+PACKAGE = ROOT / "native" / "python" / "partwheel"
+LIBRARY = PACKAGE / "libpartwheel.so"
 MACHINES = {"x86_64": "x64", "aarch64": "arm64"}
+ROOM = "partwheel_addon"  # in the zip
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can hold
 
 
@@ -28,15 +30,17 @@ def main():
     target.parent.mkdir(parents=True, exist_ok=True)
 
     # Both installers want all files in one folder: for a legacy add-on its name becomes the module's.
-    files = {f"partwheel/{path.relative_to(ADDON).as_posix()}": path.read_bytes()
-             for path in ADDON.rglob("*") if wanted(path)}
-    files["partwheel/LICENSE"] = (ROOT / "LICENSE").read_bytes()
-    files["partwheel/blender_manifest.toml"] = manifest_for(here)
+    # That name must not be the Python package's, which the add-on brings and finds beside its own files.
+    files = {f"{ROOM}/{prefix}{path.relative_to(tree).as_posix()}": path.read_bytes()
+             for tree, prefix in ((ADDON, ""), (PACKAGE, "packages/partwheel/"))
+             for path in tree.rglob("*") if wanted(path.relative_to(tree)) and path.is_file()}
+    files[f"{ROOM}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
+    files[f"{ROOM}/blender_manifest.toml"] = manifest_for(here)
     partial = target.with_suffix(".partial")
     with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         # Blender before 4.2 removes what an update replaces only if the zip names its folder. Else it would write over
         # the library while that is in use, and crash.
-        archive.writestr(entry("partwheel/", 0o040755), b"")
+        archive.writestr(entry(f"{ROOM}/", 0o040755), b"")
         for name in sorted(files):
             archive.writestr(entry(name, 0o100644), files[name])
     partial.replace(target)
@@ -51,8 +55,7 @@ def entry(name, mode):
 
 
 def wanted(path):
-    hidden = any(part.startswith((".", "__pycache__")) for part in path.relative_to(ADDON).parts)
-    return path.is_file() and not hidden
+    return not any(part.startswith((".", "__pycache__")) for part in path.parts)
 
 
 def manifest_for(here):
@@ -66,7 +69,7 @@ def manifest_for(here):
 def agreed_version():
     """The version, which the header, the binding, the manifest and bl_info must agree on."""
     header = re.search(r'^#define PW_VERSION "([^"]+)"', (ROOT / "native/include/partwheel.h").read_text(), re.M)
-    binding = re.search(r'^VERSION = "([^"]+)"', (ADDON / "core" / "library.py").read_text(), re.M)
+    binding = re.search(r'^VERSION = "([^"]+)"', (PACKAGE / "library.py").read_text(), re.M)
     manifest = re.search(r'^version = "([^"]+)"', MANIFEST.read_text(), re.M)
     assignments = (node for node in ast.parse((ADDON / "__init__.py").read_text()).body if isinstance(node, ast.Assign))
     bl_info = next(ast.literal_eval(node.value) for node in assignments if node.targets[0].id == "bl_info")

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Partwheel for Blender: select a meaningful part of a mesh with one click and a turn of the mouse wheel.
-
-Nothing of Blender is imported before register(), so that partwheel.core works in plain Python.
 """
+
+import sys
+from pathlib import Path
 
 # For Blender 3.4 to 4.1. Later ones read blender_manifest.toml; both say the same, and a test compares them.
 bl_info = {
@@ -15,13 +16,15 @@ bl_info = {
     "category": "Mesh",
 }
 
+PACKAGES = Path(__file__).parent / "packages"  # with the Python package partwheel, where no wheel brings it
+
 if "register" in globals():
     # An update was installed over this: Blender before 4.2 reloads this file alone, so the others are forgotten here.
-    import sys
-
-    for name in [name for name in sys.modules if name.startswith(f"{__name__}.")]:
+    for name in [name for name in sys.modules if name.startswith((f"{__name__}.", "partwheel.")) or name == "partwheel"]:
         del sys.modules[name]
         globals().pop(name[len(__name__) + 1:], None)
+if PACKAGES.is_dir() and str(PACKAGES) not in sys.path:
+    sys.path.insert(0, str(PACKAGES))
 
 
 def register():

@@ -12,23 +12,23 @@
     copy = api.copy_part(obj, node)    # the part as a closed solid, a new object
     api.swap(obj, node, other)         # exchanged for the most compatible part of another object
 
-Nodes are numbers of the object's hierarchy, a core.Hierarchy, which build() returns and hierarchy() finds. The other
+Nodes are numbers of the object's hierarchy, a partwheel.Hierarchy, which build() returns and hierarchy() finds. The other
 functions build it if there is none. One build runs at a time: those that are under way already come first. All raise
-core.PartwheelError, whose text says what is wrong, or ValueError for an object that holds no mesh.
+partwheel.PartwheelError, whose text says what is wrong, or ValueError for an object that holds no mesh.
 """
 
 import numpy
 from mathutils import Vector
 
 from . import borders, composition, deforming, placement, selection, session, solids, swapping, union, wheel
-from .core.joint import REACH
+from partwheel.joint import REACH
 
 
 def build(obj, quality=0.0, open_surfaces=False, mode=None):
     """Builds the hierarchy of the object's mesh and keeps it; waits until it is done. The Hierarchy.
 
     quality: 0 adds no points inside the mesh; from 1.1 on it bounds how stretched the tetrahedra may be. open_surfaces:
-    take a sheet for a thin solid, instead of refusing it. mode: a core.Mode, how parts are joined; None: as the add-on's
+    take a sheet for a thin solid, instead of refusing it. mode: a partwheel.Mode, how parts are joined; None: as the add-on's
     preferences have it.
     """
     _check(obj)
@@ -43,7 +43,7 @@ def hierarchy(obj):
 
 def path(obj, face):
     """(n,) the nodes that hold a face, growing: from its leaf to the root. All of them; the wheel stops at some (in
-    core.Mode.PAPER at all)."""
+    partwheel.Mode.PAPER at all)."""
     return hierarchy(obj).path(face)
 
 

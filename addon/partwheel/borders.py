@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The faces of a part, with its own border or with that moved to the creases nearby (core.Creases)."""
+"""The faces of a part, with its own border or with that moved to the creases nearby (partwheel.Creases)."""
 
 import numpy as np
 
 from . import mesh_arrays, session
-from .core import Creases
+from partwheel import Creases
 
 _kept = None  # (Fingerprint, Creases) of the mesh that was asked about last
 

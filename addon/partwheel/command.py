@@ -10,7 +10,7 @@ import argparse
 import bpy
 
 from . import api
-from .core import LibraryError, PartwheelError
+from partwheel import LibraryError, PartwheelError
 from .session import Outdated
 
 NAME = "partwheel"

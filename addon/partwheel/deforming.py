@@ -15,11 +15,11 @@ import numpy as np
 from mathutils.kdtree import KDTree
 
 from . import mesh_arrays
-from .core.deform import (
+from partwheel.deform import (
     FIXED, FREE, SETTLED, STEP_ANGLE, Deformation, part_of_the_way, rigid_motion, rotation_angle, surface_distances,
     vertex_normals,
 )
-from .core.joint import groups, joint
+from partwheel.joint import groups, joint
 
 HANDLE_SIZE = 0.25  # of a handle by default: its radius, by the square root of the part's area
 SAME_PLACE = 1e-4  # mirrored vertices are so near to each other, by the mesh's size
@@ -110,7 +110,7 @@ class Region:
     rings: so many rings of faces around the part deform with it. mirror: the same happens across the x axis. center
     (3,) and size: of the part.
 
-    With reach the part is one that turns at its joint (core.joint): what lies within so many radii of its border, on
+    With reach the part is one that turns at its joint (partwheel.joint): what lies within so many radii of its border, on
     either side, is free as well; limb are the region's vertices of the rest of it; center is the joint's.
 
     moving (m,): the vertices of the mesh that may move, mirrored ones included, before (m,3) where they are. Of the
@@ -236,7 +236,7 @@ class Region:
 
 
 class AsRigidAsPossible:
-    """The region follows its handles, patches of its vertices, like a soft body: core.deform.Deformation. Loose pieces in
+    """The region follows its handles, patches of its vertices, like a soft body: partwheel.deform.Deformation. Loose pieces in
     it (eyes, buttons) go with the surface next to them, each as a whole."""
 
     def __init__(self, region, patches):

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A core.Solid fitted to the Blender mesh that it is a part of: where each vertex, corner and polygon comes from."""
+"""A partwheel.Solid fitted to the Blender mesh that it is a part of: where each vertex, corner and polygon comes from."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from . import mesh_arrays
-from .core import PartwheelError, Solid, Status
+from partwheel import PartwheelError, Solid, Status
 from .mesh_arrays import read
 from .pieces import Origins, Plan
 
@@ -16,7 +16,7 @@ class NotClosed(Exception):
 
 
 class Fitted(NamedTuple):
-    """A core.Solid of which every face is of a polygon of the mesh. between (n,2): the mesh's vertices that each of its
+    """A partwheel.Solid of which every face is of a polygon of the mesh. between (n,2): the mesh's vertices that each of its
     is midway between, mostly the same twice; -1: none. alias (V,): the vertex that each of the mesh's is taken for, or
     None: itself. against (F,): which polygons are wound the other way than the solid."""
 
@@ -27,7 +27,7 @@ class Fitted(NamedTuple):
 
 
 def solid_of(hierarchy, tet_first, tet_last, faces=None):
-    """The core.Solid of a slice; faces: as for solids.part()."""
+    """The partwheel.Solid of a slice; faces: as for solids.part()."""
     if faces is None:
         return hierarchy.solid_of_slice(tet_first, tet_last)
     return hierarchy.solid_of_faces(tet_first, tet_last, faces)

@@ -9,7 +9,7 @@ import bmesh
 import bpy
 import numpy as np
 
-from .core.polygons import triangulate
+from partwheel.polygons import triangulate
 
 # Modifiers whose mesh begins with the vertices of the one that they are given, moved or not.
 KEEPING = {"ARRAY", "MIRROR", "MULTIRES", "SOLIDIFY", "SUBSURF",

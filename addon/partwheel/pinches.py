@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Edges and vertices at which a closed surface only touches itself, set apart: afterwards it is manifold and looks the
-same. What core's solids do, for a mesh of Blender's own making."""
+same. What partwheel's solids do, for a mesh of Blender's own making."""
 
 import bmesh
 import numpy as np

@@ -9,7 +9,7 @@ from mathutils import Matrix, Quaternion, Vector
 
 from . import mesh_arrays
 from .composition import home, update_matrices
-from .core import compatible
+from partwheel import compatible
 from .mesh_arrays import read
 from .solids import CAP
 

@@ -7,8 +7,8 @@ Which solid a face came from is written into a face attribute before the Boolean
 import numpy as np
 
 from . import mesh_arrays
-from .core import faired, surface_distances
-from .core.joint import groups
+from partwheel import faired, surface_distances
+from partwheel.joint import groups
 from .mesh_arrays import read
 
 SIDE = "partwheel_side"  # while a union is made: the number of the solid that each face came from

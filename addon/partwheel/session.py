@@ -15,9 +15,9 @@ import bpy
 import numpy as np
 
 from . import mesh_arrays, stored
-from .core import Hierarchy, Mode, PartwheelError, Status
-from .core.library import load
-from .core.worker import WAIT_SECONDS, Job, available_memory
+from partwheel import Hierarchy, Mode, PartwheelError, Status
+from partwheel.library import load
+from partwheel.worker import WAIT_SECONDS, Job, available_memory
 from .mesh_arrays import Fingerprint
 from .preferences import preferences
 
@@ -211,7 +211,7 @@ class Build:
     mesh is not changed, nor kept from changing. To be had from build(): there is one a mesh."""
 
     def __init__(self, obj, quality=0.0, open_surfaces=False, mode=None):
-        """mode: a core.Mode; None: the preferences'. open_surfaces holds for later builds of the mesh too."""
+        """mode: a partwheel.Mode; None: the preferences'. open_surfaces holds for later builds of the mesh too."""
         load()  # a missing library is better told here
         mesh = mesh_arrays.up_to_date(obj)
         self.name = mesh.name

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A part of a Blender mesh as a closed mesh of its own, and the mesh without it: polygons keep all their layers.
 
-On the exact rung the part is core's Solid: the polygons that lie in it whole stay as they are, those that are cut
+On the exact rung the part is partwheel's Solid: the polygons that lie in it whole stay as they are, those that are cut
 become triangles with their attributes, and the caps close it. On the repaired rung too, where the repair has left all
 of its polygons as they are; what the repair added is a cap then. Else, and on the wrapped rung, it is the mesh's own
 polygons: doubles welded, wound alike, set apart where more than two meet at an edge, joined with the facets inside the
@@ -34,7 +34,7 @@ class Options(NamedTuple):
 
 def part(obj, hierarchy, tet_first, tet_last, options=Options(), faces=None):
     """A new mesh: the part tetrahedra[tet_first:tet_last] of the object's mesh, as it now is. faces (F,) bool: the faces
-    that it is to have in place of its own, see core's solid_of_faces(). Raises PartwheelError."""
+    that it is to have in place of its own, see partwheel's solid_of_faces(). Raises PartwheelError."""
     return parts(obj, hierarchy, [(tet_first, tet_last)], options, faces)[0]
 
 

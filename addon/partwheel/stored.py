@@ -11,7 +11,7 @@ import threading
 
 import numpy as np
 
-from .core import Hierarchy, PartwheelError
+from partwheel import Hierarchy, PartwheelError
 from .mesh_arrays import Fingerprint
 
 PROPERTY = "partwheel"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A part exchanged for a compatible one of another object: which there are, and the exchange itself. The comparing is
-core.compatible's; removing, copying, placing and uniting are those of solids, composition, placement and union. In
+partwheel.compatible's; removing, copying, placing and uniting are those of solids, composition, placement and union. In
 Object Mode; the caller looks after undo."""
 
 from typing import NamedTuple
@@ -10,7 +10,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from . import composition, mesh_arrays, placement, session, union
-from .core import compatible
+from partwheel import compatible
 from .mesh_arrays import read
 from .objects import named
 

@@ -9,7 +9,7 @@ from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
 from . import mesh_arrays, pieces, pinches, seams
-from .core import polygon_faults
+from partwheel import polygon_faults
 from .mesh_arrays import read
 
 # (solver, whether it also unites what overlaps within one mesh), in the order tried. Blenders before 4.5 have no

@@ -1,13 +1,13 @@
 // The C functions: argument checks and calls into the rooms, nothing else.
 #include "partwheel.h"
 
-#include "border.h"
-#include "carried.h"
-#include "deform.h"
-#include "fair.h"
-#include "hierarchy.h"
-#include "ladder.h"
-#include "polygons.h"
+#include "fill/ladder.h"
+#include "part/border.h"
+#include "part/deform.h"
+#include "part/fair.h"
+#include "part/polygons.h"
+#include "tree/carried.h"
+#include "tree/hierarchy.h"
 
 #include <algorithm>
 #include <atomic>

@@ -9,6 +9,7 @@ handle. RESULT.json, in seconds: begin, what is done once while Blender waits, a
 background; for a move the medians of follow, write and whole, and of
 what Blender itself then does to bring its scene up to date.
 """
+import importlib.util
 import json
 import statistics
 import sys
@@ -18,8 +19,12 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "addon"))
-from partwheel import deforming  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "native" / "python"))
+# The add-on from the checkout, under the name that it has where it is installed.
+spec = importlib.util.spec_from_file_location("partwheel_addon", ROOT / "addon" / "partwheel" / "__init__.py")
+sys.modules[spec.name] = importlib.util.module_from_spec(spec)
+deforming = importlib.import_module("partwheel_addon.deforming")
 
 
 def edited(vertices, triangles):

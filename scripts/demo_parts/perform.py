@@ -17,8 +17,8 @@ import bmesh
 import bpy
 import numpy
 from mathutils import Matrix
-from partwheel import session
-from partwheel.core import meshes as mesh_files
+from partwheel import meshes as mesh_files
+from partwheel_addon import session
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 

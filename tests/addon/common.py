@@ -18,8 +18,13 @@ MESHES = Path(__file__).resolve().parents[2] / "build" / "deps" / "meshes"
 
 
 def part(name):
-    """A module of the installed add-on: part("core.hierarchy")."""
+    """A module of the installed add-on: part("session")."""
     return importlib.import_module(f"{MODULE}.{name}")
+
+
+def package(name=""):
+    """The Python package that the add-on brings, or a module of it: package("hierarchy")."""
+    return importlib.import_module(f"partwheel.{name}".rstrip("."))
 
 
 def read_off(name):
@@ -115,9 +120,9 @@ class MeshTest(unittest.TestCase):
         triangles = [pair for pair in triangles if pair[1] not in bad]
         for face in bad:
             corners = list(mesh.polygons[face].vertices)
-            pieces = part("core.polygons").triangulate(numpy.array([mesh.vertices[i].co[:] for i in corners]), corners)
+            pieces = package("polygons").triangulate(numpy.array([mesh.vertices[i].co[:] for i in corners]), corners)
             triangles += [(piece, face) for piece in pieces]
-        return part("core").Hierarchy.build([tuple(vertex.co) for vertex in mesh.vertices],
+        return package().Hierarchy.build([tuple(vertex.co) for vertex in mesh.vertices],
                                             [triangle for triangle, _ in triangles],
                                             [face for _, face in triangles], len(mesh.polygons))
 

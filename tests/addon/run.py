@@ -30,7 +30,7 @@ def installed(zip_path):
         module, root = "bl_ext.user_default.partwheel", bpy.utils.user_resource("EXTENSIONS")
         bpy.ops.extensions.package_install_files(filepath=zip_path, repo="user_default", enable_on_install=True)
     else:
-        module, root = "partwheel", bpy.utils.user_resource("SCRIPTS")
+        module, root = "partwheel_addon", bpy.utils.user_resource("SCRIPTS")
         bpy.ops.preferences.addon_install(filepath=zip_path)
         bpy.ops.preferences.addon_enable(module=module)
     if module not in bpy.context.preferences.addons:

@@ -4,7 +4,7 @@
 import bmesh
 import bpy
 import numpy as np
-from common import BOX, MeshTest, part, read_off, selected
+from common import BOX, MeshTest, package, part, read_off, selected
 
 
 class Api(MeshTest):
@@ -23,7 +23,7 @@ class Api(MeshTest):
             self.assertEqual(self.api.faces(obj, node).tolist(), expected.faces(node).tolist())
 
     def test_mode_of_the_preferences_unless_a_script_names_one(self):
-        obj, core, preferences = self.add(*read_off("hand")), part("core"), part("preferences").preferences()
+        obj, core, preferences = self.add(*read_off("hand")), package(), part("preferences").preferences()
         expected = {mode: core.Hierarchy.build(*part("mesh_arrays").surface(obj.data), mode=mode).parent.tolist()
                     for mode in core.Mode}
         self.assertNotEqual(*expected.values())
@@ -85,13 +85,13 @@ class Api(MeshTest):
 
     def test_mode_paper_goes_through_the_whole_path(self):
         obj = self.add(*read_off("hand"))
-        self.api.build(obj, mode=part("core").Mode.PAPER)
+        self.api.build(obj, mode=package().Mode.PAPER)
         path = self.api.path(obj, 700).tolist()
         for level in (0, 1, 5, len(path) - 1):
             self.assertEqual(self.api.select(obj, 700, level), path[level])
 
     def test_refusals(self):
-        error = part("core").PartwheelError
+        error = package().PartwheelError
         with self.assertRaises(ValueError):
             self.api.build(None)
         with self.assertRaises(ValueError):

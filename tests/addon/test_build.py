@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 import common
 import numpy as np
-from common import BOX, SHEET, MeshTest, part, read_off
+from common import BOX, SHEET, MeshTest, package, part, read_off
 
 
 def contents(mesh):
@@ -171,8 +171,8 @@ class Build(MeshTest):
         self.assertTrue(np.array_equal(order, expected))
 
     def test_the_core_is_the_installed_one(self):
-        library = part("core.library").load()
+        library = package("library").load()
         root = bpy.utils.user_resource("EXTENSIONS" if bpy.app.version >= (4, 2, 0) else "SCRIPTS")
         self.assertIn(Path(root).resolve(), Path(library._name).resolve().parents)
-        self.assertEqual(part("core").version(), "0.1.0")
+        self.assertEqual(package().version(), "0.1.0")
         self.assertTrue(common.MODULE in bpy.context.preferences.addons)

@@ -4,7 +4,7 @@
 import bmesh
 import bpy
 import numpy
-from common import part, read_off
+from common import package, part, read_off
 from solid_case import SolidTest, arrays, caps, volume
 
 
@@ -178,7 +178,7 @@ class Copy(SolidTest):
         for rungs, rung, broken in ((2, "repaired", polygons[5:]), (2, "repaired", polygons + polygons[:1]),
                                     (4, "wrapped", [polygon for i, polygon in enumerate(polygons) if i % 7])):
             obj = self.add(vertices, broken)
-            hierarchy = part("core").Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=rungs)
+            hierarchy = package().Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=rungs)
             self.assertEqual(hierarchy.summary.rung, rung)
             for node in self.nodes(hierarchy):
                 copy = part("solids").part(obj, hierarchy, int(hierarchy.tet_first[node]),
@@ -201,7 +201,7 @@ class Copy(SolidTest):
         ):
             obj = self.add(places, broken, name)
             obj.data.uv_layers.new(name="uv").data.foreach_set("uv", rng.random(6 * len(broken)))
-            hierarchy = part("core").Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=3)
+            hierarchy = package().Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=3)
             self.assertEqual(hierarchy.summary.rung, "repaired")
             at = {frozenset(tuple(obj.data.vertices[v].co) for v in polygon.vertices): polygon
                   for polygon in obj.data.polygons}
@@ -235,7 +235,7 @@ class Copy(SolidTest):
         obj = self.add(vertices, kept)
         obj.shape_key_add(name="Basis")
         obj.shape_key_add(name="Key")
-        hierarchy = part("core").Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=4)
+        hierarchy = package().Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=4)
         share = hierarchy.area / hierarchy.area[-1]
         filled = []
         for node in rng.choice(numpy.flatnonzero((share > 0.01) & (share < 0.8)), 48, replace=False).tolist():
@@ -358,7 +358,7 @@ class Remove(SolidTest):
     def test_holes_of_a_broken_mesh_stay_and_the_new_one_is_closed(self):
         vertices, polygons = read_off("hand")
         obj = self.add(vertices, polygons[3:])
-        hierarchy = part("core").Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=3)
+        hierarchy = package().Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=3)
         self.assertEqual(hierarchy.summary.rung, "repaired")
 
         def open_edges(mesh):

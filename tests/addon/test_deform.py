@@ -4,7 +4,7 @@
 import bmesh
 import bpy
 import numpy
-from common import BOX, MeshTest, part, read_off
+from common import BOX, MeshTest, package, part, read_off
 
 FINGER = 700  # a face of hand.off on a finger
 
@@ -119,7 +119,7 @@ class Deform(MeshTest):
     def test_the_same_as_the_core(self):
         """The mesh of a part: its inner vertices free, all others fixed, and the core's Deformation of the whole."""
         obj, node, faces, free, tip = self.hand()
-        deform = part("core.deform")
+        deform = package("deform")
         rest = edited(obj)
         triangles = numpy.array([polygon.vertices[:] for polygon in obj.data.polygons])
         roles = numpy.full(len(rest), deform.FIXED)
@@ -294,7 +294,7 @@ class Deform(MeshTest):
             part("api").deform(obj, node, [self.far(obj, tip)], shift(1, 0, 0))
         with self.assertRaises(ValueError):
             part("api").deform(obj, node, [], shift(1, 0, 0))
-        with self.assertRaises(part("core").PartwheelError):
+        with self.assertRaises(package().PartwheelError):
             part("api").deform(obj, node, [tip], shift(numpy.nan, 0, 0))
         self.assertTrue((edited(obj) == before).all())
 
@@ -415,7 +415,7 @@ class Deform(MeshTest):
     def test_a_great_turn_at_once_is_as_one_little_by_little(self):
         """A typed number takes the handle far in one go: the part must not collapse on the way."""
         obj, node, faces, free, tip = self.hand()
-        deforming, deform = part("deforming"), part("core.deform")
+        deforming, deform = part("deforming"), package("deform")
         region = deforming.Region(obj, faces, reach=2.0)
         turn = numpy.eye(4)
         turn[:3, :3] = [[1, 0, 0], [0, -1, 0], [0, 0, -1]]
@@ -449,7 +449,7 @@ class Deform(MeshTest):
         deforming = part("deforming")
         region = deforming.Region(obj, faces)
         shape = deforming.AsRigidAsPossible(region, [region.patch(region.nearest_free(tip), 4 * size)])
-        turn = part("core.deform").part_of_the_way(numpy.diag([1.0, -1, -1, 1]), 40 / 180)
+        turn = package("deform").part_of_the_way(numpy.diag([1.0, -1, -1, 1]), 40 / 180)
         turn[:3, 3] = middle - turn[:3, :3] @ middle
         shape.jump([turn])
         deforming.Pen(obj, region).write(obj, shape.points())

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import bpy
 import common
-from common import MeshTest, alive, flags, part, read_off, until
+from common import MeshTest, alive, flags, package, part, read_off, until
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "faults"))
 import faults  # noqa: E402
@@ -24,14 +24,14 @@ class Isolation(MeshTest):
         directory = tempfile.TemporaryDirectory()
         cls.addClassCleanup(directory.cleanup)
         cls.directory = Path(directory.name)
-        cls.library = faults.library(part("core.library").load()._name, directory.name)
-        cls.sound = part("core.worker").ENTRY
+        cls.library = faults.library(package("library").load()._name, directory.name)
+        cls.sound = package("worker.job").ENTRY
         cls.entry = faults.entry(cls.sound, cls.library, directory.name)
 
     def harm(self, fault, stage):
         """From now on, and to the end of the test, workers come to harm; Blender itself has loaded the real library."""
-        self.addCleanup(setattr, part("core.worker"), "ENTRY", self.sound)
-        part("core.worker").ENTRY = self.entry
+        self.addCleanup(setattr, package("worker.job"), "ENTRY", self.sound)
+        package("worker.job").ENTRY = self.entry
         os.environ["PARTWHEEL_FAULT"] = f"{fault}:{stage}"
 
     def edited(self, name="cross_quad"):
@@ -59,7 +59,7 @@ class Isolation(MeshTest):
 
     def test_crashes_at_each_stage(self):
         obj, before = self.edited()
-        for stage in part("core").Stage:
+        for stage in package().Stage:
             for fault, word in (("segv", "SIGSEGV"), ("kill", "SIGKILL")):  # others: tests/core/test_worker.py
                 with self.subTest(f"{fault} {stage.name}"):
                     self.harm(fault, int(stage))
@@ -70,7 +70,7 @@ class Isolation(MeshTest):
 
     def test_bad_memory_at_each_stage(self):
         obj, before = self.edited()
-        for stage in part("core").Stage:
+        for stage in package().Stage:
             with self.subTest(stage.name):
                 self.harm("corrupt", int(stage))
                 self.refused_or_built(obj, before)
@@ -94,7 +94,7 @@ class Isolation(MeshTest):
         build = part("session").Job
         self.addCleanup(setattr, part("session"), "Job", build)
         part("session").Job = lambda *surface, **options: build(*surface, **{**options, "time_limit": 0.3})
-        for stage in part("core").Stage:
+        for stage in package().Stage:
             for fault in ("loop", "stop"):
                 with self.subTest(f"{fault} {stage.name}"):
                     self.harm(fault, int(stage))
@@ -106,10 +106,10 @@ class Isolation(MeshTest):
         available = part("session").available_memory
         self.addCleanup(setattr, part("session"), "available_memory", available)
         part("session").available_memory = lambda: 500 * 2**20  # of which preferences allow 80 %
-        for stage in part("core").Stage:
+        for stage in package().Stage:
             with self.subTest(stage.name):
                 self.harm("fill", int(stage))
-                if stage < part("core").Stage.CLUSTER:
+                if stage < package().Stage.CLUSTER:
                     self.assertRegex(self.refusal(face_index=3), "memory|crash")
                     self.unharmed(obj, before)
                 else:  # little more memory is asked for, and the build may end well
@@ -148,7 +148,7 @@ class Isolation(MeshTest):
         obj, _ = self.edited()
         self.harm("segv", 1)
         self.refusal(bpy.ops.mesh.partwheel_build)
-        part("core.worker").ENTRY = self.sound
+        package("worker.job").ENTRY = self.sound
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=3), {"FINISHED"})
         self.assertEqual(len(part("session").hierarchy(obj).order), len(obj.data.polygons))
 
@@ -183,5 +183,5 @@ class Isolation(MeshTest):
         obj = self.add(*read_off("cross_quad"))
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         self.assertEqual(len(part("session").hierarchy(obj).order), len(obj.data.polygons))
-        loaded = part("core.library").load.__wrapped__()._name  # once more, as the first time
+        loaded = package("library").load.__wrapped__()._name  # once more, as the first time
         self.assertNotEqual(Path(loaded).resolve(), Path(self.library).resolve())

@@ -10,7 +10,7 @@ import random
 import bpy
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from common import part, selected
+from common import package, part, selected
 from test_modal import FakeContext, Tool, ToolTest, event, view
 
 EVENTS = int(os.environ.get("PARTWHEEL_EVENTS", 500))
@@ -87,7 +87,7 @@ class RandomEvents(ToolTest):
         self.spots = self.find_spots(12)
         bpy.ops.ed.undo_push(message="start")
         stops = {face: self.h.wheel(face) for _, face in self.spots}
-        creases, every = part("core").Creases(*part("mesh_arrays").surface(self.obj.data)), np.arange(2390)
+        creases, every = package().Creases(*part("mesh_arrays").surface(self.obj.data)), np.arange(2390)
         sets = {node: self.h.faces(node) for path, _ in stops.values() for node in path.tolist()}
         snapped = {node: np.flatnonzero(creases.snapped(np.isin(every, faces))) for node, faces in sets.items()}
         self.model = Model(lambda face: (*([frozenset(each[node].tolist()) for node in stops[face][0].tolist()]

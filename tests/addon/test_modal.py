@@ -14,7 +14,7 @@ import bpy
 import common
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from common import BOX, SHEET, MeshTest, alive, flags, part, read_off, selected, until
+from common import BOX, SHEET, MeshTest, alive, flags, package, part, read_off, selected, until
 from gate import Gate
 from mathutils import Euler, Matrix, Vector
 
@@ -279,7 +279,7 @@ class Modal(ToolTest):
         point, face = self.centre()
         self.send("LEFTMOUSE", point)
         stops, start = self.h.wheel(face)
-        creases = part("core").Creases(*part("mesh_arrays").surface(self.obj.data))
+        creases = package().Creases(*part("mesh_arrays").surface(self.obj.data))
 
         def snapped(level):
             return set(np.flatnonzero(creases.snapped(np.isin(np.arange(2390), self.h.faces(stops[start + level])))))
@@ -450,7 +450,7 @@ class HeldWorkers(ToolTest):
     def setUp(self):
         super().setUp()
         self.session = part("session")
-        self.gate = Gate(part("core.worker"))
+        self.gate = Gate(package("worker.job"))
         self.addCleanup(self.gate.remove)
         self.addCleanup(self.session._after_loading)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 import common
-from common import BOX, MeshTest, part
+from common import BOX, MeshTest, package, part
 
 # Reads all that the worker is told, and writes the answer that follows below.
 TOLD = """
@@ -41,8 +41,8 @@ class Preferences(MeshTest):
         """From now on workers run this."""
         entry = self.directory / "entry.py"
         entry.write_text(program)
-        self.addCleanup(setattr, part("core.worker"), "ENTRY", part("core.worker").ENTRY)
-        part("core.worker").ENTRY = entry
+        self.addCleanup(setattr, package("worker.job"), "ENTRY", package("worker.job").ENTRY)
+        package("worker.job").ENTRY = entry
 
     def refusal(self):
         with self.assertRaises(RuntimeError) as refused:
@@ -72,7 +72,7 @@ class Preferences(MeshTest):
         program.chmod(0o755)
         self.set("python", str(program))
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        self.assertIn("worker_process.py", log.read_text())
+        self.assertIn("process.py", log.read_text())
 
     def test_all_are_drawn_and_have_defaults_without_the_add_on(self):
         cls = type(self.preferences)

@@ -107,8 +107,9 @@ class Registration(unittest.TestCase):
     def test_an_update_is_used_at_once(self):
         """Installed over the enabled add-on: all its files are the new ones, also deep ones, without a restart; and the
         library in use is not written over, or the next call into it would end Blender."""
-        files = ("partwheel/session.py", "partwheel/core/hierarchy.py", "partwheel/operators/build.py")
-        names = [name[:-len(".py")].replace("/", ".").replace("partwheel", common.MODULE, 1) for name in files]
+        files = ("session.py", "packages/partwheel/hierarchy.py", "operators/build.py")
+        files = [f"partwheel_addon/{name}" for name in files]
+        names = [f"{common.MODULE}.session", "partwheel.hierarchy", f"{common.MODULE}.operators.build"]
         before = everything()
         with tempfile.TemporaryDirectory() as directory:
             update = os.path.join(directory, os.path.basename(common.ZIP))
@@ -119,7 +120,7 @@ class Registration(unittest.TestCase):
                 first = sys.modules[common.MODULE].__file__
                 installed_at = os.path.getmtime(first)
                 common.until(lambda: time.time() > installed_at + 0.1)  # or Blender takes the file for the same
-                with open(os.path.join(os.path.dirname(first), "core", "libpartwheel.so"), "rb") as in_use:
+                with open(os.path.join(os.path.dirname(first), "packages/partwheel/libpartwheel.so"), "rb") as in_use:
                     installed(path)
                     self.assertEqual(os.fstat(in_use.fileno()).st_nlink, 0, "removed, not written over")
                 for name in names:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import bpy
 import common
-from common import BOX, MeshTest, part, read_off
+from common import BOX, MeshTest, package, part, read_off
 
 
 class Saved(MeshTest):
@@ -213,7 +213,7 @@ class Saved(MeshTest):
             header = stored.HEADER.pack(*head[:2], topology or head[2], head[3])
             return header + stored._hash(header) + (packed[start:] if saved is None else saved)
 
-        box = part("core").Hierarchy.build(BOX[0], [t for a, b, c, d in BOX[1] for t in ((a, b, c), (a, c, d))])
+        box = package().Hierarchy.build(BOX[0], [t for a, b, c, d in BOX[1] for t in ((a, b, c), (a, c, d))])
         self.assertIsNotNone(self.after_tampering(forged))  # forging alone changes nothing
         for change in (*[flipped] * 20, lambda p: b"", lambda p: p[:30], lambda p: p[:-1], lambda p: p + b"0",
                        lambda p: p[:-4000], lambda p: "text", lambda p: 7, lambda p: [1.5, 2.5], lambda p: {"a": b"b"},

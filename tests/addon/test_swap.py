@@ -4,7 +4,7 @@ another library says, one operator does it all, and what is refused changes noth
 
 import bpy
 import numpy
-from common import part, read_off
+from common import package, part, read_off
 from mathutils import Matrix
 from solid_case import SolidTest, arrays, volume
 from test_unite import reference, triangles
@@ -68,7 +68,7 @@ class Swap(SolidTest):
         node = limb(model, hierarchy, 0, 1)
         place = swapping.Place(model, hierarchy, node)
         offer = place.offer(twin, node)
-        plain, mirrored = (part("core.compatible").fit(place.shape, offer.shape, mirror) for mirror in (False, True))
+        plain, mirrored = (package("compatible").fit(place.shape, offer.shape, mirror) for mirror in (False, True))
         self.assertLess(mirrored.distance, 0.1 * plain.distance)
         copy = place.stand_in(offer, swapping.Adjustment(depth=-part("placement").SINK, mirror=True))
         self.assertIdentity(copy.matrix_world, 1e-4 * max(model.dimensions))

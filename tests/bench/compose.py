@@ -10,7 +10,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARES, REPEATS = (0.02, 0.35), 5
-sys.path.insert(0, str(ROOT / "addon"))
+sys.path.insert(0, str(ROOT / "native" / "python"))
 
 
 def read(name):
@@ -31,7 +31,7 @@ def subdivided(vertices, triangles):
 
 
 def prepare(directory):
-    from partwheel.core import Hierarchy
+    from partwheel import Hierarchy
 
     directory.mkdir(parents=True, exist_ok=True)
     if (directory / "bear.partwheel").exists():
@@ -57,7 +57,7 @@ def measure(directory):
     import bpy
     from mathutils import Matrix
     from partwheel import solids, union
-    from partwheel.core import Hierarchy
+    from partwheel import Hierarchy
 
     def clear():
         for items in (bpy.data.objects, bpy.data.meshes):

@@ -9,11 +9,11 @@
 // Seconds are [wall, cpu]. The first line has them as `first`, beside the model's sizes; its `peak` is the most memory in
 // bytes that the process held during each stage, `start` what it held before. In the other runs memory is used again, so
 // that they tell the program's time and not what the system takes to provide memory.
-#include "cluster.h"
-#include "dendrogram.h"
-#include "hierarchy.h"
-#include "ladder.h"
+#include "cluster/cluster.h"
+#include "fill/ladder.h"
 #include "measured.h"
+#include "tree/dendrogram.h"
+#include "tree/hierarchy.h"
 
 #include <cstdio>
 #include <exception>

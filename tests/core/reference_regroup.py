@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What regroup computes, in Python, from the formulas in native/src/regroup.h and regroup_measures.h, not from the C++:
+"""What regroup computes, in Python, from the formulas in native/src/tree/regroup/regroup.h and regroup_measures.h, not from the C++:
 parts, folds, borders, measures, both networks, the order of joining, scores. Hulls are scipy's."""
 
 import heapq
@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import ConvexHull
 
-SOURCE = Path(__file__).resolve().parents[2] / "native" / "src"
+SOURCE = Path(__file__).resolve().parents[2] / "native" / "src" / "tree" / "regroup"
 MOST_PARTS = 600
 DEAREST = 8.0
 CONCAVE_BEND = -0.02

@@ -111,7 +111,7 @@ def star(points=5, inner=0.45, depth=0.4):
 
 def off(name):
     """A real mesh with its polygons."""
-    from partwheel.core import meshes
+    from partwheel import meshes
 
     mesh = meshes.read(MESHES / f"{name}.off")
     return Shape(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count)

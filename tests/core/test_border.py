@@ -7,7 +7,7 @@ import os
 import numpy as np
 import pytest
 import shapes
-from partwheel.core import Hierarchy, PartwheelError, Status, snapped_border
+from partwheel import Hierarchy, PartwheelError, Status, snapped_border
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 

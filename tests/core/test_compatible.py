@@ -5,7 +5,7 @@ offered for limbs."""
 import numpy as np
 import pytest
 from shapes import off
-from partwheel.core import Hierarchy, compatible
+from partwheel import Hierarchy, compatible
 from scipy.spatial.transform import Rotation
 
 

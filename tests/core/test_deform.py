@@ -9,9 +9,9 @@ import igl
 import numpy as np
 import pytest
 import shapes
-from partwheel.core import Hierarchy, PartwheelError, Status
-from partwheel.core.deform import FIXED, FREE, Deformation, part_of_the_way, rigid_motion, surface_distances
-from partwheel.core.deform import vertex_normals
+from partwheel import Hierarchy, PartwheelError, Status
+from partwheel.deform import FIXED, FREE, Deformation, part_of_the_way, rigid_motion, surface_distances
+from partwheel.deform import vertex_normals
 from scipy.spatial import ConvexHull
 
 # Model -> the direction that its limb points in, and the share of the model, along it, that deforms.

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import shapes
 from conftest import ROOT
-from partwheel.core import Hierarchy, PartwheelError, Rung, Status
+from partwheel import Hierarchy, PartwheelError, Rung, Status
 
 CUBE = shapes.cube()
 
@@ -142,7 +142,7 @@ if "libasan" not in os.environ.get("LD_PRELOAD", ""):
         """Wherever in a build the memory ends."""
         script = textwrap.dedent("""
             import resource, shapes
-            from partwheel.core import Hierarchy, PartwheelError, version
+            from partwheel import Hierarchy, PartwheelError, version
             shape = shapes.off("homer")
             version()  # loads the library
             for megabytes in (12, 14, 17, 20, 24, 29, 35, 42, 50, 1000):  # a thread's stack alone takes 8
@@ -154,7 +154,7 @@ if "libasan" not in os.environ.get("LD_PRELOAD", ""):
                 except PartwheelError as error:
                     print(error.name)
         """)
-        path = os.pathsep.join([str(ROOT / "addon"), str(ROOT / "tests" / "core")])
+        path = os.pathsep.join([str(ROOT / "native" / "python"), str(ROOT / "tests" / "core")])
         run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=1800,
                              env={**os.environ, "PYTHONPATH": path})
         assert run.returncode == 0, run.stderr

@@ -4,8 +4,8 @@
 import manifold3d
 import numpy as np
 import pytest
-from partwheel.core import PartwheelError, faired
-from partwheel.core.hierarchy import Solid
+from partwheel import PartwheelError, faired
+from partwheel.hierarchy import Solid
 from solid_checks import crossings
 
 

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 import shapes
-from partwheel.core import Hierarchy, Mode, PartwheelError, Status
+from partwheel import Hierarchy, Mode, PartwheelError, Status
 from scipy.spatial import ConvexHull
 
 EXACT = 1e-9  # relative tolerance of sums of volumes

@@ -14,9 +14,10 @@ import numpy as np
 import pytest
 import shapes
 from conftest import ROOT
-from partwheel.core import Hierarchy, PartwheelError, Status, interpreter
-from partwheel.core.ending import ending
-from partwheel.core.worker import Job, WorkerError
+from partwheel import Hierarchy, PartwheelError, Status
+from partwheel.worker import interpreter
+from partwheel.worker.ending import ending
+from partwheel.worker import Job, WorkerError
 from test_worker import state, until
 
 REAL = sys.executable
@@ -179,10 +180,10 @@ def test_a_hostile_path(shim, does):
     """As in Debian's Blender, whose sys.executable is what the PATH has, a version manager's shim for instance."""
     python = shim("bin/python3", does)
     script = ("import sys, numpy; print(sys.executable)\n"
-              "from partwheel.core.worker import Job\n"
+              "from partwheel.worker import Job\n"
               "import shapes\n"
               "print(len(Job(*shapes.cube(), memory_limit=0).result().order))")
-    path = os.pathsep.join([str(ROOT / "addon"), str(ROOT / "tests" / "core"), str(Path(np.__file__).parents[1])])
+    path = os.pathsep.join([str(ROOT / "native" / "python"), str(ROOT / "tests" / "core"), str(Path(np.__file__).parents[1])])
     run = subprocess.run(["python3", "-c", script], executable=os.path.realpath(REAL), text=True, capture_output=True,
                          env={**os.environ, "PATH": str(Path(python).parent), "PYTHONPATH": path})
     assert run.stdout.split() == [python, "6"], run.stderr

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapes
-from partwheel.core.deform import FIXED, FREE, Deformation, surface_distances
-from partwheel.core.joint import REACH, joint
+from partwheel.deform import FIXED, FREE, Deformation, surface_distances
+from partwheel.joint import REACH, joint
 from test_deform import cylinder, edges_of, lengths, normals, turn
 
 # A limb is what lies within half of a way along the surface from its tip: (model, the direction in which it ends, that

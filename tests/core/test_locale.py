@@ -2,7 +2,7 @@
 """A host program may have set any locale: numbers given to the mesher, and those in sentences, are the same in all."""
 
 import shapes
-from partwheel.core import Hierarchy, Rung
+from partwheel import Hierarchy, Rung
 
 
 def answers():

@@ -11,7 +11,7 @@ import pytest
 import shapes
 import trimesh
 from conftest import ROOT
-from partwheel.core import Hierarchy, meshes, polygons
+from partwheel import Hierarchy, meshes, polygons
 
 
 def test_off_keeps_polygons_and_vertices(tmp_path):
@@ -89,13 +89,13 @@ def test_textures_are_not_looked_at(tmp_path):
         "ascii", ["element face 4", "property list uchar int vertex_indices", "property list uchar float texcoord"],
         *((None, (3, *triangle, 6, *range(6 * side, 6 * side + 6))) for side, triangle in enumerate(TETRAHEDRON))))
     (tmp_path / "PIL.py").write_text("raise ImportError('none here')")
-    script = ("import json, sys\nfrom partwheel.core import meshes\n"
+    script = ("import json, sys\nfrom partwheel import meshes\n"
               "for path in sys.argv[1:]:\n"
               "    mesh = meshes.read(path)\n"
               "    print(json.dumps([mesh.vertices.tolist(), mesh.triangles.tolist()]))")
     files = sorted([*tmp_path.glob("*.obj"), *tmp_path.glob("*.ply")])
     run = subprocess.run([sys.executable, "-c", script, *files], capture_output=True, text=True,
-                         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT / "addon")])})
+                         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT / "native" / "python")])})
     assert run.returncode == 0, run.stderr
     for file, line in zip(files, run.stdout.splitlines(), strict=True):
         vertices, triangles = json.loads(line)

@@ -8,8 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 import shapes
-from partwheel.core import Hierarchy, PartwheelError, Rung, Status
-from partwheel.core.hierarchy import POLL_SECONDS
+from partwheel import Hierarchy, PartwheelError, Rung, Status
+from partwheel.hierarchy import POLL_SECONDS
 
 STAGES = ["surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy"]
 

@@ -6,7 +6,7 @@ import functools
 import numpy as np
 import pytest
 import shapes
-from partwheel.core import Hierarchy, Mode
+from partwheel import Hierarchy, Mode
 from reference_regroup import NODE_NAMES, PAIR_NAMES, Regrouped
 
 # Without the symmetries by which costs tie: there the last bit of a hull's volume decides.

@@ -3,8 +3,8 @@
 
 import numpy as np
 import pytest
-from partwheel.core import Hierarchy, PartwheelError, Status
-from partwheel.core.library import Arrays
+from partwheel import Hierarchy, PartwheelError, Status
+from partwheel.library import Arrays
 
 
 def refused(data):

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapes
-from partwheel.core import Creases, Hierarchy, PartwheelError, meshes
-from partwheel.core.hierarchy import Solid
+from partwheel import Creases, Hierarchy, PartwheelError, meshes
+from partwheel.hierarchy import Solid
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from solid_checks import TOLERANCE, check_solid, crossings, tetrahedra_volume, volume

@@ -14,7 +14,7 @@ import partwheel
 import pytest
 from conftest import ROOT
 from partwheel import core
-from partwheel.core import library
+from partwheel import library
 
 HEADER = "".join((ROOT / "native" / "include" / name).read_text() for name in ("partwheel_types.h", "partwheel.h"))
 BARE = re.sub(r"/\*.*?\*/", "", HEADER, flags=re.S)

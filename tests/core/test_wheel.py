@@ -5,7 +5,7 @@ import dataclasses
 
 import pytest
 from partwheel import wheel
-from partwheel.core import PartwheelError
+from partwheel import PartwheelError
 
 
 def test_notches_walk_the_stops_and_hold_at_both_ends(build_shape):

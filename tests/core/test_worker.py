@@ -24,9 +24,9 @@ import numpy as np
 import pytest
 import shapes
 from conftest import ROOT
-from partwheel.core import Hierarchy, PartwheelError, Stage, Status, worker
-from partwheel.core.library import load
-from partwheel.core.worker import MESSAGE, Job, WorkerError
+from partwheel import Hierarchy, PartwheelError, Stage, Status
+from partwheel.library import load
+from partwheel.worker import MESSAGE, Job, WorkerError
 
 HERE = Path(__file__).parent
 LINUX = sys.platform == "linux"
@@ -108,7 +108,7 @@ def nothing_is_left(tmp_path, monkeypatch):
     if LINUX:
         assert set(os.listdir("/proc/self/fd")) == pipes
         children = Path(f"/proc/self/task/{threading.get_native_id()}/children").read_text().split()
-        assert [child for child in children if b"worker_process" in Path(f"/proc/{child}/cmdline").read_bytes()] == []
+        assert [child for child in children if b"worker/process.py" in Path(f"/proc/{child}/cmdline").read_bytes()] == []
 
 
 # ---- Answers
@@ -401,7 +401,7 @@ if LINUX and PLAIN:
 
     PARENT = textwrap.dedent("""
         import signal, shapes
-        from partwheel.core.worker import Job
+        from partwheel.worker import Job
         # Processes started in the background of a shell ignore it.
         signal.signal(signal.SIGINT, signal.default_int_handler)
         job = Job(*shapes.off("hand"))
@@ -413,7 +413,7 @@ if LINUX and PLAIN:
 
     def parent(**environment):
         """(a process that builds, its worker's id)"""
-        path = os.pathsep.join([str(ROOT / "addon"), str(HERE)])
+        path = os.pathsep.join([str(ROOT / "native" / "python"), str(HERE)])
         process = subprocess.Popen([sys.executable, "-c", PARENT], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                    text=True, env={**os.environ, "PYTHONPATH": path, **environment})
         return process, int(process.stdout.readline())

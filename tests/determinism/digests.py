@@ -10,9 +10,9 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "addon"))
+sys.path.insert(0, str(ROOT / "native" / "python"))
 
-from partwheel.core import Hierarchy, Mode, meshes  # noqa: E402  (found only now)
+from partwheel import Hierarchy, Mode, meshes  # noqa: E402  (found only now)
 
 MESHES = ROOT / "build" / "deps" / "meshes"
 CASES = {  # name: file, options of the build

@@ -18,7 +18,7 @@ def compiled(source, target, *options):
 def entry(real, library, directory):
     """The path of a program in this directory that is the worker's, the real one, but uses this library."""
     real, path = Path(real).resolve(), Path(directory) / "entry.py"
-    path.write_text(f"import runpy, sys\nsys.path.insert(0, {str(real.parent)!r})\nimport library\n"
+    path.write_text(f"import runpy, sys\nsys.path.insert(0, {str(real.parents[1])!r})\nimport library\n"
                     f"library.LIBRARY = {str(library)!r}\nrunpy.run_path({str(real)!r}, run_name='__main__')\n")
     return path
 

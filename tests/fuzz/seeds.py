@@ -3,7 +3,7 @@
 
 import numpy as np
 from conftest import ROOT
-from partwheel.core import Hierarchy, Mode, PartwheelError, meshes
+from partwheel import Hierarchy, Mode, PartwheelError, meshes
 
 DEMO = ROOT / "build" / "deps" / "meshes"
 MOST_VERTICES, MOST_TRIANGLES = 239, 160  # that the mesh fuzzer can say

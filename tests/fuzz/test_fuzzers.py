@@ -14,7 +14,7 @@ import subprocess
 import pytest
 import seeds
 from conftest import ROOT
-from partwheel.core import Hierarchy, PartwheelError
+from partwheel import Hierarchy, PartwheelError
 
 SECONDS = int(os.environ.get("PARTWHEEL_FUZZ", 15))
 FOUND = ROOT / "tests" / "fuzz" / "found"

@@ -11,10 +11,10 @@ if bpy.app.version >= (4, 2):
     bpy.ops.extensions.package_install_files(filepath=zip_path, repo="user_default", enable_on_install=True)
 else:
     bpy.ops.preferences.addon_install(filepath=zip_path)
-    bpy.ops.preferences.addon_enable(module="partwheel")
+    bpy.ops.preferences.addon_enable(module="partwheel_addon")
 
 preferences = bpy.context.preferences
-if not any(addon.module.split(".")[-1] == "partwheel" for addon in preferences.addons):
+if not any(addon.module.split(".")[-1].startswith("partwheel") for addon in preferences.addons):
     sys.exit("The add-on is not enabled after its installation.")
 preferences.view.show_splash = False  # it would eat the first events
 preferences.view.smooth_view = 0  # the view moves at once, so a test need not wait for an animation

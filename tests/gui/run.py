@@ -103,15 +103,15 @@ def clean_environment(work):
 
 
 def prepare_models(zip_path, work, names):
-    """Writes what these scenarios compare with: the hierarchies, built outside Blender by the core that the zip holds.
+    """Writes what these scenarios compare with: the hierarchies, built outside Blender by the package that the zip holds.
 
     MODEL.npz: order, first, last as in partwheel.h; the wheel stops of all faces one after the other in stops, those of
     face f being stops[offset[f]:offset[f + 1]]; start (F,). Coordinates are rounded to what a Blender mesh can hold.
     """
     with zipfile.ZipFile(zip_path) as archive:
-        archive.extractall(work / "core")
-    sys.path.insert(0, str(work / "core"))
-    from partwheel.core import Hierarchy
+        archive.extractall(work / "zip")
+    sys.path.insert(0, str(work / "zip" / "partwheel_addon" / "packages"))
+    from partwheel import Hierarchy
 
     scripts = "".join((HERE / "scenarios" / f"{name}.py").read_text() for name in names)
     for name in (name for name in MODELS if f'"{name}"' in scripts):

@@ -5,6 +5,7 @@ predicate() holds, mostly through the methods below: `yield from stage.selected(
 
 How fast the machine is must not matter: nothing is bounded in seconds but what never happens.
 """
+import importlib
 import json
 import re
 import subprocess
@@ -246,6 +247,10 @@ class Stage:
         package = bpy.types.VIEW3D_PT_partwheel.__module__.rpartition(".ui.")[0]
         return sys.modules[f"{package}.{name}"]
 
+    def package(self, name=""):
+        """The Python package that the add-on brings, or a module of it."""
+        return importlib.import_module(f"partwheel.{name}".rstrip("."))
+
     @property
     def session(self):
         """The add-on's module that knows what is built, and what is being built."""
@@ -253,7 +258,7 @@ class Stage:
 
     def hold_workers(self):
         """A closed Gate: workers that are started from now on wait until it is opened."""
-        return Gate(self.part("core.worker"))
+        return Gate(self.package("worker.job"))
 
     def use_tool(self):
         """Makes the add-on's tool the active one of the toolbar."""

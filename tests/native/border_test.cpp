@@ -1,7 +1,7 @@
 // Borders in creases: cuts against all that there are, costs against a formula of their own, grooves, order and unit.
-#include "border.h"
+#include "part/border.h"
 
-#include "error.h"
+#include "base/error.h"
 #include "partwheel.h"
 #include "support/shapes.h"
 

@@ -1,10 +1,10 @@
 // Parts carried over: those of a mesh without its noise, and without the points that were added inside.
-#include "carried.h"
-#include "hierarchy.h"
-#include "rough.h"
 #include "support/built.h"
 #include "support/real_meshes.h"
 #include "support/sizes.h"
+#include "surface/prepare/rough.h"
+#include "tree/carried.h"
+#include "tree/hierarchy.h"
 
 #include <gtest/gtest.h>
 

@@ -3,9 +3,9 @@
 // At each step the reference says which merge comes first, measured by hulls that CGAL builds from all vertices. If
 // the library's merge is another one, it must be a cheapest within the tolerance of reference_cluster.h: the
 // certificate. With every merge the reference's first choice, the trees are equal node for node.
-#include "cluster.h"
-#include "dual_graph.h"
-#include "hull.h"
+#include "cluster/cluster.h"
+#include "cluster/dual_graph.h"
+#include "cluster/hull.h"
 
 #include "support/real_meshes.h"
 #include "support/reference_cluster.h"

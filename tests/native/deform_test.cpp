@@ -1,5 +1,5 @@
 // Deformation: rigid motions, energy, what stays, what is refused, memory; distances along a surface.
-#include "deform.h"
+#include "part/deform.h"
 
 #include "support/alone.h"
 

@@ -1,5 +1,5 @@
 // The dendrogram against direct transcriptions: Listing 2 by Eq. 3, cuts by enumeration, the rules of the wheel.
-#include "dendrogram.h"
+#include "tree/dendrogram.h"
 
 #include "support/shapes.h"
 #include "support/sizes.h"

@@ -1,5 +1,5 @@
 // EdgeQueue: whatever is done to it, the order that a sorted set has.
-#include "edge_queue.h"
+#include "cluster/edge_queue.h"
 
 #include <gtest/gtest.h>
 

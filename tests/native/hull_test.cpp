@@ -1,7 +1,7 @@
 // HullKernel against CGAL's convex_hull_3: extreme points exactly, volumes to rounding, boundaries closed and convex.
-#include "hull.h"
+#include "cluster/hull.h"
 
-#include "predicates.h"
+#include "base/predicates.h"
 #include "support/reference_hull.h"
 #include "support/sizes.h"
 

@@ -1,12 +1,12 @@
 // The ladder: which rung a mesh comes to rest on, and that what is used there is sound, against independent checks.
-#include "ladder.h"
+#include "fill/ladder.h"
 
-#include "displaced.h"
 #include "support/built.h"
 #include "support/real_meshes.h"
 #include "support/reference_surface.h"
 #include "support/shapes.h"
 #include "support/sizes.h"
+#include "surface/prepare/displaced.h"
 
 #include <gtest/gtest.h>
 

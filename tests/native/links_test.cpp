@@ -1,5 +1,5 @@
 // Links and LinkPool: whatever is done with lists of one pool, each has what a vector would have.
-#include "links.h"
+#include "cluster/links.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What can be numbered, to the last one; what can't is refused by name.
-#include "numbered.h"
+#include "base/numbered.h"
 
 #include <gtest/gtest.h>
 

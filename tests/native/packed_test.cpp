@@ -1,7 +1,7 @@
 // Packing: what was put comes back bit for bit, in as few bytes as promised, and bytes that end too soon are refused.
-#include "packed.h"
+#include "tree/packed.h"
 
-#include "error.h"
+#include "base/error.h"
 
 #include <gtest/gtest.h>
 

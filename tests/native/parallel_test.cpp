@@ -1,5 +1,5 @@
 // Threads and parallel_for: each piece once, whoever does it, the results seen by the caller, and errors brought home.
-#include "parallel.h"
+#include "base/parallel.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // What keeps polygons from being a closed, manifold, oriented surface: counted on shapes whose faults are known.
-#include "error.h"
-#include "polygons.h"
+#include "base/error.h"
+#include "part/polygons.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // orientation() and collinear() against exact rational arithmetic.
-#include "predicates.h"
+#include "base/predicates.h"
 
 #include "support/reference_hull.h"
 #include "support/sizes.h"

@@ -1,6 +1,6 @@
 // Rough surfaces: how rough one is, against the noise that was put on it; smoothing, against a plain transcription.
-#include "rough.h"
 #include "support/shapes.h"
+#include "surface/prepare/rough.h"
 
 #include <gtest/gtest.h>
 

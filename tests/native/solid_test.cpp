@@ -1,6 +1,6 @@
 // Surfaces around any subset of tetrahedra: closed, manifold, outward, of the right volume; broken input refused.
-#include "error.h"
-#include "solid.h"
+#include "base/error.h"
+#include "part/solid.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The tetrahedra: they fill the solid exactly, keep every triangle of the surface, and know their neighbours.
-#include "tetrahedra.h"
+#include "fill/tetrahedra.h"
 
-#include "predicates.h"
+#include "base/predicates.h"
 #include "support/real_meshes.h"
 #include "support/reference_hull.h"
 #include "support/sizes.h"

@@ -1,11 +1,11 @@
 // How much the ladder's rooms do, and how often they ask whether they are to stop: counted, for seconds tell nothing. The
 // linker sends the rooms' calls of Progress and of TetGen here (--wrap in cmake/tests.cmake).
-#include "attach.h"
-#include "ladder.h"
+#include "fill/ladder.h"
+#include "fill/tetgen_host.h"
 #include "support/real_meshes.h"
 #include "support/shapes.h"
 #include "support/sizes.h"
-#include "tetgen_host.h"
+#include "surface/attach.h"
 
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/exceptions.h>

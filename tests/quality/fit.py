@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fits the numbers of native/src/regroup_fitted.h to segmentations made by people, and says how well they do where they
+"""Fits the numbers of native/src/tree/regroup/regroup_fitted.h to segmentations made by people, and says how well they do where they
 were not fitted.
 
 usage: fit.py MESH_DIR SEG_DIR WORK_DIR [--trees DIR] [--trace PROGRAM] [--rounds 4] [--folds 4] [--jobs N] [--write]
@@ -30,11 +30,11 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"  # one process a core, and sums in one 
 import numpy as np  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "addon"))
+sys.path.insert(0, str(ROOT / "native" / "python"))
 
-from partwheel.core import Hierarchy, Mode, PartwheelError, meshes  # noqa: E402  (found only now)
+from partwheel import Hierarchy, Mode, PartwheelError, meshes  # noqa: E402  (found only now)
 
-HEADER = ROOT / "native" / "src" / "regroup_fitted.h"
+HEADER = ROOT / "native" / "src" / "tree" / "regroup" / "regroup_fitted.h"
 PAIR_MEASURES, NODE_MEASURES = 28, 32
 PAIR_RAMPS, NODE_RAMPS = 16, 12
 DIGITS = 4

@@ -25,9 +25,9 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "addon"))
+sys.path.insert(0, str(ROOT / "native" / "python"))
 
-from partwheel.core import Hierarchy, Mode, PartwheelError, meshes  # noqa: E402  (found only now)
+from partwheel import Hierarchy, Mode, PartwheelError, meshes  # noqa: E402  (found only now)
 
 COUNTS = np.arange(2, 41)
 

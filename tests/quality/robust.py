@@ -30,11 +30,11 @@ import pyfqmr
 from scipy.spatial import cKDTree
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "addon"), str(Path(__file__).parent)]
+sys.path[:0] = [str(ROOT / "native" / "python"), str(Path(__file__).parent)]
 
 from fit import People  # noqa: E402  (found only now)
-from partwheel.core import PartwheelError, meshes  # noqa: E402
-from partwheel.core.worker import Job  # noqa: E402
+from partwheel import PartwheelError, meshes  # noqa: E402
+from partwheel.worker import Job  # noqa: E402
 
 LIMITS = {"noise 0.1 %": 0.01, "noise 0.3 %": 0.02, "noise 1 %": 0.05, "half decimated": 0.03, "half the faces": 0.03,
           "points inside": 0.02}

@@ -6,8 +6,8 @@
 // OUT_DIR/<name>.trace for each file <name>.hierarchy: five int32 counts (faces, parts, pairs, merges, nodes); then the
 // part of each source face (int32), the pairs and the merges (two int32 each), the measures of the pairs and those of
 // the nodes (float64).
-#include "hierarchy.h"
-#include "regroup.h"
+#include "tree/hierarchy.h"
+#include "tree/regroup/regroup.h"
 
 #include <algorithm>
 #include <cstdio>

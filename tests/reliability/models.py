@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 from conftest import ROOT
-from partwheel.core import meshes
+from partwheel import meshes
 
 DEMO = ROOT / "build" / "deps" / "meshes"
 BENCHMARK = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # not ours to pass on: tested where it is, else skipped

@@ -16,9 +16,9 @@ import solids
 import surfaces
 import trimesh
 from conftest import ROOT
-from partwheel.core import Hierarchy, PartwheelError, Rung
-from partwheel.core.meshes import MeshFileError
-from partwheel.core.worker import Job
+from partwheel import Hierarchy, PartwheelError, Rung
+from partwheel.meshes import MeshFileError
+from partwheel.worker import Job
 
 PROCESSES = 2
 NAMES = [*models.demo(), *models.primitives(), *models.benchmark()]

@@ -15,7 +15,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 import surfaces
 from conftest import ROOT
-from partwheel.core import meshes
+from partwheel import meshes
 
 MESHES = ROOT / "build" / "deps" / "meshes"
 FILES = sorted(path.name for path in MESHES.iterdir())
@@ -27,8 +27,8 @@ NO_TRIANGLES = {"b9.ply"}  # a cloud of points
 def build(name):
     """(exit code, report, what was written beside it)"""
     run = subprocess.run(
-        [sys.executable, "-m", "partwheel.core", "build", str(MESHES / name), "--json", "--rungs", "exact"],
-        capture_output=True, text=True, timeout=SECONDS, env={**os.environ, "PYTHONPATH": str(ROOT / "addon")},
+        [sys.executable, "-m", "partwheel", "build", str(MESHES / name), "--json", "--rungs", "exact"],
+        capture_output=True, text=True, timeout=SECONDS, env={**os.environ, "PYTHONPATH": str(ROOT / "native" / "python")},
     )
     return run.returncode, json.loads(run.stdout) if run.stdout else None, run.stderr
 

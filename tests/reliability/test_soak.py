@@ -22,8 +22,8 @@ import numpy as np
 import pytest
 import solids
 from conftest import ROOT
-from partwheel.core import Hierarchy, PartwheelError
-from partwheel.core.worker import Job
+from partwheel import Hierarchy, PartwheelError
+from partwheel.worker import Job
 
 LONG = "PARTWHEEL_SOAK" in os.environ
 COUNT = int(os.environ.get("PARTWHEEL_SOAK", 30))

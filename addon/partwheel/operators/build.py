@@ -10,7 +10,7 @@ import time
 import bpy
 
 from .. import session
-from ..core import LibraryError, PartwheelError, Status
+from partwheel import LibraryError, PartwheelError, Status
 from ..ui import status
 from .in_view import InView
 

@@ -4,7 +4,7 @@
 import bpy
 
 from .. import composition, session, solids
-from ..core import PartwheelError
+from partwheel import PartwheelError
 from ..linked import changeable
 
 

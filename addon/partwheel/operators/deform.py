@@ -11,8 +11,8 @@ from mathutils import Matrix, Vector
 
 from .. import borders, handle_gizmo, handle_points, keys, objects, session
 from ..background import Background
-from ..core import PartwheelError
-from ..core.joint import REACH
+from partwheel import PartwheelError
+from partwheel.joint import REACH
 from ..deforming import METHODS, Pen, Refused, Region
 from ..movement import DIGITS, Movement
 from ..picking import FaceTree, view_of, view_under

@@ -8,7 +8,7 @@ What happens to the part meanwhile, and once it is confirmed, is the business of
 import bpy
 
 from .. import borders, keys, overlay, picking, session, wheel
-from ..core import PartwheelError
+from partwheel import PartwheelError
 from ..prepared import prepared
 from ..seen import NO_FACE
 from .build import start

@@ -7,7 +7,7 @@ import math
 import bpy
 
 from .. import composition, keys, objects, previews, solids, swapping, union
-from ..core import PartwheelError
+from partwheel import PartwheelError
 from ..linked import changeable
 from .copy_part import OnPart, OnParts, Snaps
 from .in_view import InView, waiting

@@ -4,7 +4,7 @@
 import bpy
 
 from .. import session, union
-from ..core import PartwheelError
+from partwheel import PartwheelError
 from ..linked import changeable
 
 

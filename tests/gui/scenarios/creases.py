@@ -6,7 +6,7 @@ import numpy
 
 def play(stage):
     yield from stage.open("homer")
-    model, core, arrays = stage.object, stage.part("core"), stage.part("mesh_arrays")
+    model, core, arrays = stage.object, stage.package(), stage.part("mesh_arrays")
     creases = core.Creases(*arrays.surface(arrays.up_to_date(model)))
 
     def snapped(faces):

@@ -41,7 +41,7 @@ def play(stage):
         last = bpy.data.window_managers[0].operators[-1]
         for name, value in options.items():
             setattr(last.properties, name, value)
-        # Not under temp_override(): it starts a build, see core/worker.py. True: with its step in the history.
+        # Not under temp_override(): it starts a build, see worker/job.py. True: with its step in the history.
         bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)
         yield from stage.settle()
 

@@ -1,7 +1,7 @@
 // What must hold of every hierarchy that was built of a known mesh, against independent reckoning.
 #include "support/built.h"
 
-#include "cluster.h"
+#include "cluster/cluster.h"
 #include "support/reference_hull.h"
 #include "support/sizes.h"
 

@@ -1,7 +1,7 @@
 // Listing 1 of the paper by brute force, written from the paper and from the cost rule that cluster.h states.
 #pragma once
 
-#include "cluster.h"
+#include "cluster/cluster.h"
 
 #include <map>
 #include <optional>

@@ -1,7 +1,7 @@
 // Convex hulls and predicates by CGAL's exact kernels: what the engine's own are held against.
 #pragma once
 
-#include "geometry.h"
+#include "base/geometry.h"
 #include "support/shapes.h"
 
 #include <span>

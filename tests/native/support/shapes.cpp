@@ -1,7 +1,7 @@
 // Closed surfaces and tet meshes made by formula.
 #include "support/shapes.h"
 
-#include "predicates.h"
+#include "base/predicates.h"
 
 #include <algorithm>
 #include <cmath>

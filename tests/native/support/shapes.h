@@ -1,7 +1,7 @@
 // Closed surfaces and tet meshes made by formula. Whatever is random has a fixed seed.
 #pragma once
 
-#include "tetrahedra.h"
+#include "fill/tetrahedra.h"
 
 #include <cstdint>
 #include <random>

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command line: python3 -m partwheel build MODEL [-o FILE] [--json] [options]
+
+Exit codes: 0 built, 1 a named error, 2 wrong usage (a file that can't be opened or written included)."""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from . import meshes
+from .hierarchy import Hierarchy
+from .library import LibraryError, Mode, PartwheelError, Rung
+
+BUILT, NAMED_ERROR, USAGE = 0, 1, 2
+
+
+def peak_memory():
+    """The most bytes of memory this process held so far, or None where the system does not tell."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return None
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak if sys.platform == "darwin" else peak * 1024  # Linux counts KiB
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(prog="python3 -m partwheel", description="Partwheel without Blender.")
+    commands = parser.add_subparsers(dest="command", required=True)
+    build = commands.add_parser("build", help="build the hierarchy of parts of a surface")
+    build.add_argument("model", type=Path, help="a mesh file: OFF, or any other format that trimesh reads")
+    build.add_argument("-o", "--output", type=Path, metavar="FILE", help="save the hierarchy here")
+    build.add_argument("--json", action="store_true", help="print the report as JSON on one line")
+    build.add_argument("--quality", type=float, default=0.0, metavar="Q",
+                       help="0: no points are added inside (default); 1.1 or more: bound on circumradius to shortest "
+                            "edge of the tetrahedra, 1.4 is usual")
+    build.add_argument("--rungs", default="exact,repaired,wrapped", type=rungs, metavar="R,...",
+                       help="the ways allowed to a surface that can be filled, the first that works is taken: exact, "
+                            "repaired, wrapped (default: all)")
+    build.add_argument("--open-surfaces", action="store_true",
+                       help="wrap a sheet (plane, cloth, car door) as a thin solid instead of refusing it")
+    build.add_argument("--threads", type=int, default=0, metavar="N", help="at most so many (default: what helps)")
+    build.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="regrouped",
+                       help="whether parts are joined as people would (default), or all is as in the paper")
+    return parser.parse_args(arguments)
+
+
+def rungs(text):
+    """"exact,wrapped" -> the sum of their Rung values. For argparse: raises ValueError for any other word."""
+    try:
+        return sum({Rung[word.upper()] for word in text.split(",")})
+    except KeyError as error:
+        raise ValueError(f"{error} is no rung") from error
+
+
+def show_progress(fraction, stage):
+    print(f"\r{fraction:4.0%} {stage:<12}", end="", file=sys.stderr, flush=True)
+
+
+def build(options, report):
+    """Reads, builds and saves; fills the report as far as it gets."""
+    mesh = meshes.read(options.model)
+    report.update(vertices=len(mesh.vertices), triangles=len(mesh.triangles), faces=mesh.face_count,
+                  welded_vertices=mesh.welded)
+    try:
+        hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count,
+                                    quality=options.quality, rungs=options.rungs,
+                                    open_surfaces=options.open_surfaces, threads=options.threads,
+                                    mode=Mode[options.mode.upper()],
+                                    progress=show_progress if sys.stderr.isatty() else None)
+    finally:
+        if sys.stderr.isatty():
+            print("\r" + " " * 20, end="\r", file=sys.stderr, flush=True)
+    report.update(tets=len(hierarchy.tetrahedra), nodes=len(hierarchy.parent), seconds=hierarchy.seconds,
+                  account=hierarchy.account, **hierarchy.summary._asdict())
+    if options.output:
+        options.output.write_bytes(hierarchy.save())
+
+
+def describe(report):
+    """The report in words."""
+    if report["error"]:
+        return f"{report['model']}: {report['error']['name']}. {report['error']['message']}"
+    lines = [f"{report['model']}: {report['faces']} faces, {report['tets']} tets, components: {report['components']}, "
+             f"cavities: {report['cavities']}, nodes: {report['nodes']}, {report['rung']}"]
+    if report["account"]:
+        lines.append(report["account"])
+    if report["welded_vertices"]:
+        lines.append(f"This format does not share vertices: {report['welded_vertices']} exact copies were joined.")
+    lines += [f"  {stage:<12} {seconds:9.3f} s" for stage, seconds in report["seconds"].items()]
+    if report["peak_memory_bytes"] is not None:
+        lines.append(f"  peak memory  {report['peak_memory_bytes'] / 2**20:9.1f} MiB")
+    return "\n".join(lines)
+
+
+def main(arguments=None):
+    options = parse(arguments)
+    report = {"model": str(options.model), "error": None, "faces": None, "tets": None, "components": None,
+              "seconds": {}}
+    code = BUILT
+    try:
+        build(options, report)
+    except PartwheelError as error:
+        code = NAMED_ERROR
+        report["error"] = {"name": error.name, "message": str(error)}
+        report["seconds"] = error.seconds
+    except meshes.MeshFileError as error:
+        code = NAMED_ERROR
+        report["error"] = {"name": error.name, "message": str(error)}
+    except LibraryError as error:
+        code = NAMED_ERROR
+        report["error"] = {"name": "library", "message": str(error)}
+    except OSError as error:
+        code = USAGE
+        report["error"] = {"name": "file", "message": f"{error.strerror}: {error.filename}"}
+    report["peak_memory_bytes"] = peak_memory()
+    text = json.dumps(report) if options.json else describe(report)
+    print(text, file=sys.stderr if code and not options.json else sys.stdout)
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,184 @@
+// The exact side-of-plane test: a floating-point filter, then expansions of the rounded differences, then of all.
+//
+// An expansion is a sum of doubles that don't overlap, smallest first; sums and products of expansions are exact.
+// The build must not fuse multiplications and additions (-ffp-contract=off).
+#include "base/predicates.h"
+
+#include <cmath>
+
+namespace partwheel {
+
+namespace {
+
+template <int N>
+struct Expansion {
+    double part[N];
+    int size = 0;
+    void push(double x) {
+        if (x != 0) part[size++] = x;
+    }
+};
+
+// a + b = sum + error, exactly.
+inline void two_sum(double a, double b, double& sum, double& error) {
+    sum = a + b;
+    const double b_virtual = sum - a;
+    error = (a - (sum - b_virtual)) + (b - b_virtual);
+}
+
+// a * b = product + error, exactly (Dekker's product with Veltkamp's split, so that no fused instruction is needed).
+inline void split(double a, double& high, double& low) {
+    constexpr double splitter = 134217729.0;  // 2^27 + 1
+    const double c = splitter * a;
+    high = c - (c - a);
+    low = a - high;
+}
+
+inline void two_product(double a, double b, double& product, double& error) {
+    product = a * b;
+    double ah, al, bh, bl;
+    split(a, ah, al);
+    split(b, bh, bl);
+    error = al * bl - (((product - ah * bh) - al * bh) - ah * bl);
+}
+
+inline Expansion<2> difference(double a, double b) {
+    double sum, error;
+    two_sum(a, -b, sum, error);
+    Expansion<2> e;
+    e.push(error);
+    e.push(sum);
+    return e;
+}
+
+// Shewchuk's linear-time merge, dropping zeros.
+template <int N, int M>
+Expansion<N + M> sum(const Expansion<N>& e, const Expansion<M>& f) {
+    Expansion<N + M> h;
+    int i = 0, j = 0;
+    double q = 0;
+    while (i < e.size || j < f.size) {
+        const bool take_e = j >= f.size || (i < e.size && std::fabs(e.part[i]) < std::fabs(f.part[j]));
+        const double next = take_e ? e.part[i++] : f.part[j++];
+        double error;
+        two_sum(q, next, q, error);
+        h.push(error);
+    }
+    h.push(q);
+    return h;
+}
+
+template <int N>
+Expansion<2 * N> scaled(const Expansion<N>& e, double b) {
+    Expansion<2 * N> h;
+    double q = 0;
+    for (int i = 0; i < e.size; ++i) {
+        double product, product_error, error;
+        two_product(e.part[i], b, product, product_error);
+        two_sum(q, product_error, q, error);
+        h.push(error);
+        two_sum(product, q, q, error);
+        h.push(error);
+    }
+    h.push(q);
+    return h;
+}
+
+template <int N>
+Expansion<4 * N> product(const Expansion<N>& e, const Expansion<2>& f) {
+    Expansion<2 * N> zero;
+    const Expansion<2 * N> low = f.size > 0 ? scaled(e, f.part[0]) : zero;
+    const Expansion<2 * N> high = f.size > 1 ? scaled(e, f.part[1]) : zero;
+    return sum(low, high);
+}
+
+template <int N>
+Expansion<N> negated(Expansion<N> e) {
+    for (int i = 0; i < e.size; ++i) e.part[i] = -e.part[i];
+    return e;
+}
+
+// The product of two numbers.
+inline Expansion<2> product(double a, double b) {
+    double high, low;
+    two_product(a, b, high, low);
+    Expansion<2> e;
+    e.push(low);
+    e.push(high);
+    return e;
+}
+
+// The determinant of three rounded differences, exactly: most close cases are settled by it, and it is the whole answer
+// where the differences are exact. 2 if it doesn't tell (Shewchuk 1997, the second stage of his adaptive predicate).
+int rounded_orientation(const Point& u, const Point& v, const Point& w, double permanent, bool exact) {
+    const auto term = [](double p, double q, double r, double s, double t) {
+        return scaled(sum(product(p, q), negated(product(r, s))), t);
+    };
+    const auto det = sum(sum(term(u[1], v[2], u[2], v[1], w[0]), term(u[2], v[0], u[0], v[2], w[1])),
+                         term(u[0], v[1], u[1], v[0], w[2]));
+    double estimate = 0;
+    for (int i = 0; i < det.size; ++i) estimate += det.part[i];
+    constexpr double bound = (3 + 28 * 0x1p-53) * 0x1p-53;
+    if (!exact && std::fabs(estimate) < bound * permanent) return 2;
+    if (exact) estimate = det.size == 0 ? 0 : det.part[det.size - 1];
+    return estimate > 0 ? 1 : estimate < 0 ? -1 : exact ? 0 : 2;
+}
+
+// Whether p - a has not been rounded.
+bool exact_difference(const Point& p, const Point& a) {
+    double lost = 0;
+    for (size_t k = 0; k < 3; ++k) {
+        double difference, error;
+        two_sum(p[k], -a[k], difference, error);
+        lost += std::fabs(error);
+    }
+    return lost == 0;
+}
+
+int exact_orientation(const Point& a, const Point& b, const Point& c, const Point& d) {
+    const Expansion<2> bx = difference(b[0], a[0]), by = difference(b[1], a[1]), bz = difference(b[2], a[2]);
+    const Expansion<2> cx = difference(c[0], a[0]), cy = difference(c[1], a[1]), cz = difference(c[2], a[2]);
+    const Expansion<2> dx = difference(d[0], a[0]), dy = difference(d[1], a[1]), dz = difference(d[2], a[2]);
+    const auto minor = [](const Expansion<2>& p, const Expansion<2>& q, const Expansion<2>& r, const Expansion<2>& s) {
+        return sum(product(p, q), negated(product(r, s)));
+    };
+    const auto x = product(minor(by, cz, bz, cy), dx);
+    const auto y = product(minor(bz, cx, bx, cz), dy);
+    const auto z = product(minor(bx, cy, by, cx), dz);
+    const auto det = sum(sum(x, y), z);
+    if (det.size == 0) return 0;
+    return det.part[det.size - 1] > 0 ? 1 : -1;
+}
+
+}  // namespace
+
+int orientation(const Point& a, const Point& b, const Point& c, const Point& d) {
+    const Point u = b - a, v = c - a, w = d - a;
+    const double yz = u[1] * v[2], zy = u[2] * v[1];
+    const double zx = u[2] * v[0], xz = u[0] * v[2];
+    const double xy = u[0] * v[1], yx = u[1] * v[0];
+    const double det = (yz - zy) * w[0] + (zx - xz) * w[1] + (xy - yx) * w[2];
+    const double permanent = (std::fabs(yz) + std::fabs(zy)) * std::fabs(w[0]) +
+                             (std::fabs(zx) + std::fabs(xz)) * std::fabs(w[1]) +
+                             (std::fabs(xy) + std::fabs(yx)) * std::fabs(w[2]);
+    constexpr double bound = 8.0 * 0x1p-53;  // (7 + 56 eps) eps in Shewchuk's analysis, rounded up
+    if (det > bound * permanent) return 1;
+    if (det < -bound * permanent) return -1;
+    if (permanent == 0) return 0;  // as in a plane across an axis
+    const bool exact = exact_difference(b, a) && exact_difference(c, a) && exact_difference(d, a);
+    const int sign = rounded_orientation(u, v, w, permanent, exact);
+    return sign < 2 ? sign : exact_orientation(a, b, c, d);
+}
+
+bool collinear(const Point& a, const Point& b, const Point& c) {
+    // On a line in space: on a line in each coordinate plane. There, a fourth point one above the first makes the
+    // three-dimensional test a two-dimensional one.
+    for (size_t k = 0; k < 3; ++k) {
+        const auto flat = [k](const Point& p) { return Point{p[(k + 1) % 3], p[(k + 2) % 3], 0}; };
+        const Point fa = flat(a);
+        if (orientation(fa, flat(b), flat(c), {fa[0], fa[1], 1}) != 0) return false;
+    }
+    return true;
+}
+
+}  // namespace partwheel

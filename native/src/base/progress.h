@@ -1,0 +1,46 @@
+// Progress, cancellation and timing of one build, shared between the building thread and those that watch it.
+#pragma once
+
+#include "base/error.h"
+
+#include <array>
+#include <atomic>
+#include <chrono>
+
+namespace partwheel {
+
+class Progress {
+public:
+    // Starts a build: fraction and seconds go back to 0. A cancellation asked for before stands.
+    void begin();
+
+    // Ends it, whether it went well or not: the running stage's seconds are booked, a cancellation is used up.
+    void end();
+
+    // Books the stage that ran until now, then starts this one. Throws if cancelled.
+    void enter(pw_stage stage);
+
+    // The part of the current stage that is done, 0..1. Throws Error(PW_ERROR_CANCELLED) if cancelled. Cheap enough
+    // for every few hundred steps of an inner loop.
+    void advance(double part);
+
+    void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
+    // Who asks for the fraction first and then for the stage never sees a stage that was over at that fraction.
+    double fraction() const { return fraction_.load(std::memory_order_acquire); }
+    pw_stage stage() const { return stage_.load(std::memory_order_relaxed); }
+    double seconds(pw_stage stage) const { return seconds_[stage].load(std::memory_order_relaxed); }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    void book();
+    void raise_to(double fraction);
+
+    std::atomic<bool> cancelled_{false};
+    std::atomic<double> fraction_{0};  // stored after the stage it belongs to
+    std::atomic<pw_stage> stage_{PW_STAGE_SURFACE};
+    std::array<std::atomic<double>, PW_STAGE_COUNT> seconds_{};
+    Clock::time_point stage_start_{};
+    bool running_ = false;
+};
+
+}  // namespace partwheel

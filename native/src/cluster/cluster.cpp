@@ -1,0 +1,159 @@
+// Hierarchical tet clustering (the paper's Listing 1): hulls from hulls, costs only where the queue asks for them.
+#include "cluster/cluster.h"
+
+#include "cluster/dual_graph.h"
+#include "cluster/edge_queue.h"
+
+#include <boost/geometry.hpp>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+constexpr size_t nearest_components = 16;
+
+class Clustering {
+public:
+    Clustering(const TetMesh& mesh, Progress& progress, size_t threads) : progress_(progress), graph_(mesh) {
+        graph_.price_all(progress, threads);
+        tree_.merges.reserve(mesh.tetrahedra.size());
+    }
+    BinaryTree run();
+
+private:
+    void queue_edges();
+    void evaluate(std::span<const int32_t> edges, double concavity);
+    void contract_all();
+    void contract(int32_t edge);
+    void join_components();
+
+    Progress& progress_;
+    DualGraph graph_;
+    EdgeQueue queue_;
+    std::vector<int32_t> unpriced_, removed_;  // scratch of contract()
+    BinaryTree tree_;
+};
+
+// Those between clusters that remain.
+void Clustering::queue_edges() {
+    queue_.number_edges(graph_.edges_count());
+    if (tree_.merges.empty()) queue_.reserve(graph_.edges_count());  // else few are left
+    for (size_t c = 0; c < graph_.clusters_count(); ++c)
+        for (const Link& link : graph_.at(static_cast<int32_t>(c)).links)
+            if (!queue_.has(link.edge)) queue_.append(Price(graph_.cost(graph_.edge(link.edge))), link.edge);
+    queue_.sort();
+}
+
+// Finds the exact volumes of the edges' hulls; or, at the first try, only that they cost more than this concavity.
+void Clustering::evaluate(std::span<const int32_t> edges, double concavity) {
+    graph_.find_prices(edges, concavity);
+    for (const int32_t edge : edges) queue_.update(Price(graph_.cost(graph_.edge(edge))), edge);
+}
+
+void Clustering::contract_all() {
+    while (!queue_.empty()) {
+        const int32_t top = queue_.top().edge;
+        prefetch_soon(graph_, queue_);
+        if (!graph_.edge(top).exact) {
+            evaluate({&top, 1}, far_beyond_second(queue_));
+            continue;
+        }
+        contract(top);
+        if (tree_.merges.size() % 256 == 0)
+            progress_.advance(0.1 + 0.9 * static_cast<double>(tree_.merges.size()) /
+                                        static_cast<double>(graph_.clusters_count()));
+    }
+}
+
+void Clustering::contract(int32_t contracted) {
+    const Price price = queue_.top();
+    queue_.remove(contracted);
+    prefetch_around(graph_, queue_, contracted);
+    removed_.clear();
+    int32_t merged;
+    const auto number = static_cast<int32_t>(graph_.clusters_count() + tree_.merges.size());
+    tree_.merges.push_back(graph_.contract(contracted, number, removed_, merged));
+    for (const int32_t edge : removed_) queue_.remove(edge);
+    // Those that may be cheaper than the merge just made are the next that the queue would ask for.
+    unpriced_.clear();
+    for (const Link& link : graph_.at(merged).links) {
+        graph_.refresh(link.edge);
+        const Price bound(graph_.cost(graph_.edge(link.edge)));
+        if (bound < price) {
+            graph_.prefetch(link.edge, merged);
+            unpriced_.push_back(link.edge);
+        } else {
+            queue_.update(bound, link.edge);
+        }
+    }
+    evaluate(unpriced_, dear * price.concavity());
+}
+
+// Called when no edge is left: makes candidates of the clusters that remain.
+void Clustering::join_components() {
+    std::vector<int32_t> rest;
+    for (int32_t c = 0; c < static_cast<int32_t>(graph_.clusters_count()); ++c)
+        if (graph_.at(c).size > 0) rest.push_back(c);
+    std::sort(rest.begin(), rest.end(), [&](int32_t a, int32_t b) { return graph_.at(a).low < graph_.at(b).low; });
+    for (const int32_t c : rest) graph_.make_hull(c);
+    std::vector<int32_t> edges;
+    const auto join = [&](int32_t i, int32_t j) {
+        edges.push_back(graph_.add_edge(rest[static_cast<size_t>(i)], rest[static_cast<size_t>(j)]));
+    };
+    const auto price_all = [&] {
+        queue_edges();
+        evaluate(edges, std::numeric_limits<double>::infinity());
+    };
+    const auto count = static_cast<int32_t>(rest.size());
+    if (count <= all_pairs_components) {
+        for (int32_t i = 0; i < count; ++i)
+            for (int32_t j = i + 1; j < count; ++j) join(i, j);
+        price_all();
+        return;
+    }
+
+    namespace bg = boost::geometry;
+    using Corner = bg::model::point<double, 3, bg::cs::cartesian>;
+    using Box = bg::model::box<Corner>;
+    std::vector<std::pair<Box, int32_t>> boxes;
+    for (int32_t i = 0; i < count; ++i) {
+        const auto [low, high] = graph_.bounds(rest[static_cast<size_t>(i)]);
+        boxes.push_back({Box({low[0], low[1], low[2]}, {high[0], high[1], high[2]}), i});
+    }
+    const bg::index::rtree<std::pair<Box, int32_t>, bg::index::rstar<16>> tree(boxes);
+    std::vector<std::pair<int32_t, int32_t>> pairs;
+    for (const auto& [box, i] : boxes)
+        for (auto q = tree.qbegin(bg::index::nearest(box, nearest_components + 1)); q != tree.qend(); ++q)
+            if (q->second != i) pairs.push_back(std::minmax(i, q->second));
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    for (const auto& [i, j] : pairs) join(i, j);
+    price_all();
+}
+
+BinaryTree Clustering::run() {
+    queue_edges();
+    contract_all();
+    tree_.components = graph_.clusters_count() - tree_.merges.size();
+    while (tree_.merges.size() + 1 < graph_.clusters_count()) {
+        join_components();
+        contract_all();
+    }
+    return std::move(tree_);
+}
+
+}  // namespace
+
+BinaryTree cluster(const TetMesh& mesh, Progress& progress, size_t threads) {
+    return Clustering(mesh, progress, threads).run();
+}
+
+}  // namespace partwheel

@@ -1,0 +1,166 @@
+// Clusters and edges: priced by hulls from hulls, contracted.
+#include "cluster/dual_graph.h"
+
+#include "base/numbered.h"
+#include "base/parallel.h"
+
+#include <algorithm>
+
+namespace partwheel {
+
+namespace {
+
+// So many edges are priced between two looks at whether all is cancelled, a thread so many at a time: some 60
+// nanoseconds each.
+constexpr size_t edges_a_step = 65536, edges_a_piece = 4096;
+
+}  // namespace
+
+DualGraph::DualGraph(const TetMesh& mesh)
+    : mesh_(mesh), hulls_(mesh.vertices), first_links_(LinkPool::least * mesh.tetrahedra.size()), clusters_(mesh.tetrahedra.size()),
+      link_of_(mesh.tetrahedra.size(), -1) {
+    const auto count = static_cast<int32_t>(mesh.tetrahedra.size());
+    for (int32_t t = 0; t < count; ++t) {
+        const Tetrahedron& tet = mesh.tetrahedra[static_cast<size_t>(t)];
+        Cluster& c = at(t);
+        c.volume = c.hull_volume = six_volumes(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3])) / 6;
+        c.low = c.number = t;
+        c.links = Links(&first_links_[LinkPool::least * static_cast<size_t>(t)]);
+    }
+    edges_.reserve(2 * mesh.tetrahedra.size());
+    for (int32_t t = 0; t < count; ++t)
+        for (const int32_t other : mesh.neighbours[static_cast<size_t>(t)])
+            if (other > t) add_edge(t, other);
+}
+
+void DualGraph::price_all(Progress& progress, size_t threads) {
+    Threads pool(threads, std::min(edges_a_step, edges_.size()) / edges_a_piece + 1);
+    for (size_t first = 0; first < edges_.size(); first += edges_a_step) {
+        const size_t last = std::min(first + edges_a_step, edges_.size());
+        pool.parallel_for(last - first, edges_a_piece, [&](size_t begin, size_t end) {
+            for (DualEdge& e : std::span(edges_).subspan(first + begin, end - begin)) {
+                e.hull_volume = union_of_neighbours(e.a, e.b);
+                e.exact = true;
+            }
+        });
+        progress.advance(0.1 * static_cast<double>(last) / static_cast<double>(edges_.size()));
+    }
+}
+
+int32_t DualGraph::add_edge(int32_t a, int32_t b) {
+    const int32_t edge = numbered(edges_.size());  // many are added where components are joined
+    edges_.push_back({.a = a, .b = b});
+    at(a).links.push_back({b, edge}, links_);
+    at(b).links.push_back({a, edge}, links_);
+    return edge;
+}
+
+std::span<const int32_t> DualGraph::corners(int32_t c) const {
+    if (at(c).hull) return at(c).hull.vertices();
+    return mesh_.tetrahedra[static_cast<size_t>(at(c).low)];
+}
+
+// The edge's clusters, the one whose hull has more facets first, or the lower one.
+std::pair<int32_t, int32_t> DualGraph::by_size(const DualEdge& e) const {
+    const uint32_t a = at(e.a).facets, b = at(e.b).facets;
+    const bool ordered = a != b ? a > b : at(e.a).low < at(e.b).low;
+    return ordered ? std::pair(e.a, e.b) : std::pair(e.b, e.a);
+}
+
+// The volume of the union of two tetrahedra with a common facet: theirs, and what the far corner of b sees of a.
+double DualGraph::union_of_neighbours(int32_t a, int32_t b) const {
+    const Tetrahedron& s = mesh_.tetrahedra[static_cast<size_t>(a)];
+    const Tetrahedron& t = mesh_.tetrahedra[static_cast<size_t>(b)];
+    const auto& beyond = mesh_.neighbours[static_cast<size_t>(b)];
+    const Point& far = point(t[static_cast<size_t>(std::find(beyond.begin(), beyond.end(), a) - beyond.begin())]);
+    double seen = 0;
+    for (size_t k = 0; k < 4; ++k) {
+        if (mesh_.neighbours[static_cast<size_t>(a)][k] == b) continue;
+        const Triangle f = facet(s, k);
+        seen += std::max(0.0, six_volumes(point(f[0]), point(f[1]), point(f[2]), far));
+    }
+    return at(a).volume + at(b).volume + seen / 6;
+}
+
+// A volume of this edge's union with which it costs more than this concavity.
+double DualGraph::enough(const DualEdge& e, double concavity) const {
+    if (e.tried) return std::numeric_limits<double>::infinity();
+    const double volume = at(e.a).volume + at(e.b).volume;
+    // Rather more than that, for the roundings and the slack.
+    if (concavity == 0) return volume / (1 - convex_tolerance) * (1 + 1e-9);
+    return (volume + concavity * (1 + 1e-8)) * (1 + 1e-10);
+}
+
+void DualGraph::find_price(int32_t edge_number, double concavity) {
+    DualEdge& e = edge(edge_number);
+    const auto [large, small] = by_size(e);
+    make_hull(large);
+    const auto [volume, exact] = hulls_.united_volume(at(large).hull, corners(small), enough(e, concavity));
+    e.hull_volume = exact ? volume : std::max(e.hull_volume, volume);
+    e.exact = exact;
+    e.tried = true;
+}
+
+void DualGraph::find_prices(std::span<const int32_t> edges, double concavity) {
+    for (size_t i = 0; i < edges.size(); ++i) {
+        if (i + 1 < edges.size()) hulls_.prefetch(corners(by_size(edge(edges[i + 1])).second));
+        find_price(edges[i], concavity);
+    }
+}
+
+Hull DualGraph::unite(const DualEdge& e) {
+    const auto [large, small] = by_size(e);
+    if (at(large).hull) return hulls_.unite(at(large).hull, corners(small));
+    std::array<int32_t, 8> both;
+    std::copy_n(corners(small).begin(), 4, std::copy_n(corners(large).begin(), 4, both.begin()));
+    return hulls_.build(both);
+}
+
+Merge DualGraph::contract(int32_t contracted, int32_t number, std::vector<int32_t>& removed, int32_t& merged) {
+    const DualEdge& e = edge(contracted);
+    // The cluster with more links stays and takes in the other.
+    const bool stay_a = at(e.a).links.size() >= at(e.b).links.size();
+    const int32_t stay = stay_a ? e.a : e.b, go = stay_a ? e.b : e.a;
+    Cluster &m = at(stay), &g = at(go);
+
+    const bool ordered = m.low < g.low;
+    const Cluster &first = ordered ? m : g, &second = ordered ? g : m;
+    const double volume = first.volume + second.volume;
+    const Merge merge = {first.number, second.number, ranked_concavity(e.hull_volume, volume), e.hull_volume};
+    for (const Link& link : g.links) prefetch_line(at(link.cluster).links.begin());
+    set_hull(stay, unite(e));
+    m.hull_volume = m.hull.volume();
+    m.volume = volume;
+    m.size += g.size;
+    m.low = std::min(m.low, g.low);
+    m.number = number;
+
+    m.links.erase_of(go);
+    for (size_t i = 0; i < m.links.size(); ++i)
+        link_of_[static_cast<size_t>(m.links[i].cluster)] = static_cast<int32_t>(i);
+    for (const Link& link : g.links) {
+        if (link.cluster == stay) continue;
+        Cluster& other = at(link.cluster);
+        DualEdge& moved = edge(link.edge);
+        Link* const back = other.links.find(go);
+        const int32_t twin = link_of_[static_cast<size_t>(link.cluster)];
+        if (twin < 0) {
+            back->cluster = stay;
+            (moved.a == go ? moved.a : moved.b) = stay;
+            m.links.push_back(link, links_);
+        } else {
+            DualEdge& kept = edge(m.links[static_cast<size_t>(twin)].edge);
+            kept.hull_volume = std::max(kept.hull_volume, moved.hull_volume);
+            removed.push_back(link.edge);
+            other.links.erase(back);
+        }
+    }
+    g.links.release(links_);
+    g = Cluster{};
+    g.size = 0;
+    for (const Link& link : m.links) link_of_[static_cast<size_t>(link.cluster)] = -1;
+    merged = stay;
+    return merge;
+}
+
+}  // namespace partwheel

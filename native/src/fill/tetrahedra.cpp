@@ -1,0 +1,416 @@
+// The closed surface filled with tetrahedra by TetGen.
+#include "fill/tetrahedra.h"
+
+#include "base/numbered.h"
+#include "base/predicates.h"
+#include "fill/tetgen_host.h"
+
+#include <tetgen.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <mutex>
+#include <numeric>
+#include <random>
+#include <span>
+#include <string>
+#include <utility>
+
+namespace {
+
+// TetGen's call that runs; guarded by the lock in run_tetgen().
+uint32_t tetgen_random = 1;
+uint64_t tetgen_steps = 0, most_tetgen_steps = 0;
+partwheel::Progress* tetgen_progress = nullptr;
+
+class Endless : public partwheel::Error {  // thrown from inside TetGen
+public:
+    Endless()
+        : Error(PW_ERROR_TETRAHEDRA,
+                "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.") {}
+};
+
+}  // namespace
+
+int partwheel_tetgen_printf(const char*, ...) { return 0; }
+
+void partwheel_tetgen_srand(unsigned seed) { tetgen_random = seed % 2147483646u + 1; }
+
+int partwheel_tetgen_rand() {  // Park and Miller's generator
+    tetgen_random = static_cast<uint32_t>(uint64_t{tetgen_random} * 48271 % 2147483647);
+    return static_cast<int>(tetgen_random);
+}
+
+double partwheel_tetgen_orient3d(double* a, double* b, double* c, double* d) {
+    if (++tetgen_steps > most_tetgen_steps) throw Endless();
+    if (tetgen_steps % 4096 == 0) tetgen_progress->advance(0);
+    return orient3d(a, b, c, d);
+}
+
+namespace partwheel {
+
+namespace {
+
+// With its lowest vertex first.
+Triangle facet_from_lowest(const Tetrahedron& tet, size_t opposite) {
+    Triangle t = facet(tet, opposite);
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    return t;
+}
+
+[[noreturn]] void throw_failure(int code) {
+    switch (code) {
+        case 1: throw Error(PW_ERROR_MEMORY, "There is not enough memory to fill this mesh. Decimate it first.");
+        case 3:
+        case 4:
+        case 5:
+            throw Error(PW_ERROR_TETRAHEDRA,
+                        "The mesh can't be filled: some faces are too close together to be told apart. Merge vertices "
+                        "by distance, or move the parts that almost touch further apart.");
+        default:
+            throw Error(PW_ERROR_TETRAHEDRA, "The mesh can't be filled (TetGen ended with code " +
+                                                 std::to_string(code) +
+                                                 "). Remesh or smooth it a little and try again.");
+    }
+}
+
+// TetGen writes some complaints to std::cerr (of which the shared library has a copy of its own): not while this lives.
+class Silence {
+public:
+    Silence() : state_(std::cerr.rdstate()) { std::cerr.setstate(std::ios::badbit); }
+    ~Silence() { std::cerr.clear(state_); }
+    Silence(const Silence&) = delete;
+    Silence& operator=(const Silence&) = delete;
+
+private:
+    std::ios::iostate state_;
+};
+
+// The order in which TetGen is told vertices and triangles: as they come, or shuffled, the same way on every machine.
+struct InputOrder {
+    std::vector<int32_t> vertices, triangles;
+
+    InputOrder(const Surface& surface, uint64_t shuffle)
+        : vertices(surface.vertices.size()), triangles(surface.triangles.size()) {
+        std::mt19937_64 random(shuffle);
+        for (auto* order : {&vertices, &triangles}) {
+            std::iota(order->begin(), order->end(), 0);
+            for (size_t i = order->size(); shuffle != 0 && i > 1; --i) std::swap((*order)[i - 1], (*order)[random() % i]);
+        }
+    }
+};
+
+// A call of TetGen may take so many steps, calls of orient3d(), for each vertex and for a hundred more, unless quality is
+// asked for. Of 172 clean models none took more than 120 unless points were added inside, 3 more than 1,000, with points
+// that improving alone had added, and a thin and needle-edged one came to no end.
+constexpr uint64_t most_steps = 1000;
+
+// What TetGen is to do. Its switches are text, in which numbers are read as the host's locale writes them.
+// improve: flat tetrahedra are flipped, and split by points inside, until they are less so.
+tetgenbehavior behaviour(double quality, bool improve) {
+    tetgenbehavior b;
+    b.plc = 1;
+    b.nobisect = 1;             // the surface is kept
+    b.collinear_ang_tol = 180;  // our test for intersections is trusted
+    b.quiet = 1;
+    b.nofacewritten = 1;  // its own code for boundary faces is unsafe
+    b.neighout = 1;
+    if (quality > 0) {
+        b.quality = 1;
+        b.minratio = quality;
+        b.mindihedral = 0;
+    } else {
+        b.optmaxdihedral = 179.9;
+    }
+    if (!improve) {  // no tetrahedron is too flat
+        b.optmaxdihedral = 180;
+        b.opt_max_asp_ratio = HUGE_VAL;
+    }
+    return b;
+}
+
+void run_tetgen(const Surface& surface, const InputOrder& order, double quality, bool improve, tetgenio& out,
+                Progress& progress) {
+    tetgenio in;
+    in.firstnumber = 0;
+    in.numberofpoints = static_cast<int>(surface.vertices.size());
+    in.pointlist = new REAL[3 * surface.vertices.size()];
+    std::vector<int32_t> place(surface.vertices.size());
+    for (size_t i = 0; i < order.vertices.size(); ++i) {
+        const auto v = static_cast<size_t>(order.vertices[i]);
+        place[v] = static_cast<int32_t>(i);
+        std::copy_n(surface.vertices[v].begin(), 3, in.pointlist + 3 * i);
+    }
+    in.facetlist = new tetgenio::facet[surface.triangles.size()];
+    in.numberoffacets = static_cast<int>(surface.triangles.size());
+    // All are initialised before any owns memory, so that running out of it can't leave `in` half made.
+    for (size_t i = 0; i < surface.triangles.size(); ++i) tetgenio::init(&in.facetlist[i]);
+    for (size_t i = 0; i < order.triangles.size(); ++i) {
+        tetgenio::facet& f = in.facetlist[i];
+        f.polygonlist = new tetgenio::polygon[1];
+        f.numberofpolygons = 1;
+        tetgenio::polygon& p = f.polygonlist[0];
+        tetgenio::init(&p);
+        p.vertexlist = new int[3];
+        p.numberofvertices = 3;
+        const Triangle& t = surface.triangles[static_cast<size_t>(order.triangles[i])];
+        for (size_t k = 0; k < 3; ++k) p.vertexlist[k] = place[static_cast<size_t>(t[k])];
+    }
+    tetgenbehavior b = behaviour(quality, improve);
+    // TetGen's predicates keep global state: builds in other threads wait here.
+    static std::mutex one_at_a_time;
+    const std::scoped_lock lock(one_at_a_time);
+    const Silence silence;
+    partwheel_tetgen_srand(1);
+    tetgen_steps = 0;
+    most_tetgen_steps =
+        quality > 0 ? std::numeric_limits<uint64_t>::max() : most_steps * (surface.vertices.size() + 100);
+    tetgen_progress = &progress;
+    try {
+        tetrahedralize(&b, &in, &out);
+    } catch (int code) {
+        throw_failure(code);
+    }
+    if (out.numberoftetrahedra <= 0 || !out.tetrahedronlist || !out.neighborlist) throw_failure(2);
+    check_tetrahedra(static_cast<size_t>(out.numberoftetrahedra));
+}
+
+// Keys sorted by counting: their order, equal ones as they come, and where each value's begin in it.
+struct Counted {
+    std::vector<int32_t> order, begin;  // begin: one per value below the number of values, and the end
+
+    template <class Key>
+    Counted(size_t count, size_t values, const Key& key) : order(count), begin(values + 1, 0) {
+        for (size_t i = 0; i < count; ++i) ++begin[static_cast<size_t>(key(i)) + 1];
+        std::partial_sum(begin.begin(), begin.end(), begin.begin());
+        std::vector<int32_t> next(begin.begin(), begin.end() - 1);
+        for (size_t i = 0; i < count; ++i)
+            order[static_cast<size_t>(next[static_cast<size_t>(key(i))]++)] = static_cast<int32_t>(i);
+    }
+    std::span<const int32_t> with(int32_t value) const {
+        const auto v = static_cast<size_t>(value);
+        return std::span(order).subspan(static_cast<size_t>(begin[v]), static_cast<size_t>(begin[v + 1] - begin[v]));
+    }
+};
+
+// All of TetGen's tetrahedra, those of cavities included, sorted by their corners, positively oriented.
+TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& out) {
+    TetMesh mesh;
+    const auto points = static_cast<size_t>(out.numberofpoints), tets = static_cast<size_t>(out.numberoftetrahedra);
+    const size_t given = surface.vertices.size();
+    mesh.vertices = surface.vertices;
+    bool kept = points >= given;
+    for (size_t i = 0; i < points && kept; ++i) {
+        const REAL* p = out.pointlist + 3 * i;
+        const Point point = {p[0], p[1], p[2]};
+        if (i < given)
+            kept = point == surface.vertices[static_cast<size_t>(order.vertices[i])];
+        else
+            mesh.vertices.push_back(point);
+    }
+    if (!kept)
+        throw Error(PW_ERROR_TETRAHEDRA, "The mesher moved or merged vertices of the surface, for some are too close "
+                                         "together. Merge vertices by distance.");
+
+    struct Corner {
+        int32_t vertex, beyond;  // the neighbour opposite
+    };
+    std::vector<std::array<Corner, 4>> read(tets);
+    for (size_t i = 0; i < tets; ++i) {
+        const int* corners = out.tetrahedronlist + i * static_cast<size_t>(out.numberofcorners);
+        const int* beyond = out.neighborlist + 4 * i;
+        for (size_t k = 0; k < 4; ++k) {
+            const bool added = static_cast<size_t>(corners[k]) >= given;
+            read[i][k] = {added ? corners[k] : order.vertices[static_cast<size_t>(corners[k])], beyond[k]};
+        }
+        std::sort(read[i].begin(), read[i].end(),
+                  [](const Corner& a, const Corner& b) { return a.vertex < b.vertex; });
+    }
+    const Counted by_lowest(tets, points, [&](size_t i) { return read[i][0].vertex; });
+    std::vector<int32_t> sorted = by_lowest.order, number(tets);
+    const auto rest = [&](int32_t t) {
+        const auto& c = read[static_cast<size_t>(t)];
+        return std::array{c[1].vertex, c[2].vertex, c[3].vertex};
+    };
+    for (size_t v = 0; v < points; ++v)
+        std::sort(sorted.begin() + by_lowest.begin[v], sorted.begin() + by_lowest.begin[v + 1],
+                  [&](int32_t a, int32_t b) { return rest(a) < rest(b); });
+    for (size_t i = 0; i < tets; ++i) number[static_cast<size_t>(sorted[i])] = static_cast<int32_t>(i);
+    for (const int32_t i : sorted) {
+        std::array<Corner, 4> c = read[static_cast<size_t>(i)];
+        const auto at = [&](size_t k) { return mesh.vertices[static_cast<size_t>(c[k].vertex)]; };
+        if (orientation(at(0), at(1), at(2), at(3)) < 0) std::swap(c[2], c[3]);
+        mesh.tetrahedra.push_back({c[0].vertex, c[1].vertex, c[2].vertex, c[3].vertex});
+        const auto across = [&](size_t k) { return c[k].beyond < 0 ? -1 : number[static_cast<size_t>(c[k].beyond)]; };
+        mesh.neighbours.push_back({across(0), across(1), across(2), across(3)});
+    }
+    return mesh;
+}
+
+[[noreturn]] void throw_lost() {
+    throw Error(PW_ERROR_TETRAHEDRA,
+                "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.");
+}
+
+// A facet of a tetrahedron that is a triangle of the surface.
+struct Wall {
+    int32_t triangle = -1;
+    bool behind = false;  // the tetrahedron is on the inner side
+};
+
+class Walls {
+public:
+    Walls(const Surface& surface, const TetMesh& mesh)
+        : triangles_(surface.triangles), mesh_(mesh),
+          by_lowest_(triangles_.size(), mesh.vertices.size(), [&](size_t t) { return triangles_[t][0]; }) {}
+
+    Wall at(size_t tet, size_t opposite) const {
+        const Triangle f = facet_from_lowest(mesh_.tetrahedra[tet], opposite);
+        for (const int32_t t : by_lowest_.with(f[0])) {
+            const Triangle& wall = triangles_[static_cast<size_t>(t)];
+            if (wall[1] == f[1] && wall[2] == f[2]) return {t, true};
+            if (wall[1] == f[2] && wall[2] == f[1]) return {t, false};
+        }
+        return {};
+    }
+
+private:
+    std::span<const Triangle> triangles_;
+    const TetMesh& mesh_;
+    Counted by_lowest_;
+};
+
+// The winding number of the surface about each tetrahedron: 0 outside, one more behind each triangle.
+std::vector<int32_t> winding_numbers(const TetMesh& mesh, const std::vector<std::array<Wall, 4>>& walls,
+                                     size_t& empty_regions) {
+    constexpr int32_t unknown = std::numeric_limits<int32_t>::min();
+    const auto step = [](const Wall& wall) { return wall.triangle < 0 ? 0 : wall.behind ? 1 : -1; };
+    std::vector<int32_t> winding(mesh.tetrahedra.size(), unknown);
+
+    // Regions are flooded one by one, so that those with winding number 0 can be counted.
+    std::vector<int32_t> next_regions, region;
+    for (size_t t = 0; t < walls.size(); ++t)
+        for (size_t k = 0; k < 4; ++k)
+            if (mesh.neighbours[t][k] < 0) {
+                if (walls[t][k].triangle < 0)
+                    throw_lost();
+                winding[t] = step(walls[t][k]);
+                next_regions.push_back(static_cast<int32_t>(t));
+            }
+    std::vector<bool> flooded(mesh.tetrahedra.size(), false);
+    empty_regions = 0;
+    for (size_t i = 0; i < next_regions.size(); ++i) {
+        const int32_t seed = next_regions[i];
+        if (flooded[static_cast<size_t>(seed)]) continue;
+        if (winding[static_cast<size_t>(seed)] == 0) ++empty_regions;
+        flooded[static_cast<size_t>(seed)] = true;
+        region.assign(1, seed);
+        while (!region.empty()) {
+            const auto t = static_cast<size_t>(region.back());
+            region.pop_back();
+            for (size_t k = 0; k < 4; ++k) {
+                const int32_t n = mesh.neighbours[t][k];
+                if (n < 0) continue;
+                const auto other = static_cast<size_t>(n);
+                const int32_t expected = winding[t] - step(walls[t][k]);
+                if (winding[other] == unknown)
+                    winding[other] = expected;
+                else if (winding[other] != expected)
+                    throw_lost();
+                if (flooded[other]) continue;
+                if (walls[t][k].triangle < 0) {
+                    flooded[other] = true;
+                    region.push_back(n);
+                } else {
+                    next_regions.push_back(n);
+                }
+            }
+        }
+    }
+    return winding;
+}
+
+// Takes away the tetrahedra outside the solid, and finds the one behind each triangle.
+void keep_solid(const Surface& surface, TetMesh& mesh) {
+    std::vector<std::array<Wall, 4>> walls(mesh.tetrahedra.size());
+    const Walls finder(surface, mesh);
+    for (size_t t = 0; t < walls.size(); ++t)
+        for (size_t k = 0; k < 4; ++k) walls[t][k] = finder.at(t, k);
+    const std::vector<int32_t> winding = winding_numbers(mesh, walls, mesh.cavities);
+
+    std::vector<int32_t> number(mesh.tetrahedra.size(), -1);
+    size_t kept = 0;
+    for (size_t t = 0; t < number.size(); ++t)
+        if (winding[t] != 0) number[t] = static_cast<int32_t>(kept++);
+    if (kept == 0) throw Error(PW_ERROR_NO_VOLUME, "The surface encloses no volume. Give it some thickness.");
+
+    mesh.tet_of_triangle.assign(surface.triangles.size(), -1);
+    for (size_t t = 0; t < number.size(); ++t) {
+        if (number[t] < 0) continue;
+        for (size_t k = 0; k < 4; ++k) {
+            const int32_t triangle = walls[t][k].triangle;
+            if (triangle < 0) continue;
+            int32_t& owner = mesh.tet_of_triangle[static_cast<size_t>(triangle)];
+            if (owner < 0 || walls[t][k].behind) owner = number[t];
+        }
+    }
+    if (std::find(mesh.tet_of_triangle.begin(), mesh.tet_of_triangle.end(), -1) != mesh.tet_of_triangle.end())
+        throw_lost();
+    for (size_t t = 0; t < number.size(); ++t) {
+        if (number[t] < 0) continue;
+        const auto to = static_cast<size_t>(number[t]);
+        mesh.tetrahedra[to] = mesh.tetrahedra[t];
+        for (size_t k = 0; k < 4; ++k) {
+            const int32_t n = mesh.neighbours[t][k];
+            mesh.neighbours[to][k] = n < 0 ? -1 : number[static_cast<size_t>(n)];
+        }
+    }
+    mesh.tetrahedra.resize(kept);
+    mesh.neighbours.resize(kept);
+
+    // Points that were added in a cavity are of no use.
+    const auto given = static_cast<int32_t>(surface.vertices.size());
+    std::vector<int32_t> place(mesh.vertices.size(), -1);
+    for (const Tetrahedron& t : mesh.tetrahedra)
+        for (int32_t v : t) place[static_cast<size_t>(v)] = v;
+    int32_t next = given;
+    for (size_t v = surface.vertices.size(); v < place.size(); ++v) {
+        if (place[v] < 0) continue;
+        mesh.vertices[static_cast<size_t>(next)] = mesh.vertices[v];
+        place[v] = next++;
+    }
+    mesh.vertices.resize(static_cast<size_t>(next));
+    for (Tetrahedron& t : mesh.tetrahedra)
+        for (int32_t& v : t) v = place[static_cast<size_t>(v)];
+}
+
+}  // namespace
+
+TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress) {
+    // Now and then TetGen fails, or leaves a point that it had to add on the surface. That depends on the order of its
+    // input: another order mostly helps, at the latest the third. What comes to no end does so mostly when improving.
+    constexpr uint64_t attempts = 4;
+    bool improve = true;
+    for (uint64_t attempt = 0;; ++attempt) {
+        try {
+            const InputOrder order(surface, attempt);
+            tetgenio out;
+            run_tetgen(surface, order, quality, improve, out, progress);
+            progress.advance(0.9);
+            TetMesh mesh = read(surface, order, out);
+            keep_solid(surface, mesh);
+            progress.advance(1);
+            return mesh;
+        } catch (const Endless&) {
+            if (attempt + 1 == attempts) throw;
+            improve = false;
+        } catch (const Error& e) {
+            if (e.status() != PW_ERROR_TETRAHEDRA || attempt + 1 == attempts) throw;
+        }
+        progress.advance(0);
+    }
+}
+
+}  // namespace partwheel

@@ -1,0 +1,19 @@
+// The closed surface filled with tetrahedra by TetGen; no vertex moved, none added on the surface.
+#pragma once
+
+#include "surface/surface.h"
+
+namespace partwheel {
+
+struct TetMesh {
+    std::vector<Point> vertices;  // the surface's, in its order, then points that TetGen added inside
+    std::vector<Tetrahedron> tetrahedra;  // sorted by their corners, of which the lowest comes first
+    std::vector<std::array<int32_t, 4>> neighbours;  // across the facet opposite each corner; -1: none
+    std::vector<int32_t> tet_of_triangle;            // behind each triangle of the surface
+    size_t cavities = 0;
+};
+
+// quality: 0, or the largest ratio of circumradius to shortest edge (see pw_build_options).
+TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress);
+
+}  // namespace partwheel

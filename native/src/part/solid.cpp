@@ -1,0 +1,452 @@
+// Tetrahedra -> the closed, manifold surface around them: the source's own triangles, and caps where the rest was.
+#include "part/solid.h"
+
+#include "base/error.h"
+#include "base/numbered.h"
+#include "part/border.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+#include <tuple>
+
+namespace partwheel {
+
+namespace {
+
+// Areas of caps are whole numbers, of so many to the square of the size of what changed sides; none counts for more than
+// the largest.
+constexpr double cap_steps = 1 << 24;
+constexpr double largest_cap = static_cast<double>(int64_t{1} << 36);
+
+[[noreturn]] void refuse() {
+    throw Error(PW_ERROR_DATA,
+                "This is not a hierarchy that can be used: its tetrahedra don't fit together. Build it again.");
+}
+
+int32_t corner_of(const Tetrahedron& tet, int32_t vertex) {
+    for (int32_t k = 0; k < 4; ++k)
+        if (tet[at(k)] == vertex) return k;
+    refuse();
+}
+
+std::vector<std::array<int32_t, 4>> neighbours_of(std::span<const Tetrahedron> tetrahedra) {
+    struct Side {
+        int32_t middle, high, tet, corner;
+    };
+    // By the lowest vertex of the facet: then there are few to compare.
+    int32_t vertices = 0;
+    for (const Tetrahedron& t : tetrahedra) vertices = std::max({vertices, t[0] + 1, t[1] + 1, t[2] + 1, t[3] + 1});
+    std::vector<size_t> begin(at(vertices) + 2, 0);
+    const auto sorted = [&](size_t tet, size_t corner) {
+        Triangle v = facet(tetrahedra[tet], corner);
+        std::sort(v.begin(), v.end());
+        return v;
+    };
+    for (size_t t = 0; t < tetrahedra.size(); ++t)
+        for (size_t c = 0; c < 4; ++c) {
+            const Triangle v = sorted(t, c);
+            if (v[0] == v[1] || v[1] == v[2]) refuse();
+            ++begin[at(v[0]) + 2];
+        }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<Side> sides(4 * tetrahedra.size());
+    for (size_t t = 0; t < tetrahedra.size(); ++t)
+        for (size_t c = 0; c < 4; ++c) {
+            const Triangle v = sorted(t, c);
+            sides[begin[at(v[0]) + 1]++] = {v[1], v[2], static_cast<int32_t>(t), static_cast<int32_t>(c)};
+        }
+
+    std::vector<std::array<int32_t, 4>> neighbours(tetrahedra.size(), {-1, -1, -1, -1});
+    const auto same = [](const Side& a, const Side& b) { return a.middle == b.middle && a.high == b.high; };
+    for (size_t v = 0; v < at(vertices); ++v) {
+        const auto first = sides.begin() + static_cast<std::ptrdiff_t>(begin[v]);
+        const auto last = sides.begin() + static_cast<std::ptrdiff_t>(begin[v + 1]);
+        std::sort(first, last, [](const Side& a, const Side& b) {
+            return std::tie(a.middle, a.high, a.tet) < std::tie(b.middle, b.high, b.tet);
+        });
+        for (auto s = first; s != last; ++s) {
+            if (s + 1 == last || !same(s[0], s[1])) continue;
+            if (s[0].tet == s[1].tet || (s + 2 != last && same(s[1], s[2]))) refuse();
+            neighbours[at(s[0].tet)][at(s[0].corner)] = s[1].tet;
+            neighbours[at(s[1].tet)][at(s[1].corner)] = s[0].tet;
+            ++s;
+        }
+    }
+    return neighbours;
+}
+
+// The corners that are joined with each other, as one number each: union-find.
+class Joined {
+public:
+    explicit Joined(size_t size) : up_(size) { std::iota(up_.begin(), up_.end(), 0); }
+    size_t find(size_t i) {
+        while (at(up_[i]) != i) i = at(up_[i] = up_[at(up_[i])]);
+        return i;
+    }
+    void join(size_t a, size_t b) {
+        a = find(a), b = find(b);
+        up_[std::max(a, b)] = static_cast<int32_t>(std::min(a, b));
+    }
+
+private:
+    std::vector<int32_t> up_;
+};
+
+}  // namespace
+
+Facets::Facets(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> outer_faces,
+               std::span<const int32_t> leaf, bool whole_faces)
+    : neighbours_(neighbours_of(tetrahedra)), faces_(tetrahedra.size(), {-1, -1, -1, -1}), home_(tetrahedra.size()) {
+    auto next = outer_faces.begin();
+    for (size_t t = 0; t < tetrahedra.size(); ++t) {
+        int32_t only = -1;  // the face at it; -2: several
+        for (size_t c = 0; c < 4; ++c) {
+            if (neighbours_[t][c] >= 0) continue;
+            if (next == outer_faces.end()) refuse();
+            const int32_t face = faces_[t][c] = *next++;
+            only = only == -1 || only == face ? face : -2;
+        }
+        home_[t] = whole_faces && only >= 0 ? leaf[at(only)] : static_cast<int32_t>(t);
+        if (home_[t] != static_cast<int32_t>(t)) moved_.emplace_back(home_[t], static_cast<int32_t>(t));
+    }
+    if (next != outer_faces.end()) refuse();
+    std::sort(moved_.begin(), moved_.end());
+}
+
+std::vector<int32_t> Facets::at_home(size_t first, size_t last) const {
+    std::vector<int32_t> tets;
+    if (first > last) {
+        for (size_t t = 0; t < home_.size(); ++t)
+            if (at(home_[t]) < last || at(home_[t]) >= first) tets.push_back(static_cast<int32_t>(t));
+        return tets;
+    }
+    for (size_t t = first; t < last; ++t)
+        if (at(home_[t]) >= first && at(home_[t]) < last) tets.push_back(static_cast<int32_t>(t));
+    const auto from = std::lower_bound(moved_.begin(), moved_.end(), std::pair(static_cast<int32_t>(first), -1));
+    for (auto m = from; m != moved_.end() && at(m->first) < last; ++m)
+        if (at(m->second) < first || at(m->second) >= last) tets.push_back(m->second);
+    return tets;
+}
+
+std::vector<int32_t> Facets::pieces(std::span<const uint8_t> in) const {
+    std::vector<int32_t> piece(in.size(), -1), open;
+    int32_t count = 0;
+    for (size_t start = 0; start < in.size(); ++start) {
+        if (piece[start] >= 0) continue;
+        piece[start] = count++;
+        open.assign(1, static_cast<int32_t>(start));
+        while (!open.empty()) {
+            const size_t t = at(open.back());
+            open.pop_back();
+            for (int32_t n : neighbours_[t]) {
+                if (n < 0 || in[at(n)] != in[t] || piece[at(n)] >= 0) continue;
+                piece[at(n)] = piece[t];
+                open.push_back(n);
+            }
+        }
+    }
+    return piece;
+}
+
+void Facets::drop_splinters(std::span<const uint8_t> before, std::vector<uint8_t>& in) const {
+    const std::vector<int32_t> old = pieces(before), now = pieces(in);
+    // What has most tetrahedra in common with a piece that there was goes on as that piece.
+    std::map<std::pair<int32_t, int32_t>, size_t> common;
+    for (size_t t = 0; t < in.size(); ++t)
+        if (in[t] == before[t]) ++common[{old[t], now[t]}];
+    std::map<int32_t, std::pair<size_t, int32_t>> most;
+    for (const auto& [pair, count] : common)
+        if (count > most[pair.first].first) most[pair.first] = {count, pair.second};
+    std::set<int32_t> kept;
+    for (const auto& [piece, best] : most) kept.insert(best.second);
+    for (size_t t = 0; t < in.size(); ++t)
+        if (!kept.contains(now[t])) in[t] = !in[t];
+}
+
+std::vector<int32_t> Facets::with_faces(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
+                                        size_t first, size_t last, std::span<const uint8_t> inside) const {
+    const bool rest = first > last;
+    if (rest) std::swap(first, last);
+    std::vector<uint8_t> in(tetrahedra.size(), 0);
+    for (int32_t t : at_home(first, last)) in[at(t)] = 1;
+    const std::vector<uint8_t> before = in;
+    const auto area = [&](size_t t, size_t corner) {
+        const Triangle f = facet(tetrahedra[t], corner);
+        return partwheel::area(vertices[at(f[0])], vertices[at(f[1])], vertices[at(f[2])]);
+    };
+
+    std::vector<uint8_t> within(tetrahedra.size(), 1);
+    Point low{}, high{};  // a box around those that change sides
+    bool changed = false;
+    for (size_t t = 0; t < tetrahedra.size(); ++t) {
+        double more = 0;  // on the surface: area of the part's faces, less that of others
+        for (size_t c = 0; c < 4; ++c) {
+            if (neighbours_[t][c] >= 0) continue;
+            within[t] = 0;
+            const int32_t face = faces_[t][c];
+            if (face >= 0) more += inside[at(face)] ? area(t, c) : -area(t, c);
+        }
+        const uint8_t wanted = more > 0 ? 1 : more < 0 ? 0 : in[t];
+        if (wanted == in[t]) continue;
+        in[t] = wanted;
+        for (int32_t v : tetrahedra[t])
+            for (size_t i = 0; i < 3; ++i) {
+                const double x = vertices[at(v)][i];
+                low[i] = changed ? std::min(low[i], x) : x;
+                high[i] = changed ? std::max(high[i], x) : x;
+                changed = true;
+            }
+    }
+    if (const double size = length(high - low); changed && size > 0) {
+        // Edges of the surface, by the faces of which they are: of the part's, and of all.
+        struct Edge {
+            std::pair<int32_t, int32_t> ends;
+            int in, all;
+        };
+        std::vector<Edge> edges;
+        const auto ends = [&](size_t t, size_t corner, size_t k) -> std::pair<int32_t, int32_t> {
+            const Triangle f = facet(tetrahedra[t], corner);
+            return std::minmax(f[k], f[(k + 1) % 3]);
+        };
+        BorderBand band;
+        std::vector<int32_t> number(tetrahedra.size(), -1);
+        for (size_t t = 0; t < tetrahedra.size(); ++t) {
+            const auto near = [&](int32_t v) {
+                for (size_t i = 0; i < 3; ++i)
+                    if (vertices[at(v)][i] < low[i] - size || vertices[at(v)][i] > high[i] + size) return false;
+                return true;
+            };
+            if (std::ranges::none_of(tetrahedra[t], near)) continue;
+            if (within[t]) {
+                number[t] = static_cast<int32_t>(band.faces.size());
+                band.faces.push_back(static_cast<int32_t>(t));
+                continue;
+            }
+            for (size_t c = 0; c < 4; ++c)
+                for (size_t k = 0; neighbours_[t][c] < 0 && k < 3; ++k) edges.push_back({ends(t, c, k), in[t], 1});
+        }
+        std::ranges::sort(edges, {}, &Edge::ends);
+        size_t count = 0;
+        for (const Edge& edge : edges) {
+            if (count > 0 && edges[count - 1].ends == edge.ends)
+                edges[count - 1].in += edge.in, ++edges[count - 1].all;
+            else
+                edges[count++] = edge;
+        }
+        edges.resize(count);
+        // The facets about an edge between two faces of one side join these: to go through there costs so much more.
+        const auto joins = [&](size_t t, size_t corner) {
+            double sum = 0;
+            for (size_t k = 0; k < 3; ++k) {
+                const auto found = std::ranges::lower_bound(edges, ends(t, corner, k), {}, &Edge::ends);
+                if (found == edges.end() || found->ends != ends(t, corner, k)) continue;
+                if (found->all < 2 || (found->in > 0 && found->in < found->all)) continue;
+                const Point along = vertices[at(found->ends.first)] - vertices[at(found->ends.second)];
+                sum += length(along);
+            }
+            return sum / size;
+        };
+        band.to_part.assign(band.faces.size(), 0);
+        band.to_rest.assign(band.faces.size(), 0);
+        for (size_t n = 0; n < band.faces.size(); ++n) {
+            const size_t t = at(band.faces[n]);
+            for (size_t c = 0; c < 4; ++c) {
+                const size_t other = at(neighbours_[t][c]);
+                if (number[other] >= 0 && other < t) continue;
+                const auto cost =
+                    1 + static_cast<int64_t>(std::min((area(t, c) / size / size + joins(t, c)) * cap_steps,
+                                                             largest_cap) + 0.5);
+                if (number[other] >= 0)
+                    band.edges.push_back({static_cast<int32_t>(n), number[other], cost});
+                else
+                    (in[other] ? band.to_part : band.to_rest)[n] += cost;
+            }
+        }
+        const std::vector<uint8_t> side = minimum_cut(band);
+        for (size_t n = 0; n < band.faces.size(); ++n) in[at(band.faces[n])] = side[n];
+        drop_splinters(before, in);
+
+        // Where tetrahedra are large beside what moved, the part's own may fit the faces better.
+        const auto wrong = [&](std::span<const uint8_t> sides) {
+            double sum = 0;
+            for (size_t t = 0; t < tetrahedra.size(); ++t)
+                for (size_t c = 0; !within[t] && c < 4; ++c)
+                    if (neighbours_[t][c] < 0 && faces_[t][c] >= 0 && !inside[at(faces_[t][c])] != !sides[t])
+                        sum += area(t, c);
+            return sum;
+        };
+        const auto both = [&] { return std::ranges::find(in, 0) != in.end() && std::ranges::find(in, 1) != in.end(); };
+        if (!both() || wrong(in) >= wrong(before)) in = before;
+    }
+
+    std::vector<int32_t> tets;
+    for (size_t t = 0; t < tetrahedra.size(); ++t)
+        if ((in[t] != 0) != rest) tets.push_back(static_cast<int32_t>(t));
+    return tets;
+}
+
+// Goes from a facet of the surface through the solid, around the edge that lies opposite another corner of its
+// tetrahedron in the facet, to the facet of the surface at the other end.
+Facets::Facet Facets::next_around(std::span<const Tetrahedron> tetrahedra, std::span<const uint8_t> inside, Facet facet,
+                                  int32_t edge) const {
+    int32_t t = facet.tet, kept = facet.corner, out = edge;
+    for (size_t steps = 0; steps <= tetrahedra.size(); ++steps) {
+        const int32_t n = neighbours_[at(t)][at(out)];
+        if (n < 0 || !inside[at(n)]) return {t, out};
+        const int32_t leave = corner_of(tetrahedra[at(n)], tetrahedra[at(t)][at(kept)]);
+        const auto& back = neighbours_[at(n)];
+        kept = static_cast<int32_t>(std::find(back.begin(), back.end(), t) - back.begin());
+        t = n;
+        out = leave;
+    }
+    refuse();
+}
+
+TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,
+                           std::span<const int32_t> tets,
+                           std::span<const std::array<int32_t, 2>> middles) const {
+    std::vector<uint8_t> inside(tetrahedra.size(), 0);
+    if (tets.empty())
+        throw Error(PW_ERROR_EMPTY, "This part is no solid: it has no face of the surface. Take a larger one.");
+    for (int32_t t : tets) inside[at(t)] = 1;
+
+    std::vector<Facet> surface;
+    std::vector<std::array<int32_t, 4>> number(tetrahedra.size());  // of each facet in surface
+    for (int32_t t : tets)
+        for (int32_t c = 0; c < 4; ++c) {
+            const int32_t n = neighbours_[at(t)][at(c)];
+            if (n >= 0 && inside[at(n)]) continue;
+            number[at(t)][at(c)] = static_cast<int32_t>(surface.size());
+            surface.push_back({t, c});
+        }
+
+    // Which triangle is across each edge; edge k of a triangle goes from its corner k to the next. Corners at a vertex
+    // that are joined by steps across edges are an umbrella, and each umbrella gets a vertex of its own.
+    const auto vertex = [&](size_t f, size_t k) {
+        const Facet& facet = surface[f];
+        return tetrahedra[at(facet.tet)][facet_corners[at(facet.corner)][k % 3]];
+    };
+    constexpr int32_t unknown = -1;
+    (void)numbered(3 * surface.size());
+    std::vector<std::array<int32_t, 3>> across(surface.size(), {unknown, unknown, unknown});  // 3 * triangle + edge
+    Joined umbrellas(3 * surface.size());
+    for (size_t f = 0; f < surface.size(); ++f)
+        for (size_t k = 0; k < 3; ++k) {
+            if (across[f][k] != unknown) continue;  // seen from the other side
+            const Facet& facet = surface[f];
+            const size_t edge = facet_corners[at(facet.corner)][(k + 2) % 3];
+            const Facet other = next_around(tetrahedra, inside, facet, static_cast<int32_t>(edge));
+            const size_t g = at(number[at(other.tet)][at(other.corner)]);
+            size_t j = 0;
+            while (j < 3 && vertex(g, j) != vertex(f, k + 1)) ++j;
+            if (j == 3 || vertex(g, j + 1) != vertex(f, k) || across[g][j] != unknown) refuse();
+            across[f][k] = static_cast<int32_t>(3 * g + j);
+            across[g][j] = static_cast<int32_t>(3 * f + k);
+            umbrellas.join(3 * f + k, 3 * g + (j + 1) % 3);
+            umbrellas.join(3 * f + (k + 1) % 3, 3 * g + j);
+        }
+
+    TriangleMesh mesh;
+    const auto add_vertex = [&](int32_t a, int32_t b) {
+        Point p = vertices[at(a)];
+        if (a != b)
+            for (size_t i = 0; i < 3; ++i) p[i] = p[i] / 2 + vertices[at(b)][i] / 2;
+        mesh.vertices.push_back(p);
+        mesh.ends.push_back({a, b});
+        return static_cast<int32_t>(mesh.vertices.size() - 1);
+    };
+    std::vector<int32_t> of_corner(3 * surface.size(), -1);
+    for (size_t i = 0; i < of_corner.size(); ++i) {
+        int32_t& of_umbrella = of_corner[umbrellas.find(i)];
+        if (of_umbrella < 0) of_umbrella = add_vertex(vertex(i / 3, i % 3), vertex(i / 3, i % 3));
+        of_corner[i] = of_umbrella;
+    }
+
+    // Tetrahedra may touch along an edge and yet be joined about both of its ends: then several pairs of triangles
+    // share two vertices. The first pair, the one with most of the source's own triangles, keeps the edge; each other
+    // pair gets a vertex in its middle. Where the caller wants one, every pair gets it.
+    std::set<std::pair<int32_t, int32_t>> wanted;
+    for (const auto& [a, b] : middles) wanted.insert(std::minmax(a, b));
+    struct Pair {
+        int32_t high, edge;
+    };
+    const auto back_of = [&](size_t edge) { return at(across[edge / 3][edge % 3]); };
+    const auto ends_of = [&](size_t edge) -> std::pair<int32_t, int32_t> {
+        return std::minmax(of_corner[edge], of_corner[edge % 3 == 2 ? edge - 2 : edge + 1]);
+    };
+    std::vector<size_t> begin(mesh.vertices.size() + 2, 0);  // of the pairs by their lower vertex: each has few
+    for (size_t edge = 0; edge < of_corner.size(); ++edge)
+        if (edge <= back_of(edge)) ++begin[at(ends_of(edge).first) + 2];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<Pair> pairs(begin.back());
+    for (size_t edge = 0; edge < of_corner.size(); ++edge) {
+        if (edge > back_of(edge)) continue;
+        const auto [low, high] = ends_of(edge);
+        pairs[begin[at(low) + 1]++] = {high, static_cast<int32_t>(edge)};
+    }
+    const auto own = [&](int32_t edge) {  // of the two triangles at it, how many are the source's
+        const auto outer = [&](size_t e) {
+            const Facet& facet = surface[e / 3];
+            return neighbours_[at(facet.tet)][at(facet.corner)] < 0 ? 1 : 0;
+        };
+        return outer(at(edge)) + outer(back_of(at(edge)));
+    };
+    std::vector<std::array<int32_t, 3>> middle(surface.size(), {-1, -1, -1});
+    for (size_t low = 0; low + 2 < begin.size(); ++low) {
+        const auto here = std::span(pairs).subspan(begin[low], begin[low + 1] - begin[low]);
+        std::ranges::sort(here, [&](const Pair& a, const Pair& b) {
+            if (a.high != b.high) return a.high < b.high;
+            return std::pair(-own(a.edge), a.edge) < std::pair(-own(b.edge), b.edge);
+        });
+        for (size_t i = 0; i < here.size(); ++i) {
+            const size_t edge = at(here[i].edge), back = back_of(edge);
+            const bool again = i > 0 && here[i].high == here[i - 1].high;
+            if (!again && (wanted.empty() || !wanted.contains(std::minmax(vertex(edge / 3, edge % 3),
+                                                                          vertex(edge / 3, edge % 3 + 1)))))
+                continue;
+            const int32_t m = add_vertex(vertex(edge / 3, edge % 3), vertex(edge / 3, edge % 3 + 1));
+            middle[edge / 3][edge % 3] = middle[back / 3][back % 3] = m;
+        }
+    }
+
+    for (size_t f = 0; f < surface.size(); ++f) {
+        const Facet& facet = surface[f];
+        const auto add = [&](int32_t a, int32_t b, int32_t c) {
+            mesh.triangles.push_back({a, b, c});
+            mesh.faces.push_back(faces_[at(facet.tet)][at(facet.corner)]);
+            mesh.beyond.push_back(neighbours_[at(facet.tet)][at(facet.corner)]);
+        };
+        // Turned so that edges without a middle come last.
+        size_t turn = 0;
+        const auto split = [&](size_t k) { return middle[f][k % 3] >= 0; };
+        const int splits = split(0) + split(1) + split(2);
+        while (splits > 0 && (!split(turn) || (splits == 2 && !split(turn + 1)))) ++turn;
+        const int32_t a = of_corner[3 * f + turn % 3], b = of_corner[3 * f + (turn + 1) % 3],
+                      c = of_corner[3 * f + (turn + 2) % 3];
+        const int32_t ab = middle[f][turn % 3], bc = middle[f][(turn + 1) % 3], ca = middle[f][(turn + 2) % 3];
+        if (splits == 0) {
+            add(a, b, c);
+        } else if (splits == 1) {
+            add(a, ab, c);
+            add(ab, b, c);
+        } else {
+            add(ab, b, bc);
+            if (splits == 2 && vertex(f, turn) < vertex(f, turn + 2)) {  // the same seen from both sides
+                add(a, ab, bc);
+                add(a, bc, c);
+            } else if (splits == 2) {
+                add(a, ab, c);
+                add(ab, bc, c);
+            } else {
+                add(a, ab, ca);
+                add(bc, c, ca);
+                add(ab, bc, ca);
+            }
+        }
+    }
+    return mesh;
+}
+
+}  // namespace partwheel

@@ -1,0 +1,30 @@
+// Each source face goes with the triangles of the surface used that are nearest to it.
+#pragma once
+
+#include "surface/surface.h"
+
+namespace partwheel {
+
+// A source triangle is sampled in the middle of pieces that are at most this part of the bounding box's diagonal long
+// and wide; larger ones where there would be so many more pieces than triangles.
+inline constexpr double sample_spacing = 1.0 / 100, most_samples = 1e6;
+
+// Less than this, relative to the diagonal, is not looked at more closely.
+inline constexpr double near_enough = 1.0 / 200;
+
+// What lies further from the surface used than this, relative to the diagonal, is hidden: in a gap that a wrap did not
+// enter, or inside the solid.
+inline constexpr double hidden_beyond = 1.0 / 100;
+
+struct Attached {
+    double outside = 0;  // how far the source reaches out of the solid, relative to the diagonal; 0 if near enough
+    double hidden = 0;   // the share of the source's area that is
+};
+
+// Gives `surface`, which was made from `source`, its pieces, its deviation and its number of source faces.
+Attached attach(const Surface& source, Surface& surface, Progress& progress);
+
+// "0.12 %"
+std::string percent(double share);
+
+}  // namespace partwheel

@@ -1,0 +1,109 @@
+// The gentlest repair: some vertices set apart, or all smoothed.
+#include "surface/prepare/displaced.h"
+
+#include "base/error.h"
+#include "surface/attach.h"
+#include "surface/prepare/rough.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace partwheel {
+
+namespace {
+
+// Vertices at one place are moved by this share of their shortest edge.
+constexpr double nudge = 1e-3;
+
+// Passes of smoothing until a surface doesn't cross itself, one after the other, as multiples of the noise.
+constexpr double uncrossing_passes[] = {45, 70, 110};
+
+// No vertex is moved further than this, relative to the diagonal: enough for noise of a deviate of 1 %, and what would
+// need more is better wrapped.
+constexpr double farthest_moved = 1.0 / 20;
+
+// The vertices that are at the place of another.
+std::vector<size_t> at_one_place(const std::vector<Point>& vertices) {
+    std::vector<size_t> order(vertices.size()), found;
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return vertices[a] < vertices[b]; });
+    for (size_t k = 0; k < order.size(); ++k) {
+        const auto same = [&](size_t other) { return vertices[order[k]] == vertices[order[other]]; };
+        if ((k > 0 && same(k - 1)) || (k + 1 < order.size() && same(k + 1))) found.push_back(order[k]);
+    }
+    return found;
+}
+
+// Those vertices moved against their normals.
+std::vector<Point> set_apart(const Surface& source, const std::vector<size_t>& touching) {
+    std::vector<Point> normal(source.vertices.size(), Point{}), result = source.vertices;
+    std::vector<double> shortest(source.vertices.size(), HUGE_VAL);
+    for (const Triangle& t : source.triangles) {
+        const auto at = [&](size_t k) -> const Point& { return source.vertices[static_cast<size_t>(t[k % 3])]; };
+        const Point n = cross(at(1) - at(0), at(2) - at(0));
+        for (size_t k = 0; k < 3; ++k) {
+            const auto v = static_cast<size_t>(t[k]);
+            normal[v] = normal[v] + n;
+            shortest[v] = std::min({shortest[v], length(at(k + 1) - at(k)), length(at(k + 2) - at(k))});
+        }
+    }
+    for (const size_t v : touching) {
+        const double size = length(normal[v]);
+        for (size_t i = 0; i < 3 && size > 0; ++i) result[v][i] -= nudge * shortest[v] * normal[v][i] / size;
+    }
+    return result;
+}
+
+enum class Outcome { sound, crosses, fails };
+
+Outcome check(const Surface& surface, Progress& progress) {
+    try {
+        check_surface(surface, progress);
+        return Outcome::sound;
+    } catch (const Error& error) {
+        if (error.status() == PW_ERROR_CANCELLED) throw;
+        return error.status() == PW_ERROR_SELF_INTERSECTION ? Outcome::crosses : Outcome::fails;
+    }
+}
+
+}  // namespace
+
+std::optional<Surface> displaced(const Surface& source, Progress& progress) {
+    Surface surface = source;
+    Outcome outcome = Outcome::crosses;
+    const auto attempt = [&](std::vector<Point> vertices) {
+        surface.vertices = std::move(vertices);
+        return outcome = check(surface, progress);
+    };
+    std::string account;
+    const std::vector<size_t> touching = at_one_place(source.vertices);
+    if (!touching.empty() && attempt(set_apart(source, touching)) == Outcome::sound)
+        account = "Repaired: " + std::to_string(touching.size()) + " touching vertices set apart.";
+    const double noise = outcome == Outcome::crosses ? roughness(source.vertices, source.triangles) : 0;
+    for (const double passes : uncrossing_passes)
+        if (noise > 0 && outcome == Outcome::crosses &&
+            attempt(smoothed(source.vertices, source.triangles, passes * noise)) == Outcome::sound)
+            account = "Repaired: the surface is so rough that it passes through itself, and was smoothed.";
+    if (outcome != Outcome::sound) return {};
+
+    double farthest = 0;
+    Point high{};  // the lower corner is the origin
+    for (size_t v = 0; v < source.vertices.size(); ++v) {
+        const double way = length(surface.vertices[v] - source.vertices[v]);
+        if (way > 0) surface.source_vertex[v] = -1;
+        farthest = std::max(farthest, way);
+        for (size_t i = 0; i < 3; ++i) high[i] = std::max(high[i], source.vertices[v][i]);
+    }
+    surface.deviation = farthest / length(high);
+    if (surface.deviation > farthest_moved) return {};
+    surface.rung = PW_RUNG_REPAIRED;
+    surface.account =
+        account + " The surface used is at most " + percent(surface.deviation) + " of the model's size away.";
+    return surface;
+}
+
+}  // namespace partwheel

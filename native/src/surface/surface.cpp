@@ -1,0 +1,410 @@
+// A surface put in a canonical order, and checked.
+#include "surface/surface.h"
+
+#include "base/predicates.h"
+
+#include <CGAL/Box_intersection_d/Box_with_info_d.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/box_intersection_d.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// So that volumes neither overflow nor vanish.
+constexpr double largest_coordinate = 1e100;
+constexpr double smallest_model = 1e-80;
+
+// A working coordinate that is less counts as 0: the predicates are exact as long as a product of three differences can
+// have all its digits.
+constexpr double least_working = 0x1p-280;
+
+// The longest side of a model's bounding box is this part of the grid's that its vertices are sorted by: no round number,
+// so that no cell ends where models tend to have vertices, which rounding would then put on either side.
+constexpr double part_of_grid = 0.7390851332151607;
+
+std::string counted(size_t n, const char* one, const char* many) {
+    return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+void check_all_faces_used(const MeshView& mesh) {
+    if (!mesh.faces) return;
+    std::vector<bool> used(mesh.face_count, false);
+    for (size_t t = 0; t < mesh.triangle_count; ++t) used[at(mesh.faces[t])] = true;
+    const auto unused = std::find(used.begin(), used.end(), false);
+    if (unused != used.end())
+        throw Error(PW_ERROR_INDEX, "Face " + std::to_string(unused - used.begin()) +
+                                        " has no triangle. The mesh data are damaged.");
+}
+
+// How many things are wrong in one way, and the lowest source face that has it.
+struct Finding {
+    size_t count = 0;
+    int32_t face = std::numeric_limits<int32_t>::max();
+
+    void add(int32_t at) {
+        ++count;
+        face = std::min(face, at);
+    }
+    std::string where() const { return (count == 1 ? "at face " : "the first at face ") + std::to_string(face); }
+};
+
+void check_degenerate(const Surface& surface) {
+    Finding flat;
+    for (size_t t = 0; t < surface.triangles.size(); ++t) {
+        const Triangle& tri = surface.triangles[t];
+        const auto at = [&](size_t k) { return surface.vertices[static_cast<size_t>(tri[k])]; };
+        if (collinear(at(0), at(1), at(2))) flat.add(surface.pieces[t].face);
+    }
+    if (flat.count)
+        throw Error(PW_ERROR_DEGENERATE, counted(flat.count, "triangle has", "triangles have") + " no area, " +
+                                             flat.where() + ". Merge vertices by distance or dissolve degenerate "
+                                                            "geometry.");
+}
+
+struct HalfEdge {
+    uint64_t key;  // of the undirected edge
+    uint32_t half;  // 3 * triangle + k: from corner k to corner k + 1
+    bool forward;   // from the lower to the higher vertex
+};
+
+// Closed, manifold, oriented: every edge has two triangles that run through it in opposite directions, and the
+// triangles of every vertex are one fan.
+void check_manifold(const Surface& surface) {
+    const size_t count = surface.triangles.size();
+    std::vector<HalfEdge> edges;
+    edges.reserve(3 * count);
+    for (size_t t = 0; t < count; ++t)
+        for (size_t k = 0; k < 3; ++k) {
+            const int32_t from = surface.triangles[t][k], to = surface.triangles[t][(k + 1) % 3];
+            const auto [low, high] = std::minmax({static_cast<uint32_t>(from), static_cast<uint32_t>(to)});
+            edges.push_back({uint64_t{low} << 32 | high, static_cast<uint32_t>(3 * t + k), from < to});
+        }
+    std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
+        return std::pair(a.key, a.half) < std::pair(b.key, b.half);
+    });
+
+    Finding open, crowded, turned;
+    std::vector<uint32_t> twin(3 * count);
+    for (size_t i = 0; i < edges.size();) {
+        size_t end = i + 1;
+        while (end < edges.size() && edges[end].key == edges[i].key) ++end;
+        const int32_t face = surface.pieces[edges[i].half / 3].face;
+        if (end - i == 1)
+            open.add(face);
+        else if (end - i > 2)
+            crowded.add(face);
+        else if (edges[i].forward == edges[i + 1].forward)
+            turned.add(face);
+        else {
+            twin[edges[i].half] = edges[i + 1].half;
+            twin[edges[i + 1].half] = edges[i].half;
+        }
+        i = end;
+    }
+    if (open.count)
+        throw Error(PW_ERROR_OPEN, "The surface is open: " +
+                                       counted(open.count, "edge has a face", "edges have a face") +
+                                       " on one side only, " + open.where() +
+                                       ". Fill the holes, and merge vertices by distance if the faces only seem "
+                                       "joined.");
+    if (crowded.count)
+        throw Error(PW_ERROR_NON_MANIFOLD, counted(crowded.count, "edge joins", "edges join") +
+                                               " more than two faces, " + crowded.where() +
+                                               ". Remove inner faces, so that each edge joins exactly two.");
+    if (turned.count)
+        throw Error(PW_ERROR_ORIENTATION, counted(turned.count, "edge joins faces", "edges join faces") +
+                                              " that look in opposite directions, " + turned.where() +
+                                              ". Recalculate the normals to the outside.");
+
+    Finding pinched;
+    std::vector<bool> visited(3 * count, false), has_fan(surface.vertices.size(), false);
+    for (uint32_t start = 0; start < 3 * count; ++start) {
+        if (visited[start]) continue;
+        for (uint32_t h = start; !visited[h]; h = twin[h / 3 * 3 + (h + 2) % 3]) visited[h] = true;
+        const auto v = static_cast<size_t>(surface.triangles[start / 3][start % 3]);
+        if (has_fan[v]) pinched.add(surface.pieces[start / 3].face);
+        has_fan[v] = true;
+    }
+    if (pinched.count)
+        throw Error(PW_ERROR_NON_MANIFOLD, "Parts of the surface touch in " +
+                                               counted(pinched.count, "single vertex, ", "single vertices, ") +
+                                               pinched.where() + ". Split or merge them there.");
+}
+
+// Whether two triangles surely have nothing in common but the corners that they share: there is a plane that holds some
+// of their corners, with all others of one strictly on one side of it and those of the other on the other side. Such
+// planes are those of the triangles, those of an edge of one and a corner of the other, and upright ones on the edges.
+// Triangles that only touch, or that cross, have none.
+bool surely_apart(const Surface& surface, const Triangle& t, const Triangle& u) {
+    const auto at = [&](int32_t v) -> const Point& { return surface.vertices[static_cast<size_t>(v)]; };
+    if (std::is_permutation(t.begin(), t.end(), u.begin())) return false;
+    constexpr int32_t above = -1;  // stands for a point beside the plane of the edge's triangle
+    const auto separated_by = [&](int32_t a, int32_t b, int32_t c, const Point& third) {
+        int side = 0;  // of t's corners
+        const auto beyond = [&](const Triangle& triangle, int sign) {
+            for (const int32_t v : triangle) {
+                if (v == a || v == b || v == c) continue;
+                const int here = sign * orientation(at(a), at(b), third, at(v));
+                if (here == 0 || here == -side) return false;
+                side = here;
+            }
+            return true;
+        };
+        return beyond(t, 1) && beyond(u, -1);
+    };
+    for (const Triangle* plane : {&t, &u})
+        if (separated_by((*plane)[0], (*plane)[1], (*plane)[2], at((*plane)[2]))) return true;
+    for (const Triangle* edges : {&t, &u}) {
+        const Triangle& e = *edges;
+        const Point normal = cross(at(e[1]) - at(e[0]), at(e[2]) - at(e[0]));
+        size_t steep = 0;
+        for (size_t k = 1; k < 3; ++k) steep = std::fabs(normal[k]) > std::fabs(normal[steep]) ? k : steep;
+        for (size_t k = 0; k < 3; ++k) {
+            Point up = at(e[k]);
+            up[steep] += 1;
+            if (separated_by(e[k], e[(k + 1) % 3], above, up)) return true;
+        }
+    }
+    for (const auto& [e, other] : {std::pair(t, u), std::pair(u, t)})
+        for (size_t k = 0; k < 3; ++k)
+            for (const int32_t v : other)
+                if (v != e[k] && v != e[(k + 1) % 3] && separated_by(e[k], e[(k + 1) % 3], v, at(v))) return true;
+    return false;
+}
+
+// The triangles that may have something in common with another but shared corners.
+std::vector<size_t> doubtful_triangles(const Surface& surface) {
+    using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, size_t>;
+    std::vector<Box> boxes;
+    for (const Triangle& t : surface.triangles) {
+        std::array<double, 3> low, high;
+        for (size_t k = 0; k < 3; ++k) {
+            const auto at = [&](size_t corner) { return surface.vertices[static_cast<size_t>(t[corner])][k]; };
+            std::tie(low[k], high[k]) = std::minmax({at(0), at(1), at(2)});
+        }
+        boxes.emplace_back(low.data(), high.data(), boxes.size());
+    }
+    std::vector<bool> doubtful(boxes.size(), false);
+    constexpr std::ptrdiff_t scanned = 2000;  // so many boxes are compared by a scan, as in CGAL's own check
+    CGAL::box_self_intersection_d(
+        boxes.begin(), boxes.end(),
+        [&](const Box& a, const Box& b) {
+            if (!surely_apart(surface, surface.triangles[a.info()], surface.triangles[b.info()]))
+                doubtful[a.info()] = doubtful[b.info()] = true;
+        },
+        scanned);
+    std::vector<size_t> found;
+    for (size_t t = 0; t < doubtful.size(); ++t)
+        if (doubtful[t]) found.push_back(t);
+    return found;
+}
+
+void check_self_intersection(const Surface& surface) {
+    namespace pmp = CGAL::Polygon_mesh_processing;
+    using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+    using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+    const std::vector<size_t> doubtful = doubtful_triangles(surface);
+    if (doubtful.empty()) return;
+    Mesh mesh;
+    for (const Point& p : surface.vertices) mesh.add_vertex({p[0], p[1], p[2]});
+    const auto vertex = [](int32_t v) { return Mesh::Vertex_index(static_cast<Mesh::size_type>(v)); };
+    for (const Triangle& t : surface.triangles)
+        if (mesh.add_face(vertex(t[0]), vertex(t[1]), vertex(t[2])) == Mesh::null_face())
+            throw Error(PW_ERROR_INTERNAL, "A manifold surface was not taken as one. Please report this mesh.");
+
+    std::vector<Mesh::Face_index> faces;
+    for (const size_t t : doubtful) faces.emplace_back(static_cast<Mesh::size_type>(t));
+    std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
+    pmp::self_intersections<CGAL::Sequential_tag>(faces, mesh, std::back_inserter(pairs),
+                                                  CGAL::parameters::maximum_number(1));
+    if (pairs.empty()) return;
+    const auto source = [&](Mesh::Face_index f) { return surface.pieces[static_cast<size_t>(f)].face; };
+    const auto [low, high] = std::minmax({source(pairs[0].first), source(pairs[0].second)});
+    const std::string where = low == high ? "within face " + std::to_string(low)
+                                          : "where faces " + std::to_string(low) + " and " + std::to_string(high) +
+                                                " meet";
+    throw Error(PW_ERROR_SELF_INTERSECTION,
+                "The surface passes through or touches itself, for instance " + where +
+                    ". Unite overlapping parts with a Boolean or remesh, and separate parts that touch.");
+}
+
+// Spreads 21 bits so that two zeros follow each.
+uint64_t spread(uint64_t n) {
+    n = (n | n << 32) & 0x001f00000000ffff;
+    n = (n | n << 16) & 0x001f0000ff0000ff;
+    n = (n | n << 8) & 0x100f00f00f00f00f;
+    n = (n | n << 4) & 0x10c30c30c30c30c3;
+    return (n | n << 2) & 0x1249249249249249;
+}
+
+// The vertices' order along Morton's space-filling curve through their bounding box, so that what is near in space is
+// mostly near in memory: by the cell of a grid, then by x, y, z, then as they were given. Moving and scaling a model
+// change that no more than they change the ratios of its coordinates' differences.
+std::vector<int32_t> order_on_curve(std::span<const Point> vertices) {
+    constexpr int bits = 21;  // of each coordinate
+    const Frame frame = Frame::around(vertices);
+    std::vector<std::pair<uint64_t, int32_t>> places;
+    for (const Point& p : vertices) {
+        uint64_t cell = 0;
+        for (size_t k = 0; k < 3 && frame.longest > 0; ++k) {
+            const double along = (p[k] - frame.origin[k]) / frame.longest * part_of_grid;
+            cell |= spread(static_cast<uint64_t>(std::ldexp(along, bits))) << (2 - k);
+        }
+        places.emplace_back(cell, static_cast<int32_t>(places.size()));
+    }
+    const auto key = [&](const std::pair<uint64_t, int32_t>& place) {
+        return std::tuple(place.first, vertices[static_cast<size_t>(place.second)], place.second);
+    };
+    std::sort(places.begin(), places.end(), [&](const auto& a, const auto& b) {
+        return a.first != b.first ? a.first < b.first : key(a) < key(b);
+    });
+    std::vector<int32_t> order;
+    for (const auto& [cell, v] : places) order.push_back(v);
+    return order;
+}
+
+}  // namespace
+
+void check_arrays(const MeshView& mesh) {
+    if (mesh.vertex_count == 0 || mesh.triangle_count == 0 || mesh.face_count == 0)
+        throw Error(PW_ERROR_EMPTY, "The mesh has no faces. Choose a mesh object that has some.");
+    if (!mesh.faces && mesh.face_count != mesh.triangle_count)
+        throw Error(PW_ERROR_ARGUMENT, "Without source faces, face_count must equal triangle_count.");
+
+    for (size_t i = 0; i < 3 * mesh.vertex_count; ++i)
+        if (!(std::fabs(mesh.vertices[i]) <= largest_coordinate))
+            throw Error(PW_ERROR_NOT_FINITE, "Vertex " + std::to_string(i / 3) +
+                                                 " has a coordinate that is not a number, or is too large. Delete or "
+                                                 "move that vertex.");
+
+    const auto vertex_count = static_cast<int64_t>(mesh.vertex_count);
+    for (size_t i = 0; i < 3 * mesh.triangle_count; ++i)
+        if (mesh.triangles[i] < 0 || mesh.triangles[i] >= vertex_count)
+            throw Error(PW_ERROR_INDEX, "Triangle " + std::to_string(i / 3) + " names vertex " +
+                                            std::to_string(mesh.triangles[i]) + ", but there are " +
+                                            std::to_string(vertex_count) + ". The mesh data are damaged.");
+    const auto face_count = static_cast<int64_t>(mesh.face_count);
+    for (size_t t = 0; mesh.faces && t < mesh.triangle_count; ++t)
+        if (mesh.faces[t] < 0 || mesh.faces[t] >= face_count)
+            throw Error(PW_ERROR_INDEX, "Triangle " + std::to_string(t) + " names face " +
+                                            std::to_string(mesh.faces[t]) + ", but there are " +
+                                            std::to_string(face_count) + ". The mesh data are damaged.");
+}
+
+Frame Frame::around(std::span<const Point> points) {
+    Frame frame{.longest = 0, .scale = 0};
+    if (points.empty()) return frame;
+    for (size_t k = 0; k < 3; ++k) {
+        const auto [low, high] = std::minmax_element(points.begin(), points.end(),
+                                                     [k](const Point& a, const Point& b) { return a[k] < b[k]; });
+        frame.origin[k] = (*low)[k];
+        frame.longest = std::max(frame.longest, (*high)[k] - (*low)[k]);
+    }
+    frame.scale = frame.longest > 0 ? std::ldexp(1.0, std::ilogb(frame.longest)) : 0;
+    return frame;
+}
+
+Point Frame::to_working(const Point& p) const {
+    const auto working = [&](size_t k) {
+        const double x = (p[k] - origin[k]) / scale;
+        return std::fabs(x) < least_working ? 0 : x;
+    };
+    return {working(0), working(1), working(2)};
+}
+
+Point Frame::to_caller(const Point& p) const {
+    return {p[0] * scale + origin[0], p[1] * scale + origin[1], p[2] * scale + origin[2]};
+}
+
+Surface read_mesh(const MeshView& mesh) {
+    check_arrays(mesh);
+    check_all_faces_used(mesh);
+    const auto point = [&](int32_t v) {
+        const double* p = mesh.vertices + 3 * static_cast<size_t>(v);
+        return Point{p[0], p[1], p[2]};
+    };
+    std::vector<int32_t> used(mesh.triangles, mesh.triangles + 3 * mesh.triangle_count);
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    std::vector<Point> points;
+    std::vector<int32_t> number(mesh.vertex_count, -1);
+    for (int32_t v : used) {
+        number[static_cast<size_t>(v)] = static_cast<int32_t>(points.size());
+        points.push_back(point(v));
+    }
+    const Frame frame = Frame::around(points);
+    if (frame.longest == 0)
+        throw Error(PW_ERROR_DEGENERATE, "All vertices are at the same place. Choose a mesh that has an extent.");
+    if (frame.longest < smallest_model)
+        throw Error(PW_ERROR_NOT_FINITE, "The model is too small to be measured. Scale it up.");
+    for (Point& p : points) p = frame.to_working(p);
+    std::vector<Triangle> triangles(mesh.triangle_count);
+    for (size_t t = 0; t < mesh.triangle_count; ++t)
+        for (size_t k = 0; k < 3; ++k) triangles[t][k] = number[static_cast<size_t>(mesh.triangles[3 * t + k])];
+    Surface surface = canonical(frame, points, used, triangles);
+    if (mesh.faces)
+        for (Piece& piece : surface.pieces) piece.face = mesh.faces[piece.face];
+    surface.face_count = mesh.face_count;
+    return surface;
+}
+
+Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span<const int32_t> source_vertex,
+                  std::span<const Triangle> triangles) {
+    Surface surface;
+    surface.frame = frame;
+    surface.face_count = triangles.size();
+    std::vector<int32_t> number(vertices.size());
+    for (const int32_t v : order_on_curve(vertices)) {
+        const auto given = static_cast<size_t>(v);
+        number[given] = static_cast<int32_t>(surface.vertices.size());
+        surface.vertices.push_back(vertices[given]);
+        surface.source_vertex.push_back(source_vertex[given]);
+    }
+    const auto at = [&](int32_t v) { return surface.vertices[static_cast<size_t>(v)]; };
+    std::vector<std::pair<Triangle, int32_t>> sorted;
+    double six_enclosed = 0;
+    for (Triangle tri : triangles) {
+        for (int32_t& v : tri) v = number[static_cast<size_t>(v)];
+        six_enclosed += dot(cross(at(tri[0]), at(tri[1])), at(tri[2]));
+        sorted.emplace_back(tri, static_cast<int32_t>(sorted.size()));
+    }
+    for (auto& [tri, from] : sorted) {
+        if (six_enclosed < 0) std::swap(tri[1], tri[2]);  // inside out
+        std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
+    }
+    std::sort(sorted.begin(), sorted.end());
+    for (const auto& [tri, from] : sorted) {
+        const auto t = static_cast<int32_t>(surface.triangles.size());
+        surface.triangles.push_back(tri);
+        surface.pieces.push_back({from, t, area(at(tri[0]), at(tri[1]), at(tri[2]))});
+    }
+    return surface;
+}
+
+void check_surface(const Surface& surface, Progress& progress) {
+    progress.advance(0.3);
+    check_degenerate(surface);
+    check_manifold(surface);
+    progress.advance(0.5);
+    check_self_intersection(surface);
+    progress.advance(1);
+}
+
+Surface check_surface(const MeshView& mesh, Progress& progress) {
+    Surface surface = read_mesh(mesh);
+    check_surface(surface, progress);
+    return surface;
+}
+
+}  // namespace partwheel

@@ -1,0 +1,184 @@
+// The dendrogram: pruning, cuts, wheel stops.
+#include "tree/dendrogram.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// Listing 2 by these costs, of all but the last `top` merges.
+template <class Cost>
+std::vector<uint8_t> pruned(std::span<const Merge> merges, size_t top, const std::vector<Cost>& costs) {
+    const size_t leaves = merges.size() + 1;
+    std::vector<uint8_t> kept(merges.size(), 0);
+    // What each merge would hang from is known once its parent has been decided: from the root down. Null: nothing.
+    std::vector<const Cost*> above(merges.size(), nullptr);
+    for (size_t m = merges.size(); m-- > 0;) {
+        const bool regrouped = m + top >= merges.size();
+        kept[m] = regrouped || !above[m] || costs[m] < *above[m];
+        const Cost* below = regrouped ? nullptr : kept[m] ? &costs[m] : above[m];
+        for (int32_t child : {merges[m].left, merges[m].right})
+            if (static_cast<size_t>(child) >= leaves) above[static_cast<size_t>(child) - leaves] = below;
+    }
+    return kept;
+}
+
+}  // namespace
+
+std::vector<NodeCost> node_costs(std::span<const Merge> merges) {
+    const size_t leaves = merges.size() + 1;
+    std::vector<int32_t> size(leaves + merges.size(), 1);  // in tetrahedra
+    std::vector<NodeCost> costs;
+    for (size_t m = 0; m < merges.size(); ++m) {
+        const int32_t left = size[static_cast<size_t>(merges[m].left)],
+                      right = size[static_cast<size_t>(merges[m].right)];
+        size[leaves + m] = left + right;
+        const double a = double(left) / double(leaves), b = double(right) / double(leaves);
+        if (merges[m].concavity > 0)
+            costs.push_back({true, merges[m].concavity});
+        else
+            costs.push_back({false, a * a + b * b});
+    }
+    return costs;
+}
+
+std::vector<uint8_t> prune(std::span<const Merge> merges) { return pruned(merges, 0, node_costs(merges)); }
+
+std::vector<uint8_t> prune_regrouped(std::span<const Merge> merges, size_t top) {
+    std::vector<double> concavities;
+    for (const Merge& m : merges) concavities.push_back(m.concavity);
+    return pruned(merges, top, concavities);
+}
+
+std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t parts) {
+    const size_t leaves = merges.size() + 1;
+    // least[c][k - 1]: the least total concavity of cluster c in k parts; split[m][k - 2]: how many of them are left.
+    std::vector<std::vector<double>> least(leaves + merges.size());
+    std::vector<std::vector<uint16_t>> split(merges.size());
+    for (size_t i = 0; i < leaves; ++i) least[i] = {0.0};
+    for (size_t m = 0; m < merges.size(); ++m) {
+        std::vector<double>& left = least[static_cast<size_t>(merges[m].left)];
+        std::vector<double>& right = least[static_cast<size_t>(merges[m].right)];
+        std::vector<double>& both = least[leaves + m];
+        const size_t most = std::min(parts, left.size() + right.size());
+        both.assign(most, std::numeric_limits<double>::infinity());
+        both[0] = merges[m].concavity;
+        split[m].assign(most - 1, 0);
+        for (size_t i = 1; i <= left.size(); ++i)
+            for (size_t j = 1; j <= right.size() && i + j <= most; ++j) {
+                const double total = left[i - 1] + right[j - 1];
+                if (total < both[i + j - 1]) {
+                    both[i + j - 1] = total;
+                    split[m][i + j - 2] = static_cast<uint16_t>(i);
+                }
+            }
+        left = {};
+        right = {};
+    }
+
+    std::vector<int32_t> cut;
+    std::vector<std::pair<size_t, size_t>> todo = {{leaves + merges.size() - 1, parts}};
+    while (!todo.empty()) {
+        const auto [c, k] = todo.back();
+        todo.pop_back();
+        if (k == 1) {
+            cut.push_back(static_cast<int32_t>(c));
+            continue;
+        }
+        const Merge& merge = merges[c - leaves];
+        const size_t left = split[c - leaves][k - 2];
+        todo.push_back({static_cast<size_t>(merge.right), k - left});
+        todo.push_back({static_cast<size_t>(merge.left), left});
+    }
+    return cut;
+}
+
+std::vector<int32_t> cut_undoing_last(std::span<const Merge> merges, size_t parts) {
+    const size_t leaves = merges.size() + 1, whole = leaves + merges.size() - (parts - 1);
+    std::vector<int32_t> cut, todo = {static_cast<int32_t>(leaves + merges.size() - 1)};
+    while (!todo.empty()) {
+        const auto c = static_cast<size_t>(todo.back());
+        todo.pop_back();
+        if (c < whole) {
+            cut.push_back(static_cast<int32_t>(c));
+            continue;
+        }
+        todo.push_back(merges[c - leaves].right);
+        todo.push_back(merges[c - leaves].left);
+    }
+    return cut;
+}
+
+std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, std::span<const double> areas,
+                                   std::span<const double> scores) {
+    const size_t leaves = merges.size() + 1;
+    std::vector<double> best(leaves + merges.size());
+    std::vector<uint8_t> divided(merges.size(), 0);
+    for (size_t c = 0; c < best.size(); ++c) {
+        best[c] = areas[c] * scores[c];
+        if (c < leaves || scores[c] == 0) continue;
+        const Merge& merge = merges[c - leaves];
+        const auto left = static_cast<size_t>(merge.left), right = static_cast<size_t>(merge.right);
+        const double apart = best[left] + best[right];
+        if (scores[left] > 0 && scores[right] > 0 && apart > best[c]) {
+            best[c] = apart;
+            divided[c - leaves] = 1;
+        }
+    }
+    std::vector<int32_t> cut, todo = {static_cast<int32_t>(best.size() - 1)};
+    while (!todo.empty()) {
+        const auto c = static_cast<size_t>(todo.back());
+        todo.pop_back();
+        if (c < leaves || !divided[c - leaves]) {
+            cut.push_back(static_cast<int32_t>(c));
+            continue;
+        }
+        todo.push_back(merges[c - leaves].right);
+        todo.push_back(merges[c - leaves].left);
+    }
+    return cut;
+}
+
+WheelStops wheel_stops(std::span<const double> areas, std::span<const double> scores) {
+    constexpr double most_overlap = 0.85, shrink = 0.5;
+    const auto root = static_cast<int32_t>(areas.size()) - 1;
+    const auto area = [&](int32_t i) { return areas[static_cast<size_t>(i)]; };
+    const auto score = [&](int32_t i) { return scores[static_cast<size_t>(i)]; };
+    std::vector<int32_t> by_score;
+    for (int32_t i = 0; i <= root; ++i)
+        if (score(i) > 0 || i == root) by_score.push_back(i);
+    std::stable_sort(by_score.begin(), by_score.end(), [&](int32_t a, int32_t b) { return score(a) > score(b); });
+    WheelStops wheel;
+    for (const int32_t i : by_score) {
+        const auto same = [&](int32_t j) {
+            return std::min(area(i), area(j)) > most_overlap * std::max(area(i), area(j));
+        };
+        if (std::none_of(wheel.stops.begin(), wheel.stops.end(), same)) wheel.stops.push_back(i);
+    }
+    int32_t clicked = wheel.stops.front();
+    std::sort(wheel.stops.begin(), wheel.stops.end());
+    if (wheel.stops.back() != root) {
+        // The stop that kept the root out of the list: the root takes its place if it looks the same, else comes after.
+        if (area(wheel.stops.back()) < area(root)) {
+            wheel.stops.push_back(root);
+        } else {
+            if (clicked == wheel.stops.back()) clicked = root;
+            wheel.stops.back() = root;
+        }
+    }
+    std::vector<int32_t> below;
+    double least = area(wheel.stops.front());
+    for (int32_t i = root - 1; i >= 0; --i)
+        if (score(i) == 0 && area(i) <= shrink * least) {
+            below.push_back(i);
+            least = area(i);
+        }
+    wheel.stops.insert(wheel.stops.begin(), below.rbegin(), below.rend());
+    wheel.start = static_cast<size_t>(std::find(wheel.stops.begin(), wheel.stops.end(), clicked) - wheel.stops.begin());
+    return wheel;
+}
+
+}  // namespace partwheel

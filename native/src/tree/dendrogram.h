@@ -1,0 +1,55 @@
+// The binary tree pruned to a dendrogram (the paper's Listing 2; for the regrouped tree, see regroup.h, a rule of ours),
+// cuts of it, and the stops of the mouse wheel in the regrouped tree (in the paper's they are the whole path).
+#pragma once
+
+#include "cluster/cluster.h"
+
+#include <span>
+
+namespace partwheel {
+
+// Eq. 3 of the paper, of what a merge makes: its class, then what is compared within it. The paper adds 1 to the second
+// to keep them apart; beside that a small concavity would be rounded away.
+struct NodeCost {
+    bool concave = false;
+    double value = 0;  // C2 (Eq. 2), or the concavity (Eq. 1)
+
+    auto operator<=>(const NodeCost&) const = default;
+};
+std::vector<NodeCost> node_costs(std::span<const Merge> merges);
+
+// Which merges survive Listing 2: a node goes if it costs at least as much as the ancestor it would hang from. So what
+// is concave goes below what is convex, and what is convex always stays: its C2 is less than that of any ancestor.
+std::vector<uint8_t> prune(std::span<const Merge> merges);
+
+// The same for a regrouped tree, by concavity alone: convex nodes within a convex node go as well, since where C2 has
+// them divided is no feature of the shape. The last `top` merges, those of regroup(), all stay, and what they join is
+// held against no ancestor.
+std::vector<uint8_t> prune_regrouped(std::span<const Merge> merges, size_t top);
+
+// The cut of the binary tree into `parts` subtrees with the least total concavity, by dynamic programming over the
+// tree: O(T parts) time at most. Returns the clusters' numbers (see Merge), in depth-first order. 1 <= parts <= T.
+std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t parts);
+
+// The cut that is left when the last parts - 1 merges are undone, as if clustering had stopped there; numbers as above.
+// 1 <= parts <= T.
+std::vector<int32_t> cut_undoing_last(std::span<const Merge> merges, size_t parts);
+
+// The cut whose clusters have the largest sum of area x score: the parts that people would most likely take. areas,
+// scores: of each cluster; those with a score of 0 are not divided. Numbers as above.
+std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, std::span<const double> areas,
+                                   std::span<const double> scores);
+
+// A path's wheel stops, as indices into the path, and which of them a click alone takes (an index into stops).
+struct WheelStops {
+    std::vector<int32_t> stops;
+    size_t start = 0;
+};
+
+// Of a regrouped tree. The path runs from a leaf to the root; areas (growing, the first one above 0) and scores (0
+// below the parts) are those of its nodes. Two nodes of a path overlap (intersection over union) by the quotient of
+// their areas. So, from the best score down, a node is a stop unless it overlaps one that is by more than 85 %; the
+// root is always one. Below the parts, each stop has at most half the area of the next. The click takes the best score.
+WheelStops wheel_stops(std::span<const double> areas, std::span<const double> scores);
+
+}  // namespace partwheel

@@ -1,0 +1,558 @@
+// The finished hierarchy: flat arrays, questions, saving and loading.
+#include "tree/hierarchy.h"
+
+#include "cluster/hull.h"
+#include "tree/claims.h"
+#include "tree/packed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// The tetrahedra in depth-first order of the tree.
+std::vector<int32_t> depth_first(std::span<const Merge> merges) {
+    const size_t leaves = merges.size() + 1;
+    std::vector<int32_t> order, todo = {static_cast<int32_t>(leaves + merges.size() - 1)};
+    order.reserve(leaves);
+    while (!todo.empty()) {
+        const auto c = static_cast<size_t>(todo.back());
+        todo.pop_back();
+        if (c < leaves) {
+            order.push_back(static_cast<int32_t>(c));
+        } else {
+            todo.push_back(merges[c - leaves].right);
+            todo.push_back(merges[c - leaves].left);
+        }
+    }
+    return order;
+}
+
+// The tetrahedron behind most of each face's area, and the areas.
+void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const int32_t> leaf_of_tet,
+                  std::vector<int32_t>& leaf, std::vector<double>& face_area) {
+    std::vector<Piece> pieces = surface.pieces;
+    const auto leaf_behind = [&](const Piece& piece) {
+        return leaf_of_tet[static_cast<size_t>(mesh.tet_of_triangle[static_cast<size_t>(piece.triangle)])];
+    };
+    std::sort(pieces.begin(), pieces.end(), [&](const Piece& a, const Piece& b) {
+        return std::tuple(a.face, leaf_behind(a), a) < std::tuple(b.face, leaf_behind(b), b);
+    });
+    leaf.assign(surface.face_count, -1);
+    face_area.assign(surface.face_count, 0);
+    std::vector<double> most(surface.face_count, -1);
+    for (size_t i = 0; i < pieces.size();) {
+        const int32_t f = pieces[i].face, l = leaf_behind(pieces[i]);
+        double shared = 0;
+        for (; i < pieces.size() && pieces[i].face == f && leaf_behind(pieces[i]) == l; ++i) shared += pieces[i].area;
+        const auto face = static_cast<size_t>(f);
+        face_area[face] += shared;
+        if (shared > most[face]) {
+            most[face] = shared;
+            leaf[face] = l;
+        }
+    }
+}
+
+// The source face that each outer facet of the tetrahedra is of, or nearest to; -1: none. Sorted by leaf, then corner.
+std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh& mesh,
+                                           std::span<const int32_t> leaf_of_tet) {
+    std::vector<Claim> claims;
+    for (const Piece& piece : surface.pieces) claims.push_back({piece.triangle, piece.face, piece.area});
+    std::vector<int32_t> face(surface.triangles.size(), -1);
+    settle_claims(std::move(claims), [&](int32_t t, int32_t f) { face[static_cast<size_t>(t)] = f; });
+    struct Outer {
+        int32_t leaf, corner, face;
+    };
+    std::vector<Outer> outer;
+    for (size_t t = 0; t < surface.triangles.size(); ++t) {
+        const auto tet = static_cast<size_t>(mesh.tet_of_triangle[t]);
+        const Triangle& triangle = surface.triangles[t];
+        int32_t corner = 0;
+        for (int32_t k = 0; k < 4; ++k)
+            if (std::find(triangle.begin(), triangle.end(), mesh.tetrahedra[tet][static_cast<size_t>(k)]) ==
+                triangle.end())
+                corner = k;
+        if (mesh.neighbours[tet][static_cast<size_t>(corner)] >= 0) continue;  // a wall with the solid on both sides
+        outer.push_back({leaf_of_tet[tet], corner, face[t]});
+    }
+    std::sort(outer.begin(), outer.end(), [](const Outer& a, const Outer& b) {
+        return std::tie(a.leaf, a.corner) < std::tie(b.leaf, b.corner);
+    });
+    std::vector<int32_t> faces;
+    for (const Outer& o : outer) faces.push_back(o.face);
+    return faces;
+}
+
+}  // namespace
+
+Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const Regrouped& regrouped,
+                     const double* caller_vertices)
+    : scores_(regrouped.scores) {
+    const BinaryTree& tree = regrouped.tree;
+    const Frame& frame = surface.frame;
+    source_ = surface.source_vertex;
+    source_.resize(mesh.vertices.size(), -1);
+    for (size_t v = 0; v < source_.size(); ++v) {
+        if (source_[v] < 0) {
+            vertices_.push_back(frame.to_caller(mesh.vertices[v]));
+            continue;
+        }
+        const double* p = caller_vertices + 3 * static_cast<size_t>(source_[v]);
+        vertices_.push_back({p[0], p[1], p[2]});
+    }
+
+    const size_t leaves = mesh.tetrahedra.size();
+    const std::vector<int32_t> order = depth_first(tree.merges);
+    std::vector<int32_t> leaf_of_tet(leaves);
+    for (size_t i = 0; i < leaves; ++i) {
+        leaf_of_tet[static_cast<size_t>(order[i])] = static_cast<int32_t>(i);
+        tetrahedra_.push_back(mesh.tetrahedra[static_cast<size_t>(order[i])]);
+    }
+    merges_ = tree.merges;
+    const auto renumber = [&](int32_t c) {
+        return static_cast<size_t>(c) < leaves ? leaf_of_tet[static_cast<size_t>(c)] : c;
+    };
+    for (Merge& m : merges_)
+        m = {renumber(m.left), renumber(m.right), frame.volume_to_caller(m.concavity), 0};
+    if (!merges_.empty()) summary_.hull_volume = frame.volume_to_caller(tree.merges.back().hull_volume);
+
+    assign_faces(surface, mesh, leaf_of_tet, leaf_, face_area_);
+    for (double& a : face_area_) a = frame.area_to_caller(a);
+    outer_faces_ = faces_of_outer_facets(surface, mesh, leaf_of_tet);
+
+    summary_.components = tree.components;
+    summary_.cavities = mesh.cavities;
+    summary_.added_vertices = mesh.vertices.size() - surface.vertices.size();
+    summary_.rung = surface.rung;
+    summary_.deviation = surface.deviation;
+    account_ = surface.account;
+    finish();
+}
+
+// Everything that follows from the stored arrays, which are known to be sound.
+void Hierarchy::finish() {
+    const size_t leaves = tetrahedra_.size(), merges = merges_.size(), clusters = leaves + merges;
+    const size_t faces = leaf_.size(), top = clusters - regrouped_merges();
+    frame_ = Frame::around(vertices_);
+
+    // By cluster, bottom up over the unpruned tree. Leaves are in depth-first order: a slice is a matter of its ends.
+    std::vector<Point> points;
+    points.reserve(vertices_.size());
+    for (const Point& p : vertices_) points.push_back(frame_.to_working(p));
+    volume_.resize(clusters);
+    area_.resize(clusters);
+    height_.resize(clusters);
+    tet_first_.resize(clusters);
+    tet_last_.resize(clusters);
+    for (size_t l = 0; l < leaves; ++l) {
+        const auto at = [&](size_t k) { return points[static_cast<size_t>(tetrahedra_[l][k])]; };
+        // A sliver's volume may be rounded to less than nothing.
+        volume_[l] = frame_.volume_to_caller(std::max(0.0, six_volumes(at(0), at(1), at(2), at(3)) / 6));
+        tet_first_[l] = static_cast<int32_t>(l);
+        tet_last_[l] = static_cast<int32_t>(l + 1);
+    }
+    for (size_t f = 0; f < faces; ++f) area_[static_cast<size_t>(leaf_[f])] += face_area_[f];
+    merge_pairs_.reserve(2 * merges);
+    for (size_t c = leaves; c < clusters; ++c) {
+        Merge& merge = merges_[c - leaves];
+        const auto left = static_cast<size_t>(merge.left), right = static_cast<size_t>(merge.right);
+        merge_pairs_.push_back(merge.left);
+        merge_pairs_.push_back(merge.right);
+        tet_first_[c] = tet_first_[left];
+        tet_last_[c] = tet_last_[right];
+        volume_[c] = volume_[left] + volume_[right];
+        area_[c] = area_[left] + area_[right];
+        merge.hull_volume = volume_[c] + merge.concavity;
+        height_[c] = merge.concavity;
+        // Joining may make a cluster less concave; a node is never lower than what it is made of.
+        if (c >= top) height_[c] = std::max({height_[c], height_[left], height_[right]});
+    }
+    merge_last_.assign(tet_last_.begin() + static_cast<std::ptrdiff_t>(leaves), tet_last_.end());
+    summary_.volume = volume_.back();
+    if (merges_.empty())
+        summary_.hull_volume = summary_.volume;
+    else
+        merges_.back().hull_volume = summary_.hull_volume;
+
+    // Faces sorted by leaf; face_begin[l] is where leaf l's start.
+    std::vector<int32_t> face_begin(leaves + 1, 0);
+    for (int32_t l : leaf_) ++face_begin[static_cast<size_t>(l) + 1];
+    std::partial_sum(face_begin.begin(), face_begin.end(), face_begin.begin());
+    order_.resize(faces);
+    std::vector<int32_t> next(face_begin.begin(), face_begin.end() - 1);
+    for (size_t f = 0; f < faces; ++f)
+        order_[static_cast<size_t>(next[static_cast<size_t>(leaf_[f])]++)] = static_cast<int32_t>(f);
+
+    // The parts are the clusters that the regrouped merges join, and that are none of them.
+    score_.resize(clusters);
+    if (!scores_.empty()) {
+        std::vector<size_t> parts;
+        if (top == clusters) parts.push_back(top - 1);
+        for (size_t c = top; c < clusters; ++c) {
+            score_[c] = scores_[c - top + regrouped_merges() + 1];
+            for (const int32_t child : {merges_[c - leaves].left, merges_[c - leaves].right})
+                if (static_cast<size_t>(child) < top) parts.push_back(static_cast<size_t>(child));
+        }
+        std::sort(parts.begin(), parts.end(), [&](size_t a, size_t b) { return tet_first_[a] < tet_first_[b]; });
+        for (size_t p = 0; p < parts.size(); ++p) score_[parts[p]] = scores_[p];
+    }
+
+    // Nodes: all leaves, then the merges that were kept; so arrays by cluster become arrays by node where they are.
+    const std::vector<uint8_t> kept = kept_merges();
+    const std::vector<NodeCost> costs = node_costs(merges_);
+    const size_t nodes = leaves + static_cast<size_t>(std::count(kept.begin(), kept.end(), 1));
+    std::vector<int32_t> node(clusters, -1);
+    std::iota(node.begin(), node.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
+    cost_class_.resize(nodes);
+    cost_.resize(nodes);
+    for (size_t c = leaves, n = leaves; c < clusters; ++c) {
+        if (!kept[c - leaves]) continue;
+        node[c] = static_cast<int32_t>(n);
+        cost_class_[n] = costs[c - leaves].concave;
+        cost_[n] = costs[c - leaves].value;
+        tet_first_[n] = tet_first_[c];
+        tet_last_[n] = tet_last_[c];
+        for (std::vector<double>* values : {&volume_, &area_, &height_, &score_}) (*values)[n] = (*values)[c];
+        ++n;
+    }
+    for (std::vector<double>* values : {&volume_, &area_, &height_, &score_}) values->resize(nodes);
+    tet_first_.resize(nodes);
+    tet_last_.resize(nodes);
+    first_.reserve(nodes);
+    last_.reserve(nodes);
+    for (const int32_t t : tet_first_) first_.push_back(face_begin[static_cast<size_t>(t)]);
+    for (const int32_t t : tet_last_) last_.push_back(face_begin[static_cast<size_t>(t)]);
+    parent_.assign(nodes, -1);
+    for (size_t m = merges; m-- > 0;) {
+        // node[] of a pruned merge becomes the node that its children hang from.
+        for (int32_t child : {merges_[m].left, merges_[m].right}) {
+            int32_t& below = node[static_cast<size_t>(child)];
+            if (below < 0)
+                below = node[leaves + m];
+            else
+                parent_[static_cast<size_t>(below)] = node[leaves + m];
+        }
+    }
+}
+
+std::vector<uint8_t> Hierarchy::kept_merges() const {
+    return scores_.empty() ? prune(merges_) : prune_regrouped(merges_, regrouped_merges());
+}
+
+pw_arrays Hierarchy::arrays() const {
+    pw_arrays a{};
+    a.face_count = leaf_.size();
+    a.node_count = parent_.size();
+    a.tetrahedron_count = tetrahedra_.size();
+    a.vertex_count = vertices_.size();
+    a.order = order_.data();
+    a.leaf = leaf_.data();
+    a.parent = parent_.data();
+    a.first = first_.data();
+    a.last = last_.data();
+    a.tet_first = tet_first_.data();
+    a.tet_last = tet_last_.data();
+    a.cost_class = cost_class_.data();
+    a.cost = cost_.data();
+    a.height = height_.data();
+    a.volume = volume_.data();
+    a.area = area_.data();
+    a.vertices = vertices_.data()->data();
+    a.source = source_.data();
+    a.tetrahedra = tetrahedra_.data()->data();
+    a.merges = merge_pairs_.data();
+    a.score = score_.data();
+    return a;
+}
+
+std::vector<int32_t> Hierarchy::path(size_t face) const {
+    std::vector<int32_t> nodes;
+    for (int32_t n = leaf_[face]; n >= 0; n = parent_[static_cast<size_t>(n)]) nodes.push_back(n);
+    return nodes;
+}
+
+WheelStops Hierarchy::wheel(size_t face) const {
+    const std::vector<int32_t> nodes = path(face);
+    if (scores_.empty()) return {nodes, 0};  // the paper's: all of the path, from the tetrahedron clicked
+    std::vector<double> areas, scores;
+    for (int32_t n : nodes) {
+        areas.push_back(area_[static_cast<size_t>(n)]);
+        scores.push_back(score_[static_cast<size_t>(n)]);
+    }
+    WheelStops wheel = wheel_stops(areas, scores);
+    for (int32_t& stop : wheel.stops) stop = nodes[static_cast<size_t>(stop)];
+    return wheel;
+}
+
+std::span<const int32_t> Hierarchy::faces(size_t node) const {
+    return std::span(order_).subspan(static_cast<size_t>(first_[node]),
+                                     static_cast<size_t>(last_[node] - first_[node]));
+}
+
+std::vector<int32_t> Hierarchy::cut_height(double height) const {
+    std::vector<int32_t> bounds = {0};
+    while (static_cast<size_t>(bounds.back()) < tetrahedra_.size()) {
+        auto n = static_cast<size_t>(bounds.back());
+        while (parent_[n] >= 0 && height_[static_cast<size_t>(parent_[n])] <= height)
+            n = static_cast<size_t>(parent_[n]);
+        bounds.push_back(tet_last_[n]);
+    }
+    return bounds;
+}
+
+std::vector<int32_t> Hierarchy::cut_parts(size_t parts) const {
+    return bounds_of(cut_undoing_last(merges_, parts));
+}
+
+std::vector<int32_t> Hierarchy::cut_least_concavity(size_t parts) const {
+    return bounds_of(partwheel::cut_least_concavity(merges_, parts));
+}
+
+std::vector<int32_t> Hierarchy::cut_automatic() const {
+    constexpr double paper_height = 0.03;  // of the hull's volume
+    if (scores_.empty()) return cut_height(paper_height * summary_.hull_volume);
+    // By cluster again; what has been pruned has no score.
+    const size_t leaves = tetrahedra_.size(), clusters = leaves + merges_.size();
+    const std::vector<uint8_t> kept = kept_merges();
+    std::vector<double> areas(clusters, 0), scores(clusters, 0);
+    for (size_t c = 0, n = 0; c < clusters; ++c) {
+        if (c >= leaves && !kept[c - leaves]) continue;
+        areas[c] = area_[n];
+        scores[c] = score_[n++];
+    }
+    return bounds_of(likeliest_cut(merges_, areas, scores));
+}
+
+std::vector<int32_t> Hierarchy::bounds_of(std::span<const int32_t> clusters) const {
+    std::vector<int32_t> bounds = {0};
+    for (const int32_t c : clusters) {
+        const size_t leaves = tetrahedra_.size(), i = static_cast<size_t>(c);
+        bounds.push_back(i < leaves ? c + 1 : merge_last_[i - leaves]);
+    }
+    return bounds;
+}
+
+TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last) const {
+    std::vector<int32_t> used;
+    for (size_t t = tet_first; t < tet_last; ++t) used.insert(used.end(), tetrahedra_[t].begin(), tetrahedra_[t].end());
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    std::vector<Point> points;
+    for (int32_t v : used) points.push_back(frame_.to_working(vertices_[static_cast<size_t>(v)]));
+    std::vector<int32_t> all(points.size());
+    std::iota(all.begin(), all.end(), 0);
+    HullKernel kernel(points);
+    const Hull hull = kernel.build(all);
+
+    TriangleMesh mesh;
+    std::vector<int32_t> number(points.size(), -1);
+    for (int32_t v : hull.vertices()) {
+        number[static_cast<size_t>(v)] = static_cast<int32_t>(mesh.vertices.size());
+        mesh.vertices.push_back(vertices_[static_cast<size_t>(used[static_cast<size_t>(v)])]);
+    }
+    for (const HullFacet& facet : hull.facets()) {
+        Triangle t = facet.corners;
+        for (int32_t& v : t) v = number[static_cast<size_t>(v)];
+        mesh.triangles.push_back(t);
+    }
+    return mesh;
+}
+
+TriangleMesh Hierarchy::solid(size_t tet_first, size_t tet_last,
+                              std::span<const std::array<int32_t, 2>> middles) const {
+    return facets().solid(tetrahedra_, vertices_, facets().at_home(tet_first, tet_last), middles);
+}
+
+TriangleMesh Hierarchy::solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside) const {
+    return facets().solid(tetrahedra_, vertices_,
+                          facets().with_faces(tetrahedra_, vertices_, tet_first, tet_last, inside), {});
+}
+
+const Facets& Hierarchy::facets() const {
+    const std::lock_guard lock(facing_->mutex);
+    if (!facing_->facets)
+        facing_->facets =
+            std::make_unique<Facets>(tetrahedra_, outer_faces_, leaf_, summary_.rung == PW_RUNG_EXACT);
+    return *facing_->facets;
+}
+
+// ---- Saved form: a header, the stored arrays packed, a hash. ----
+
+namespace {
+
+constexpr std::array<char, 8> magic = {'P', 'W', 'H', 'I', 'E', 'R', '\r', '\n'};
+constexpr uint32_t format_version = 5;
+
+struct Header {
+    std::array<char, 8> magic = partwheel::magic;
+    uint32_t version = format_version;
+    uint32_t rung = 0;
+    uint64_t faces = 0, tetrahedra = 0, vertices = 0, components = 0, cavities = 0, added_vertices = 0, account = 0;
+    uint64_t outer = 0, scores = 0;
+    double deviation = 0, hull_volume = 0;
+};
+
+static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Header) == 104);
+
+std::span<const double> numbers(const std::vector<Point>& points) {
+    return {points.data()->data(), 3 * points.size()};
+}
+
+std::span<const int32_t> numbers(const std::vector<Tetrahedron>& tetrahedra) {
+    return {tetrahedra.data()->data(), 4 * tetrahedra.size()};
+}
+
+}  // namespace
+
+std::vector<uint8_t> Hierarchy::save() const {
+    Header header;
+    header.faces = leaf_.size();
+    header.tetrahedra = tetrahedra_.size();
+    header.vertices = vertices_.size();
+    header.components = summary_.components;
+    header.cavities = summary_.cavities;
+    header.added_vertices = summary_.added_vertices;
+    header.account = account_.size();
+    header.outer = outer_faces_.size();
+    header.scores = scores_.size();
+    header.rung = summary_.rung;
+    header.deviation = summary_.deviation;
+    header.hull_volume = summary_.hull_volume;
+    // A merge joins the slices on both sides of a border between two tetrahedra, so that says all of it.
+    std::vector<int32_t> borders;
+    std::vector<double> concavities;
+    for (const Merge& merge : merges_) {
+        const size_t leaves = tetrahedra_.size(), left = static_cast<size_t>(merge.left);
+        borders.push_back(left < leaves ? merge.left + 1 : merge_last_[left - leaves]);
+        concavities.push_back(merge.concavity);
+    }
+    Packer out;
+    out.put(header);
+    out.put_bytes(account_.data(), account_.size());
+    out.put_integers(borders);
+    out.put_doubles(concavities);
+    out.put_doubles(numbers(vertices_));
+    out.put_integers(source_);
+    out.put_integers(numbers(tetrahedra_));
+    out.put_integers(leaf_);
+    out.put_doubles(face_area_);
+    out.put_integers(outer_faces_);
+    out.put_doubles(scores_);
+    return out.finish();
+}
+
+Hierarchy Hierarchy::load(std::span<const uint8_t> bytes) {
+    if (bytes.size() < magic.size() || !std::equal(magic.begin(), magic.end(), bytes.begin()))
+        refuse_saved("it is something else");
+    Unpacker in(bytes);
+    const auto header = in.get<Header>();
+    if (header.version != format_version) refuse_saved("it was written by another version of Partwheel");
+    for (uint64_t n : {header.faces, header.tetrahedra, header.vertices})
+        if (n == 0 || n > PW_MAX_COUNT) refuse_saved("its sizes are impossible");
+
+    Hierarchy h;
+    h.account_ = in.get_text(header.account);
+    const std::vector<int32_t> borders = in.get_integers(header.tetrahedra - 1);
+    h.plant(borders, in.get_doubles(header.tetrahedra - 1));
+    h.vertices_ = in.get_doubles<Point>(header.vertices);
+    h.source_ = in.get_integers(header.vertices);
+    h.tetrahedra_ = in.get_integers<Tetrahedron>(header.tetrahedra);
+    h.leaf_ = in.get_integers(header.faces);
+    h.face_area_ = in.get_doubles(header.faces);
+    h.outer_faces_ = in.get_integers(header.outer);
+    h.scores_ = in.get_doubles(header.scores);
+    h.summary_.components = header.components;
+    h.summary_.cavities = header.cavities;
+    h.summary_.added_vertices = header.added_vertices;
+    if (header.rung != PW_RUNG_EXACT && header.rung != PW_RUNG_REPAIRED && header.rung != PW_RUNG_WRAPPED)
+        refuse_saved("its rung is unknown");
+    h.summary_.rung = static_cast<pw_rung>(header.rung);
+    h.summary_.deviation = header.deviation;
+    h.summary_.hull_volume = header.hull_volume;
+    if (!in.at_end()) refuse_saved("it goes on after its end");
+    h.check_stored();
+    h.finish();
+    if (!std::isfinite(h.summary_.volume)) refuse_saved("its measures are impossible");
+    return h;
+}
+
+// The merges from the border that each takes away, see save().
+void Hierarchy::plant(std::span<const int32_t> borders, std::span<const double> concavities) {
+    struct Side {
+        int32_t cluster, far;  // which ends or begins at a border, and where its other end is
+    };
+    const auto leaves = static_cast<int32_t>(borders.size() + 1);
+    std::vector<Side> left, right;  // of every border, and of both ends; where it is taken away, no cluster
+    for (int32_t at = 0; at <= leaves; ++at) {
+        left.push_back({at - 1, at - 1});
+        right.push_back({at < leaves ? at : -1, at + 1});
+    }
+    for (size_t m = 0; m < borders.size(); ++m) {
+        if (borders[m] <= 0 || borders[m] >= leaves) refuse_saved("its tree is not a tree");
+        Side &a = left[static_cast<size_t>(borders[m])], &b = right[static_cast<size_t>(borders[m])];
+        if (a.cluster < 0) refuse_saved("its tree is not a tree");
+        merges_.push_back({a.cluster, b.cluster, concavities[m], 0});
+        const auto merged = static_cast<int32_t>(static_cast<size_t>(leaves) + m);
+        right[static_cast<size_t>(a.far)] = {merged, b.far};
+        left[static_cast<size_t>(b.far)] = {merged, a.far};
+        a.cluster = b.cluster = -1;
+    }
+}
+
+// Somewhat more than the caller's may have: a wrap lies round them.
+constexpr double largest_coordinate = 1e101;
+
+// A hash can be forged: what finish() and the questions rely on is checked as well.
+void Hierarchy::check_stored() const {
+    const size_t leaves = tetrahedra_.size();
+    const auto below = [](int32_t i, size_t size) { return i >= 0 && static_cast<size_t>(i) < size; };
+    const auto measure = [](double x) { return x >= 0 && std::isfinite(x); };
+    for (const Point& p : vertices_)
+        for (double c : p)
+            if (!(std::fabs(c) <= largest_coordinate)) refuse_saved("a vertex is out of range");
+    if (Frame::around(vertices_).longest == 0) refuse_saved("its vertices are all at one place");
+    for (int32_t s : source_)
+        if (s < -1 || s >= PW_MAX_COUNT) refuse_saved("a vertex has no source");
+    for (const Tetrahedron& t : tetrahedra_)
+        for (int32_t v : t)
+            if (!below(v, vertices_.size())) refuse_saved("a tetrahedron names a missing vertex");
+    for (int32_t l : leaf_)
+        if (!below(l, leaves)) refuse_saved("a face names a missing tetrahedron");
+    for (double a : face_area_)
+        if (!measure(a)) refuse_saved("an area is impossible");
+    for (int32_t f : outer_faces_)  // how many there must be shows when a solid is asked for
+        if (f != -1 && !below(f, leaf_.size())) refuse_saved("a facet names a missing face");
+    // Sums of some are finite if that of all is.
+    double concavities = 0;
+    for (const Merge& m : merges_) {
+        if (!measure(m.concavity)) refuse_saved("a volume is impossible");
+        concavities += m.concavity;
+    }
+    if (!measure(summary_.hull_volume) || !std::isfinite(concavities) ||
+        !std::isfinite(std::reduce(face_area_.begin(), face_area_.end())))
+        refuse_saved("its measures are impossible");
+    // One for each part and each merge that joins them; with no parts there is none.
+    if (!scores_.empty() && (scores_.size() % 2 == 0 || scores_.size() > 2 * leaves - 1))
+        refuse_saved("its scores are odd");
+    for (double s : scores_)  // 0 is for what is below the parts
+        if (!(s > 0 && s <= 1)) refuse_saved("a score is impossible");
+    if (summary_.components == 0 || summary_.components > leaves) refuse_saved("its counts are impossible");
+
+    const auto strangers = static_cast<size_t>(std::count(source_.begin(), source_.end(), -1));
+    const bool exact = summary_.rung == PW_RUNG_EXACT;
+    if (exact ? summary_.added_vertices != strangers : summary_.added_vertices > strangers)
+        refuse_saved("its counts are impossible");
+    if (!measure(summary_.deviation) || (exact && summary_.deviation != 0)) refuse_saved("its deviation is impossible");
+    const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
+    if (exact != account_.empty() || !std::all_of(account_.begin(), account_.end(), printable))
+        refuse_saved("its account can't be read");
+}
+
+}  // namespace partwheel

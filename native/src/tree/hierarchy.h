@@ -1,0 +1,90 @@
+// The finished, immutable hierarchy: flat arrays, questions, saving and loading.
+#pragma once
+
+#include "part/solid.h"
+#include "partwheel.h"
+#include "tree/dendrogram.h"
+#include "tree/regroup/regroup.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace partwheel {
+
+// pw_arrays documents the arrays, pw_hierarchy_* the questions; arguments are checked by api.
+class Hierarchy {
+public:
+    // From what the rooms before it made: regroup()'s tree and scores, or the paper's tree and no scores.
+    // caller_vertices are the caller's own.
+    Hierarchy(const Surface& surface, const TetMesh& mesh, const Regrouped& regrouped, const double* caller_vertices);
+
+    // Throws Error(PW_ERROR_DATA) for anything but what save() makes.
+    static Hierarchy load(std::span<const uint8_t> bytes);
+    std::vector<uint8_t> save() const;
+
+    pw_arrays arrays() const;
+    const pw_summary& summary() const { return summary_; }
+    const std::string& account() const { return account_; }
+    size_t face_count() const { return leaf_.size(); }
+    size_t node_count() const { return parent_.size(); }
+    size_t tetrahedron_count() const { return tetrahedra_.size(); }
+    std::span<const Merge> merges() const { return merges_; }
+
+    std::vector<int32_t> path(size_t face) const;
+    WheelStops wheel(size_t face) const;  // its stops are nodes
+    std::span<const int32_t> faces(size_t node) const;
+    std::vector<int32_t> cut_height(double height) const;   // bounds, as the C API documents
+    std::vector<int32_t> cut_parts(size_t parts) const;     // likewise
+    std::vector<int32_t> cut_least_concavity(size_t parts) const;  // likewise
+    std::vector<int32_t> cut_automatic() const;             // likewise
+    TriangleMesh hull(size_t tet_first, size_t tet_last) const;
+    TriangleMesh solid(size_t tet_first, size_t tet_last, std::span<const std::array<int32_t, 2>> middles) const;
+    // inside: of each source face, not 0 for those that the part is to have in place of its own.
+    TriangleMesh solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside) const;
+
+private:
+    Hierarchy() = default;
+    void check_stored() const;
+    void plant(std::span<const int32_t> borders, std::span<const double> concavities);
+    void finish();
+    std::vector<uint8_t> kept_merges() const;  // those that are nodes
+    size_t regrouped_merges() const { return scores_.empty() ? 0 : (scores_.size() - 1) / 2; }
+    std::vector<int32_t> bounds_of(std::span<const int32_t> clusters) const;
+    const Facets& facets() const;
+
+    // Stored: all else follows from these. Tetrahedra are in depth-first order, lengths and volumes in the caller's
+    // unit.
+    std::vector<Point> vertices_;
+    std::vector<int32_t> source_;
+    std::vector<Tetrahedron> tetrahedra_;
+    std::vector<int32_t> leaf_;      // of each face
+    std::vector<double> face_area_;
+    std::vector<int32_t> outer_faces_;  // see Facets
+    std::vector<Merge> merges_;      // but for their hull volumes, which finish() sets
+    std::vector<double> scores_;     // see Regrouped; none: this is the paper's tree
+    pw_summary summary_{};           // but for volume
+    std::string account_;
+
+    // Derived by finish().
+    Frame frame_;
+    std::vector<int32_t> merge_pairs_;
+    std::vector<int32_t> merge_last_;  // the end of each merge's slice of the tetrahedra
+    std::vector<int32_t> order_, parent_, first_, last_, tet_first_, tet_last_;
+    std::vector<uint8_t> cost_class_;
+    std::vector<double> cost_, height_, volume_, area_, score_;
+
+    // Made when a solid is first asked for, whichever thread asks. Not by std::call_once: an exception would have to
+    // pass through the system's C library, which the C++ runtime that is linked into this library can't do.
+    struct Facing {
+        std::mutex mutex;
+        std::unique_ptr<Facets> facets;
+    };
+    std::unique_ptr<Facing> facing_ = std::make_unique<Facing>();
+};
+
+}  // namespace partwheel
