@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes addon/partwheel/tools/partwheel.select.dat, the toolbar's icon: a part, what the next notch adds, and the wheel.
+"""Makes addon/partwheel/pick/partwheel.select.dat, the toolbar's icon: a part, what the next notch adds, and the wheel.
 
 Blender's format: "VCO" and a 0, width and height (255), origin (0, 0), then for each triangle three corners of two
 bytes, and after all these three colours of four bytes each; (0, 0) is at the bottom left.
@@ -8,7 +8,7 @@ bytes, and after all these three colours of four bytes each; (0, 0) is at the bo
 import math
 import pathlib
 
-TARGET = pathlib.Path(__file__).resolve().parents[1] / "addon" / "partwheel" / "tools" / "partwheel.select.dat"
+TARGET = pathlib.Path(__file__).resolve().parents[1] / "addon" / "partwheel" / "pick" / "partwheel.select.dat"
 GREY, PART, NEXT = (222, 222, 222, 255), (255, 160, 40, 255), (120, 190, 255, 255)
 CENTER, SIDES = (104, 128), 36
 

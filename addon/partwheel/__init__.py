@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Partwheel for Blender: select a meaningful part of a mesh with one click and a turn of the mouse wheel.
-"""
+"""Partwheel for Blender: select a meaningful part of a mesh with one click and a turn of the mouse wheel."""
 
+import importlib
 import sys
 from pathlib import Path
+
+import bpy
 
 # For Blender 3.4 to 4.1. Later ones read blender_manifest.toml; both say the same, and a test compares them.
 bl_info = {
@@ -20,35 +22,38 @@ PACKAGES = Path(__file__).parent / "packages"  # with the Python package partwhe
 
 if "register" in globals():
     # An update was installed over this: Blender before 4.2 reloads this file alone, so the others are forgotten here.
-    for name in [name for name in sys.modules if name.startswith((f"{__name__}.", "partwheel.")) or name == "partwheel"]:
+    ours = (f"{__name__}.", "partwheel.")
+    for name in [name for name in sys.modules if f"{name}.".startswith(ours) and name != __name__]:
         del sys.modules[name]
         globals().pop(name[len(__name__) + 1:], None)
 if PACKAGES.is_dir() and str(PACKAGES) not in sys.path:
     sys.path.insert(0, str(PACKAGES))
 
 
-def register():
-    from . import command, operators, preferences, prepared, previews, session, tools, ui
+# What Blender is told of, in this order: a module's CLASSES, then its register().
+MODULES = (
+    "preferences", "parts.session", "pick.prepared", "view.previews", "view.overlay",
+    "pick.build", "pick.select", "pick.paint", "solid.copy_part", "compose.place", "compose.unite", "compose.swap",
+    "deform.operator", "deform.proportional",
+    "ui.panel", "ui.path", "ui.copy_panel", "ui.deform_panel", "ui.menu", "ui.keymap", "pick.hover", "pick.tool", "command",
+)
 
-    preferences.register()
-    session.register()
-    prepared.register()
-    previews.register()
-    operators.register()
-    ui.register()
-    tools.register()
-    command.register()
+
+def register():
+    for module in _modules():
+        for each in getattr(module, "CLASSES", ()):
+            bpy.utils.register_class(each)
+        if hasattr(module, "register"):
+            module.register()
 
 
 def unregister():
-    from . import command, operators, overlay, preferences, prepared, previews, session, tools, ui
+    for module in reversed(_modules()):
+        if hasattr(module, "unregister"):
+            module.unregister()
+        for each in reversed(getattr(module, "CLASSES", ())):
+            bpy.utils.unregister_class(each)
 
-    command.unregister()
-    tools.unregister()
-    ui.unregister()
-    operators.unregister()
-    overlay.unregister()
-    previews.unregister()
-    prepared.unregister()
-    session.unregister()
-    preferences.unregister()
+
+def _modules():
+    return [importlib.import_module(f".{name}", __name__) for name in MODULES]

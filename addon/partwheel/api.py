@@ -20,7 +20,12 @@ partwheel.PartwheelError, whose text says what is wrong, or ValueError for an ob
 import numpy
 from mathutils import Vector
 
-from . import borders, composition, deforming, placement, selection, session, solids, swapping, union, wheel
+from .compose import placement, swapping, union
+from .deform import deforming
+from .mesh import selection
+from .parts import session
+from .pick import borders, states
+from .solid import composition, solids
 from partwheel.joint import REACH
 
 
@@ -57,7 +62,7 @@ def select(obj, face, level=0, extend=False, snap=False):
     """Selects the part that a click on this face takes, after level notches of the wheel (negative: down), and makes it
     the part picked last. With extend the selection before stays too. In Edit Mode as the select mode has it. Hidden
     faces stay as they are. snap: as for faces(). The node."""
-    picked = wheel.pick(hierarchy(obj), face, level)
+    picked = states.pick(hierarchy(obj), face, level)
     chosen = faces(obj, picked.node, snap)
     if obj.mode == "EDIT":
         selection.Selection(obj, obj.data).select(obj, chosen, picked.face, extend)

@@ -11,7 +11,7 @@ import bpy
 
 from . import api
 from partwheel import LibraryError, PartwheelError
-from .session import Outdated
+from .parts.session import Outdated
 
 NAME = "partwheel"
 _handle = None

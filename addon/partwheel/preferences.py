@@ -81,9 +81,4 @@ class Defaults:
     show_part, show_next, show_hull, show_cut = True, True, False, False
 
 
-def register():
-    bpy.utils.register_class(PartwheelPreferences)
-
-
-def unregister():
-    bpy.utils.unregister_class(PartwheelPreferences)
+CLASSES = (PartwheelPreferences,)

@@ -16,7 +16,7 @@ class Api(MeshTest):
         obj = self.add(*read_off("hand"))
         expected = self.hierarchy(obj)
         built = self.api.build(obj)
-        self.assertIs(part("session").hierarchy(obj), built)
+        self.assertIs(part("parts.session").hierarchy(obj), built)
         self.assertTrue((built.parent == expected.parent).all())
         self.assertEqual(self.api.path(obj, 700).tolist(), expected.path(700).tolist())
         for node in expected.path(700).tolist():
@@ -24,7 +24,7 @@ class Api(MeshTest):
 
     def test_mode_of_the_preferences_unless_a_script_names_one(self):
         obj, core, preferences = self.add(*read_off("hand")), package(), part("preferences").preferences()
-        expected = {mode: core.Hierarchy.build(*part("mesh_arrays").surface(obj.data), mode=mode).parent.tolist()
+        expected = {mode: core.Hierarchy.build(*part("mesh.arrays").surface(obj.data), mode=mode).parent.tolist()
                     for mode in core.Mode}
         self.assertNotEqual(*expected.values())
         for mode in core.Mode:
@@ -45,7 +45,7 @@ class Api(MeshTest):
             self.edit(obj)
             bpy.ops.mesh.partwheel_select(face_index=700, level=level)
             expected = selected(obj)
-            node = part("session").picked(obj).node
+            node = part("parts.session").picked(obj).node
             bpy.ops.mesh.select_all(action="DESELECT")
             self.assertEqual(self.api.select(obj, 700, level), node)
             self.assertEqual(selected(obj), expected)
@@ -101,13 +101,13 @@ class Api(MeshTest):
             self.api.select(obj, 6)
         with self.assertRaises(error):
             self.api.faces(obj, 10**6)
-        self.assertIsNone(part("session").picked(obj))
+        self.assertIsNone(part("parts.session").picked(obj))
 
 
 class PickedLast(MeshTest):
     def setUp(self):
         super().setUp()
-        self.session = part("session")
+        self.session = part("parts.session")
         self.obj = self.add(*read_off("hand"))
 
     def expect(self, pick):

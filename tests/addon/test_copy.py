@@ -178,10 +178,10 @@ class Copy(SolidTest):
         for rungs, rung, broken in ((2, "repaired", polygons[5:]), (2, "repaired", polygons + polygons[:1]),
                                     (4, "wrapped", [polygon for i, polygon in enumerate(polygons) if i % 7])):
             obj = self.add(vertices, broken)
-            hierarchy = package().Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=rungs)
+            hierarchy = package().Hierarchy.build(*part("mesh.arrays").surface(obj.data), rungs=rungs)
             self.assertEqual(hierarchy.summary.rung, rung)
             for node in self.nodes(hierarchy):
-                copy = part("solids").part(obj, hierarchy, int(hierarchy.tet_first[node]),
+                copy = part("solid.solids").part(obj, hierarchy, int(hierarchy.tet_first[node]),
                                            int(hierarchy.tet_last[node]))
                 self.assertSolid(copy)
                 self.assertEqual((~caps(copy)).sum(), len(hierarchy.faces(node)))
@@ -201,13 +201,13 @@ class Copy(SolidTest):
         ):
             obj = self.add(places, broken, name)
             obj.data.uv_layers.new(name="uv").data.foreach_set("uv", rng.random(6 * len(broken)))
-            hierarchy = package().Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=3)
+            hierarchy = package().Hierarchy.build(*part("mesh.arrays").surface(obj.data), rungs=3)
             self.assertEqual(hierarchy.summary.rung, "repaired")
             at = {frozenset(tuple(obj.data.vertices[v].co) for v in polygon.vertices): polygon
                   for polygon in obj.data.polygons}
             for node in self.nodes(hierarchy):
                 tets = slice(int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node]))
-                copy = part("solids").part(obj, hierarchy, tets.start, tets.stop)
+                copy = part("solid.solids").part(obj, hierarchy, tets.start, tets.stop)
                 self.assertSolid(copy)
                 sides = numpy.diff(hierarchy.vertices[hierarchy.tetrahedra[tets]], axis=1)
                 filled = numpy.abs(numpy.linalg.det(sides)).sum() / 6
@@ -235,12 +235,12 @@ class Copy(SolidTest):
         obj = self.add(vertices, kept)
         obj.shape_key_add(name="Basis")
         obj.shape_key_add(name="Key")
-        hierarchy = package().Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=4)
+        hierarchy = package().Hierarchy.build(*part("mesh.arrays").surface(obj.data), rungs=4)
         share = hierarchy.area / hierarchy.area[-1]
         filled = []
         for node in rng.choice(numpy.flatnonzero((share > 0.01) & (share < 0.8)), 48, replace=False).tolist():
             ends = int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])
-            copy = part("solids").part(obj, hierarchy, *ends)
+            copy = part("solid.solids").part(obj, hierarchy, *ends)
             self.assertSolid(copy)
             self.assertEqual((~caps(copy)).sum(), len(hierarchy.faces(node)))
             sides = numpy.diff(hierarchy.vertices[hierarchy.tetrahedra[slice(*ends)]], axis=1)
@@ -270,7 +270,7 @@ class Copy(SolidTest):
         obj, hierarchy = self.built()
         self.edit(obj)
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=10, level=2), {"FINISHED"})
-        node = part("session").picked(obj).node
+        node = part("parts.session").picked(obj).node
         copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy)
         self.assertEqual((bpy.context.mode, bpy.context.selected_objects), ("OBJECT", [copy]))
         self.assertEqual((~caps(copy.data)).sum(), len(hierarchy.faces(node)))
@@ -358,7 +358,7 @@ class Remove(SolidTest):
     def test_holes_of_a_broken_mesh_stay_and_the_new_one_is_closed(self):
         vertices, polygons = read_off("hand")
         obj = self.add(vertices, polygons[3:])
-        hierarchy = package().Hierarchy.build(*part("mesh_arrays").surface(obj.data), rungs=3)
+        hierarchy = package().Hierarchy.build(*part("mesh.arrays").surface(obj.data), rungs=3)
         self.assertEqual(hierarchy.summary.rung, "repaired")
 
         def open_edges(mesh):
@@ -373,7 +373,7 @@ class Remove(SolidTest):
                   if any(frozenset(tuple(vertices[v]) for v in key) in before for key in polygon.edge_keys)}
         self.assertFalse(inside & around)
         node = self.nodes(hierarchy)[-3]
-        part("solids").remove(obj, hierarchy, int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node]))
+        part("solid.solids").remove(obj, hierarchy, int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node]))
         self.assertEqual(open_edges(obj.data), before)
         self.assertEqual((~caps(obj.data)).sum(), total - len(inside))
 

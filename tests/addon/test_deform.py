@@ -70,7 +70,7 @@ class Deform(MeshTest):
         self.assertNotEqual(set(snapped), set(faces))
         before = edited(obj)
         move = shift(0.1 * numpy.ptp(before, axis=0).max(), 0, 0)
-        start = part("wheel").pick(part("api").hierarchy(obj), FINGER)
+        start = part("pick.states").pick(part("api").hierarchy(obj), FINGER)
         level = start.stops.index(node) - start.start
         for picked, arguments, chosen in ((True, {}, snapped), (False, {}, faces), (True, {"snap": False}, faces),
                                           (False, {"snap": True}, snapped)):
@@ -99,8 +99,8 @@ class Deform(MeshTest):
         self.assertFalse(moved[numpy.setdiff1d(numpy.arange(len(before)), free)].any())
         self.assertGreater(moved[free].mean(), 0.9)
         numpy.testing.assert_allclose(after[tip] - before[tip], move[:3, 3], atol=1e-5 * size)
-        self.assertIsNotNone(part("session").hierarchy(obj))
-        self.assertEqual(part("session").state(obj.data)[0], part("session").State.MOVED)
+        self.assertIsNotNone(part("parts.session").hierarchy(obj))
+        self.assertEqual(part("parts.session").state(obj.data)[0], part("parts.session").State.MOVED)
         bpy.ops.object.mode_set(mode="OBJECT")
         numpy.testing.assert_array_equal(stored(obj.data.vertices), after.astype(numpy.float32))
 
@@ -220,7 +220,7 @@ class Deform(MeshTest):
         obj.data.use_mirror_x = True
         top = [polygon.index for polygon in obj.data.polygons if polygon.center.z > 0.01]
         co = stored(obj.data.vertices)
-        deforming = part("deforming")
+        deforming = part("deform.deforming")
         region = deforming.Region(obj, top, 0, True)
         patch = region.patch(region.nearest_free(int(numpy.abs(co - (0.5, 0, 1)).sum(axis=1).argmin())), 0.3)
         shape = deforming.AsRigidAsPossible(region, [patch])
@@ -243,7 +243,7 @@ class Deform(MeshTest):
         faces = [polygon.index for polygon in obj.data.polygons if polygon.center.z > 0]
         self.assertTrue(any(len(polygon.vertices) > 4 for polygon in obj.data.polygons))
         top = [vertex.index for vertex in obj.data.vertices if vertex.co.z > 2.9]
-        deforming = part("deforming")
+        deforming = part("deform.deforming")
         region = deforming.Region(obj, faces)
         shape = deforming.AsRigidAsPossible(region, [numpy.searchsorted(region.vertices, top)])
         shape.jump([shift(1, 0, 0)])
@@ -254,7 +254,7 @@ class Deform(MeshTest):
     def test_restoring_is_exact(self):
         obj, node, faces, free, tip = self.hand()
         before = edited(obj)
-        deforming = part("deforming")
+        deforming = part("deform.deforming")
         region = deforming.Region(obj, faces)
         shape = deforming.AsRigidAsPossible(region, [[region.nearest_free(tip)]])
         for step in range(5):
@@ -281,7 +281,7 @@ class Deform(MeshTest):
     def test_refusals_change_nothing(self):
         obj, node, faces, free, tip = self.hand()
         before = edited(obj)
-        hierarchy = part("session").hierarchy(obj)
+        hierarchy = part("parts.session").hierarchy(obj)
         root = len(hierarchy.parent) - 1
         here = handle(tip, shift(0.1, 0, 0))
         self.assertIn("no handle", self.refusal())
@@ -308,8 +308,8 @@ class Deform(MeshTest):
         for point in obj.data.vertices:
             point.co = (1, 2, 3)
         obj.data.update()
-        with self.assertRaises(part("deforming").Refused) as refused:
-            part("deforming").Region(obj, [0, 2, 4])
+        with self.assertRaises(part("deform.deforming").Refused) as refused:
+            part("deform.deforming").Region(obj, [0, 2, 4])
         self.assertIn("area", str(refused.exception))
 
     def test_a_loose_piece_has_no_border(self):
@@ -317,8 +317,8 @@ class Deform(MeshTest):
         count = len(vertices)
         obj = self.add(vertices + [(x + 3, y, z) for x, y, z in vertices],
                        polygons + [tuple(count + v for v in polygon) for polygon in polygons])
-        with self.assertRaises(part("deforming").Refused) as refused:
-            part("deforming").Region(obj, list(range(len(polygons))))
+        with self.assertRaises(part("deform.deforming").Refused) as refused:
+            part("deform.deforming").Region(obj, list(range(len(polygons))))
         self.assertIn("loose piece", str(refused.exception))
 
     def test_some_faces_without_area(self):
@@ -331,7 +331,7 @@ class Deform(MeshTest):
             vertex.co = bm.verts[free[0]].co
         around[2].co = (around[2].co + 99 * bm.verts[free[0]].co) / 100
         before = edited(obj)
-        deforming = part("deforming")
+        deforming = part("deform.deforming")
         region = deforming.Region(obj, faces)
         shape = deforming.AsRigidAsPossible(region, [[region.nearest_free(tip)]])
         pen = deforming.Pen(obj, region)
@@ -351,7 +351,7 @@ class Deform(MeshTest):
             bm = bmesh.from_edit_mesh(obj.data)
             for face in bm.faces:
                 face.smooth = smooth
-            deforming = part("deforming")
+            deforming = part("deform.deforming")
             region = deforming.Region(obj, faces)
             middle = region.nearest_free(tip)  # of a handle as large as users have it: no thorn
             patch = region.patch(middle, region.usual_radius(middle))
@@ -379,7 +379,7 @@ class Deform(MeshTest):
     def test_a_part_turned_at_its_joint(self):
         """The finger keeps its shape, and bends at its root on either side; operator, api and redo are one."""
         obj, node, faces, free, tip = self.hand()
-        deforming = part("deforming")
+        deforming = part("deform.deforming")
         before = edited(obj)
         region = deforming.Region(obj, faces, reach=2.0)
         limb = region.vertices[region.limb]
@@ -401,12 +401,12 @@ class Deform(MeshTest):
 
     def test_a_smaller_joint_and_none(self):
         obj, node, faces, free, tip = self.hand()
-        deforming = part("deforming")
+        deforming = part("deform.deforming")
         wide, narrow = (deforming.Region(obj, faces, reach=reach) for reach in (2.0, 0.5))
         self.assertGreater(len(narrow.limb), len(wide.limb))
         self.assertLess(len(narrow.moving), len(wide.moving))
         before = edited(obj)
-        root = len(part("session").hierarchy(obj).parent) - 1
+        root = len(part("parts.session").hierarchy(obj).parent) - 1
         self.assertIn("whole mesh", self.refusal(method="JOINT", node=root, handles=[handle(tip, shift(1, 0, 0))]))
         with self.assertRaises(ValueError):
             part("api").bend(obj, root, numpy.eye(3))
@@ -415,7 +415,7 @@ class Deform(MeshTest):
     def test_a_great_turn_at_once_is_as_one_little_by_little(self):
         """A typed number takes the handle far in one go: the part must not collapse on the way."""
         obj, node, faces, free, tip = self.hand()
-        deforming, deform = part("deforming"), package("deform")
+        deforming, deform = part("deform.deforming"), package("deform")
         region = deforming.Region(obj, faces, reach=2.0)
         turn = numpy.eye(4)
         turn[:3, :3] = [[1, 0, 0], [0, -1, 0], [0, 0, -1]]
@@ -446,7 +446,7 @@ class Deform(MeshTest):
         obj = self.add(vertices, polygons)
         before = stored(obj.data.vertices)
         faces = faces + list(range(len(polygons) - 18, len(polygons) - 6))
-        deforming = part("deforming")
+        deforming = part("deform.deforming")
         region = deforming.Region(obj, faces)
         shape = deforming.AsRigidAsPossible(region, [region.patch(region.nearest_free(tip), 4 * size)])
         turn = package("deform").part_of_the_way(numpy.diag([1.0, -1, -1, 1]), 40 / 180)
@@ -466,7 +466,7 @@ class Deform(MeshTest):
 
     def test_in_the_background(self):
         """What runs there can be asked to end; what went wrong is raised when it is fetched."""
-        background = part("background").Background
+        background = part("view.background").Background
         task = background(lambda stop: stop.wait())
         self.assertTrue(task.running())
         task.abandon()

@@ -36,7 +36,7 @@ class Calls:
 
     def __enter__(self):
         self.callers = str(part("operators").__file__).removesuffix("__init__.py")
-        self.package = str(part("session").__file__).removesuffix("session.py")
+        self.package = str(part("parts.session").__file__).removesuffix("session.py")
         sys.setprofile(self._called)
         return self
 
@@ -91,7 +91,7 @@ class Faults(SolidTest):
             meshes[mesh.name] = (mesh.users, np.array([vertex.co for vertex in verts]).tobytes(),
                                  bytes(face.select for face in faces))
         return dict(handlers=handlers, counts=counts, objects=objects, meshes=meshes, mode=bpy.context.mode,
-                    active=bpy.context.view_layer.objects.active.name, running=part("session").running())
+                    active=bpy.context.view_layer.objects.active.name, running=part("parts.session").running())
 
     def compare(self, now, before, where):
         for name, value in before.items():
@@ -164,7 +164,7 @@ class Faults(SolidTest):
         show(obj)
         self.edit(obj)
         _, _, region, region_view = view()
-        cls = part("operators.select").MESH_OT_partwheel_select
+        cls = part("pick.select").MESH_OT_partwheel_select
         for kind in (("RET",), ("ESC",), ("A",)):
             self.throw_everywhere(cls, [self.begins("W", ctrl=True), self.sends("WHEELUPMOUSE"),
                                         self.sends("MOUSEMOVE", value="NOTHING"), self.sends("TIMER"),
@@ -177,8 +177,8 @@ class Faults(SolidTest):
         self.edit(obj)
         node = limb(obj, hierarchy, 0, 1)
         face = int(hierarchy.faces(node)[0])
-        part("session").remember_pick(obj, face, node, False)
-        cls = part("operators.deform").MESH_OT_partwheel_deform
+        part("parts.session").remember_pick(obj, face, node, False)
+        cls = part("deform.operator").MESH_OT_partwheel_deform
         for method in ("RIGID", "PROPORTIONAL", "JOINT"):
             self.throw_everywhere(
                 cls, [self.begins("D"), self.ready, self.sends("G"), self.sends("MOUSEMOVE", (200, 150), "NOTHING"),
@@ -189,7 +189,7 @@ class Faults(SolidTest):
         target = self.add(*read_off("hand"), "target")
         show(target)
         self.add(*common.BOX, "thing")
-        cls = part("operators.place").OBJECT_OT_partwheel_place
+        cls = part("compose.place").OBJECT_OT_partwheel_place
         for key in ("RET", "ESC"):
             self.throw_everywhere(cls, [self.begins("A"), self.sends("MOUSEMOVE", value="NOTHING"),
                                         self.sends("WHEELUPMOUSE"), self.sends("PAGE_UP"), self.sends("TIMER"),
@@ -198,7 +198,7 @@ class Faults(SolidTest):
     def test_swap(self):
         giver, _ = self.built("dragknob")
         model, hierarchy = self.built("hand")
-        cls = part("operators.swap").MESH_OT_partwheel_swap
+        cls = part("compose.swap").MESH_OT_partwheel_swap
         node = limb(model, hierarchy, 0, 1)
         bpy.ops.object.mode_set(mode="EDIT")
         self.throw_everywhere(cls, [self.begins("A"), self.sends("WHEELUPMOUSE"), self.sends("M"), self.sends("TIMER"),
@@ -206,9 +206,9 @@ class Faults(SolidTest):
 
     def test_build(self):
         obj = self.add(*read_off("hand"))
-        part("session")._after_loading()
+        part("parts.session")._after_loading()
         self.assertEqual(obj.mode, "OBJECT")
-        cls = part("operators.build").MESH_OT_partwheel_build
+        cls = part("pick.build").MESH_OT_partwheel_build
         self.throw_everywhere(cls, [self.begins("A"), self.sends("TIMER"), self.sends("ESC")])
 
     def test_drawing(self):
@@ -218,9 +218,9 @@ class Faults(SolidTest):
         show(obj)
         self.edit(obj)
         node = limb(obj, hierarchy, 0, 1)
-        part("session").remember_pick(obj, int(hierarchy.faces(node)[0]), node, False)
+        part("parts.session").remember_pick(obj, int(hierarchy.faces(node)[0]), node, False)
         before, self.cursor, self.draws = self.everything(), [], []
-        tool, context = self.begin(part("operators.deform").MESH_OT_partwheel_deform, {})
+        tool, context = self.begin(part("deform.operator").MESH_OT_partwheel_deform, {})
         for step in (self.begins("D"), self.sends("G"), self.sends("MOUSEMOVE", (200, 150), "NOTHING")):
             self.assertEqual(step(tool, context), {"RUNNING_MODAL"})
         tool._finish_task(context)

@@ -93,7 +93,7 @@ class Tool:
         vars(self).update(properties)
 
     def __getattr__(self, name):
-        cls = getattr(part(f"operators.{self.operator}"), f"MESH_OT_partwheel_{self.operator}")
+        cls = getattr(bpy.types, f"MESH_OT_partwheel_{self.operator}")
         found = [vars(each)[name] for each in cls.__mro__ if name in vars(each)]
         if not found:
             raise AttributeError(name)
@@ -124,7 +124,7 @@ class ToolTest(MeshTest):
         """A pixel with a face of the object under it, with so many stops above the start: (point, face index)."""
         obj = obj or self.obj
         _, _, region, region_view = view()
-        tree = part("picking").FaceTree(obj)
+        tree = part("view.picking").FaceTree(obj)
         bm = bmesh.from_edit_mesh(obj.data)
         for face in bm.faces:
             if obj == self.obj:
@@ -259,7 +259,7 @@ class Modal(ToolTest):
                 self.assertEqual((flags(self.obj), flags(other)), before)
         self.assertEqual(bpy.context.edit_object, other)
         self.assertEqual(selected(self.obj), set())
-        self.assertEqual(part("session").picked(other).node, stops[start])
+        self.assertEqual(part("parts.session").picked(other).node, stops[start])
 
     def test_an_error_inside_restores_reports_and_ends(self):
         self.start()
@@ -279,7 +279,7 @@ class Modal(ToolTest):
         point, face = self.centre()
         self.send("LEFTMOUSE", point)
         stops, start = self.h.wheel(face)
-        creases = package().Creases(*part("mesh_arrays").surface(self.obj.data))
+        creases = package().Creases(*part("mesh.arrays").surface(self.obj.data))
 
         def snapped(level):
             return set(np.flatnonzero(creases.snapped(np.isin(np.arange(2390), self.h.faces(stops[start + level])))))
@@ -298,7 +298,7 @@ class Modal(ToolTest):
         self.send("E", point, shift=True, ctrl=True)
         self.assertEqual(self.send("RET"), {"FINISHED"})
         self.assertEqual((self.tool.face_index, self.tool.level, self.tool.snap), (face, 1, True))
-        self.assertTrue(part("session").picked(self.obj).snap)
+        self.assertTrue(part("parts.session").picked(self.obj).snap)
         bpy.ops.mesh.select_all(action="DESELECT")
         bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", face_index=face, level=1, snap=True)
         self.assertEqual(selected(self.obj), snapped(1))
@@ -321,7 +321,7 @@ class Modal(ToolTest):
     def test_drag_and_trackpad(self):
         self.start()
         point, face = self.centre()
-        keys = part("keys")
+        keys = part("view.keys")
         self.send("LEFTMOUSE", point)
         x, y = point
         for offset, level in ((keys.DRAG_STEP - 1, 0), (keys.DRAG_STEP, 1), (3 * keys.DRAG_STEP, 3), (2, 0)):
@@ -363,8 +363,8 @@ class Modal(ToolTest):
         point, face = self.centre()
         self.send("ESC")
         plain = [chr(letter) for letter in range(ord("A"), ord("Z") + 1)] + ["TAB", "DEL", "SPACE", "F3"]
-        ours = [(each.key, {"shift": True, "ctrl": True}) for each in part("keys").COMMANDS]
-        self.assertEqual(len(set(each.key for each in part("keys").COMMANDS)), 6)
+        ours = [(each.key, {"shift": True, "ctrl": True}) for each in part("view.keys").COMMANDS]
+        self.assertEqual(len(set(each.key for each in part("view.keys").COMMANDS)), 6)
         for tool in (True, False):
             digits = ["ONE", "TWO", "THREE"] * tool
             blenders = [(kind, {}) for kind in plain + digits] + [("TAB", {"shift": True}), ("D", {"shift": True})]
@@ -449,7 +449,7 @@ class HeldWorkers(ToolTest):
 
     def setUp(self):
         super().setUp()
-        self.session = part("session")
+        self.session = part("parts.session")
         self.gate = Gate(package("worker.job"))
         self.addCleanup(self.gate.remove)
         self.addCleanup(self.session._after_loading)
@@ -462,12 +462,12 @@ class WhileBuilding(HeldWorkers):
         """Starts the tool over a face of a mesh without a hierarchy, or beside the mesh."""
         self.start(name, build=False)
         self.send("ESC")
-        part("session")._after_loading()
+        part("parts.session")._after_loading()
         self.tool, self.context = Tool(), FakeContext()
         point, self.face = self.centre() if over else ((1, 1), None)
         self.before = flags(self.obj)
         self.assertEqual(self.tool.invoke(self.context, event("W", point, ctrl=True)), {"RUNNING_MODAL"})
-        self.assertTrue(part("session").running())
+        self.assertTrue(part("parts.session").running())
         self.assertEqual((len(self.context.handlers), len(self.context.timers)), (1, 1))
         self.assertIn("Esc", self.context.status[-1])
         self.job = self.tool.building.build.job
@@ -479,7 +479,7 @@ class WhileBuilding(HeldWorkers):
         return self.send("TIMER")
 
     def nothing_runs(self):
-        self.assertFalse(part("session").running())
+        self.assertFalse(part("parts.session").running())
         self.assertEqual(self.context.timers, [])
         self.assertIsNone(self.context.status[-1])
         self.assertFalse(alive(self.job.process_id))
@@ -496,7 +496,7 @@ class WhileBuilding(HeldWorkers):
         self.obj.matrix_world = Matrix.Translation((0, 0, 500)) @ self.obj.matrix_world  # as if the view had turned
         bpy.context.view_layer.update()
         self.assertEqual(self.build_on(), {"RUNNING_MODAL"})
-        self.assertEqual((self.context.timers, part("session").running()), ([], False))
+        self.assertEqual((self.context.timers, part("parts.session").running()), ([], False))
         self.expect(self.face, 0)
         self.send("WHEELUPMOUSE")
         self.expect(self.face, 1)
@@ -527,7 +527,7 @@ class WhileBuilding(HeldWorkers):
         self.nothing_runs()
         self.assertEqual(flags(self.obj), self.before)
         self.assertIn("Cancelled", self.tool.reports[-1][1])
-        self.assertIsNone(part("session").hierarchy(self.obj))
+        self.assertIsNone(part("parts.session").hierarchy(self.obj))
 
     def test_edited_meanwhile(self):
         self.begin()
@@ -537,7 +537,7 @@ class WhileBuilding(HeldWorkers):
         self.nothing_runs()
         self.assertEqual(self.tool.reports[-1][0], {"WARNING"})
         self.assertIn("edited", self.tool.reports[-1][1])
-        self.assertIsNone(part("session").hierarchy(self.obj))
+        self.assertIsNone(part("parts.session").hierarchy(self.obj))
 
     def test_moved_meanwhile(self):
         self.begin()
@@ -546,11 +546,11 @@ class WhileBuilding(HeldWorkers):
         bm.verts[0].co.x += 0.01
         self.assertEqual(self.build_on(), {"RUNNING_MODAL"})
         self.expect(self.face, 0)
-        session = part("session")
+        session = part("parts.session")
         self.assertEqual(session.state(self.obj.data)[0], session.State.MOVED)
 
     def test_an_operator_that_makes_the_mesh_anew_wants_no_build_of_the_former(self):
-        session = part("session")
+        session = part("parts.session")
         self.begin()
         session.drop_outdated_builds()
         self.assertTrue(session.running())
@@ -589,7 +589,7 @@ class WhileBuilding(HeldWorkers):
         self.assertEqual(self.build_on(), {"CANCELLED"})
         self.nothing_runs()
         self.assertEqual(self.tool.reports[-1][0], {"INFO"})
-        self.assertIsNotNone(part("session").hierarchy(self.obj))
+        self.assertIsNotNone(part("parts.session").hierarchy(self.obj))
 
     def test_deleted_meanwhile(self):
         self.begin()
@@ -598,7 +598,7 @@ class WhileBuilding(HeldWorkers):
         self.assertEqual(self.build_on(), {"CANCELLED"})
         self.nothing_runs()
         self.assertIn("gone", self.tool.reports[-1][1])
-        self.assertFalse(part("session")._entries)
+        self.assertFalse(part("parts.session")._entries)
 
     def test_a_mesh_that_can_not_be_built_is_reported(self):
         self.obj = self.add(*SHEET)
@@ -625,7 +625,7 @@ class WhileBuilding(HeldWorkers):
         self.tool.cancel(self.context)
         self.nothing_runs()
         self.assertIn("Cancelled", self.tool.reports[-1][1])
-        self.assertIsNone(part("session").hierarchy(self.obj))
+        self.assertIsNone(part("parts.session").hierarchy(self.obj))
 
     def test_disabling_the_add_on_kills_the_worker(self):
         self.begin()
@@ -640,12 +640,12 @@ class WhileBuilding(HeldWorkers):
         bpy.ops.object.mode_set(mode="OBJECT")
         bpy.ops.wm.read_homefile(app_template="", use_empty=False)
         until(lambda: not alive(self.job.process_id))
-        self.assertFalse(part("session").running())
+        self.assertFalse(part("parts.session").running())
 
     def test_the_build_operator(self):
         self.start(build=False)
         self.send("ESC")
-        part("session")._after_loading()
+        part("parts.session")._after_loading()
         for over, answer in (("ESC", {"CANCELLED"}), ("TIMER", {"FINISHED"})):
             self.tool, self.context = Tool("build", quality=1.4), FakeContext()
             self.assertEqual(self.tool.invoke(self.context, event("A")), {"RUNNING_MODAL"})
@@ -653,7 +653,7 @@ class WhileBuilding(HeldWorkers):
             self.assertEqual(self.send("LEFTMOUSE"), {"PASS_THROUGH"})
             self.assertEqual(self.build_on() if over == "TIMER" else self.send(over), answer)
             self.nothing_runs()
-            self.assertEqual(part("session").hierarchy(self.obj) is None, over == "ESC")
+            self.assertEqual(part("parts.session").hierarchy(self.obj) is None, over == "ESC")
 
 
 class ManyMeshes(HeldWorkers):
@@ -902,7 +902,7 @@ class Pick(MeshTest):
                 bm.faces.ensure_lookup_table()
                 hidden = set()
                 for _ in range(2):
-                    tree, hits = part("picking").FaceTree(obj), 0
+                    tree, hits = part("view.picking").FaceTree(obj), 0
                     for x in range(1, 6):
                         for y in range(1, 6):
                             point = region.width * x // 6, region.height * y // 6
@@ -926,7 +926,7 @@ class Pick(MeshTest):
 
     def test_what_lies_over_the_view_is_not_the_view(self):
         window, area, region, _ = view()
-        find = part("picking").view_under
+        find = part("view.picking").view_under
         inside = region.x + region.width // 2, region.y + region.height // 2
         self.assertEqual(find(window, *inside)[1].type, "WINDOW")
         header = next(region for region in area.regions if region.type == "HEADER")

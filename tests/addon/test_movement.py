@@ -10,7 +10,7 @@ from mathutils import Vector
 
 class Typing(MeshTest):
     def test_a_number_is_typed(self):
-        movement = part("movement").Movement("G", Vector(), False)
+        movement = part("deform.movement").Movement("G", Vector(), False)
         for key, typed in (("ONE", "1"), ("PERIOD", "1."), ("NUMPAD_5", "1.5"), ("MINUS", "-1.5"), ("MINUS", "1.5"),
                            ("BACK_SPACE", "1.")):
             self.assertIs(movement.type(key), True, key)
@@ -26,4 +26,4 @@ class Gizmo(MeshTest):
         for _ in range(200):
             point, a, b = (Vector((rng.uniform(-3, 3), rng.uniform(-3, 3))) for _ in range(3))
             least = min((point - a.lerp(b, step / 2000)).length for step in range(2001))
-            self.assertTrue(math.isclose(part("handle_gizmo")._distance(point, a, b), least, abs_tol=5e-3))
+            self.assertTrue(math.isclose(part("deform.handle_gizmo")._distance(point, a, b), least, abs_tol=5e-3))

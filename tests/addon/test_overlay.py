@@ -11,8 +11,8 @@ class Tints(MeshTest):
         super().setUp()
         self.obj = self.add(*read_off("homer"))
         self.h = part("api").build(self.obj)
-        self.overlay = part("overlay")
-        self.parts = self.overlay.Parts(part("seen").seen(self.obj), self.h)
+        self.overlay = part("view.overlay")
+        self.parts = self.overlay.Parts(part("view.seen").seen(self.obj), self.h)
         self.obj.data.calc_loop_triangles()
         self.face_of = {frozenset(each.vertices): each.polygon_index for each in self.obj.data.loop_triangles}
 

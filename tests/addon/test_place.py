@@ -28,7 +28,7 @@ class Place(SolidTest):
             self.assertAlmostEqual(a, b, places=places)
 
     def test_border_comes_onto_the_surface(self):
-        placement = part("placement")
+        placement = part("compose.placement")
         _, _, _, copy = self.copied()
         copy.matrix_world = Matrix.Rotation(1, 4, (1, 2, 3)) @ Matrix.Scale(0.5, 4)
         bpy.context.view_layer.update()
@@ -46,7 +46,7 @@ class Place(SolidTest):
 
     def test_matrices_are_made_up_to_date_first(self):
         """Blender 5 has none when it repeats an operator after undo; scripts that moved an object have old ones."""
-        placement, composition = part("placement"), part("composition")
+        placement, composition = part("compose.placement"), part("solid.composition")
         obj, hierarchy, node, copy = self.copied()
         pose = placement.Pose(Vector((1, 2, 3)), Vector((0, 0, 1)))
         where = {"location": (5, 6, 7), "rotation_euler": (1, 2, 3), "scale": (2, 2, 2)}
@@ -74,7 +74,7 @@ class Place(SolidTest):
         bpy.context.view_layer.update()
 
     def test_put_back_exactly(self):
-        placement = part("placement")
+        placement = part("compose.placement")
         _, _, _, copy = self.copied()
         for mode in ("XYZ", "QUATERNION", "AXIS_ANGLE"):
             copy.rotation_mode = mode
@@ -98,7 +98,7 @@ class Place(SolidTest):
             self.near(axis, expected, 3)
 
     def test_part_fits_where_it_was_removed_and_makes_the_whole_again(self):
-        placement = part("placement")
+        placement = part("compose.placement")
         obj, hierarchy, node, copy = self.copied()
         whole = volume(obj.data)
         self.run_on(obj, bpy.ops.mesh.partwheel_remove, node=node)
@@ -148,7 +148,7 @@ class Place(SolidTest):
         self.assertSolid(obj.data)
         self.assertAlmostEqual((volume(copy.data) + volume(obj.data)) / whole, 1, places=4)
         rest, size = volume(obj.data), volume(copy.data)
-        where = part("placement").border(copy).middle
+        where = part("compose.placement").border(copy).middle
         self.assertIsNone(api.place(copy, where, target=obj, fit=True))
         api.unite(obj, [copy])
         self.assertSolid(obj.data)
@@ -163,7 +163,7 @@ class Place(SolidTest):
     def test_a_part_without_caps_stands_on_its_underside(self):
         bpy.ops.mesh.primitive_cube_add()
         cube = bpy.context.active_object
-        self.place(cube, location=(0, 0, 0), normal=(0, 0, 1), depth=-part("placement").SINK)
+        self.place(cube, location=(0, 0, 0), normal=(0, 0, 1), depth=-part("compose.placement").SINK)
         self.assertAlmostEqual(min((cube.matrix_world @ v.co).z for v in cube.data.vertices), 0, places=5)
 
     def test_a_linked_target_is_not_taken_for_a_local_one_of_its_name(self):
@@ -175,6 +175,6 @@ class Place(SolidTest):
         before = set(bpy.data.objects)
         self.place(copy, target=linked.name_full, location=(7, 0, 0), normal=(1, 0, 0), mirror=True)
         (mirrored,) = set(bpy.data.objects) - before
-        (x, y, z), image = (part("placement").border(each).middle for each in (copy, mirrored))
+        (x, y, z), image = (part("compose.placement").border(each).middle for each in (copy, mirrored))
         self.near((x, y, z), (7, 0, 0), places=1)
         self.near(image, (2 * 3 - x, y, z))

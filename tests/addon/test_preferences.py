@@ -50,7 +50,7 @@ class Preferences(MeshTest):
         return str(refused.exception)
 
     def test_memory_is_a_share_of_what_is_available(self):
-        session = part("session")
+        session = part("parts.session")
         self.addCleanup(setattr, session, "available_memory", session.available_memory)
         session.available_memory = lambda: 10 * 2**30
         self.worker(REFUSES)

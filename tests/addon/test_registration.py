@@ -107,9 +107,9 @@ class Registration(unittest.TestCase):
     def test_an_update_is_used_at_once(self):
         """Installed over the enabled add-on: all its files are the new ones, also deep ones, without a restart; and the
         library in use is not written over, or the next call into it would end Blender."""
-        files = ("session.py", "packages/partwheel/hierarchy.py", "operators/build.py")
+        files = ("parts/session.py", "packages/partwheel/hierarchy.py", "pick/build.py")
         files = [f"partwheel_addon/{name}" for name in files]
-        names = [f"{common.MODULE}.session", "partwheel.hierarchy", f"{common.MODULE}.operators.build"]
+        names = [f"{common.MODULE}.parts.session", "partwheel.hierarchy", f"{common.MODULE}.pick.build"]
         before = everything()
         with tempfile.TemporaryDirectory() as directory:
             update = os.path.join(directory, os.path.basename(common.ZIP))
@@ -126,7 +126,7 @@ class Registration(unittest.TestCase):
                 for name in names:
                     module = importlib.import_module(name)
                     self.assertEqual(hasattr(module, "UPDATED"), updated, name)
-                self.assertEqual(hasattr(sys.modules[common.MODULE].session, "UPDATED"), updated)
+                self.assertEqual(hasattr(sys.modules[f"{common.MODULE}.parts.session"], "UPDATED"), updated)
                 self.assertIs(bpy.types.MESH_OT_partwheel_build, getattr(
                     importlib.import_module(names[2]), "MESH_OT_partwheel_build"))
                 after = everything()
@@ -202,7 +202,7 @@ class Timers(MeshTest):
         settings = bpy.context.tool_settings
         settings.proportional_size = users = 0.625
         for _ in range(2):
-            part("operators.proportional").MESH_OT_partwheel_move.invoke(None, bpy.context, None)
+            part("deform.proportional").MESH_OT_partwheel_move.invoke(None, bpy.context, None)
             self.assertEqual(len(timers()), 1)
             settings.proportional_size = 3  # as Blender's tool does in a window when it ends
         bpy.ops.preferences.addon_disable(module=common.MODULE)

@@ -19,13 +19,13 @@ class Saved(MeshTest):
         directory = tempfile.TemporaryDirectory()
         self.addCleanup(directory.cleanup)
         self.path = str(Path(directory.name) / "saved.blend")
-        self.State = part("session").State
+        self.State = part("parts.session").State
 
     def state(self, obj):
-        return part("session").state(obj.data)[0]
+        return part("parts.session").state(obj.data)[0]
 
     def kept(self, obj):
-        return part("session").hierarchy(obj)
+        return part("parts.session").hierarchy(obj)
 
     def built(self, name="hand"):
         obj = self.add(*(BOX if name == "box" else read_off(name)))
@@ -42,7 +42,7 @@ class Saved(MeshTest):
         return obj
 
     def properties(self):
-        return [mesh.name for mesh in bpy.data.meshes if part("stored").PROPERTY in mesh]
+        return [mesh.name for mesh in bpy.data.meshes if part("parts.stored").PROPERTY in mesh]
 
     def test_there_again(self):
         obj = self.built()
@@ -61,7 +61,7 @@ class Saved(MeshTest):
         self.save()
         obj = self.open()
         self.edit(obj)
-        session = part("session")
+        session = part("parts.session")
         original = session.Build
         self.addCleanup(setattr, session, "Build", original)
         session.Build = None
@@ -173,15 +173,15 @@ class Saved(MeshTest):
         self.built("box")
         bpy.ops.wm.open_mainfile(filepath=self.path)
         self.assertEqual(self.state(bpy.data.objects["model"]), self.State.NONE)
-        self.assertFalse(part("session")._entries)
+        self.assertFalse(part("parts.session")._entries)
 
     # ---- Bytes that are not sound
 
     def after_tampering(self, change):
         """The hierarchy after opening a file whose bytes were changed, which must be said on the console."""
         obj = self.built("cross_quad")
-        stored, session = part("stored"), part("session")
-        packed = stored.pack(part("mesh_arrays").fingerprint(obj.data), self.kept(obj))
+        stored, session = part("parts.stored"), part("parts.session")
+        packed = stored.pack(part("mesh.arrays").fingerprint(obj.data), self.kept(obj))
         self.assertEqual(len(stored.unpack(packed)[1].order), len(obj.data.polygons))
         session._entries.clear()
         obj.data[stored.PROPERTY] = change(packed)
@@ -200,7 +200,7 @@ class Saved(MeshTest):
 
     def test_tampered_bytes_are_refused(self):
         draw = random.Random(3)
-        stored = part("stored")
+        stored = part("parts.stored")
 
         def flipped(packed):
             place = draw.randrange(len(packed))
@@ -227,10 +227,10 @@ class Saved(MeshTest):
     def taken(self, obj, hierarchy, moved=False):
         """Whether the hierarchy is accepted for the object's mesh when a file says it is its own; moved: a vertex has
         been moved since."""
-        stored, session = part("stored"), part("session")
+        stored, session = part("parts.stored"), part("parts.session")
         session._entries.clear()
         session._retired.clear()
-        obj.data[stored.PROPERTY] = stored.pack(part("mesh_arrays").fingerprint(obj.data), hierarchy)
+        obj.data[stored.PROPERTY] = stored.pack(part("mesh.arrays").fingerprint(obj.data), hierarchy)
         place = obj.data.vertices[0].co.copy()
         if moved:
             obj.data.vertices[0].co.x += 0.01

@@ -62,7 +62,7 @@ class Seen(MeshTest):
                     obj.modifiers[0].uv_smooth = "NONE"
                     bpy.context.view_layer.update()
                 places, triangles, tags = self.numbers(obj)
-                found = part("seen").seen(obj)
+                found = part("view.seen").seen(obj)
                 np.testing.assert_array_equal(found.positions, places)
                 np.testing.assert_array_equal(found.triangles, triangles)
                 self.assertGreater((tags >= 0).mean(), 0.85)
@@ -74,7 +74,7 @@ class Seen(MeshTest):
         remesh = obj.modifiers.new("remesh", "REMESH")
         remesh.mode, remesh.voxel_size = "VOXEL", 0.1
         bpy.context.view_layer.update()
-        found = part("seen").seen(obj)
+        found = part("view.seen").seen(obj)
         self.assertGreater(len(found.faces), 1000)
         self.assertTrue((found.faces >= 0).all())
         places = found.positions[found.triangles].mean(axis=1) - [0, 0, 100]
@@ -100,7 +100,7 @@ class Seen(MeshTest):
 
     def test_what_belongs_to_no_face_says_so(self):
         obj = self.replaced()
-        self.assertEqual(set(part("seen").seen(obj).faces), {part("seen").NO_FACE})
+        self.assertEqual(set(part("view.seen").seen(obj).faces), {part("view.seen").NO_FACE})
         bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
         show(obj)
         tool = Tool("paint", write="AUTO")
@@ -123,7 +123,7 @@ class Seen(MeshTest):
         for mode in ("WEIGHT_PAINT", "SCULPT", "OBJECT"):
             bpy.ops.object.mode_set(mode=mode)
             before = self.everything(obj)
-            self.assertGreater(len(part("seen").seen(obj).faces), 1000)
+            self.assertGreater(len(part("view.seen").seen(obj).faces), 1000)
             self.assertEqual(self.everything(obj), before)
 
     def everything(self, obj):
@@ -137,9 +137,9 @@ class Seen(MeshTest):
         """Without modifiers they go into the mesh, and nothing else need know of them."""
         obj = self.sphere()
         bpy.ops.object.mode_set(mode="SCULPT")
-        part("seen").seen(obj)
+        part("view.seen").seen(obj)
         obj.data.vertices.foreach_set("co", 2 * positions(obj.data).ravel())
-        np.testing.assert_array_equal(part("seen").seen(obj).positions, positions(obj.data))
+        np.testing.assert_array_equal(part("view.seen").seen(obj).positions, positions(obj.data))
 
     def test_multires_as_it_is_sculpted(self):
         obj = self.modified("MULTIRES")
@@ -157,7 +157,7 @@ class Seen(MeshTest):
         for multires.sculpt_levels in (1, 2):
             bpy.ops.object.mode_set(mode="SCULPT")
             bpy.context.view_layer.update()
-            found = part("seen").seen(obj)
+            found = part("view.seen").seen(obj)
             places, triangles, tags = expected[multires.sculpt_levels]
             np.testing.assert_allclose(found.positions, places, atol=1e-6)
             np.testing.assert_array_equal(found.triangles, triangles)
@@ -170,9 +170,9 @@ class Seen(MeshTest):
         obj.data.polygons.foreach_set("hide", hidden)
         obj.data.update()
         bpy.context.view_layer.update()
-        self.assertTrue(hidden[part("seen").seen(obj).faces].any())
+        self.assertTrue(hidden[part("view.seen").seen(obj).faces].any())
         bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
-        self.assertFalse(hidden[part("seen").seen(obj).faces].any())
+        self.assertFalse(hidden[part("view.seen").seen(obj).faces].any())
 
     # ---- Picking and drawing
 
@@ -201,7 +201,7 @@ class Seen(MeshTest):
 
     def test_a_posed_hand_is_picked_and_drawn_where_it_is(self):
         obj, h, bones = self.posed()
-        prepared = part("prepared").prepared
+        prepared = part("pick.prepared").prepared
         evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
         places = positions(evaluated.to_mesh()).copy()
         self.assertGreater(np.abs(places - positions(obj.data)).max(), 1)
@@ -231,22 +231,22 @@ class Seen(MeshTest):
         """The face picked at the pixel of a face's middle."""
         middle = obj.matrix_world @ Vector(places[list(obj.data.polygons[face].vertices)].mean(axis=0))
         point = location_3d_to_region_2d(region, region_view, middle)
-        found = part("prepared").prepared(obj).tree.under(obj.matrix_world, region, region_view, point)
+        found = part("pick.prepared").prepared(obj).tree.under(obj.matrix_world, region, region_view, point)
         return found and found[0]
 
     def test_kept_where_other_polygons_are_shown(self):
         """The double that is made for that must not count as a change."""
         obj = self.modified("SUBSURF", levels=2)
         bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
-        made = part("prepared").prepared(obj)
+        made = part("pick.prepared").prepared(obj)
         bpy.context.view_layer.update()
-        self.assertIs(part("prepared").prepared(obj), made)
+        self.assertIs(part("pick.prepared").prepared(obj), made)
 
     def test_two_objects_with_one_mesh(self):
         """Each is picked where its own modifiers show it."""
         obj = self.modified("DISPLACE", strength=100, direction="Z", mid_level=0)
         twin = self.link(bpy.data.objects.new("twin", obj.data))
-        heights = [part("prepared").prepared(each)._seen.positions[:, 2].mean() for each in (obj, twin, obj)]
+        heights = [part("pick.prepared").prepared(each)._seen.positions[:, 2].mean() for each in (obj, twin, obj)]
         np.testing.assert_allclose(heights, [100, 0, 100], atol=1e-3)
 
 
@@ -273,7 +273,7 @@ class Views(MeshTest):
 
     def found(self, **more):
         context = FakeContext()
-        return part("picking").surface_under(context, self.area, self.region, self.region_view,
+        return part("view.picking").surface_under(context, self.area, self.region, self.region_view,
                                              (self.region.width // 2, self.region.height // 2), **more)
 
     def alone(self, obj):
@@ -343,7 +343,7 @@ class Views(MeshTest):
 
     def test_place_goes_onto_what_is_shown(self):
         placed = self.box("placed", -1)
-        operator = part("operators.place").OBJECT_OT_partwheel_place
+        operator = part("compose.place").OBJECT_OT_partwheel_place
         self.alone(self.far)
         fake = type("Fake", (), {"part_name": placed.name_full})()
         location, _, name = operator._surface_under(fake, FakeContext(), event("MOUSEMOVE"))
@@ -352,7 +352,7 @@ class Views(MeshTest):
         self.alone(self.far)
 
     def test_edit_mode_begins_on_what_is_shown(self):
-        operator = part("operators.paint").OBJECT_OT_partwheel_select
+        operator = part("pick.paint").OBJECT_OT_partwheel_select
         reports = []
         fake = type("Fake", (), {"report": lambda self, *what: reports.append(what), "_target": operator._target})()
         self.alone(self.far)

@@ -44,8 +44,8 @@ class Select(MeshTest):
 
     def always_all_off(self):
         """For this test most is deselected at once also in small meshes, where one by one would be quicker."""
-        self.addCleanup(setattr, part("selection"), "ALL_OFF", part("selection").ALL_OFF)
-        part("selection").ALL_OFF = 0
+        self.addCleanup(setattr, part("mesh.selection"), "ALL_OFF", part("mesh.selection").ALL_OFF)
+        part("mesh.selection").ALL_OFF = 0
 
     def test_other_objects_in_edit_mode_keep_what_they_should(self):
         self.always_all_off()
@@ -58,7 +58,7 @@ class Select(MeshTest):
                 bm = bmesh.from_edit_mesh(obj.data)
                 bm.faces.ensure_lookup_table()
                 bm.faces[1].select_set(True)
-            selections = part("selection").Selections(objects)
+            selections = part("mesh.selection").Selections(objects)
             for faces in (range(6), [2]):  # so most of it is deselected again
                 selections.select(objects[0], faces, 2, extend=extend)
             self.assertEqual(selected(objects[0]), {1, 2} if extend else {2})
@@ -72,7 +72,7 @@ class Select(MeshTest):
         stops, start = h.wheel(700)
         self.always_all_off()
         for kinds in (("VERT",), ("EDGE",), ("FACE",), ("VERT", "FACE"), ("EDGE", "FACE")):
-            Selection = part("selection").Selection
+            Selection = part("mesh.selection").Selection
             bm = self.edit(obj, kinds)
             expected = []
             for stop in stops:
@@ -109,7 +109,7 @@ class Select(MeshTest):
             bm.faces.active = bm.faces[11]
             bm.select_flush_mode()
             before = flags(obj)
-            selection = part("selection").Selection(obj)
+            selection = part("mesh.selection").Selection(obj)
             for last in stops:
                 for stop in (*stops, last):
                     selection.select(obj, h.faces(stop), 700)
@@ -125,7 +125,7 @@ class Select(MeshTest):
         bm = self.edit(obj)
         bm.faces.active = None
         before = flags(obj)
-        selection = part("selection").Selection(obj)
+        selection = part("mesh.selection").Selection(obj)
         selection.select(obj, [0, 1], 0)
         selection.restore(obj)
         self.assertEqual(flags(obj), before)
@@ -218,7 +218,7 @@ class Select(MeshTest):
         partly = [distance for index, distance in enumerate(moved) if index not in chosen and 0.01 < distance < 0.99]
         self.assertGreater(len(partly), 10)
         self.assertTrue(any(distance < 1e-6 for distance in moved))
-        self.assertIsNotNone(part("session").hierarchy(obj))  # only positions changed
+        self.assertIsNotNone(part("parts.session").hierarchy(obj))  # only positions changed
 
     def test_duplicate_takes_the_part_over(self):
         obj = self.add(*read_off("hand"))
@@ -228,4 +228,4 @@ class Select(MeshTest):
         bpy.ops.mesh.duplicate_move(TRANSFORM_OT_translate={"value": (0, 0, 1)})
         bm = bmesh.from_edit_mesh(obj.data)
         self.assertEqual((len(bm.faces), len(selected(obj))), (2390 + count, count))
-        self.assertIsNone(part("session").hierarchy(obj))
+        self.assertIsNone(part("parts.session").hierarchy(obj))

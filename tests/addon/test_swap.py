@@ -50,7 +50,7 @@ class Swap(SolidTest):
 
     def test_a_known_motion_is_found_again(self):
         """A duplicate that was moved, turned and scaled: each part's own twin is its first, and comes to its place."""
-        swapping = part("swapping")
+        swapping = part("compose.swapping")
         model, hierarchy = self.built("hand")
         twin = self.twin(model, MOTION)
         for node in {limb(model, hierarchy, 0, end) for end in (-1, 1)}:
@@ -58,11 +58,11 @@ class Swap(SolidTest):
             first = place.offers([twin])[0]
             self.assertEqual(first.node, node)
             self.assertGreater(first.score, 0.99)
-            copy = place.stand_in(first, swapping.Adjustment(depth=-part("placement").SINK))
+            copy = place.stand_in(first, swapping.Adjustment(depth=-part("compose.placement").SINK))
             self.assertIdentity(copy.matrix_world, 1e-4 * max(model.dimensions))
 
     def test_mirror_image_of_a_reflected_twin(self):
-        swapping = part("swapping")
+        swapping = part("compose.swapping")
         model, hierarchy = self.built("hand")
         twin = self.twin(model, MOTION @ Matrix.Scale(-1, 4, (1, 0, 0)))
         node = limb(model, hierarchy, 0, 1)
@@ -70,7 +70,7 @@ class Swap(SolidTest):
         offer = place.offer(twin, node)
         plain, mirrored = (package("compatible").fit(place.shape, offer.shape, mirror) for mirror in (False, True))
         self.assertLess(mirrored.distance, 0.1 * plain.distance)
-        copy = place.stand_in(offer, swapping.Adjustment(depth=-part("placement").SINK, mirror=True))
+        copy = place.stand_in(offer, swapping.Adjustment(depth=-part("compose.placement").SINK, mirror=True))
         self.assertIdentity(copy.matrix_world, 1e-4 * max(model.dimensions))
         swapping.dispose(copy)
         whole = volume(model.data)
@@ -80,7 +80,7 @@ class Swap(SolidTest):
 
     def test_volume_by_inclusion_and_exclusion(self):
         """Limbs of other models: what is left, what was placed and the union, as manifold3d has them."""
-        swapping, pairs, measured = part("swapping"), [], []
+        swapping, pairs, measured = part("compose.swapping"), [], []
         model, hierarchy, giver, _ = self.both("hand", "homer")
         before = arrays(giver.data)[0].tolist()
         for axis, end in ((0, -1), (0, 1)):
@@ -106,7 +106,7 @@ class Swap(SolidTest):
     def test_borders_are_in_creases(self):
         """Rest and part are those that removing and copying with snapped borders give, and the union is theirs; the
         border that the part was fitted by is the one that it was cut out with."""
-        swapping, api = part("swapping"), part("api")
+        swapping, api = part("compose.swapping"), part("api")
         model, hierarchy, giver, others = self.both("hand", "homer")
         node = next(node for node in self.nodes(hierarchy, 40)[::-1]
                     if set(api.faces(model, node).tolist()) != set(api.faces(model, node, snap=True).tolist()))
@@ -216,12 +216,12 @@ class Swap(SolidTest):
         model = self.add(both, polygons + [tuple(i + len(vertices) for i in polygon) for polygon in polygons])
         hierarchy = part("api").build(model)
         node = int(numpy.flatnonzero(hierarchy.last - hierarchy.first == len(polygons))[0])
-        with self.assertRaisesRegex(part("swapping").NotSwapped, "no border with the rest"):
+        with self.assertRaisesRegex(part("compose.swapping").NotSwapped, "no border with the rest"):
             part("api").compatible(model, node, model)
 
     def test_nothing_changes_where_the_union_fails(self):
         model, hierarchy, giver, _ = self.both("hand", "homer")
-        union, before = part("union"), self.everything()
+        union, before = part("compose.union"), self.everything()
         ways, union.WAYS = union.WAYS, ()
         try:
             with self.assertRaises(union.NotUnited):

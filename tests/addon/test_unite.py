@@ -62,7 +62,7 @@ class Unite(SolidTest):
         for name in ("hand", "dragknob", "helmet"):
             obj, hierarchy = self.built(name)
             for node in self.nodes(hierarchy, 5)[1:]:
-                made.append(part("solids").part(obj, hierarchy, int(hierarchy.tet_first[node]),
+                made.append(part("solid.solids").part(obj, hierarchy, int(hierarchy.tet_first[node]),
                                                 int(hierarchy.tet_last[node])))
             made.append(obj.data)
         return made
@@ -146,7 +146,7 @@ class Unite(SolidTest):
         target = self.cube()
         self.place(target, self.cube().data.copy(), Matrix.Translation((1, 0.9, 0.8)))
         self.assertEqual(bpy.ops.object.partwheel_unite(), {"FINISHED"})
-        self.assertEqual(len(part("session").hierarchy(target).order), len(target.data.polygons))
+        self.assertEqual(len(part("parts.session").hierarchy(target).order), len(target.data.polygons))
 
     def test_undo_brings_the_parts_back_too(self):
         target = self.cube()
@@ -156,15 +156,15 @@ class Unite(SolidTest):
         bpy.ops.ed.undo_push(message="before")
         name = target.name
         self.assertEqual(bpy.ops.object.partwheel_unite("EXEC_DEFAULT", True), {"FINISHED"})
-        united = part("session").hierarchy(bpy.data.objects[name])
+        united = part("parts.session").hierarchy(bpy.data.objects[name])
         self.assertIsNot(united, hierarchy)
         bpy.ops.ed.undo()
         target = bpy.data.objects[name]
         self.assertEqual(len(target.data.polygons), 6)
-        self.assertIs(part("session").hierarchy(target), hierarchy)
-        self.assertIs(part("session").picked(target).hierarchy, hierarchy)
+        self.assertIs(part("parts.session").hierarchy(target), hierarchy)
+        self.assertIs(part("parts.session").picked(target).hierarchy, hierarchy)
         bpy.ops.ed.redo()
-        self.assertIs(part("session").hierarchy(bpy.data.objects[name]), united)
+        self.assertIs(part("parts.session").hierarchy(bpy.data.objects[name]), united)
 
     def test_what_belongs_to_the_mesh_stays(self):
         """Its settings and properties, whoever else uses it; a fake user, which only the very same mesh can keep."""
@@ -323,7 +323,7 @@ class Blend(SolidTest):
 
         mesh = self.united(0.3, prepare=upwards).data
         if mesh.has_custom_normals:  # Blender's Boolean keeps them in some versions
-            normals = part("mesh_arrays").custom_normals(mesh)
+            normals = part("mesh.arrays").custom_normals(mesh)
             far = numpy.array([mesh.vertices[loop.vertex_index].co.x < 0 for loop in mesh.loops])
             self.assertTrue(numpy.allclose(normals[far], (0, 0.6, 0.8), atol=1e-2))
 

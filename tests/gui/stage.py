@@ -254,7 +254,7 @@ class Stage:
     @property
     def session(self):
         """The add-on's module that knows what is built, and what is being built."""
-        return self.part("session")
+        return self.part("parts.session")
 
     def hold_workers(self):
         """A closed Gate: workers that are started from now on wait until it is opened."""
@@ -267,12 +267,12 @@ class Stage:
 
     def hovered(self):
         """The faces of the part that hover shows, or None."""
-        what = self.part("tools.hover").hover.what
+        what = self.part("pick.hover").hover.what
         return what and frozenset(what[1].hierarchy.faces(what[2]).tolist())
 
     def drawn_things(self):
         """How many handlers of the add-on draw in the 3D views."""
-        return int(self.part("overlay").shown.on)
+        return int(self.part("view.overlay").shown.on)
 
     # ---- Setting the scene ----------------------------------------------------------------------------------------
 

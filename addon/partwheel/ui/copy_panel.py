@@ -24,9 +24,4 @@ class VIEW3D_PT_partwheel_copy(bpy.types.Panel):
             column.operator("object.partwheel_unite")
 
 
-def register():
-    bpy.utils.register_class(VIEW3D_PT_partwheel_copy)
-
-
-def unregister():
-    bpy.utils.unregister_class(VIEW3D_PT_partwheel_copy)
+CLASSES = (VIEW3D_PT_partwheel_copy,)

@@ -25,9 +25,4 @@ class VIEW3D_PT_partwheel_deform(bpy.types.Panel):
             button.method, button.start = "PROPORTIONAL", key
 
 
-def register():
-    bpy.utils.register_class(VIEW3D_PT_partwheel_deform)
-
-
-def unregister():
-    bpy.utils.unregister_class(VIEW3D_PT_partwheel_deform)
+CLASSES = (VIEW3D_PT_partwheel_deform,)

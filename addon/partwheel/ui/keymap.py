@@ -4,7 +4,7 @@ last. All keymaps of Blender 3.4 to 5.2 leave them free there; Ctrl W is Save in
 
 import bpy
 
-from .. import keys
+from ..view import keys
 
 _items = []
 
@@ -26,12 +26,3 @@ def unregister():
     for keymap, item in _items:
         keymap.keymap_items.remove(item)
     _items.clear()
-
-
-def item(command):
-    """The KeyMapItem that starts a keys.Command as the user has set it, or None."""
-    configuration = bpy.context.window_manager.keyconfigs.user
-    keymap = configuration and configuration.keymaps.get("Mesh")
-    return next((each for each in (keymap.keymap_items if keymap else ()) if each.active
-                 and each.idname == command.operator
-                 and all(getattr(each.properties, name) == value for name, value in command.options.items())), None)

@@ -5,7 +5,7 @@ import textwrap
 
 import bpy
 
-from .. import session
+from ..parts import session
 from .menu import draw_handoffs
 
 State = session.State
@@ -72,9 +72,4 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
                 column.label(text=line)
 
 
-def register():
-    bpy.utils.register_class(VIEW3D_PT_partwheel)
-
-
-def unregister():
-    bpy.utils.unregister_class(VIEW3D_PT_partwheel)
+CLASSES = (VIEW3D_PT_partwheel,)

@@ -6,7 +6,8 @@ import math
 
 import bpy
 
-from .. import session, wheel
+from ..parts import session
+from ..pick import states
 
 SMALLEST = 0.25  # share of the width that the smallest part's bar takes
 
@@ -14,7 +15,7 @@ SMALLEST = 0.25  # share of the width that the smallest part's bar takes
 def rows(pick):
     """[(number from 1, node, faces, share of the area, cost as text, bar 0..1)] of a session.Picked, growing."""
     hierarchy = pick.hierarchy
-    picked = wheel.pick(hierarchy, pick.face)
+    picked = states.pick(hierarchy, pick.face)
     counts = [len(hierarchy.faces(node)) for node in picked.stops]
     low, high = math.log(counts[0]), math.log(max(counts[-1], counts[0] + 1))
     return [(number, node, count, hierarchy.area[node] / hierarchy.area[-1], cost(hierarchy, node),
@@ -74,7 +75,7 @@ def draw_path(layout, obj):
     pick = session.picked_as_told(obj)
     if not pick:
         return
-    start = wheel.pick(pick.hierarchy, pick.face).start
+    start = states.pick(pick.hierarchy, pick.face).start
     column = layout.column(align=True)
     column.operator_context = "EXEC_DEFAULT"
     for number, node, count, share, text, bar in reversed(rows(pick)):
@@ -89,5 +90,3 @@ def draw_path(layout, obj):
 
 
 CLASSES = (VIEW3D_PT_partwheel_path, MESH_OT_partwheel_path)
-
-register, unregister = bpy.utils.register_classes_factory(CLASSES)

@@ -6,7 +6,7 @@ import numpy
 
 def play(stage):
     yield from stage.open("homer")
-    model, core, arrays = stage.object, stage.package(), stage.part("mesh_arrays")
+    model, core, arrays = stage.object, stage.package(), stage.part("mesh.arrays")
     creases = core.Creases(*arrays.surface(arrays.up_to_date(model)))
 
     def snapped(faces):
@@ -34,8 +34,8 @@ def play(stage):
     others, begin = stage.wheels.stops(face)
     stage.mouse.move(x - 3, y)
     stage.mouse.move(x, y)
-    yield from stage.until("hover shows the snapped part", lambda: stage.part("tools.hover").hover.what is not None and
-                           frozenset(stage.part("tools.hover").hover.what[3].tolist()) == snapped(others[begin]))
+    yield from stage.until("hover shows the snapped part", lambda: stage.part("pick.hover").hover.what is not None and
+                           frozenset(stage.part("pick.hover").hover.what[3].tolist()) == snapped(others[begin]))
     stage.mouse.click(shift=True)
     both = snapped(stops[start + 2]) | snapped(others[begin])
     yield from stage.selected(both, "the next click is snapped too")

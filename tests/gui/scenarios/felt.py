@@ -83,14 +83,14 @@ def points(stage):
 
 def play(stage):
     yield from stage.open("elephant")
-    picker, hover = stage.part("operators.pick").PartPicker, stage.part("tools.hover").Hover
-    overlay = stage.part("overlay")
+    picker, hover = stage.part("pick.pick").PartPicker, stage.part("pick.hover").Hover
+    overlay = stage.part("view.overlay")
     handle, begin, moves = Clock(picker, "_handle"), Clock(picker, "_begun"), Clock(hover, "move")
     draws, hover_draws, software = (
         Clock(overlay, "draw_held"), Clock(overlay, "draw_hover"), watch_batches(overlay.Parts))
     stage.use_tool()
     spots = points(stage)
-    stage.part("prepared")._kept.clear()
+    stage.part("pick.prepared")._kept.clear()
     stage.mouse.move(*spots[0])
     yield from stage.until("hover has found a part", lambda: stage.hovered() is not None)
     first_hover = sum(moves.take())
@@ -128,7 +128,7 @@ def play(stage):
         stage.mouse.key("ESC")
         yield from stage.settle()
         stage.select(())
-    stage.part("prepared")._kept.clear()
+    stage.part("pick.prepared")._kept.clear()
     begin.take()
     stage.mouse.click()
     yield from stage.until("something is selected", lambda: stage.object.data.total_face_sel > 0)

@@ -9,7 +9,7 @@ from view import picture
 
 def play(stage):
     yield from stage.open("hand")
-    points, gizmo = stage.part("handle_points"), stage.part("handle_gizmo")
+    points, gizmo = stage.part("deform.handle_points"), stage.part("deform.handle_gizmo")
     region, view = stage.view.region, stage.view_3d
     middle = region.width // 2, region.height // 2
     place = region_2d_to_location_3d(region, view, middle, view.view_location)

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""mesh.partwheel_swap: the picked part is exchanged for a compatible one of another object. The wheel goes through what
+is offered; meanwhile one sees what would be left of the object, and the part offered stands in its place."""
+
+import math
+
+import bpy
+
+from ..mesh import objects
+from ..solid import composition, solids
+from ..view import keys, previews
+from . import swapping, union
+from partwheel import PartwheelError
+from ..mesh.linked import changeable
+from ..solid.copy_part import OnPart, OnParts, Snaps
+from ..view.in_view import InView, waiting
+from .place import DEPTH_STEP, PASS, SIZE_STEP, TURN_STEP
+from .unite import find_parts
+
+CONFIRM, CANCEL = keys.CLICK.events | keys.CONFIRM.events, keys.CANCEL.events
+
+
+class MESH_OT_partwheel_swap(InView, Snaps, OnPart, OnParts, bpy.types.Operator):
+    """Exchange the picked part for one of another object that fits its border; the wheel goes through what there is"""
+
+    bl_idname = "mesh.partwheel_swap"
+    bl_label = "Swap with Compatible Part"
+    refusals = PartwheelError, solids.NotClosed, swapping.NotSwapped, union.NotUnited
+    lost = "the object is no longer the active one"
+    was_edited, preview = False, None
+
+    other: bpy.props.StringProperty(
+        name="From", description="The object that the new part comes from; none: those selected, or else all others",
+        options={"SKIP_SAVE"})
+    other_node: bpy.props.IntProperty(
+        name="Part", description="The new part, as a number of that object's hierarchy; -1: the most compatible one",
+        default=-1, min=-1, options={"SKIP_SAVE"})
+    whole: bpy.props.BoolProperty(
+        name="All of It", description="The object is a part itself, copied as a solid before", default=False,
+        options={"SKIP_SAVE", "HIDDEN"})
+    scale: bpy.props.FloatProperty(
+        name="Size", description="Times the size at which the borders fit", default=1, min=1e-4, options={"SKIP_SAVE"})
+    angle: bpy.props.FloatProperty(
+        name="Turn", description="About the border's normal", subtype="ANGLE", default=0, options={"SKIP_SAVE"})
+    depth: bpy.props.FloatProperty(
+        name="Depth", description="How far it is sunk in, times the radius of the border", default=0,
+        options={"SKIP_SAVE"})
+    mirror: bpy.props.BoolProperty(
+        name="Mirror", description="Take the part's mirror image", default=False, options={"SKIP_SAVE"})
+
+    blend: bpy.props.FloatProperty(
+        name="Blend", description="Width of a smooth transition on either side of the seam, times its radius",
+        default=0, min=0, soft_max=1)
+    build: bpy.props.BoolProperty(
+        name="Find Parts", description="Find the parts of the new mesh at once, in a process of its own", default=True)
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and changeable(cls, context.active_object)
+
+    def work(self, context, obj, hierarchy):
+        place = swapping.Place(obj, hierarchy, self.node, self.snap)
+        self._swap(place, self._chosen(context, place, obj))
+
+    def _chosen(self, context, place, obj):
+        """The Offer that the options name."""
+        other = objects.wanted(self.other) if self.other else None
+        if self.other and (other is None or other.type != "MESH"):
+            raise swapping.NotSwapped(f"There is no mesh object {self.other}.")
+        if other and (self.whole or self.other_node >= 0):
+            return place.offer(other, None if self.whole else self.other_node)
+        return place.offers([other] if other else swapping.sources(context, obj))[0]
+
+    def _swap(self, place, offer):
+        self.other, self.whole = offer.name, offer.node is None
+        self.other_node = -1 if self.whole else offer.node
+        place.swap(offer, self._adjustment(), self.blend)
+        if self.build:
+            find_parts(self)
+
+    def _adjustment(self):
+        return swapping.Adjustment(self.scale, self.angle, self.depth, self.mirror)
+
+    # ---- With the wheel --------------------------------------------------------------------------------------------
+
+    def _begin(self, context, _event):
+        obj = context.active_object
+        with waiting(context):
+            hierarchy = self.hierarchy(context, obj)
+            other = objects.wanted(self.other)
+            others = [other] if other else swapping.sources(context, obj)
+            self.was_edited = obj.mode == "EDIT"
+            if self.was_edited:
+                bpy.ops.object.mode_set(mode="OBJECT")
+            self.place = swapping.Place(obj, hierarchy, self.node, self.snap)
+            self.offers, self.index = self.place.offers(others), 0
+            self.preview = Preview(self.place)
+            self._before_saving(previews.end)
+            self._show(context)
+        return {"RUNNING_MODAL"}
+
+    def _still_there(self, context):
+        active = context.view_layer.objects.active  # none while it is hidden, in some versions
+        obj = objects.named(self.place.name)
+        return (obj is not None and context.view_layer.objects.get(obj.name) == obj and active in (None, obj)
+                and context.mode == "OBJECT")
+
+    def _handle(self, context, event):
+        if not self.preview.there():  # a file was saved meanwhile, or a step undone
+            self._show(context)
+        if event.type in PASS:
+            return {"PASS_THROUGH"}
+        if event.value not in {"PRESS", "DOUBLE_CLICK"}:
+            return {"RUNNING_MODAL"}
+        if event.type in CANCEL:
+            return {"CANCELLED"}
+        if event.type in CONFIRM:
+            return self._confirmed(context)
+        sign = keys.TURNS.get(event.type, 0)
+        if event.type in keys.DEPTH.events:
+            self.depth -= sign * DEPTH_STEP
+        elif event.type in keys.MIRROR.events:
+            self.mirror = not self.mirror
+        elif event.type in keys.TURN.events and event.shift:
+            self.angle += sign * TURN_STEP
+        elif event.type in keys.SIZE.events and (event.ctrl or event.type not in keys.OFFER.events):
+            self.scale *= SIZE_STEP ** sign
+        elif event.type in keys.OFFER.events:
+            self.index = min(max(self.index + sign, 0), len(self.offers) - 1)
+        else:
+            return {"RUNNING_MODAL"}
+        self._show(context)
+        return {"RUNNING_MODAL"}
+
+    def _show(self, context, problem=""):
+        offer = self.offers[self.index]
+        self.preview.show(offer, self._adjustment())
+        state = [f"{offer.name}, part {self.index + 1} of {len(self.offers)}", f"{offer.score:.0%} alike",
+                 f"size {self.scale:.2f}", f"turn {math.degrees(self.angle):.0f}°", f"depth {self.depth:.2f}"]
+        self._tell(context, problem or ", ".join(state + ["mirrored"] * self.mirror), keys.SWAPPING)
+
+    def _confirmed(self, context):
+        previews.end()
+        if self.was_edited:
+            # Undo steps of Edit Mode hold its mesh alone.
+            bpy.ops.ed.undo_push(message="Leave Edit Mode")
+        try:
+            self._swap(self.place, self.offers[self.index])
+        except self.refusals as error:  # another part may do
+            self.report({"ERROR"}, str(error))
+            self._show(context, str(error))
+            return {"RUNNING_MODAL"}
+        return {"FINISHED"}
+
+    def _take_back(self, context):
+        previews.end()
+        if self.was_edited and context.active_object and context.active_object.mode == "OBJECT":
+            bpy.ops.object.mode_set(mode="EDIT")
+
+
+class Preview:
+    """In place of the object one with what is left of it without the part; and beside it the parts offered so far, of
+    which one is seen. The object itself is hidden and not touched."""
+
+    def __init__(self, place):
+        self.place, self.rest, self.shown = place, "", {}
+
+    def there(self):
+        return self.rest in bpy.data.objects
+
+    def show(self, offer, adjustment):
+        if not self.there():
+            self._begin()
+        wanted = offer.name, offer.node
+        for each, name in self.shown.items():
+            bpy.data.objects[name].hide_viewport = each != wanted
+        if wanted in self.shown:
+            self.place.put(bpy.data.objects[self.shown[wanted]], offer, adjustment)
+        else:
+            self.shown[wanted] = previews.show(self.place.stand_in(offer, adjustment)).name
+
+    def _begin(self):
+        obj = objects.named(self.place.name)
+        mesh = self.place.rest()
+        rest = obj.copy()  # with its modifiers and materials
+        rest.data = mesh
+        composition.home(obj).objects.link(rest)
+        self.rest, self.shown = previews.show(rest).name, {}
+        previews.hide(obj)
+
+
+CLASSES = (MESH_OT_partwheel_swap,)

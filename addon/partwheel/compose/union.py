@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Closed meshes united into one by Blender's Boolean. What it gives is never trusted: it is checked, and the next
+solver is tried."""
+
+import bmesh
+import bpy
+import numpy as np
+from mathutils import Vector
+from mathutils.bvhtree import BVHTree
+
+from ..mesh import arrays, pieces
+from . import pinches, seams
+from partwheel import polygon_faults
+from ..mesh.arrays import read
+
+# (solver, whether it also unites what overlaps within one mesh), in the order tried. Blenders before 4.5 have no
+# MANIFOLD; some later ones have it and do nothing.
+WAYS = (("MANIFOLD", False), ("EXACT", False), ("EXACT", True))
+SAMPLES = 200  # vertices that are looked at to see whether a mesh lies inside another
+RAY = Vector((0.5377, 0.3141, 0.7823)).normalized()  # no model is likely to be built along it
+TOLERANCE = 1e-5  # of the sum of the volumes: coordinates are of 24 bits
+# How the properties begin that are a mesh's settings.
+SETTINGS = ("remesh_", "use_remesh_", "use_mirror_", "use_paint_", "use_auto_", "auto_smooth", "radial", "texspace")
+
+
+class NotUnited(Exception):
+    """Why meshes can't be united. str() is a sentence for the user."""
+
+
+def unite(target, others, blend=0.0, instead=None):
+    """Makes the target's mesh the union of it, as it is without modifiers, and of the other objects, with theirs. The
+    others stay. blend: the width of a smooth transition on either side of each seam, times the seam's radius. instead:
+    a mesh to be taken for the target's own. Returns the solver that did it. Raises NotUnited before anything has
+    changed."""
+    slots = []
+    base = _input(target, instead or target.data, slots)
+    solvers = []
+    try:
+        if blend > 0:
+            seams.mark(base, 0)
+        for side, other in enumerate(others, 1):
+            operand = _evaluated(other, slots)
+            try:
+                if blend > 0:
+                    seams.mark(operand, side)
+                operand.transform(target.matrix_world.inverted() @ other.matrix_world)
+                if target.matrix_world.is_negative != other.matrix_world.is_negative:
+                    operand.flip_normals()
+                result, solver = _united(base, operand, target.name, other.name, slots)
+            finally:
+                bpy.data.meshes.remove(operand)
+            bpy.data.meshes.remove(base)
+            base = result
+            solvers.append(solver)
+        if blend > 0:
+            seams.blend(base, blend)
+            seams.unmark(base)
+    except Exception:
+        bpy.data.meshes.remove(base)
+        raise
+    _replace(target, base, slots)
+    return solvers[-1]
+
+
+def problem(mesh):
+    """What keeps the mesh from being a closed, manifold, oriented surface, in words; None if nothing does."""
+    if not len(mesh.polygons):
+        return "it has no faces"
+    begin, _ = arrays.polygon_sizes(mesh)
+    faults = polygon_faults(read(mesh.loops, "vertex_index", np.int32), begin, len(mesh.vertices))
+    open_edges = faults.open or abs(len(mesh.edges) - len(mesh.loops) // 2)  # or edges that no face has
+    if open_edges:
+        return f"{open_edges} edges have not just two faces"
+    if faults.against:
+        return f"at {faults.against} edges the faces wind against each other"
+    if faults.touching:
+        return f"{faults.touching} vertices are loose or join parts that only touch there"
+    return None
+
+
+def volume(mesh):
+    """That the mesh encloses, in its own unit cubed."""
+    corners = read(mesh.vertices, "co", np.float32, 3).astype(float)
+    if not len(corners):
+        return 0.0
+    corners -= corners.mean(axis=0)
+    a, b, c = (corners[each] for each in arrays.triangles(mesh)[0].T)
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+
+
+def _evaluated(obj, slots):
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    mesh = bpy.data.meshes.new_from_object(obj.evaluated_get(depsgraph), preserve_all_data_layers=True,
+                                           depsgraph=depsgraph)
+    try:
+        return _input(obj, mesh, slots)
+    finally:
+        bpy.data.meshes.remove(mesh)
+
+
+def _input(obj, mesh, slots):
+    """A copy of the mesh with its materials numbered by slots, a list of all materials, which grows."""
+    wrong = problem(mesh)
+    if wrong:
+        raise NotUnited(f"{obj.name} is no solid: {wrong}. Repair it, or copy its part anew.")
+    own = [slot.material for slot in obj.material_slots] or [None]
+    for material in own:
+        if material not in slots:
+            slots.append(material)
+    indices = arrays.material_indices(mesh)
+    numbers = np.array([slots.index(material) for material in own], np.int32)
+    copy = mesh.copy()
+    copy.materials.clear()
+    arrays.set_material_indices(copy, numbers[np.minimum(indices, len(own) - 1)])
+    if copy.shape_keys:  # they can't outlive a union
+        holder = bpy.data.objects.new(copy.name, copy)
+        holder.shape_key_clear()
+        bpy.data.objects.remove(holder)
+    return copy
+
+
+def _united(base, operand, base_name, operand_name, slots):
+    """(new mesh, solver)"""
+    known = {item.identifier for item in bpy.types.BooleanModifier.bl_rna.properties["solver"].enum_items}
+    volumes = volume(base), volume(operand)
+    for name, measured in zip((base_name, operand_name), volumes):
+        if measured <= 0:
+            raise NotUnited(f"{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).")
+    reasons = []
+    for solver, within in WAYS:
+        if solver not in known:
+            continue
+        result = _boolean(base, operand, solver, within, slots)
+        wrong = problem(result)
+        if wrong and _set_apart(result):
+            wrong = problem(result)
+        wrong = wrong or _implausible((base, operand), volumes, result)
+        if not wrong:
+            return result, solver
+        reasons.append(f"by {solver.title()}{' within' if within else ''}: {wrong}")
+        bpy.data.meshes.remove(result)
+    raise NotUnited(f"{base_name} and {operand_name} can't be united ({'; '.join(reasons)}). Move one of them a "
+                    "little: faces that lie in each other are the usual cause.")
+
+
+def _inside(inner, outer):
+    """Whether the vertices of one mesh lie in the other, by the parity of crossings along a ray."""
+    bm = bmesh.new()
+    try:
+        bm.from_mesh(outer)
+        tree = BVHTree.FromBMesh(bm)
+    finally:
+        bm.free()
+    step = max(len(inner.vertices) // SAMPLES, 1)
+    return all(_crossings(tree, inner.vertices[i].co) % 2 for i in range(0, len(inner.vertices), step))
+
+
+def _crossings(tree, place):
+    count, (found, _, _, _) = 0, tree.ray_cast(place, RAY)
+    while found:
+        count += 1
+        found, _, _, _ = tree.ray_cast(found + RAY * (1e-6 * max(found.length, 1e-6)), RAY)
+    return count
+
+
+def _set_apart(mesh):
+    """Where the solids only touch, and vertices of one place were joined into one. Whether it could."""
+    bm = bmesh.new()
+    try:
+        bm.from_mesh(mesh)
+        bm.normal_update()
+        done = pinches.set_apart(bm)
+        if done:
+            bm.to_mesh(mesh)
+        return done
+    finally:
+        bm.free()
+
+
+def _implausible(meshes, volumes, result):
+    """What is wrong with a union's volume, by inclusion and exclusion: it is at least the larger volume and at most the
+    sum. The larger mesh as it was is the union only if the other lies within."""
+    united = volume(result)
+    slack = TOLERANCE * sum(volumes)
+    if not max(volumes) - slack <= united <= sum(volumes) + slack:
+        return f"its volume would be {united:.6g}, of {volumes[0]:.6g} and {volumes[1]:.6g}"
+    larger, smaller = meshes if volumes[0] >= volumes[1] else meshes[::-1]
+    if (len(result.vertices), len(result.polygons)) == (len(larger.vertices), len(larger.polygons)) and (
+            united <= max(volumes) + min(slack, min(volumes) / 2)) and not _inside(smaller, larger):
+        return "one of them was left out"
+    return None
+
+
+def _boolean(base, operand, solver, within, slots):
+    """The result of Blender's modifier, on objects that are in the scene only for as long as this takes."""
+    collection = bpy.data.collections.new("partwheel union")
+    bpy.context.scene.collection.children.link(collection)
+    objects = [bpy.data.objects.new(mesh.name, mesh) for mesh in (base, operand)]
+    try:
+        for obj in objects:
+            collection.objects.link(obj)
+            indices = arrays.material_indices(obj.data)
+            obj.data.materials.clear()
+            for material in slots:
+                obj.data.materials.append(material)
+            arrays.set_material_indices(obj.data, indices)
+        modifier = objects[0].modifiers.new("union", "BOOLEAN")
+        modifier.operation, modifier.object, modifier.solver = "UNION", objects[1], solver
+        if within:
+            modifier.use_self = True
+        bpy.context.view_layer.update()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        return bpy.data.meshes.new_from_object(objects[0].evaluated_get(depsgraph), preserve_all_data_layers=True,
+                                               depsgraph=depsgraph)
+    finally:
+        for obj in objects:
+            bpy.data.objects.remove(obj)
+        bpy.data.collections.remove(collection)
+
+
+def _replace(target, result, slots):
+    """Makes the result the target's mesh: name, settings, properties and users are those of the one before."""
+    if slots == [None]:
+        result.materials.clear()  # it was none
+    old, name = target.data, target.data.name
+    if old.animation_data or old.asset_data or old.use_fake_user:  # what a new one can't have
+        normals = arrays.custom_normals(result)
+        if old.users > 1 + old.use_fake_user:
+            target.data = old = old.copy()
+        if old.shape_keys:
+            target.shape_key_clear()
+        old.materials.clear()
+        for material in result.materials:
+            old.materials.append(material)
+        pieces.replace_geometry(old, result)
+        if normals is not None:
+            arrays.set_custom_normals(old, normals)
+        old.update()
+        bpy.data.meshes.remove(result)
+        return
+    for setting in old.bl_rna.properties:
+        if setting.identifier.startswith(SETTINGS) and not result.is_property_readonly(setting.identifier):
+            setattr(result, setting.identifier, getattr(old, setting.identifier))
+    for key in old.keys():
+        result[key] = old[key]
+    if old.users > 1:
+        target.data = result
+    else:
+        old.user_remap(result)
+        bpy.data.meshes.remove(old)
+        result.name = name

@@ -1,0 +1,351 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A mesh put together from pieces of another, with all their layers, by whole arrays: a bmesh of the same costs ten
+times as much. (Not taken along: multires displacements, which Python can't write.)"""
+
+from typing import NamedTuple
+
+import bmesh
+import bpy
+import numpy as np
+
+from . import arrays
+from .arrays import read, write
+
+# Type of an attribute -> (its field, type of its numbers, how many they are, whether a mean has a meaning)
+_TYPES = {
+    "FLOAT": ("value", np.float32, 1, True), "INT": ("value", np.int32, 1, False),
+    "INT8": ("value", np.int32, 1, False),
+    "BOOLEAN": ("value", bool, 1, False), "FLOAT2": ("vector", np.float32, 2, True),
+    "FLOAT_VECTOR": ("vector", np.float32, 3, True), "FLOAT_COLOR": ("color", np.float32, 4, True),
+    "BYTE_COLOR": ("color", np.float32, 4, True), "INT16_2D": ("value", np.int32, 2, False),
+    "INT32_2D": ("value", np.int32, 2, False), "QUATERNION": ("value", np.float32, 4, False),
+    "FLOAT4X4": ("value", np.float32, 16, False),
+}
+_SHAPE = {"position", ".edge_verts", ".corner_vert", ".corner_edge", ".corner_normal"}
+_SELECTION = {".select_vert", ".select_edge", ".select_poly"}
+# What was no attribute but a property of the elements, in Blenders that had it so.
+_MARKS = {"vertices": [], "edges": [], "polygons": []}
+if bpy.app.version < (5, 0, 0):
+    _MARKS["edges"] = [("use_freestyle_mark", bool)]
+    _MARKS["polygons"] = [("use_freestyle_mark", bool)]
+if bpy.app.version < (4, 0, 0):
+    _MARKS["vertices"] += [("bevel_weight", np.float32)]
+    _MARKS["edges"] += [("use_seam", bool), ("use_edge_sharp", bool), ("crease", np.float32),
+                        ("bevel_weight", np.float32)]
+    _MARKS["polygons"] += [("use_smooth", bool)]
+# Where the mesh itself knows whether it has any.
+_KNOWN = {("vertices", "bevel_weight"): "has_bevel_weight_vertex", ("edges", "bevel_weight"): "has_bevel_weight_edge",
+          ("edges", "crease"): "has_crease_edge"}
+# What is a collection of layers of its own, which only a bmesh makes; without some of them in newer Blenders:
+# collection -> (elements, the bmesh's, its name there, fields: (name, type, how many, of a new element)).
+_OWN_LAYERS = {
+    "skin_vertices": ("vertices", "verts", "skin", [("radius", np.float32, 2, 0.25), ("use_root", bool, 1, False),
+                                                    ("use_loose", bool, 1, False)]),
+    "vertex_paint_masks": ("vertices", "verts", "paint_mask", [("value", np.float32, 1, 0)]),
+    "vertex_creases": ("vertices", "verts", "crease", [("value", np.float32, 1, 0)]),
+    "face_maps": ("polygons", "faces", "face_map", [("value", np.int32, 1, -1)]),
+}
+if bpy.app.version >= (4, 0, 0):  # the others are attributes
+    _OWN_LAYERS = {"skin_vertices": _OWN_LAYERS["skin_vertices"]}
+
+
+_NONE = np.empty(0, np.int64)
+
+
+class Origins(NamedTuple):
+    """Where n elements come from: first (n,) the source's that each is, -1 for new ones; but those at (k,) are midway
+    between that one and other (k,)."""
+
+    first: np.ndarray
+    at: np.ndarray = _NONE
+    other: np.ndarray = _NONE
+
+
+class Plan(NamedTuple):
+    """A mesh of n vertices, L corners and P polygons, and where each comes from:
+
+    places (n,3)
+    vertices, loops: Origins        of the vertices and of the corners
+    corners (L,), begin (P,)        the vertex of each corner, and the first corner of each polygon
+    polygons (P,)                   the source's; -1: new, and then flat
+    whole                           so many polygons at the beginning are the source's own, corner for corner
+    wires (w,)                      the source's edges that have no face
+    number (V,)                     the vertex that each of the source's is, where those polygons or edges have it
+    alias (V,)                      the source's vertex that each of the source's is taken for; None: itself
+    """
+
+    places: np.ndarray
+    vertices: Origins
+    loops: Origins
+    corners: np.ndarray
+    begin: np.ndarray
+    polygons: np.ndarray
+    whole: int
+    wires: np.ndarray
+    number: np.ndarray
+    alias: np.ndarray = None
+
+
+def assembled(mesh, plan, name, selection):
+    """A new mesh: materials, settings and properties are the source's; and what is selected, if selection."""
+    made = mesh.copy()
+    made.name = name
+    if made.shape_keys:
+        _clear_keys(made)
+    made.clear_geometry()
+    _make_own_layers(mesh, made)
+    of_edge, ends, edge_from = _edges(mesh, plan)
+    made.vertices.add(len(plan.places))
+    _copy_groups(mesh, made, plan.vertices)
+    for elements, count in ((made.edges, len(ends)), (made.loops, len(plan.corners)), (made.polygons, len(plan.begin))):
+        elements.add(count)
+    write(made.vertices, "co", plan.places)
+    write(made.edges, "vertices", ends)
+    write(made.loops, "vertex_index", plan.corners.astype(np.int32))
+    write(made.loops, "edge_index", of_edge)
+    write(made.polygons, "loop_start", plan.begin.astype(np.int32))
+    if bpy.app.version < (4, 0, 0):
+        write(made.polygons, "loop_total", np.diff(plan.begin, append=len(plan.corners)).astype(np.int32))
+    origins = {"POINT": plan.vertices, "CORNER": plan.loops, "EDGE": Origins(edge_from), "FACE": Origins(plan.polygons)}
+    _copy_attributes(mesh, made, origins, _SHAPE if selection else _SHAPE | _SELECTION)
+    first = {"vertices": plan.vertices.first, "edges": edge_from, "polygons": plan.polygons}
+    _copy_marks(mesh, made, first)
+    _copy_own_layers(mesh, made, first)
+    _copy_keys(mesh, made, plan)
+    made.update()
+    return made
+
+
+def _edges(mesh, plan):
+    """((L,) the edge from each corner to the next, (m,2) the edges' vertices, (m,) the source edge of each, or -1)"""
+    own, count = plan.loops.first, len(plan.corners)
+    numbers, all_ends = _edge_numbers(mesh, plan.alias), arrays.edge_vertices(mesh)
+    # Of whole polygons they are the source's.
+    rest = int(plan.begin[plan.whole]) if plan.whole < len(plan.begin) else count
+    of_edge = np.empty(count, np.int32)
+    source = numbers[own[:rest]]
+    there = np.zeros(len(all_ends), bool)
+    there[source] = True
+    used = np.flatnonzero(there)
+    place = np.empty(len(all_ends), np.int32)
+    place[used] = np.arange(len(used))
+    of_edge[:rest] = place[source]
+    ends = all_ends[used] if plan.alias is None else plan.alias[all_ends[used]]
+    ends = plan.number[ends]
+
+    # Of the others it is the source's if the next corner is the source's next one, or the one before: then it is the
+    # one before's.
+    following = np.arange(rest + 1, count + 1)
+    following[np.append(plan.begin[plan.whole + 1:], count)[:len(plan.begin) - plan.whole] - 1 - rest] = (
+        plan.begin[plan.whole:])
+    begin, totals = arrays.polygon_sizes(mesh)
+    after = np.arange(1, len(mesh.loops) + 1, dtype=np.int32)
+    after[begin + totals - 1] = begin
+    single = own >= 0
+    single[plan.loops.at] = False
+    here, beyond = own[rest:], own[following]
+    plain = single[rest:] & single[following]
+    back = plain & (after[beyond] == here) & (after[here] != beyond)
+    plain &= back | (after[here] == beyond)
+    source = np.where(plain, numbers[np.where(back, beyond, here)], -1)
+
+    # Among them an edge may be one that is already there.
+    low, high = (each(plan.corners[rest:], plan.corners[following]) for each in (np.minimum, np.maximum))
+    touched = np.zeros(len(plan.places), bool)
+    touched[low] = touched[high] = True
+    near = np.flatnonzero(touched[ends[:, 0]] & touched[ends[:, 1]])
+    key = np.concatenate([np.sort(ends[near], axis=1), np.stack([low, high], axis=1)]).astype(np.int64)
+    unique, which = np.unique(key[:, 0] * len(plan.places) + key[:, 1], return_inverse=True)
+    which = which.ravel()
+    edge = np.full(len(unique), -1)
+    edge[which[:len(near)]] = near
+    new = np.flatnonzero(edge < 0)
+    edge[new] = len(ends) + np.arange(len(new))
+    of_edge[rest:] = edge[which[len(near):]]
+    edge_from = np.concatenate([used, np.full(len(new), -1), plan.wires])
+    edge_from[of_edge[rest:][plain]] = source[plain]
+    ends = np.concatenate([ends, np.stack(np.divmod(unique[new], len(plan.places)), axis=1),
+                           plan.number[all_ends[plan.wires]]])
+    return of_edge, ends.astype(np.int32), edge_from
+
+
+def _edge_numbers(mesh, alias):
+    """(L,) the edge of each of the mesh's loops; by alias, of several between the same two vertices the first."""
+    edges = read(mesh.loops, "edge_index", np.int32)
+    if alias is None:
+        return edges
+    ends = np.sort(alias[arrays.edge_vertices(mesh)], axis=1)
+    _, first, which = np.unique(ends, axis=0, return_index=True, return_inverse=True)
+    return first[which.ravel()][edges]
+
+
+def _picked(values, origins, mean):
+    """values (n,) or (n, width) at Origins: their mean, or the first's; 0 where there is none."""
+    taken = values[origins.first]
+    taken[origins.first < 0] = 0
+    if mean and len(origins.at):
+        taken[origins.at] = (taken[origins.at] + values[origins.other]) / 2
+    return taken
+
+
+def _copy_attributes(mesh, made, origins, but):
+    layers = [(each.name, each.data_type, each.domain) for each in mesh.attributes if each.name not in but]
+    for name, kind, domain in layers:
+        of = origins[domain]
+        old, new = mesh.attributes[name], made.attributes.get(name) or made.attributes.new(name, kind, domain)
+        if (new.data_type, new.domain) != (kind, domain):
+            continue  # one that Blender itself keeps otherwise: from_pydata() of 5.0 spoils .select_edge
+        if kind == "STRING":
+            for item, at in zip(new.data, of.first.tolist()):
+                item.value = old.data[at].value if at >= 0 else ""
+            continue
+        field, dtype, width, mean = _TYPES[kind]
+        taken = _picked(read(old.data, field, dtype, width), of, mean)
+        if name == "sharp_face":
+            taken[of.first < 0] = True
+        new.data.foreach_set(field, taken.ravel())
+    caps = origins["FACE"].first < 0
+    if bpy.app.version >= (4, 0, 0) and "sharp_face" not in mesh.attributes and caps.any():
+        made.attributes.new("sharp_face", "BOOLEAN", "FACE").data.foreach_set("value", caps)
+    for uv in mesh.uv_layers:
+        if uv.name not in made.uv_layers:
+            made.uv_layers.new(name=uv.name, do_init=False)
+        if bpy.app.version < (3, 5, 0):
+            new = made.uv_layers[uv.name].data
+            new.foreach_set("uv", _picked(read(uv.data, "uv", np.float32, 2), origins["CORNER"], True).ravel())
+            pins = read(uv.data, "pin_uv", bool)
+            new.foreach_set("pin_uv", _picked(pins, origins["CORNER"], False))
+        made.uv_layers[uv.name].active_render = uv.active_render
+    if mesh.uv_layers.active_index >= 0:
+        made.uv_layers.active_index = mesh.uv_layers.active_index
+
+
+def _copy_marks(mesh, made, origins):
+    for kind, marks in _MARKS.items():
+        for field, dtype in marks:
+            if not getattr(mesh, _KNOWN.get((kind, field), ""), True):
+                continue
+            values = read(getattr(mesh, kind), field, dtype)
+            if values.any():
+                at = origins[kind]
+                taken = values[np.maximum(at, 0)]
+                taken[at < 0] = 0
+                getattr(made, kind).foreach_set(field, taken)
+
+
+def _make_own_layers(mesh, made):
+    """made has no elements yet."""
+    names = [each[1:3] for collection, each in _OWN_LAYERS.items() if len(getattr(mesh, collection))]
+    if names:
+        bm = bmesh.new()
+        for elements, name in names:
+            getattr(getattr(bm, elements).layers, name).verify()
+        bm.to_mesh(made)
+        bm.free()
+
+
+def _copy_own_layers(mesh, made, origins):
+    for collection, (elements, _, _, fields) in _OWN_LAYERS.items():
+        at = origins[elements]
+        for old, new in zip(getattr(mesh, collection), getattr(made, collection)):
+            for field, dtype, width, otherwise in fields:
+                taken = read(old.data, field, dtype, width)[np.maximum(at, 0)]
+                taken[at < 0] = otherwise
+                new.data.foreach_set(field, taken.ravel())
+
+
+def _held(mesh):
+    """An object that holds the mesh for as long as its groups and keys are at work; the caller removes it."""
+    return bpy.data.objects.new("partwheel", mesh)
+
+
+def _copy_groups(mesh, made, origins):
+    """made has its vertices, and nothing else yet: so a bmesh, which copies a vertex's weights as one, costs little."""
+    if not _name_groups(mesh, made):
+        return
+    bare = _vertices_alone(mesh)
+    olds, news = bmesh.new(), bmesh.new()
+    try:
+        olds.from_mesh(bare)
+        layer = olds.verts.layers.deform.active
+        if layer is None:  # nothing is in a group
+            return
+        news.from_mesh(made)
+        own = news.verts.layers.deform.verify()
+        sources, verts = list(olds.verts), list(news.verts)
+        for vert, first in zip(verts, origins.first.tolist()):
+            if first >= 0:
+                vert[own] = sources[first][layer]
+        for at, other in zip(origins.at.tolist(), origins.other.tolist()):
+            weights, beyond = verts[at][own], sources[other][layer]
+            for group in {*weights.keys(), *beyond.keys()}:
+                weights[group] = (weights.get(group, 0) + beyond.get(group, 0)) / 2
+        news.to_mesh(made)
+    finally:
+        olds.free()
+        news.free()
+        bpy.data.meshes.remove(bare)
+
+
+def _name_groups(mesh, made):
+    """Gives made groups of the same names; whether there are any."""
+    old, new = _held(mesh), _held(made)
+    try:
+        new.vertex_groups.clear()
+        for group in old.vertex_groups:
+            new.vertex_groups.new(name=group.name).lock_weight = group.lock_weight
+        return len(old.vertex_groups) > 0
+    finally:
+        bpy.data.objects.remove(old)
+        bpy.data.objects.remove(new)
+
+
+def _vertices_alone(mesh):
+    """A new mesh: the vertices with their layers, and nothing else. Nothing but Blender's own validation takes faces
+    away quickly: those, and edges, whose corners are all one vertex."""
+    bare = mesh.copy()
+    if bare.shape_keys:
+        _clear_keys(bare)
+    write(bare.loops, "vertex_index", np.zeros(len(bare.loops), np.int32))
+    write(bare.edges, "vertices", np.zeros(2 * len(bare.edges), np.int32))
+    if bpy.app.version < (4, 0, 0):
+        write(bare.polygons, "loop_total", np.zeros(len(bare.polygons), np.int32))
+    bare.validate()
+    return bare
+
+
+def _clear_keys(mesh):
+    holder = _held(mesh)
+    holder.shape_key_clear()
+    bpy.data.objects.remove(holder)
+
+
+def _copy_keys(mesh, made, plan):
+    if not mesh.shape_keys:
+        return
+    holder = _held(made)
+    try:
+        for old in mesh.shape_keys.key_blocks:
+            new = holder.shape_key_add(name=old.name, from_mix=False)
+            places = plan.places.copy()
+            own = plan.vertices.first >= 0
+            old_places = read(old.data, "co", np.float32, 3)
+            places[own] = _picked(old_places, plan.vertices, True)[own]
+            new.data.foreach_set("co", places.ravel())
+            for name in ("value", "slider_min", "slider_max", "mute", "vertex_group", "interpolation"):
+                setattr(new, name, getattr(old, name))
+        for old in mesh.shape_keys.key_blocks:
+            made.shape_keys.key_blocks[old.name].relative_key = made.shape_keys.key_blocks[old.relative_key.name]
+        made.shape_keys.use_relative = mesh.shape_keys.use_relative
+    finally:
+        bpy.data.objects.remove(holder)
+
+
+def replace_geometry(target, made):
+    """Puts a mesh's geometry, with all layers and shape keys, into another, whose name, properties and users stay."""
+    bm = bmesh.new()
+    try:
+        bm.from_mesh(made)
+        bm.to_mesh(target)
+    finally:
+        bm.free()

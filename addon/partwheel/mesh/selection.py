@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The selection of a mesh in Edit Mode: sets of faces are selected by differences; the selection before comes back."""
+
+from collections import deque
+from itertools import repeat
+
+import bmesh
+import bpy
+import numpy as np
+
+from . import arrays
+from .objects import named
+
+# Select mode -> what is selected in it: the mesh's elements and the loops' reference to them. The finest mode that is
+# on rules: Blender derives the coarser elements' selection from it.
+KINDS = ("VERT", "EDGE", "FACE")
+ELEMENTS = {"VERT": "vertices", "EDGE": "edges", "FACE": "polygons"}
+# In units of the time to select a face: to deselect one (Blender looks at all its neighbours), and to deselect all.
+OFF, ALL_OFF = 2, 6000
+
+
+def _sequence(bm, kind):
+    sequence = {"VERT": bm.verts, "EDGE": bm.edges, "FACE": bm.faces}[kind]
+    sequence.ensure_lookup_table()
+    return sequence
+
+
+class Selection:
+    """The selection as it was when this was made, and the one this has made of it since.
+
+    Holds no reference to Blender's data that undo or a mode change could make dangle; the object is handed to every
+    method. Masks are (n,) bool, one for each vertex, edge or face of the mesh.
+    """
+
+    def __init__(self, obj, mesh=None):
+        """mesh: the object's, if that is known to be up to date."""
+        mesh = mesh or arrays.up_to_date(obj)
+        bm = self._edited(obj)
+        for kind in KINDS:
+            _sequence(bm, kind).index_update()
+        self.before = {kind: arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool) for kind in KINDS}
+        # list(): with Python 3.13 the history of Blender 4.3 is not to be gone through in a comprehension.
+        self.history = [(_kind_of(element), element.index) for element in list(bm.select_history)]
+        self.active_face = bm.faces.active.index if bm.faces.active else None
+        self.visible = ~arrays.read(mesh.polygons, "hide", bool)
+        self.kind = next(kind for kind in KINDS if kind in bm.select_mode)
+        if self.kind != "FACE":
+            corners = arrays.polygon_sizes(mesh)[1]
+            self.loop_face = np.repeat(np.arange(len(mesh.polygons)), corners)
+            index = {"VERT": "vertex_index", "EDGE": "edge_index"}[self.kind]
+            self.loop_element = arrays.read(mesh.loops, index, np.int32)
+        self.now = self.before[self.kind]
+
+    def _edited(self, obj):
+        """The object's BMesh. Kept, which undo or a mode change only make invalid: elements have a field for Python's
+        references to them as long as there is one to the BMesh, and adding and removing it takes as long as a notch."""
+        self._bm = bmesh.from_edit_mesh(obj.data)
+        return self._bm
+
+    def fits(self, obj):
+        """Whether the object is still in Edit Mode with as many elements and the select mode of when this was made."""
+        if obj is None or obj.type != "MESH" or obj.mode != "EDIT":
+            return False
+        bm = self._edited(obj)
+        counts = len(bm.verts), len(bm.edges), len(bm.faces)
+        return counts == tuple(len(self.before[kind]) for kind in KINDS) and self.kind in bm.select_mode
+
+    def select(self, obj, faces, active=None, extend=False, deselect=False):
+        """Selects these faces (an array of indices), hidden ones left out, and nothing else; with extend also what was
+        selected before; with deselect only what was selected before and is not in these faces. active: the index of
+        the face to make the active one."""
+        chosen = np.zeros(len(self.visible), bool)
+        chosen[np.asarray(faces, np.int64)] = True
+        chosen &= self.visible
+        if self.kind == "FACE":
+            target = chosen
+        else:
+            target = np.zeros_like(self.now)
+            target[self.loop_element[chosen[self.loop_face]]] = True
+        if deselect:
+            target = self.before[self.kind] & ~target
+        elif extend:
+            target |= self.before[self.kind]
+        bm = self._edited(obj)
+        removed, kept = self.now & ~target, self.now & target
+        if _alone(obj) and OFF * np.count_nonzero(removed) > ALL_OFF + np.count_nonzero(kept):
+            bpy.ops.mesh.select_all(action="DESELECT")
+            _set(_sequence(bm, self.kind), target, True)
+        else:
+            _set(_sequence(bm, self.kind), removed, False)
+            _set(_sequence(bm, self.kind), target & ~self.now, True)
+        self.now = target
+        if self.kind != "FACE":  # a face takes its edges and vertices along
+            bm.select_flush_mode()
+        if active is not None:
+            face = _sequence(bm, "FACE")[active]
+            bm.faces.active = face
+            bm.select_history.clear()
+            if self.kind == "FACE" and face.select:
+                bm.select_history.add(face)
+        _redraw(obj)
+
+    def restore(self, obj):
+        """Everything as it was: vertices, edges, faces, the active face and the history of picks."""
+        bm = self._edited(obj)
+        mesh = arrays.up_to_date(obj)
+        # Blender hands a change of a face or an edge on to its vertices: so first all off, then on from fine to coarse.
+        for kind in reversed(KINDS):
+            elements = _sequence(bm, kind)
+            now = arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool)
+            for index in np.flatnonzero(now & ~self.before[kind]).tolist():
+                elements[index].select = False
+        for kind in KINDS:
+            elements = _sequence(bm, kind)
+            for index in np.flatnonzero(self.before[kind]).tolist():
+                elements[index].select = True
+        bm.select_flush_mode()  # also counts the selected elements anew
+        bm.select_history.clear()
+        for kind, index in self.history:
+            bm.select_history.add(_sequence(bm, kind)[index])
+        bm.faces.active = None if self.active_face is None else _sequence(bm, "FACE")[self.active_face]
+        self.now = self.before[self.kind]
+        _redraw(obj)
+
+
+def _alone(obj):
+    """Whether what Blender's operators do to all that is being edited, they do to this object only."""
+    return list(bpy.context.objects_in_mode_unique_data) == [obj]
+
+
+def _set(elements, which, value):
+    """Selects or deselects the elements where which is True. Without a loop of Python's own, for there may be many."""
+    indices = np.flatnonzero(which).tolist()
+    if indices:
+        select_set = type(elements[indices[0]]).select_set
+        deque(map(select_set, map(elements.__getitem__, indices), repeat(value)), maxlen=0)
+
+
+def _kind_of(element):
+    return {bmesh.types.BMVert: "VERT", bmesh.types.BMEdge: "EDGE", bmesh.types.BMFace: "FACE"}[type(element)]
+
+
+def _redraw(obj):
+    """Tells Blender that the selection of a mesh in Edit Mode has changed."""
+    if obj == bpy.context.view_layer.objects.active:
+        # The setting's update function says "selection" and no more; the call below says "geometry", upon which Blender
+        # evaluates modifiers and all that hangs on the mesh at every notch.
+        settings = bpy.context.tool_settings
+        settings.mesh_select_mode = settings.mesh_select_mode
+    else:
+        bmesh.update_edit_mesh(obj.data, loop_triangles=False, destructive=False)
+
+
+class Selections:
+    """The selections of all meshes that are in Edit Mode together, for a part of one of them."""
+
+    def __init__(self, objects, fresh=None):
+        """fresh: an object whose mesh is known to be up to date."""
+        self._each = {obj.name_full: Selection(obj, obj.data if obj == fresh else None) for obj in objects}
+
+    def _objects(self):
+        """(object or None, its Selection) of each."""
+        return [(named(name), each) for name, each in self._each.items()]
+
+    def any(self):
+        """Whether anything is selected."""
+        return any(each.now.any() for each in self._each.values())
+
+    def fits(self):
+        return all(each.fits(obj) for obj, each in self._objects())
+
+    def select(self, obj, faces, active=None, extend=False, deselect=False):
+        """As Selection.select() for one of the objects; in the others nothing stays selected, unless extend or deselect
+        leaves what is."""
+        for other, each in self._objects():
+            if other == obj:
+                each.select(obj, faces, active, extend, deselect)
+            elif not (extend or deselect) and each.now.any():
+                each.select(other, [])
+
+    def restore(self):
+        for obj, each in self._objects():
+            each.restore(obj)
+
+
+def select_outside_edit_mode(mesh, faces, extend=False, deselect=False):
+    """The same for a mesh that is not in Edit Mode: its faces, and their edges and vertices, are selected."""
+    chosen = np.zeros(len(mesh.polygons), bool)
+    chosen[np.asarray(faces, np.int64)] = True
+    chosen &= ~arrays.read(mesh.polygons, "hide", bool)
+    before = arrays.read(mesh.polygons, "select", bool)
+    chosen = before & ~chosen if deselect else before | chosen if extend else chosen
+    corners = chosen[np.repeat(np.arange(len(mesh.polygons)), arrays.polygon_sizes(mesh)[1])]
+    selected = {}
+    for elements, index in (("edges", "edge_index"), ("vertices", "vertex_index")):
+        selected[elements] = np.zeros(len(getattr(mesh, elements)), bool)
+        selected[elements][arrays.read(mesh.loops, index, np.int32)[corners]] = True
+    mesh.polygons.foreach_set("select", chosen)
+    mesh.vertices.foreach_set("select", selected["vertices"])
+    _select_edges(mesh, selected["edges"])
+    if len(faces):
+        mesh.polygons.active = int(faces[0])
+    mesh.update()
+
+
+def _select_edges(mesh, values):
+    """Blender 5.0.1 gives the attribute behind this property a wrong type, and crashes where the property is set."""
+    attribute = mesh.attributes.get(".select_edge") if bpy.app.version >= (5, 0) else None
+    if attribute and attribute.data_type != "BOOLEAN":
+        mesh.attributes.remove(attribute)
+        mesh.attributes.new(".select_edge", "BOOLEAN", "EDGE").data.foreach_set("value", values)
+    else:
+        mesh.edges.foreach_set("select", values)

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""mesh.partwheel_build: builds the hierarchy of the active mesh; mesh.partwheel_clear: lets it go.
+
+How a build looks to the user is here too: beside Blender's own work, with its progress at the cursor and in the status
+bar, or, for scripts and without windows, until it is done.
+"""
+
+import time
+
+import bpy
+
+from ..parts import session
+from partwheel import LibraryError, PartwheelError, Status
+from ..view import status
+from ..view.in_view import InView
+
+TICK = 0.1  # seconds between two looks at the worker
+
+
+class Building:
+    """A build of an object's mesh on an operator's behalf: what came of it is reported through the operator.
+
+    hierarchy: None until it is done, and if it fails."""
+
+    def __init__(self, operator, obj, **options):
+        """options: of session.build(). Raises LibraryError or PartwheelError when it can't even begin."""
+        self.operator, self.hierarchy = operator, None
+        self.began = time.perf_counter()
+        self.build = session.build(obj, **options)
+        self.timer, self.line = None, status.Line()
+        self.printed = 0
+
+    # ---- Until it is done
+
+    def wait(self, context):
+        """For scripts: blocks, and shows progress at the cursor, or in the terminal when there are no windows."""
+        try:
+            while not self.build.wait(TICK):
+                self._show(context, *(self.build.poll() or (1.0, "")))
+        except BaseException:  # Ctrl-C
+            self.build.cancel()
+            raise
+        finally:
+            self._end_progress(context)
+            self._conclude()
+        return self.hierarchy
+
+    # ---- Beside Blender's own work
+
+    def watch(self, context):
+        """From now on step() is to be called with every event. Another that watches the same build ends: who asked last
+        gets the parts."""
+        self.build.watcher = self
+        self.timer = context.window_manager.event_timer_add(TICK, window=context.window)
+        self._tell(context, 0.0, "")
+
+    def step(self, context, event):
+        """Looks after the build: whether it is over, or another operator goes on with it. Esc cancels it: also if the
+        answer has come before, as long as it was not taken over, by a TIMER, and so shown."""
+        if event.type == "ESC" and event.value == "PRESS":
+            self.abandon(context)
+            return True
+        if event.type != "TIMER":
+            return False
+        mine = self.build.watcher is self
+        progress = self.build.poll() if mine else None
+        if progress:
+            self._show(context, *progress)
+            self._tell(context, *progress)
+            return False
+        self._stop_watching(context)
+        if mine:
+            self._conclude()
+        return True
+
+    def abandon(self, context):
+        """Ends it before it is over."""
+        self.build.cancel()
+        self._stop_watching(context)
+        self._conclude()
+
+    def _stop_watching(self, context):
+        if self.timer:
+            context.window_manager.event_timer_remove(self.timer)
+            self.timer = None
+        self._end_progress(context)
+        self.line.end(context)
+
+    def _tell(self, context, fraction, stage):
+        self.line.say(context, f"Partwheel finds the parts of {self.build.name}: {fraction:.0%} {stage}   Esc: Cancel")
+
+    # ---- Both
+
+    def _end_progress(self, context):
+        if not bpy.app.background:
+            context.window_manager.progress_end()
+
+    def _show(self, context, fraction, stage):
+        if not self.build.job:
+            return  # the cursor tells of the build that runs
+        percent = int(fraction * 100)
+        if not bpy.app.background:
+            context.window_manager.progress_begin(0, 100)  # each time: another build may have ended it
+            context.window_manager.progress_update(percent)
+        elif percent >= self.printed + 10:
+            print(f"Partwheel: {percent:3d} % {stage}", flush=True)
+            self.printed = percent
+
+    def _conclude(self):
+        """Takes the result over, if there is one, and reports."""
+        name, report = self.build.name, self.operator.report
+        try:
+            self.hierarchy = self.build.finish()
+        except PartwheelError as error:
+            cancelled = error.name == "cancelled"
+            where = " The panel Partwheel in the sidebar does that." if error.status == Status.NOT_SOLID else ""
+            report({"INFO" if cancelled else "ERROR"}, "Cancelled: no parts were built." if cancelled
+                   else f"No parts for {name} ({error.name}): {error}{where}")
+            return
+        except session.Outdated as reason:
+            report({"WARNING"}, str(reason))
+            return
+        for failure in self.build.job.failures:
+            report({"WARNING"}, f"A way that was tried first failed ({failure.name}): {failure}")
+        seconds = time.perf_counter() - self.began
+        report({"INFO"}, f"{name}: {len(self.hierarchy.order)} faces, {len(self.hierarchy.tetrahedra)} tets, "
+                         f"{seconds:.1f} s. {self.hierarchy.account}".rstrip())
+
+
+def start(operator, obj, **options):
+    """A Building, or None and a report."""
+    try:
+        return Building(operator, obj, **options)
+    except (PartwheelError, LibraryError) as error:
+        name = getattr(error, "name", "library")
+        operator.report({"ERROR"}, f"No parts for {obj.data.name} ({name}): {error}")
+        return None
+
+
+class _Build(InView):
+    """What building and finding have in common."""
+
+    quality: bpy.props.FloatProperty(
+        name="Quality",
+        description="0 adds no points inside the mesh; from 1.1 on, bounds how stretched the tetrahedra may be "
+                    "(1.4 is usual, smaller is slower)",
+        default=0.0, min=0.0, soft_max=3.0,
+    )
+    open_surfaces: bpy.props.BoolProperty(
+        name="Open Surfaces",
+        description="Take a surface that encloses nothing, such as cloth or a car's door, for a thin solid, instead of "
+                    "refusing it",
+        default=False,
+    )
+
+    @classmethod
+    def poll(cls, context):
+        obj = context.active_object
+        if obj is None or obj.type != "MESH" or obj.mode not in {"OBJECT", "EDIT"}:
+            cls.poll_message_set("Needs an active mesh object, in Edit Mode or Object Mode")
+            return False
+        return True
+
+    def execute(self, context):
+        building = self._start(context)
+        return {"FINISHED"} if building and building.wait(context) else {"CANCELLED"}
+
+    building = None
+
+    def invoke(self, context, event):
+        return self._started(context, event) if context.window else self.execute(context)
+
+    def _begin(self, context, _event):
+        self.building = self._start(context)
+        if not self.building:
+            return {"CANCELLED"}
+        self.building.watch(context)
+        return {"RUNNING_MODAL"}
+
+    def _still_there(self, _context):
+        return True  # the build itself knows
+
+    def _handle(self, context, event):
+        if not self.building.step(context, event):
+            return {"PASS_THROUGH"}
+        building, self.building = self.building, None
+        return {"FINISHED"} if building.hierarchy else {"CANCELLED"}
+
+    def _take_back(self, context):
+        if self.building:
+            self.building.abandon(context)
+
+    def _start(self, context):
+        return start(self, context.active_object, quality=self.quality, open_surfaces=self.open_surfaces)
+
+
+class MESH_OT_partwheel_build(_Build, bpy.types.Operator):
+    """Find the parts of the active mesh at all sizes, so that the wheel can step through them"""
+
+    bl_idname = "mesh.partwheel_build"
+    bl_label = "Build Part Hierarchy"
+    bl_options = {"REGISTER"}
+
+
+class MESH_OT_partwheel_find(_Build, bpy.types.Operator):
+    """The same on behalf of an operator that made the mesh, which stays the last operation, with its panel"""
+
+    bl_idname = "mesh.partwheel_find"
+    bl_label = "Find Parts"
+    bl_options = {"INTERNAL"}
+
+
+class MESH_OT_partwheel_clear(bpy.types.Operator):
+    """Let the parts of the active mesh go, also those saved with the file. The mesh stays as it is"""
+
+    bl_idname = "mesh.partwheel_clear"
+    bl_label = "Clear Part Hierarchy"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context):
+        obj = context.active_object
+        if obj is None or obj.type != "MESH" or session.state(obj.data)[0] == session.State.NONE:
+            cls.poll_message_set("The active object has no parts")
+            return False
+        return True
+
+    def execute(self, context):
+        session.forget(context.active_object)
+        for area in context.screen.areas if context.screen else ():
+            area.tag_redraw()
+        return {"FINISHED"}
+
+
+CLASSES = (MESH_OT_partwheel_build, MESH_OT_partwheel_find, MESH_OT_partwheel_clear)

@@ -1,0 +1,294 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Picking a part with mouse and keys: what the modal operators share. A click picks a face, the wheel grows and shrinks
+the part around it, until it is confirmed or cancelled.
+
+What happens to the part meanwhile, and once it is confirmed, is the business of a target (see PartPicker._aim).
+"""
+
+import bpy
+
+from ..parts import session
+from ..view import keys, overlay, picking
+from . import borders, states
+from partwheel import PartwheelError
+from .prepared import prepared
+from ..view.seen import NO_FACE
+from .build import start
+from ..view.in_view import InView
+
+
+class PartPicker(InView):
+    """Mixed into an operator. level and face_index: what Repeat Last and the panel of the last operation use."""
+
+    face_index: bpy.props.IntProperty(name="Face", description="The face that was clicked", default=0, min=0)
+    level: bpy.props.IntProperty(
+        name="Level", description="Notches of the wheel from the part that the click alone takes: up is positive",
+        default=0,
+    )
+    extend: bpy.props.BoolProperty(
+        name="Extend", description="Add the part to what is selected, instead of replacing it",
+        default=False, options={"SKIP_SAVE"},
+    )
+    deselect: bpy.props.BoolProperty(
+        name="Deselect", description="Take the part away from what is selected",
+        default=False, options={"SKIP_SAVE"},
+    )
+    snap: bpy.props.BoolProperty(
+        name="Snap Border", description="Move the border of the part to the creases nearby",
+        default=False, options={"SKIP_SAVE"},
+    )
+    begin: bpy.props.IntProperty(
+        name="Begin At", description="The face of the active object that is picked first; -1: the one under the mouse",
+        default=NO_FACE, min=NO_FACE, options={"SKIP_SAVE", "HIDDEN"},
+    )
+    tool: bpy.props.BoolProperty(
+        name="From the Toolbar", description="The next click starts with the next part, and other keys go to Blender",
+        default=False, options={"SKIP_SAVE", "HIDDEN"},
+    )
+
+    # ---- What operators differ in
+
+    def _objects(self, context):
+        """The objects that can be picked from, the active one first."""
+        raise NotImplementedError
+
+    def _aim(self, context, obj):
+        """A new target for a pick from this object, with select(obj, faces, face, extend, deselect), restore() and
+        fits()."""
+        raise NotImplementedError
+
+    def _missed(self, context):
+        """The answer to a click of the tool beside every mesh."""
+        return {"CANCELLED"}
+
+    def _commit(self, context):
+        """The part is confirmed; the answer of the operator."""
+        return {"FINISHED"}
+
+    def _apply(self, context, obj, faces, picked):
+        """Does at once with these faces what otherwise a target and _commit() do; the answer of the operator. picked: a
+        states.Picked."""
+        raise NotImplementedError
+
+    begun = 0  # how many picks have begun, with the mouse, by whichever operator
+    commands = ()  # keys.COMMANDS that the status bar shows while a part is held
+    state, target, object_name = states.Waiting(), None, ""
+
+    # ---- Without a window
+
+    def execute(self, context):
+        obj = self._objects(context)[0]
+        hierarchy = session.hierarchy(obj)
+        if not hierarchy:
+            building = start(self, obj)
+            hierarchy = building and building.wait(context)
+        if not hierarchy:
+            return {"CANCELLED"}
+        try:
+            picked = states.pick(hierarchy, self.face_index, self.level)
+        except PartwheelError as error:
+            self.report({"ERROR"}, f"Face {self.face_index} can't be picked: {error}")
+            return {"CANCELLED"}
+        result = self._apply(context, obj, borders.faces(obj, hierarchy, picked.node, self.snap), picked)
+        session.remember_pick(obj, picked.face, picked.node, self.snap)
+        return result
+
+    # ---- With the mouse: from nothing to a part
+
+    def _begin(self, context, event):
+        PartPicker.begun += 1
+        self.number = PartPicker.begun
+        self.scroll, self.drag = keys.Scroll(keys.SCROLL_STEP), None
+        objects = self._objects(context)
+        if not objects:
+            self.report({"WARNING"}, "This 3D view does not show the mesh that is being edited")
+            return {"CANCELLED"}
+        obj, face = (objects[0], self.begin) if self.begin != NO_FACE else self._under(context, event)
+        if obj is not None:
+            return self._pick(context, event, obj, face)
+        if self.tool:
+            return self._missed(context)
+        obj = objects[0]
+        if self._parts(obj) is None:
+            return self._build(context, obj, None)
+        return self._wait(context, "Click a face of the mesh")
+
+    def _under(self, context, event):
+        """(object, face index) under the mouse, or (None, None)."""
+        view = picking.view_under(context.window, event.mouse_x, event.mouse_y)
+        if not view:
+            return None, None
+        area, region, region_view = view
+        point = event.mouse_x - region.x, event.mouse_y - region.y
+        shown = [each for each in self._objects(context) if each.visible_get(viewport=area.spaces.active)]
+        obj, face = picking.nearest(shown, lambda each: prepared(each).tree, region, region_view, point)
+        if face == NO_FACE:
+            self.report({"INFO"}, f"What is seen there was made by the modifiers of {obj.name} and belongs to no face "
+                                  "of its mesh")
+            return None, None
+        return obj, face
+
+    @staticmethod
+    def _parts(obj):
+        """The hierarchy of the object's mesh; None if there is none, or a new one is on its way."""
+        return None if session.being_built(obj) else session.hierarchy(obj)
+
+    def _pick(self, context, event, obj, face):
+        self.hierarchy = self._parts(obj)
+        if self.hierarchy is None:
+            # Which face was meant is known now: the user may turn the view while the parts are being built.
+            return self._build(context, obj, face)
+        picked = states.pick(self.hierarchy, face)
+        if event.type == "LEFTMOUSE":
+            self.drag = event.mouse_y, picked.index
+        return self._hold(context, obj, picked)
+
+    def _hold(self, context, obj, picked):
+        self.object_name, self.target, self.shown = obj.name_full, self._aim(context, obj), None
+        self._at_end.callback(overlay.shown.hide)
+        return self._show(context, picked)
+
+    def _build(self, context, obj, face):
+        self.building = start(self, obj)
+        if not self.building:
+            return {"CANCELLED"}
+        self.object_name, self.state = obj.name_full, states.Building(face)
+        self.building.watch(context)
+        return {"RUNNING_MODAL"}
+
+    def _built_on(self, context, event):
+        """While the parts are being built all but Esc goes to Blender itself; then the face is picked."""
+        if not self.building.step(context, event):
+            return {"PASS_THROUGH"}
+        face, self.state = self.state.face, states.Waiting()
+        self.hierarchy = self.building.hierarchy
+        if not self.hierarchy or self.number < PartPicker.begun:  # the last click counts: its part stays selected
+            return {"CANCELLED"}
+        obj = self._object(context)
+        if obj is None or context.area is None:
+            self.report({"INFO"}, f"The parts are built. Start {self.bl_label} again to pick them.")
+            return {"CANCELLED"}
+        if face is not None:
+            return self._hold(context, obj, states.pick(self.hierarchy, face))
+        return self._wait(context, "Click a face of the mesh")
+
+    def _object(self, context):
+        """The object that the part belongs to, if it can still be picked from."""
+        return next((each for each in self._objects(context) if each.name_full == self.object_name), None)
+
+    def _wait(self, context, header):
+        self._tell(context, header, keys.WAITING)
+        return {"RUNNING_MODAL"}
+
+    # ---- With a part, or waiting for one
+
+    def _handle(self, context, event):
+        if isinstance(self.state, states.Building):
+            return self._built_on(context, event)
+        if self.target and session.known(self._object(context).data) is not self.hierarchy:
+            self.report({"WARNING"}, "Partwheel stopped: the parts were found anew. Pick one of them.")
+            return {"CANCELLED"}
+        if event.type in keys.SYSTEM:
+            return {"PASS_THROUGH"}
+        holding = isinstance(self.state, states.Picked)
+        if event.type in keys.MOVES:
+            return self._dragged(context, event)
+        over = picking.view_under(context.window, event.mouse_x, event.mouse_y) is not None
+        plain = not (event.alt or event.oskey or event.ctrl and not (self.deselect or event.type == "LEFTMOUSE"))
+        if event.type == "TRACKPADPAN" and holding and over and plain and not event.shift:
+            notches = self.scroll.notches(event.mouse_y - event.mouse_prev_y)
+            return self._show(context, self.state.turned(notches))
+        wheeled = event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE"}
+        if event.type in keys.NAVIGATE.events or (wheeled and not over) or (
+                not plain and (event.type in keys.TURNS or event.type in keys.BUTTONS)):
+            return {"PASS_THROUGH"}
+        if event.type == "LEFTMOUSE" and event.value == "RELEASE":
+            self.drag = None
+        if event.value not in {"PRESS", "DOUBLE_CLICK"}:  # Blender may call a quick second press a double click
+            return {"RUNNING_MODAL"}
+        if event.type in keys.CANCEL.events:
+            return {"CANCELLED"}
+        return self._key_while_holding(context, event, over) if holding else self._key_while_waiting(context, event)
+
+    def _key_while_waiting(self, context, event):
+        if event.type == "LEFTMOUSE":
+            obj, face = self._under(context, event)
+            if obj is None:
+                return self._wait(context, "There is no face there")
+            self.extend, self.deselect = self.extend or bool(event.shift), self.deselect or bool(event.ctrl)
+            return self._pick(context, event, obj, face)
+        return {"RUNNING_MODAL"}
+
+    def _key_while_holding(self, context, event, over):
+        if event.type in keys.TURNS:
+            return self._show(context, self.state.turned(keys.TURNS[event.type]))
+        if event.type in keys.DIGITS and not self.tool:
+            return self._show(context, self.state.with_digit(keys.DIGITS[event.type]))
+        if event.type in keys.ERASE.events and not self.tool:
+            return self._show(context, self.state.without_digit())
+        if event.type in keys.SNAP_BORDER.events and event.shift and event.ctrl:
+            self.snap = not self.snap
+            self._tool_snaps(context)
+            return self._show(context, self.state)
+        if event.type in keys.CONFIRM.events or (event.type == "LEFTMOUSE" and over and not self.tool):
+            return self._confirmed(context)
+        if event.type in keys.MODIFIERS or (event.type == "LEFTMOUSE" and not self.tool):
+            return {"RUNNING_MODAL"}
+        # Any other key means what it always means, the commands on parts among them; a click starts with the next part,
+        # in the keymap of the tool.
+        return self._confirmed(context) | {"PASS_THROUGH"}
+
+    def _dragged(self, context, event):
+        """Up or down with the button, or a pen, still down."""
+        if self.drag and isinstance(self.state, states.Picked):
+            begin, index = self.drag
+            index += int((event.mouse_y - begin) / keys.DRAG_STEP)
+            if index != self.state.index:
+                return self._show(context, self.state.at(index))
+        return {"RUNNING_MODAL"}
+
+    def _show(self, context, state):
+        """Goes to a state with a picked part and selects it."""
+        obj = self._object(context)
+        self.state = state
+        if (state.node, self.snap) != self.shown:
+            self.shown = state.node, self.snap
+            self.faces = borders.faces(obj, self.hierarchy, state.node, self.snap)
+            self.target.select(obj, self.faces, state.face, self.extend, self.deselect)
+            if not bpy.app.background:
+                overlay.shown.show(self._drawing, obj, prepared(obj).parts(obj), state.node, state.next,
+                                   self.faces if self.snap else None)
+        share = self.hierarchy.area[state.node] / self.hierarchy.area[-1]
+        number = state.typed + "_" if state.typed else state.index + 1
+        self._tell(context, f"Part {number} of {len(state.stops)}, {len(self.faces):,} faces, {share:.1%} of the area"
+                            + ", border in creases" * self.snap,
+                   (keys.HELD if self.tool else keys.PICKED) + self.commands + keys.ENDS)
+        return {"RUNNING_MODAL"}
+
+    def _tool_snaps(self, context):
+        """The next clicks of the tool do as this one, and the tool's header says so."""
+        tool = self.tool and context.workspace.tools.from_space_view3d_mode(context.mode)
+        if tool and tool.idname == "partwheel.select":
+            tool.operator_properties(self.bl_idname).snap = self.snap
+
+    # ---- Ends
+
+    def _confirmed(self, context):
+        obj = self._object(context)
+        # What the panel of the last operation, and Repeat Last, do again.
+        self.face_index, self.level = self.state.face, self.state.level
+        session.remember_pick(obj, self.state.face, self.state.node, self.snap)
+        return self._commit(context)
+
+    def _take_back(self, context):
+        if isinstance(self.state, states.Building):
+            self.building.abandon(context)
+        elif self.target and self._still_there(context):
+            self.target.restore()
+
+    def _still_there(self, context):
+        if isinstance(self.state, states.Building):
+            return True
+        if not self.target:
+            return bool(self._objects(context))
+        return self._object(context) is not None and self.target.fits()

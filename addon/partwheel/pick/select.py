@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""mesh.partwheel_select: a click picks a face, the wheel grows and shrinks the part around it."""
+
+import bpy
+
+from ..view import keys
+from ..mesh.selection import Selections
+from .pick import PartPicker
+
+
+class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
+    """Pick a part of the mesh with a click, then make it larger or smaller with the mouse wheel"""
+
+    bl_idname = "mesh.partwheel_select"
+    bl_label = "Select Part by Wheel"
+    bl_options = {"REGISTER", "UNDO"}
+    commands = keys.COMMANDS
+
+    @classmethod
+    def poll(cls, context):
+        if context.mode != "EDIT_MESH" or context.edit_object is None:
+            cls.poll_message_set("Parts are selected in Edit Mode of a mesh")
+            return False
+        return True
+
+    def _apply(self, context, obj, faces, picked):
+        self._aim(context, obj).select(obj, faces, picked.face, self.extend, self.deselect)
+        return {"FINISHED"}
+
+    def _objects(self, context):
+        """In Edit Mode; of objects that share a mesh, the one that is being edited."""
+        if context.mode != "EDIT_MESH":
+            return []
+        return sorted(context.objects_in_mode_unique_data, key=lambda obj: obj != context.edit_object)
+
+    def _aim(self, context, obj):
+        return Selections(self._objects(context), obj)  # whose hierarchy was just asked for, or built
+
+    def _missed(self, context):
+        """As Blender's own select tools: a click beside everything selects nothing."""
+        selections = Selections(self._objects(context))
+        if self.extend or self.deselect or not selections.any():
+            return {"CANCELLED"}
+        selections.select(context.edit_object, [])
+        return {"FINISHED"}
+
+    def _commit(self, context):
+        """The object of the part becomes the active one, as with Blender's own selecting."""
+        context.view_layer.objects.active = self._object(context)
+        return {"FINISHED"}
+
+
+CLASSES = (MESH_OT_partwheel_select,)

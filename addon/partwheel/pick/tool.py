@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The toolbar's tool in Edit Mode: each click picks a part, the wheel grows and shrinks it."""
+
+from pathlib import Path
+
+import bpy
+
+from ..parts import session
+from ..preferences import draw_overlays
+
+ICON = str(Path(__file__).with_name("partwheel.select"))  # Blender adds ".dat"
+
+
+class SelectPart(bpy.types.WorkSpaceTool):
+    bl_space_type = "VIEW_3D"
+    bl_context_mode = "EDIT_MESH"
+    bl_idname = "partwheel.select"
+    bl_label = "Select Part"
+    bl_description = ("Select a meaningful part of the mesh.\n"
+                      "Click a part, then turn the wheel for the next larger or smaller one. "
+                      "Shift adds, Ctrl takes away")
+    bl_icon = ICON
+    bl_widget = "VIEW3D_GGT_partwheel_hover"
+    bl_keymap = (
+        ("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "PRESS"}, {"properties": [("tool", True)]}),
+        ("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "PRESS", "shift": True},
+         {"properties": [("tool", True), ("extend", True)]}),
+        ("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "PRESS", "ctrl": True},
+         {"properties": [("tool", True), ("deselect", True)]}),
+    )
+
+    def draw_settings(context, layout, tool):
+        obj = context.edit_object
+        state = session.state(obj.data)[0] if obj else session.State.NONE
+        if state in {session.State.NONE, session.State.CHANGED}:
+            layout.label(text="Parts are built at the first click", icon="INFO")
+        layout.prop(tool.operator_properties("mesh.partwheel_select"), "snap")
+        layout.popover("VIEW3D_PT_partwheel_overlays", text="Overlay")
+
+
+class VIEW3D_PT_partwheel_overlays(bpy.types.Panel):
+    bl_label = "Overlay"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "HEADER"
+    bl_options = {"INSTANCED"}
+
+    def draw(self, _context):
+        draw_overlays(self.layout)
+
+
+CLASSES = (VIEW3D_PT_partwheel_overlays,)
+
+
+def register():
+    bpy.utils.register_tool(SelectPart, after={"builtin.select"}, group=True)
+
+
+def unregister():
+    bpy.utils.unregister_tool(SelectPart)

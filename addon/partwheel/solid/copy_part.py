@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""mesh.partwheel_copy, mesh.partwheel_remove, mesh.partwheel_split: parts as solids."""
+
+import bpy
+
+from ..parts import session
+from . import composition, solids
+from partwheel import PartwheelError
+from ..mesh.linked import changeable
+
+
+class OnParts:
+    """What operators on an object with parts share: Edit Mode, errors."""
+
+    bl_options = {"REGISTER", "UNDO"}
+    edits = False  # whether it changes the mesh itself: then Edit Mode goes on afterwards
+    refusals = PartwheelError, solids.NotClosed  # with sentences for the user
+
+    @classmethod
+    def poll(cls, context):
+        obj = context.active_object
+        if obj is None or obj.type != "MESH" or obj.mode not in {"EDIT", "OBJECT"}:
+            cls.poll_message_set("Needs an active mesh object, in Edit Mode or Object Mode")
+            return False
+        return True
+
+    def execute(self, context):
+        obj = context.active_object
+        was_edited = obj.mode == "EDIT"
+        try:
+            hierarchy = self.hierarchy(context, obj)
+            if was_edited:
+                bpy.ops.object.mode_set(mode="OBJECT")
+                if not self.edits:
+                    # Undo steps of Edit Mode hold its mesh alone: without this one, undo would leave the new objects.
+                    bpy.ops.ed.undo_push(message="Leave Edit Mode")
+            self.work(context, obj, hierarchy)
+            if was_edited and self.edits:
+                bpy.ops.object.mode_set(mode="EDIT")
+        except self.refusals as error:
+            if was_edited and obj.mode != "EDIT":
+                bpy.ops.object.mode_set(mode="EDIT")
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+    def hierarchy(self, context, obj):
+        found = session.hierarchy(obj)
+        if not found:
+            raise solids.NotClosed(f"{obj.name} has no parts for its mesh as it is now. Build them first.")
+        return found
+
+
+class _AsSolid(OnParts):
+    """Makes caps."""
+
+    smooth: bpy.props.BoolProperty(
+        name="Smooth Caps", description="Close the part with a smooth surface, instead of the flat facets inside the "
+        "solid that divide it from the rest", default=False,
+    )
+    material: bpy.props.BoolProperty(
+        name="Cap Material", description="Give the caps a material of their own", default=False,
+    )
+
+    def caps(self):
+        return solids.Options(self.smooth, self.material)
+
+
+class OnPart:
+    """Acts on a node, or on the part that was picked last. Mixed into one of the above."""
+
+    node: bpy.props.IntProperty(
+        name="Node", description="The part, as a number of the hierarchy; -1: the part that was picked last",
+        default=-1, min=-1, options={"SKIP_SAVE"},
+    )
+
+    def hierarchy(self, context, obj):
+        found = super().hierarchy(context, obj)
+        if self.node >= len(found.parent):
+            raise solids.NotClosed(f"There is no part {self.node}: the hierarchy has {len(found.parent)}.")
+        if self.node < 0:
+            picked = session.picked(obj)
+            if not picked:
+                raise solids.NotClosed("No part is picked. Pick one with Select Part by Wheel, and confirm it.")
+            self.node = picked.node
+        return found
+
+
+class Snaps:
+    """Cuts parts out, whose borders may be moved. Mixed into an operator."""
+
+    snap: bpy.props.BoolProperty(
+        name="Snap Border", description="Move the border of the part to the creases nearby, as far as the tetrahedra "
+        "about it let it be there", default=True,
+    )
+
+
+class _SolidOfPart(Snaps, OnPart, _AsSolid):
+    """Of a node."""
+
+
+class MESH_OT_partwheel_copy(_SolidOfPart, bpy.types.Operator):
+    """Copy the picked part as a solid: a new object, closed where it was cut; Ctrl C, Ctrl V take it to other files"""
+
+    bl_idname = "mesh.partwheel_copy"
+    bl_label = "Copy Part as Solid"
+
+    def work(self, context, obj, hierarchy):
+        only(context, [composition.copied(obj, hierarchy, self.node, self.caps(), self.snap)])
+
+
+class MESH_OT_partwheel_remove(_SolidOfPart, bpy.types.Operator):
+    """Take the picked part out of the mesh and close the hole"""
+
+    bl_idname = "mesh.partwheel_remove"
+    bl_label = "Remove Part"
+    edits = True
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and changeable(cls, context.active_object)
+
+    def work(self, context, obj, hierarchy):
+        composition.removed(obj, hierarchy, self.node, self.caps(), self.snap)
+
+
+class MESH_OT_partwheel_split(_AsSolid, bpy.types.Operator):
+    """Make each part of a cut an object of its own: closed solids that fit each other exactly"""
+
+    bl_idname = "mesh.partwheel_split"
+    bl_label = "Split into Solids"
+
+    by: bpy.props.EnumProperty(
+        name="By", description="What decides where to cut",
+        items=[("PARTS", "Parts", "Into so many parts, those that were joined last"),
+               ("LEAST_CONCAVITY", "Nearly Convex", "Into so many parts, those that are nearest to convex in total"),
+               ("HEIGHT", "Height", "Into the largest parts of at most this concavity")],
+    )
+    parts: bpy.props.IntProperty(name="Parts", description="How many parts", default=6, min=1, soft_max=64, max=4096)
+    height: bpy.props.FloatProperty(
+        name="Height", description="Largest concavity of a part: the volume between it and its convex hull", default=0,
+        min=0,
+    )
+    explode: bpy.props.FloatProperty(
+        name="Explode", description="How far the parts are moved apart, by their distance from the middle", default=0,
+        min=0, soft_max=2,
+    )
+    hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was split", default=True)
+
+    def draw(self, _context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "by")
+        layout.prop(self, "height" if self.by == "HEIGHT" else "parts")
+        for name in ("explode", "hide", "smooth", "material"):
+            layout.prop(self, name)
+
+    def work(self, context, obj, hierarchy):
+        count = min(self.parts, len(hierarchy.tetrahedra))
+        into = {"PARTS": hierarchy.cut_parts, "LEAST_CONCAVITY": hierarchy.cut_least_concavity}
+        bounds = hierarchy.cut_height(self.height) if self.by == "HEIGHT" else into[self.by](count)
+        made = composition.split(obj, hierarchy, bounds, self.caps(), self.explode)
+        only(context, made)
+        if self.hide:
+            obj.hide_set(True)
+
+
+def only(context, objects):
+    """Selects these objects and no other; the first becomes active."""
+    for other in context.selected_objects:
+        other.select_set(False)
+    for new in objects:
+        new.select_set(True)
+    context.view_layer.objects.active = objects[0]
+
+
+CLASSES = (MESH_OT_partwheel_copy, MESH_OT_partwheel_remove, MESH_OT_partwheel_split)

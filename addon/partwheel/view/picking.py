@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is under the mouse: rays against what a 3D view shows. What is hidden, clipped or not in its local view is left
+out, and what is seen under modifiers leads to the mesh's own faces."""
+
+from typing import NamedTuple
+
+import bmesh
+import bpy
+from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
+from mathutils import Matrix, Vector
+from mathutils.bvhtree import BVHTree
+
+from ..mesh import arrays
+from .seen import seen
+
+STEP = 1e-5  # how far behind a clipped face the search goes on, as a share of the way there
+BEHIND = 1e-6  # the same behind what a view does not show, as a share of the coordinates, which have 24 bits
+
+
+class FaceTree:
+    """What is seen of an object's faces as they are now, to be searched by rays."""
+
+    def __init__(self, obj, shown=None):
+        """shown: its seen.Seen, if that is there already; of no use in Edit Mode."""
+        if obj.mode == "EDIT":
+            self._fill(bmesh.from_edit_mesh(obj.data), arrays.cage_positions(obj))
+            return
+        shown = shown or seen(obj)
+        self._indices = shown.faces.tolist()
+        self._tree = BVHTree.FromPolygons(shown.positions.tolist(), shown.triangles.tolist(), all_triangles=True)
+
+    def _fill(self, bm, cage=None):
+        """cage: (V,3) where the vertices are shown, if elsewhere."""
+        bm.faces.index_update()
+        if cage is not None:
+            bm.verts.index_update()
+            faces = [face for face in bm.faces if not face.hide]
+            self._indices = [face.index for face in faces]
+            corners = [[vertex.index for vertex in face.verts] for face in faces]
+            self._tree = BVHTree.FromPolygons(cage.tolist(), corners)
+            return
+        hidden = [face.index for face in bm.faces if face.hide]
+        self._indices = None  # of the faces in the mesh; none is needed where all are visible
+        if not hidden:
+            self._tree = BVHTree.FromBMesh(bm)
+            return
+        visible = bm.copy()
+        visible.faces.ensure_lookup_table()
+        self._indices = [face.index for face in bm.faces if not face.hide]
+        bmesh.ops.delete(visible, geom=[visible.faces[index] for index in hidden], context="FACES_ONLY")
+        visible.faces.index_update()
+        self._tree = BVHTree.FromBMesh(visible)
+        visible.free()
+
+    def under(self, matrix, region, view, point):
+        """(face index, distance along the ray in world units), or None; NO_FACE: modifiers have put there what is seen.
+        matrix: the object's to the world. view: a RegionView3D. point: (x, y) in pixels of the region."""
+        to_local = matrix.inverted_safe()
+        eye = region_2d_to_origin_3d(region, view, point)
+        towards = to_local.to_3x3() @ region_2d_to_vector_3d(region, view, point)
+        origin = to_local @ eye
+        while True:
+            hit, _, index, distance = self._tree.ray_cast(origin, towards)
+            if index is None:
+                return None
+            if not clipped(view, matrix @ hit):
+                return self._indices[index] if self._indices else index, (matrix @ hit - eye).length
+            origin = hit + towards.normalized() * max(distance, hit.length) * STEP
+
+
+def clipped(view, point):
+    """Whether the view's clipping region (Alt B) leaves out a point of the world."""
+    return view.use_clip_planes and any(Vector(plane).dot((*point, 1.0)) < 0 for plane in list(view.clip_planes)[:4])
+
+
+class Surface(NamedTuple):
+    """A place on a surface, in the world; normal: towards the eye. obj: whose it is; matrix: that object's to the
+    world, or its instance's."""
+
+    location: Vector
+    normal: Vector
+    obj: bpy.types.Object
+    matrix: Matrix
+
+
+def surface_under(context, area, region, view, point, wanted=lambda obj: True):
+    """The Surface that a 3D view shows under a point of its region, or None. wanted(object): whether it is not looked
+    through."""
+    depsgraph = context.evaluated_depsgraph_get()
+    origin = region_2d_to_origin_3d(region, view, point)
+    towards = region_2d_to_vector_3d(region, view, point)
+    while True:
+        found, location, normal, _, obj, matrix = context.scene.ray_cast(depsgraph, origin, towards)
+        if not found:
+            return None
+        obj = obj.original
+        if (wanted(obj) and not clipped(view, location)
+                and _shown_there(area.spaces.active, depsgraph, obj, matrix)):
+            return Surface(location, -normal if normal.dot(towards) > 0 else normal, obj, matrix)
+        origin = location + towards * BEHIND * max(location.length, origin.length)
+
+
+def _shown_there(space, depsgraph, obj, matrix):
+    """Whether a 3D view shows the object, or an instance of it, with this matrix: scene.ray_cast() does not know."""
+    if obj.evaluated_get(depsgraph).matrix_world == matrix and obj.visible_get(viewport=space):
+        return True
+    return any(each.is_instance and each.object.original == obj and each.matrix_world == matrix
+               and each.parent.original.visible_get(viewport=space) for each in depsgraph.object_instances)
+
+
+def nearest(objects, tree_of, region, view, point):
+    """(object, face index) of the first face under a point of the region, or (None, None); the index may be NO_FACE.
+    tree_of(object): a FaceTree."""
+    hits = [(tree_of(each).under(each.matrix_world, region, view, point), each) for each in objects]
+    hits = [(*found, each) for found, each in hits if found]
+    if not hits:
+        return None, None
+    face, _, obj = min(hits, key=lambda hit: hit[1])
+    return obj, face
+
+
+def view_under(window, x, y):
+    """(area, region, RegionView3D) of the 3D view at a window's pixel, or None; a panel lying over the view counts as
+    not the view."""
+    for area in window.screen.areas:
+        if area.type != "VIEW_3D" or not _holds(area, x, y):
+            continue
+        regions = [region for region in area.regions if region.width > 1 and region.height > 1 and _holds(region, x, y)]
+        if len(regions) != 1 or regions[0].type != "WINDOW":
+            return None
+        return area, regions[0], view_of(area, regions[0])
+    return None
+
+
+def view_of(area, region):
+    """The RegionView3D of a 3D view's region of type WINDOW."""
+    space, windows = area.spaces.active, [each for each in area.regions if each.type == "WINDOW"]
+    views = list(space.region_quadviews) or [space.region_3d]  # four in quad view, in the order of the regions
+    return views[windows.index(region)]
+
+
+def _holds(box, x, y):
+    return box.x <= x < box.x + box.width and box.y <= y < box.y + box.height
