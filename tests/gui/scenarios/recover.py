@@ -8,7 +8,7 @@ import bpy
 OTHER = """
 import bpy, sys
 def play():
-    session = next(module for name, module in sys.modules.items() if name.endswith("partwheel.parts.session") or name.endswith("addon.parts.session"))
+    session = next(module for name, module in sys.modules.items() if name.endswith(".parts.session"))
     model = bpy.data.objects["hand"]
     assert session.hierarchy(model) is not None, "the parts came with the file"
     model.data.vertices[0].co.z += 1000
