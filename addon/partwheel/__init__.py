@@ -20,12 +20,11 @@ bl_info = {
 
 PACKAGES = Path(__file__).parent / "packages"  # with the Python package partwheel, where no wheel brings it
 
-if "register" in globals():
-    # An update was installed over this: Blender before 4.2 reloads this file alone, so the others are forgotten here.
-    ours = (f"{__name__}.", "partwheel.")
-    for name in [name for name in sys.modules if f"{name}.".startswith(ours) and name != __name__]:
-        del sys.modules[name]
-        globals().pop(name[len(__name__) + 1:], None)
+# An update may have been installed over what is loaded. Blender before 4.2 then reloads this file alone, later ones
+# forget the add-on's modules but not the package's: all are forgotten here.
+for name in [name for name in sys.modules if f"{name}.".startswith((f"{__name__}.", "partwheel.")) and name != __name__]:
+    del sys.modules[name]
+    globals().pop(name[len(__name__) + 1:], None)
 if PACKAGES.is_dir() and str(PACKAGES) not in sys.path:
     sys.path.insert(0, str(PACKAGES))
 

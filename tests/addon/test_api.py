@@ -23,15 +23,15 @@ class Api(MeshTest):
             self.assertEqual(self.api.faces(obj, node).tolist(), expected.faces(node).tolist())
 
     def test_mode_of_the_preferences_unless_a_script_names_one(self):
-        obj, core, preferences = self.add(*read_off("hand")), package(), part("preferences").preferences()
-        expected = {mode: core.Hierarchy.build(*part("mesh.arrays").surface(obj.data), mode=mode).parent.tolist()
-                    for mode in core.Mode}
+        obj, preferences = self.add(*read_off("hand")), part("preferences").preferences()
+        expected = {mode: package().Hierarchy.build(*part("mesh.arrays").surface(obj.data), mode=mode).parent.tolist()
+                    for mode in package().Mode}
         self.assertNotEqual(*expected.values())
-        for mode in core.Mode:
+        for mode in package().Mode:
             self.addCleanup(setattr, preferences, "parts", preferences.parts)
             preferences.parts = mode.name
             self.assertEqual(self.api.build(obj).parent.tolist(), expected[mode])
-            for other in core.Mode:
+            for other in package().Mode:
                 self.assertEqual(self.api.build(obj, mode=other).parent.tolist(), expected[other])
 
     def test_builds_when_there_is_none(self):

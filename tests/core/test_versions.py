@@ -13,7 +13,6 @@ import faults
 import partwheel
 import pytest
 from conftest import ROOT
-from partwheel import core
 from partwheel import library
 
 HEADER = "".join((ROOT / "native" / "include" / name).read_text() for name in ("partwheel_types.h", "partwheel.h"))
@@ -23,7 +22,7 @@ BARE = re.sub(r"/\*.*?\*/", "", HEADER, flags=re.S)
 def test_versions_agree():
     (version,) = re.findall(r'#define PW_VERSION "(.*)"', HEADER)
     manifest = tomllib.loads((ROOT / "addon" / "partwheel" / "blender_manifest.toml").read_text())
-    assert core.version() == library.VERSION == version == manifest["version"]
+    assert partwheel.version() == library.VERSION == version == manifest["version"]
     assert ".".join(map(str, partwheel.bl_info["version"])) == version
 
 
@@ -40,7 +39,7 @@ def test_a_library_of_another_version_is_refused(told, real, why, tmp_path, monk
     others = ["-Wl,--no-as-needed", path, f"-Wl,-rpath,{path.parent}"] if real else []
     other = faults.compiled(source, tmp_path / "libother.so", *others)
     monkeypatch.setenv("PARTWHEEL_LIBRARY", other)
-    with pytest.raises(core.LibraryError) as refused:
+    with pytest.raises(partwheel.LibraryError) as refused:
         library.load.__wrapped__()
     assert other in str(refused.value) and why in str(refused.value)
     assert "Restart" in str(refused.value) and "anew" in str(refused.value)
@@ -62,7 +61,7 @@ def test_a_package_says_the_platform_that_it_was_made_on(machine, named, monkeyp
     names["main"].__globals__["PACKAGES"] = tmp_path
     names["main"]()
     (package,) = tmp_path.iterdir()
-    assert package.name == f"partwheel-{core.version()}-{named}.zip"
+    assert package.name == f"partwheel-{partwheel.version()}-{named}.zip"
     with zipfile.ZipFile(package) as archive:
         manifest = tomllib.loads(archive.read("partwheel/blender_manifest.toml").decode())
     written = tomllib.loads((ROOT / "addon" / "partwheel" / "blender_manifest.toml").read_text())

@@ -27,6 +27,7 @@ from conftest import ROOT
 from partwheel import Hierarchy, PartwheelError, Stage, Status
 from partwheel.library import load
 from partwheel.worker import MESSAGE, Job, WorkerError
+from partwheel.worker import job as worker
 
 HERE = Path(__file__).parent
 LINUX = sys.platform == "linux"

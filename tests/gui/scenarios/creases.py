@@ -6,8 +6,8 @@ import numpy
 
 def play(stage):
     yield from stage.open("homer")
-    model, core, arrays = stage.object, stage.package(), stage.part("mesh.arrays")
-    creases = core.Creases(*arrays.surface(arrays.up_to_date(model)))
+    model, package, arrays = stage.object, stage.package(), stage.part("mesh.arrays")
+    creases = package.Creases(*arrays.surface(arrays.up_to_date(model)))
 
     def snapped(faces):
         inside = numpy.zeros(len(stage.wheels.triangles), bool)
