@@ -10,12 +10,13 @@ import inspect
 import io
 import sys
 import types
+from pathlib import Path
 
 import bmesh
 import bpy
 import common
 import numpy as np
-from common import part, read_off, until
+from common import package, part, read_off, until
 from solid_case import SolidTest
 from test_modal import FakeContext, event, show, view
 from test_swap import limb
@@ -35,8 +36,11 @@ class Calls:
         self.names, self.fault, self.raised = [], fault, False
 
     def __enter__(self):
-        self.callers = str(part("operators").__file__).removesuffix("__init__.py")
-        self.package = str(part("parts.session").__file__).removesuffix("session.py")
+        addon = sys.modules[common.MODULE]
+        classes = [each for name in addon.MODULES for each in getattr(part(name), "CLASSES", ())]
+        self.callers = {sys.modules[base.__module__].__file__ for each in classes if issubclass(each, bpy.types.Operator)
+                        for base in each.__mro__ if base.__module__.startswith(f"{common.MODULE}.")}
+        self.called = tuple(str(Path(each.__file__).parent) for each in (addon, package()))
         sys.setprofile(self._called)
         return self
 
@@ -46,8 +50,8 @@ class Calls:
     def _called(self, frame, what, _):
         code = frame.f_code
         # Not where a generator goes on: what is raised there comes before its own "finally".
-        if what != "call" or not (frame.f_back.f_code.co_filename.startswith(self.callers)
-                                  and code.co_filename.startswith(self.package)):
+        if what != "call" or not (frame.f_back.f_code.co_filename in self.callers
+                                  and code.co_filename.startswith(self.called)):
             return
         if code.co_flags & inspect.CO_GENERATOR or code.co_name in OURS or code.co_name.startswith("<"):
             return
