@@ -1,8 +1,9 @@
-# A test: LIBRARY exports exactly the functions that HEADER declares.
-#   cmake -DNM=nm -DLIBRARY=libpartwheel.so -DHEADER=partwheel.h -P check_exports.cmake
+# A test: LIBRARY exports exactly the functions that the headers declare.
+#   cmake -DNM=nm -DLIBRARY=libpartwheel.so -DHEADERS=native/include -P check_exports.cmake
 
-file(READ "${HEADER}" header)
-string(REGEX MATCHALL "PW_API [^;(]*pw_[a-z_0-9]+\\(" declarations "${header}")
+file(READ "${HEADERS}/partwheel.h" header)
+file(READ "${HEADERS}/partwheel_edit.h" edit)
+string(REGEX MATCHALL "PW_API [^;(]*pw_[a-z_0-9]+\\(" declarations "${header}${edit}")
 set(declared "")
 foreach(declaration IN LISTS declarations)
   string(REGEX MATCH "(pw_[a-z_0-9]+)\\($" declaration "${declaration}")
@@ -16,7 +17,7 @@ list(REMOVE_ITEM exported "")
 list(SORT exported)
 
 if(NOT declared)
-  message(FATAL_ERROR "no function declaration was found in ${HEADER}")
+  message(FATAL_ERROR "no function declaration was found in ${HEADERS}")
 endif()
 if(NOT exported STREQUAL declared)
   message(FATAL_ERROR "exported and declared functions differ\nexported: ${exported}\ndeclared: ${declared}")

@@ -33,7 +33,7 @@ target_link_options(work_test PRIVATE LINKER:--wrap=_ZN9partwheel8Progress7advan
 target_link_libraries(work_test PRIVATE partwheel_tetgen)
 
 add_test(NAME exports COMMAND "${CMAKE_COMMAND}" -DNM=${CMAKE_NM} -DLIBRARY=$<TARGET_FILE:partwheel>
-                              -DHEADER=${PROJECT_SOURCE_DIR}/native/include/partwheel.h
+                              -DHEADERS=${PROJECT_SOURCE_DIR}/native/include
                               -P "${PROJECT_SOURCE_DIR}/cmake/check_exports.cmake")
 
 # What tests/core asks CGAL, through ctypes.

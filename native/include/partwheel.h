@@ -1,4 +1,5 @@
-/* Partwheel's whole C API: a triangle mesh in, a hierarchy of its nearly convex parts out.
+/* Partwheel's C API: a triangle mesh in, a hierarchy of its nearly convex parts out. What edits a mesh with such parts is
+ * in partwheel_edit.h.
  *
  * The method is "Hierarchical Convex Approximation of 3D Shapes for Fast Region Selection" (Attene, Mortara,
  * Spagnuolo, Falcidieno 2008), called "the paper" below.
@@ -333,69 +334,6 @@ PW_API pw_status pw_hierarchy_solid_of_faces(const pw_hierarchy *hierarchy, size
 PW_API pw_status pw_mesh_origins(const pw_mesh *mesh, const int32_t **ends, const int32_t **faces,
                                  const int32_t **beyond);
 
-/* What keeps polygons from being a closed, manifold, oriented surface; all three 0 if nothing does.
- *
- * corners  corner_count vertices, polygon after polygon. begin  polygon_count: the first corner of each polygon.
- * open     edges that have not just two polygons. against  edges whose two polygons run along them the same way.
- * touching vertices, of vertex_count, that have no polygon, or several fans of them; not counted (0) where open or
- *          against is not 0. */
-PW_API pw_status pw_polygon_faults(const int32_t *corners, size_t corner_count, const int32_t *begin,
-                                   size_t polygon_count, size_t vertex_count, size_t *open, size_t *against,
-                                   size_t *touching);
-
-/* The places of a surface's vertices when the free ones lie as smoothly as their surroundings let them: the sum over
- * all vertices of area times squared umbrella is least, the discrete form of a thin plate's bending, so the surface
- * leaves the fixed part as it arrives there (Kobbelt, Campagna, Vorsatz, Seidel, "Interactive Multi-Resolution Modeling
- * on Arbitrary Meshes", 1998). Umbrellas have the weights 1 / length (Desbrun, Meyer, Schroeder, Barr, "Implicit Fairing
- * of Irregular Meshes", 1999), which slivers do not harm, and know edges only: polygons may have any number of corners.
- *
- * edges   edge_count x 2 vertices.
- * free    vertex_count bytes: not 0 at the vertices that may move. Those from which no way of free ones leads to a
- *         fixed one stay.
- * result  receives vertex_count x 3; it may be vertices itself.
- *
- * PW_ERROR_INDEX, PW_ERROR_NOT_FINITE; PW_ERROR_INTERNAL: the system has no solution in doubles. */
-PW_API pw_status pw_faired(const double *vertices, size_t vertex_count, const int32_t *edges, size_t edge_count,
-                           const uint8_t *free, double *result);
-
-/* ---- Borders -------------------------------------------------------------------------------------------------- */
-
-/* A part of a surface with its border moved to the creases nearby, where people would end the part: a minimum cut in a
- * band around the border (Katz, Tal, "Hierarchical Mesh Decomposition Using Fuzzy Clustering and Cuts", 2003). The border
- * goes along edges between faces. Each costs its length, times a weight after Golovinskiy, Funkhouser, "Randomized Cuts
- * for 3D Mesh Analysis" (2008), which is 1 where the surface is flat, falls a little towards sharp convex edges and
- * steeply towards concave ones; and up to half more the farther it is from the border as given. The sum is least, so
- * length times weight never adds up to more than before.
- *
- * The band reaches to both sides, by a fifth of the square root of the area of the part or of the rest, whichever is
- * less; less far where it would have more than 12,000 faces; and never over all of a connected piece. So nothing
- * vanishes, nothing falls into more pieces, and a face stays whole. The result depends neither on the order of vertices,
- * triangles and faces nor on the unit, but for what rounding does to costs and distances that are equal.
- *
- * What all parts of a surface need is made once, by pw_creases_create; the caller frees it with pw_creases_free. It
- * never changes: any number of threads may ask it.
- *
- * vertices, triangles, faces, face_count  as in pw_build; copied. Any surface: open, non-manifold, with triangles of no
- *         area; a closed one that winds the other way is taken as it was meant. A face without triangles stays where it
- *         is.
- * creases receives the new surface, null on error.
- *
- * PW_ERROR_EMPTY: no faces. PW_ERROR_INDEX, PW_ERROR_NOT_FINITE, PW_ERROR_ARGUMENT: as in pw_build. */
-typedef struct pw_creases pw_creases;
-
-PW_API pw_status pw_creases_create(const double *vertices, size_t vertex_count, const int32_t *triangles,
-                                   size_t triangle_count, const int32_t *faces, size_t face_count,
-                                   pw_creases **creases);
-PW_API void pw_creases_free(pw_creases *creases);
-
-/* A part with its border moved. Making the surface takes some 35 ms for 100,000 faces, a part 15.
- *
- * inside  face_count bytes, as many as the surface has faces: not 0 for those of the part.
- * result  receives face_count bytes: 1 for the faces of the part with its new border, else 0. It may be inside itself.
- *
- * PW_ERROR_EMPTY: no face is in the part. PW_ERROR_ARGUMENT: another face_count. */
-PW_API pw_status pw_creases_snap(const pw_creases *creases, const uint8_t *inside, size_t face_count, uint8_t *result);
-
 /* ---- Saving --------------------------------------------------------------------------------------------------- */
 
 /* The hierarchy as bytes, the same on every machine. The same rule for capacity and *count (bytes here) as above. */
@@ -404,83 +342,6 @@ PW_API pw_status pw_hierarchy_save(const pw_hierarchy *hierarchy, uint8_t *bytes
 /* A hierarchy from such bytes. Nothing in them is trusted: whatever is damaged, cut short or foreign gives
  * PW_ERROR_DATA. */
 PW_API pw_status pw_hierarchy_load(const uint8_t *bytes, size_t count, pw_hierarchy **hierarchy);
-
-/* ---- Deformation ---------------------------------------------------------------------------------------------- */
-
-/* What a vertex does in a deformation, if it does not follow a handle (0, 1, 2 ...). */
-#define PW_VERTEX_FREE (-1)  /* goes where the deformation takes it */
-#define PW_VERTEX_FIXED (-2) /* stays */
-
-/* A surface whose free vertices follow handles as rigidly as possible: Sorkine, Alexa, "As-Rigid-As-Possible Surface
- * Modeling" (2007), which the paper uses in its section 4.1, with the energy called "spokes and rims" (Chao, Pinkall,
- * Sanan, Schroeder, "A Simple Geometric Model for Elastic Deformations", 2010):
- *
- *   E = sum over vertices i, triangles t at i, edges e of t:  cot(t, e) |e' - R_i e|^2
- *
- * cot(t, e): cotangent of t's angle opposite e; e, e': the edge at rest and now; R_i: the rotation that fits best.
- *
- * One thread at a time may use a deformation; several deformations are independent of each other. The same calls give
- * the same bits on every machine. */
-typedef struct pw_deformation pw_deformation;
-
-/* Prepares a deformation and factorizes its system, once for all moves.
- *
- * vertices        vertex_count x 3 coordinates at rest, at most 1e100 in size.
- * triangles       triangle_count x 3 indices into vertices. Any surface: open, non-manifold, with triangles of no area
- *                 (they count as thicker than they are). Only what is near free vertices matters, so the part that
- *                 deforms and a ring of triangles around it will do; that ring makes the join smooth.
- * roles           vertex_count numbers: PW_VERTEX_FREE, PW_VERTEX_FIXED or the number of the handle that the vertex
- *                 follows. Handles are numbered from 0 without a gap. Free vertices that no triangles connect with a
- *                 fixed vertex or a handle stay.
- * deformation     receives a new handle, to be freed with pw_deformation_free.
- *
- * PW_ERROR_EMPTY: no vertices or triangles. PW_ERROR_INDEX, PW_ERROR_NOT_FINITE: as in pw_build. PW_ERROR_ARGUMENT:
- * a role that is none, a gap between handles, or no vertex left that is free and not on its own. PW_ERROR_DEGENERATE:
- * triangles so thin that the system can't be solved. Takes some 0.1 s for 20,000 vertices, 0.6 s for 100,000. */
-PW_API pw_status pw_deformation_create(const double *vertices, size_t vertex_count, const int32_t *triangles,
-                                       size_t triangle_count, const int32_t *roles, pw_deformation **deformation);
-
-PW_API void pw_deformation_free(pw_deformation *deformation);
-
-/* Takes a handle to a new place: each of its vertices to matrix times its place at rest. Free vertices go some of the
- * way, as a first guess; pw_deformation_iterate does the rest.
- *
- * matrix          12 doubles, the rows of a 3 x 4 matrix: x goes to its first three columns times x, plus the fourth.
- *                 Turn, move, scale, mirror: any.
- *
- * PW_ERROR_ARGUMENT: no such handle. PW_ERROR_NOT_FINITE: an entry is infinite, too large, or not a number. */
-PW_API pw_status pw_deformation_move(pw_deformation *deformation, size_t handle, const double *matrix);
-
-/* Improves the free vertices' places: each iteration lowers E, or leaves it where it is least. Allocates nothing. */
-PW_API pw_status pw_deformation_iterate(pw_deformation *deformation, size_t iterations);
-
-/* E for the present places, in the unit of the coordinates squared. */
-PW_API pw_status pw_deformation_energy(pw_deformation *deformation, double *energy);
-
-/* The present places of all vertices, in the order given. positions: vertex_count x 3; vertex_count must be the
- * deformation's. */
-PW_API pw_status pw_deformation_positions(const pw_deformation *deformation, double *positions, size_t vertex_count);
-
-/* Everything back to rest. */
-PW_API pw_status pw_deformation_reset(pw_deformation *deformation);
-
-/* Normals of vertices, for shading: of each the sum over its triangles of (a x b) / (|a|^2 |b|^2), with a and b the sides
- * that meet there (Max, "Weights for Computing Vertex Normals from Facet Normals", 1999), made of length 1; 0, 0, 0 where
- * that is nothing. The unit of the coordinates does not matter.
- *
- * vertices, triangles  as in pw_deformation_create, with the same errors.
- * normals              vertex_count x 3. */
-PW_API pw_status pw_vertex_normals(const double *vertices, size_t vertex_count, const int32_t *triangles,
-                                   size_t triangle_count, double *normals);
-
-/* How far each vertex is from the nearest start along the surface: infinity where no way leads. The ways go along edges
- * and straight over an edge to the corner beyond, so they are a few percent too long.
- *
- * vertices, triangles  as in pw_deformation_create, with the same errors.
- * start                vertex_count bytes: not 0 at the vertices from which is measured.
- * distance             receives vertex_count doubles, in the unit of the coordinates. */
-PW_API pw_status pw_surface_distances(const double *vertices, size_t vertex_count, const int32_t *triangles,
-                                      size_t triangle_count, const uint8_t *start, double *distance);
 
 #ifdef __cplusplus
 }

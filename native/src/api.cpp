@@ -1,5 +1,5 @@
 // The C functions: argument checks and calls into the rooms, nothing else.
-#include "partwheel.h"
+#include "partwheel_edit.h"
 
 #include "fill/ladder.h"
 #include "part/border.h"

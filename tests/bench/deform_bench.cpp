@@ -6,7 +6,7 @@
 // others stay. The handle turns a little at each move, as under a mouse, and each move iterates so often. `create`:
 // seconds, [wall, cpu]. `move`: the median and the longest, in seconds of wall clock, and the median of processor time.
 #include "measured.h"
-#include "partwheel.h"
+#include "partwheel_edit.h"
 
 #include <algorithm>
 #include <cmath>

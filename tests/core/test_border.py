@@ -15,7 +15,7 @@ MODELS = ["hand", "man", "elephant", "bear", "dragknob"]
 
 
 def edges_with_costs(shape):
-    """(E,2) the faces at each edge between two, and (E,) length times weight, as partwheel.h documents them."""
+    """(E,2) the faces at each edge between two, and (E,) length times weight, as partwheel_edit.h documents them."""
     vertices, triangles, faces, count = shape
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
     normals = np.zeros((count, 3))

@@ -58,7 +58,7 @@ def cylinder(around=24, along=60, length=10.0):
 
 
 def energy(rest, now, triangles):
-    """The energy of partwheel.h, from its formula alone: rotations by numpy's singular values."""
+    """The energy of partwheel_edit.h, from its formula alone: rotations by numpy's singular values."""
     corners = rest[triangles]
     total, covariance, edges = 0.0, np.zeros((len(rest), 3, 3)), []
     for k in range(3):

@@ -15,7 +15,7 @@ import pytest
 from conftest import ROOT
 from partwheel import library
 
-HEADER = "".join((ROOT / "native" / "include" / name).read_text() for name in ("partwheel_types.h", "partwheel.h"))
+HEADER = "".join((ROOT / "native" / "include" / name).read_text() for name in ("partwheel_types.h", "partwheel.h", "partwheel_edit.h"))
 BARE = re.sub(r"/\*.*?\*/", "", HEADER, flags=re.S)
 
 

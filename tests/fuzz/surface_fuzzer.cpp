@@ -8,7 +8,7 @@
 //   1 a face    whether it is in the part: the lowest bit
 //   1 + 12 a move of a handle: which, and its matrix, in 1/32 beside the identity, or wild
 #include "bytes.h"
-#include "partwheel.h"
+#include "partwheel_edit.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include "part/border.h"
 
 #include "base/error.h"
-#include "partwheel.h"
+#include "partwheel_edit.h"
 #include "support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ Part where(const TriMesh& mesh, const std::function<bool(const Point&)>& holds) 
     return part;
 }
 
-// What the border costs between two faces, by angles, as partwheel.h documents it: (lower face, higher face) -> cost.
+// What the border costs between two faces, by angles, as partwheel_edit.h documents it: (lower face, higher face) -> cost.
 // For closed surfaces that are manifold.
 std::map<std::pair<int32_t, int32_t>, double> plain_costs(const TriMesh& mesh) {
     std::vector<Point> normals(mesh.face_count, Point{});

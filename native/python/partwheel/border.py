@@ -10,7 +10,7 @@ from .library import check, load
 
 
 class Creases:
-    """A surface whose parts' borders can be moved to creases: see pw_creases in partwheel.h. It never changes.
+    """A surface whose parts' borders can be moved to creases: see pw_creases in partwheel_edit.h. It never changes.
 
     vertices (V,3); triangles (T,3) indices into them; faces (T,) the polygon of each triangle and face_count their
     number, or both None where every triangle is one. Raises PartwheelError.

@@ -19,7 +19,7 @@ MOST_ITERATIONS = 300
 
 
 class Deformation:
-    """A surface at rest, and where it is now: see pw_deformation in partwheel.h for the energy and its source.
+    """A surface at rest, and where it is now: see pw_deformation in partwheel_edit.h for the energy and its source.
 
     vertices (V,3) at rest; triangles (T,3) indices into them; roles (V,) FREE, FIXED or the number of the handle that a
     vertex follows, counted from 0. Not for several threads at a time. Raises PartwheelError.

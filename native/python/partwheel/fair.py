@@ -7,7 +7,7 @@ from .library import check, load
 
 
 def faired(vertices, edges, free):
-    """(V,3) the vertices, of which the free ones lie as smoothly as the others let them, see pw_faired in partwheel.h.
+    """(V,3) the vertices, of which the free ones lie as smoothly as the others let them, see pw_faired in partwheel_edit.h.
     vertices (V,3), edges (E,2) vertex indices, free (V,) bool. Raises PartwheelError."""
     vertices, edges = np.ascontiguousarray(vertices, np.float64), np.ascontiguousarray(edges, np.int32)
     free = np.ascontiguousarray(free, bool)

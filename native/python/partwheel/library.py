@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ctypes binding of the native library: every function, struct and status of native/include/partwheel.h."""
+"""The ctypes binding of the native library: every function, struct and status of native/include/."""
 
 import ctypes
 import enum

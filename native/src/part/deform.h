@@ -3,7 +3,7 @@
 
 #include "base/geometry.h"
 #include "base/parallel.h"
-#include "partwheel.h"
+#include "partwheel_edit.h"
 
 #include <array>
 #include <cstddef>

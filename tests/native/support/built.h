@@ -1,7 +1,7 @@
 // Hierarchies built through the C API, and what must hold of every one of them.
 #pragma once
 
-#include "partwheel.h"
+#include "partwheel_edit.h"
 #include "support/shapes.h"
 
 #include <memory>
