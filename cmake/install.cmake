@@ -1,7 +1,6 @@
 # What is installed, and where: the library, its headers, and what CMake and pkg-config need to find them; by itself, as
 # the component python, the library for the Python package.
 
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 # While the major version is 0 a new minor one may change the interface.

@@ -7,10 +7,11 @@ import sys
 import textwrap
 
 import numpy as np
+import partwheel
 import pytest
 import shapes
 from conftest import ROOT
-from partwheel import Hierarchy, PartwheelError, Rung, Status
+from partwheel import Hierarchy, PartwheelError, Rung, Status, library, meshes, worker
 
 CUBE = shapes.cube()
 
@@ -161,3 +162,16 @@ if "libasan" not in os.environ.get("LD_PRELOAD", ""):
         results = run.stdout.split("\n")[:-1]
         assert len(results) == 10 and set(results) == {"memory", "built"}, results
         assert results[0] == "memory" and results[-1] == "built"
+
+
+def test_one_class_catches_all_of_the_packages_errors(monkeypatch, tmp_path):
+    (tmp_path / "none.off").write_text("none")
+    with pytest.raises(partwheel.Error):
+        meshes.read(tmp_path / "none.off")
+    with pytest.raises(partwheel.Error):
+        Hierarchy.load(b"none")
+    assert issubclass(worker.WorkerError, partwheel.Error)
+    monkeypatch.setattr(library.ctypes, "CDLL", lambda path: (_ for _ in ()).throw(OSError(path)))
+    with pytest.raises(partwheel.Error) as missing:
+        library.load.__wrapped__()
+    assert isinstance(missing.value, OSError)

@@ -5,8 +5,9 @@ from .border import Creases, snapped_border
 from .deform import Deformation, surface_distances
 from .fair import faired
 from .hierarchy import Hierarchy, Solid, Summary
-from .library import LibraryError, Mode, PartwheelError, Rung, Stage, Status, version
+from .library import Error, LibraryError, Mode, PartwheelError, Rung, Stage, Status, version
 from .polygons import Faults, polygon_faults
 
-__all__ = ["Creases", "Deformation", "Faults", "Hierarchy", "LibraryError", "Mode", "PartwheelError", "Rung", "Solid",
-           "Stage", "Status", "Summary", "faired", "polygon_faults", "snapped_border", "surface_distances", "version"]
+__all__ = ["Creases", "Deformation", "Error", "Faults", "Hierarchy", "LibraryError", "Mode", "PartwheelError", "Rung",
+           "Solid", "Stage", "Status", "Summary", "faired", "polygon_faults", "snapped_border", "surface_distances",
+           "version"]

@@ -26,7 +26,7 @@ def peak_memory():
 
 
 def parse(arguments):
-    parser = argparse.ArgumentParser(prog="python3 -m partwheel", description="Partwheel without Blender.")
+    parser = argparse.ArgumentParser(prog="partwheel", description="Partwheel without Blender.")
     commands = parser.add_subparsers(dest="command", required=True)
     build = commands.add_parser("build", help="build the hierarchy of parts of a surface")
     build.add_argument("model", type=Path, help="a mesh file: OFF, or any other format that trimesh reads")

@@ -154,11 +154,15 @@ FUNCTIONS = {
 }
 
 
-class LibraryError(OSError):
+class Error(Exception):
+    """What this package refuses: the base of its own errors. str() is sentences a user can act on."""
+
+
+class LibraryError(Error, OSError):
     """The native library is missing, or is not the one this Python code was written for."""
 
 
-class PartwheelError(Exception):
+class PartwheelError(Error):
     """What the native library refused, and why: str() is sentences a user can act on.
 
     status: a Status. name: it in words, stable ("self-intersection"). seconds: stage name -> seconds spent in a failed

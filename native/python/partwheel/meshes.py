@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .library import Error
 from .polygons import triangulate
 
 # Formats whose corners share vertices by index. All others store each triangle's corners apart (STL) or split vertices
@@ -13,7 +14,7 @@ from .polygons import triangulate
 INDEXED_FORMATS = {"off", "ply"}
 
 
-class MeshFileError(Exception):
+class MeshFileError(Error):
     """A file that can't be read as a mesh; str() says why. name: "mesh file", beside the library's error names."""
 
     name = "mesh file"
