@@ -2,7 +2,7 @@
 #include "tree/carried.h"
 
 #include "base/error.h"
-#include "cluster/hull.h"
+#include "cluster/hull/hull.h"
 #include "surface/prepare/rough.h"
 #include "tree/claims.h"
 

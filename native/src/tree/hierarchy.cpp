@@ -1,7 +1,7 @@
 // The finished hierarchy: flat arrays, questions, saving and loading.
 #include "tree/hierarchy.h"
 
-#include "cluster/hull.h"
+#include "cluster/hull/hull.h"
 #include "tree/claims.h"
 #include "tree/packed.h"
 

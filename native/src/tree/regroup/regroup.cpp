@@ -1,7 +1,7 @@
 // The top of the tree built anew: choose parts, measure them and what lies between, join them, score the result.
 #include "tree/regroup/regroup.h"
 
-#include "cluster/hull.h"
+#include "cluster/hull/hull.h"
 #include "tree/regroup/regroup_fitted.h"
 
 #include <algorithm>
