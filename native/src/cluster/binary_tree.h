@@ -1,9 +1,12 @@
 // The binary tree of clusters: what was merged with what, and the concavity of each union (the paper's Eq. 1).
 #pragma once
 
+#include "base/geometry.h"
+
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace partwheel {
@@ -37,5 +40,12 @@ struct BinaryTree {
     std::vector<Merge> merges;
     size_t components = 0;  // clusters left when the dual edges had run out
 };
+
+// From the top down, what is noted of a cluster is noted of all that it was merged from, unless it is below 0. leaves: T.
+inline void hand_down(std::span<const Merge> merges, size_t leaves, std::vector<int32_t>& noted) {
+    for (size_t m = merges.size(); m-- > 0;)
+        if (noted[leaves + m] >= 0)
+            noted[at(merges[m].left)] = noted[at(merges[m].right)] = noted[leaves + m];
+}
 
 }  // namespace partwheel

@@ -1,7 +1,7 @@
 // Convex hulls of clusters: built, united, measured. The inner loop of everything.
 //
 // see.cpp finds the facets that a point sees, insert.cpp builds hulls by inserting points, measure.cpp finds the volume
-// of a union, merge.cpp makes the union; view.h and pairs.h are what these share.
+// of a union, merge.cpp makes the union; view.h and vectors.h are what these share.
 #pragma once
 
 #include "base/geometry.h"
@@ -64,6 +64,8 @@ private:
     };
     std::unique_ptr<Block, Release> block_;
 };
+
+inline bool fewer_facets(const Hull& a, const Hull& b) { return a.facet_count() < b.facet_count(); }
 
 struct FacetPlane;
 struct FacetsView;

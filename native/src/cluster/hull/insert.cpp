@@ -47,16 +47,16 @@ void HullKernel::make_facets(std::span<const RimEdge> rim, const Point& p, int32
     for (size_t i = 0; i < rim.size(); i += 2) {
         const size_t j = std::min(i + 1, rim.size() - 1);
         const Point &from0 = at(rim[i].from), &to0 = at(rim[i].to), &from1 = at(rim[j].from), &to1 = at(rim[j].to);
-        Pair u[3], v[3];
+        Two u[3], v[3];
         for (size_t k = 0; k < 3; ++k) {
-            u[k] = Pair{from0[k], from1[k]} - c[k];
-            v[k] = Pair{to0[k], to1[k]} - c[k];
+            u[k] = Two{from0[k], from1[k]} - c[k];
+            v[k] = Two{to0[k], to1[k]} - c[k];
         }
-        const Pair yz = u[1] * v[2], zy = u[2] * v[1], zx = u[2] * v[0], xz = u[0] * v[2], xy = u[0] * v[1],
+        const Two yz = u[1] * v[2], zy = u[2] * v[1], zx = u[2] * v[0], xz = u[0] * v[2], xy = u[0] * v[1],
                    yx = u[1] * v[0];
-        const Pair x = yz - zy, y = zx - xz, z = xy - yx;
-        const Pair size = magnitude(yz) + magnitude(zy) + magnitude(zx) + magnitude(xz) + magnitude(xy) + magnitude(yx);
-        const Pair offset = x * p[0] + y * p[1] + z * p[2];
+        const Two x = yz - zy, y = zx - xz, z = xy - yx;
+        const Two size = magnitude(yz) + magnitude(zy) + magnitude(zx) + magnitude(xz) + magnitude(xy) + magnitude(yx);
+        const Two offset = x * p[0] + y * p[1] + z * p[2];
         for (size_t k = 0; k < 2; ++k) {
             const size_t f = seen_[k == 0 ? i : j];
             x_[f] = x[k];

@@ -18,7 +18,7 @@ constexpr double negligible = 1e-14;
 
 // Six times what each of the points alone adds to the hull, to rounding.
 std::array<double, 2> added_volumes6(const FacetsView& h, const Point& p, const Point& q) {
-    Pair sum_p = {0, 0}, sum_q = {0, 0};
+    Two sum_p = {0, 0}, sum_q = {0, 0};
     for (size_t f = 0; f < h.count; f += 2) {
         sum_p += positive(h.sides(f, p));
         sum_q += positive(h.sides(f, q));
@@ -30,7 +30,7 @@ std::array<double, 2> added_volumes6(const FacetsView& h, const Point& p, const 
 bool surely_inside(const FacetsView& h, const Point& p) {
     const double factor = h.error_factor(p);
     unsigned negative = 3;
-    for (size_t f = 0; f < h.count; f += 2) negative &= signs(h.sides(f, p) + factor * vector_at<Pair>(h.size + f));
+    for (size_t f = 0; f < h.count; f += 2) negative &= signs(h.sides(f, p) + factor * vector_at<Two>(h.size + f));
     return negative == 3;
 }
 

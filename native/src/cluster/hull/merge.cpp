@@ -44,7 +44,7 @@ void HullKernel::load(const Hull& hull) {
     const double* const from[] = {h.x, h.y, h.z, h.offset, h.size};
     double* const to[] = {x_.data(), y_.data(), z_.data(), offset_.data(), size_.data()};
     for (size_t f = 0; f < count_; f += 2) {
-        for (size_t k = 0; k < plane_numbers; ++k) std::memcpy(to[k] + f, from[k] + f, sizeof(Pair));
+        for (size_t k = 0; k < plane_numbers; ++k) std::memcpy(to[k] + f, from[k] + f, sizeof(Two));
         std::memcpy(&facets_[f], &h.facets[f], 2 * sizeof(HullFacet));
     }
     gaps_.clear();
@@ -103,15 +103,15 @@ Hull HullKernel::unload(std::span<const int32_t> some, std::span<const int32_t> 
     HullFacet* const facets = block.facets();
     const double* const from[] = {x_.data(), y_.data(), z_.data(), offset_.data(), size_.data()};
     for (size_t f = 0; f < count_; f += 2) {
-        for (size_t k = 0; k < plane_numbers; ++k) std::memcpy(to + k * count_ + f, from[k] + f, sizeof(Pair));
+        for (size_t k = 0; k < plane_numbers; ++k) std::memcpy(to + k * count_ + f, from[k] + f, sizeof(Two));
         std::memcpy(&facets[f], &facets_[f], 2 * sizeof(HullFacet));
     }
     block.origin = origin_;
     block.reach = reach_;
     block.centred = centred_;
     // Measured anew, so that rounding doesn't pile up over a long chain of unions.
-    Pair sum = {0, 0};
-    for (size_t f = 0; f < count_; f += 2) sum += vector_at<Pair>(&offset_[f]);
+    Two sum = {0, 0};
+    for (size_t f = 0; f < count_; f += 2) sum += vector_at<Two>(&offset_[f]);
     block.volume = (sum[0] + sum[1]) / 6;
     return hull;
 }

@@ -72,8 +72,8 @@ size_t HullKernel::find_seen(const FacetsView& h, const Point& p, int32_t vertex
     const double factor = h.error_factor(p);
     bool doubtful = false;
     for (size_t f = 0; f < h.count; f += 2) {
-        const Pair side = h.sides(f, p), error = factor * vector_at<Pair>(h.size + f);
-        const auto negative = std::bit_cast<PairBits>(side + error);
+        const Two side = h.sides(f, p), error = factor * vector_at<Two>(h.size + f);
+        const auto negative = std::bit_cast<TwoBits>(side + error);
         if ((negative[0] & negative[1]) < 0) continue;
         if (side[0] > error[0]) return f;
         if (side[1] > error[1]) return f + 1;
@@ -123,9 +123,9 @@ double HullKernel::see(const Point& p, int32_t vertex) {
     const FacetsView h = view();
     const double factor = h.error_factor(p);
     uint64_t sees = 0, surely = 0;
-    Pair sum = {0, 0};
+    Two sum = {0, 0};
     for (size_t f = 0; f < h.count; f += 2) {  // a gap sees nothing
-        const Pair side = h.sides(f, p), error = factor * vector_at<Pair>(h.size + f);
+        const Two side = h.sides(f, p), error = factor * vector_at<Two>(h.size + f);
         sum += positive(side);
         sees |= uint64_t{3 ^ signs(side + error)} << f;
         surely |= uint64_t{signs(error - side)} << f;

@@ -3,7 +3,7 @@
 
 #include "base/predicates.h"
 #include "cluster/hull/hull.h"
-#include "cluster/hull/pairs.h"
+#include "cluster/hull/vectors.h"
 
 #include <cmath>
 
@@ -39,9 +39,9 @@ struct FacetsView {
     bool centred;
 
     double side(size_t f, const Point& p) const { return x[f] * p[0] + y[f] * p[1] + z[f] * p[2] - offset[f]; }
-    Pair sides(size_t f, const Point& p) const {
-        return vector_at<Pair>(x + f) * p[0] + vector_at<Pair>(y + f) * p[1] + vector_at<Pair>(z + f) * p[2] -
-               vector_at<Pair>(offset + f);
+    Two sides(size_t f, const Point& p) const {
+        return vector_at<Two>(x + f) * p[0] + vector_at<Two>(y + f) * p[1] + vector_at<Two>(z + f) * p[2] -
+               vector_at<Two>(offset + f);
     }
     // A facet's size times this bounds the error of a side.
     double error_factor(const Point& p) const { return side_error * std::max(reach, reach_of(p)); }

@@ -11,8 +11,8 @@
 
 namespace partwheel {
 
-using Pair = double __attribute__((vector_size(16)));
-using PairBits = int64_t __attribute__((vector_size(16)));
+using Two = double __attribute__((vector_size(16)));
+using TwoBits = int64_t __attribute__((vector_size(16)));
 using Four = int32_t __attribute__((vector_size(16)));
 
 template <class Vector, class Number>
@@ -23,7 +23,7 @@ inline Vector vector_at(const Number* numbers) {
 }
 
 // Bit k is set if number k is negative.
-inline unsigned signs(Pair x) {
+inline unsigned signs(Two x) {
 #if defined(__SSE2__)
     return static_cast<unsigned>(__builtin_ia32_movmskpd(x));
 #else
@@ -42,11 +42,11 @@ inline bool contains(std::span<const int32_t> numbers, int32_t v) {
     return (halves[0] | halves[1]) != 0;
 }
 
-inline Pair magnitude(Pair x) {
-    return std::bit_cast<Pair>(std::bit_cast<PairBits>(x) & std::numeric_limits<int64_t>::max());
+inline Two magnitude(Two x) {
+    return std::bit_cast<Two>(std::bit_cast<TwoBits>(x) & std::numeric_limits<int64_t>::max());
 }
 
 // The larger of 0 and each number.
-inline Pair positive(Pair x) { return std::bit_cast<Pair>(std::bit_cast<PairBits>(x) & (x > 0)); }
+inline Two positive(Two x) { return std::bit_cast<Two>(std::bit_cast<TwoBits>(x) & (x > 0)); }
 
 }  // namespace partwheel
