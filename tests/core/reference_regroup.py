@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What regroup computes, in Python, from the formulas in native/src/tree/regroup/regroup.h and regroup_measures.h, not from the C++:
-parts, folds, borders, measures, both networks, the order of joining, scores. Hulls are scipy's."""
+"""What regroup computes, in Python, from the formulas in native/src/tree/regroup/regroup.h and measures.h, not from
+the C++: parts, folds, borders, measures, both networks, the order of joining, scores. Hulls are scipy's."""
 
 import heapq
 import re
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
+from regroup_names import NODE_NAMES, PAIR_NAMES, SOURCE
 from scipy.spatial import ConvexHull
 
-SOURCE = Path(__file__).resolve().parents[2] / "native" / "src" / "tree" / "regroup"
 MOST_PARTS = 600
 DEAREST = 8.0
 CONCAVE_BEND = -0.02
@@ -19,20 +18,8 @@ SMOOTHING = 4
 CONVEX = 1e-6  # of the hull's volume, see cluster.h
 
 
-def documented_names(struct):
-    """The fields of a struct in regroup_measures.h, in order: the order of the inputs."""
-    text = (SOURCE / "regroup_measures.h").read_text()
-    body = re.search(r"struct %s \{(.*?)\n\};" % struct, text, re.DOTALL).group(1)
-    return re.findall(r"^    double (\w+);", body, re.MULTILINE)
-
-
-PAIR_NAMES = documented_names("PairMeasures")
-OWN_NAMES = documented_names("OwnMeasures")
-NODE_NAMES = OWN_NAMES + documented_names("NodeMeasures")
-
-
 def fitted_numbers(name):
-    text = (SOURCE / "regroup_fitted.h").read_text()
+    text = (SOURCE / "fitted.h").read_text()
     numbers = re.search(name + r" = \{(.*?)\};", text, re.DOTALL).group(1)
     return np.array([float(number) for number in numbers.split(",") if number.strip()])
 

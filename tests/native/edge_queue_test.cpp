@@ -27,7 +27,7 @@ public:
     Price operator()(int32_t edge, double least = 0) {
         const double spread = std::uniform_real_distribution<>(0, 1)(random_);
         const double concavity = spread < 0.3 ? least : least + spread * spread * spread;
-        return Price(Cost{concavity, static_cast<double>(random_() % 5), edge, edge + 1});
+        return Price(concavity, static_cast<double>(random_() % 5), edge, edge + 1);
     }
     size_t below(size_t n) { return random_() % n; }
 

@@ -1,5 +1,5 @@
 // HullKernel against CGAL's convex_hull_3: extreme points exactly, volumes to rounding, boundaries closed and convex.
-#include "cluster/hull.h"
+#include "cluster/hull/hull.h"
 
 #include "base/predicates.h"
 #include "support/reference_hull.h"

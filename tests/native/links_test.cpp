@@ -1,4 +1,4 @@
-// Links and LinkPool: whatever is done with lists of one pool, each has what a vector would have.
+// Links: whatever is done with lists of one pool, each has what a vector would have.
 #include "cluster/links.h"
 
 #include <gtest/gtest.h>
@@ -27,10 +27,10 @@ struct Pair {
 TEST(Links, HoldWhatAVectorHolds) {
     constexpr size_t lists = 60;
     std::mt19937 random(7);
-    LinkPool pool;
-    std::vector<Link> elsewhere(lists / 2 * LinkPool::least);
+    Pool pool;
+    std::vector<Link> elsewhere(lists / 2 * Links::least);
     std::vector<Pair> pairs(lists);
-    for (size_t i = 0; i < lists / 2; ++i) pairs[i].links = Links(&elsewhere[i * LinkPool::least]);
+    for (size_t i = 0; i < lists / 2; ++i) pairs[i].links = Links(&elsewhere[i * Links::least]);
     int32_t next = 0;
     size_t longest = 0;
     for (size_t step = 0; step < 200000; ++step) {
@@ -75,12 +75,12 @@ TEST(Links, HoldWhatAVectorHolds) {
         if (step % 64 == 0)
             for (const Pair& p : pairs) p.check();
     }
-    ASSERT_GT(longest, 4 * LinkPool::least);  // so that lists have grown several times
+    ASSERT_GT(longest, 4 * Links::least);  // so that lists have grown several times
 }
 
 // More than a chunk at once, and chunks without end.
 TEST(Links, MayBeLong) {
-    LinkPool pool;
+    Pool pool;
     std::vector<Links> lists(3);
     for (int32_t i = 0; i < 100000; ++i)
         for (Links& links : lists) links.push_back({i, -i}, pool);

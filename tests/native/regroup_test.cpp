@@ -1,7 +1,7 @@
 // Regrouping on bars of square frusta, whose measures are known by formula: the signs of creases, which side is which,
 // the order of joining. tests/core/test_regroup.py compares all of it with a second implementation, on real models.
 #include "tree/regroup/regroup.h"
-#include "tree/regroup/regroup_fitted.h"
+#include "tree/regroup/fitted.h"
 
 #include "support/shapes.h"
 

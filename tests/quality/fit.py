@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fits the numbers of native/src/tree/regroup/regroup_fitted.h to segmentations made by people, and says how well they do where they
-were not fitted.
+"""Fits the numbers of native/src/tree/regroup/fitted.h to segmentations made by people, and says how well they do where
+they were not fitted.
 
 usage: fit.py MESH_DIR SEG_DIR WORK_DIR [--trees DIR] [--trace PROGRAM] [--rounds 4] [--folds 4] [--jobs N] [--write]
 
@@ -30,12 +30,12 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"  # one process a core, and sums in one 
 import numpy as np  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "native" / "python"))
+sys.path[:0] = [str(ROOT / "native" / "python"), str(ROOT / "tests" / "core")]
 
 from partwheel import Hierarchy, Mode, PartwheelError, meshes  # noqa: E402  (found only now)
+from regroup_names import NODE_NAMES, PAIR_NAMES, SOURCE  # noqa: E402
 
-HEADER = ROOT / "native" / "src" / "tree" / "regroup" / "regroup_fitted.h"
-PAIR_MEASURES, NODE_MEASURES = 28, 32
+HEADER = SOURCE / "fitted.h"
 PAIR_RAMPS, NODE_RAMPS = 16, 12
 DIGITS = 4
 PAIRS_A_MODEL = 1200
@@ -43,7 +43,7 @@ ROUNDS_SEEN = 3
 MOST_OVERLAP = 0.85  # as in wheel_stops()
 
 
-# ---- A sum of ramps (fitted() in regroup.cpp), and its fit by Adam -------------------------------------------------
+# ---- A sum of ramps (fitted() in decide.cpp), and its fit by Adam -------------------------------------------------
 
 def likelihood_logistic(z):
     """(value, derivative of the cross entropy by z, given value - target): 1 / (1 + exp(-z))"""
@@ -56,7 +56,7 @@ def likelihood_rational(z):
 
 
 def fit(x, y, weight, ramps, likelihood, epochs, batch, rate=3e-3, decay=1e-4):
-    """The numbers, as regroup_fitted.h has them, that make likelihood(sum of ramps of x) most like y."""
+    """The numbers, as fitted.h has them, that make likelihood(sum of ramps of x) most like y."""
     rng = np.random.default_rng(0)
     middle = np.average(x, axis=0, weights=weight)
     spread = np.sqrt(np.average((x - middle) ** 2, axis=0, weights=weight)) + 1e-6
@@ -138,8 +138,8 @@ class Trace:
         self.people = people
         self.part_of_face = take(faces, np.int32, 1)[:, 0]
         self.pairs, self.merges = take(pairs, np.int32, 2), take(merges, np.int32, 2)
-        self.pair_measures = take(pairs, np.float64, PAIR_MEASURES)
-        self.node_measures = take(nodes, np.float64, NODE_MEASURES)
+        self.pair_measures = take(pairs, np.float64, len(PAIR_NAMES))
+        self.node_measures = take(nodes, np.float64, len(NODE_NAMES))
         labels, annotators = people.ends[-1], len(people.labels)
         cell = (self.part_of_face * labels + people.labels).ravel()
         sums = [np.bincount(cell, w, self.parts * labels).reshape(self.parts, labels)
@@ -244,9 +244,8 @@ class Trace:
 
 def start_numbers():
     """The first round's cost: the concavity that joining adds, relative to the smaller part's hull; and its size."""
-    weights = np.zeros(PAIR_MEASURES)
-    weights[[0, 7]] = 0.1, 0.3
-    return np.array([0, *weights, 1, 0])
+    weights = {"area_s": 0.1, "excess_to_s": 0.3}
+    return np.array([0, *(weights.get(name, 0) for name in PAIR_NAMES), 1, 0])
 
 
 def fit_pairs(data):
@@ -282,8 +281,8 @@ def header(pair_numbers, node_numbers):
         "// The numbers of the pair cost and the node score: see regroup.h, and fitted() for what they mean.\n"
         "// Written by tests/quality/fit.py; one ramp a paragraph (its bias, the weights of the measures, its own\n"
         "// weight), the last number is the sum's bias.\n#pragma once\n\n#include <array>\n\nnamespace partwheel {\n\n"
-        + array("fitted_pair_numbers", pair_numbers, PAIR_MEASURES) + "\n"
-        + array("fitted_node_numbers", node_numbers, NODE_MEASURES) + "\n}  // namespace partwheel\n")
+        + array("fitted_pair_numbers", pair_numbers, len(PAIR_NAMES)) + "\n"
+        + array("fitted_node_numbers", node_numbers, len(NODE_NAMES)) + "\n}  // namespace partwheel\n")
 
 
 def main():

@@ -2,7 +2,6 @@
 #include "cluster/cluster.h"
 
 #include "cluster/dual_graph.h"
-#include "cluster/edge_queue.h"
 
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/box.hpp>
@@ -20,6 +19,9 @@ namespace {
 
 constexpr size_t nearest_components = 16;
 
+// An edge that costs more than so many times what the next merges cost is not priced exactly yet.
+constexpr double dear = 2;
+
 class Clustering {
 public:
     Clustering(const TetMesh& mesh, Progress& progress, size_t threads) : progress_(progress), graph_(mesh) {
@@ -30,6 +32,8 @@ public:
 
 private:
     void queue_edges();
+    void prefetch_soon(const EdgeQueue::Item* second) const;
+    void prefetch_around(int32_t contracted) const;
     void evaluate(std::span<const int32_t> edges, double concavity);
     void contract_all();
     void contract(int32_t edge);
@@ -48,22 +52,47 @@ void Clustering::queue_edges() {
     if (tree_.merges.empty()) queue_.reserve(graph_.edges_count());  // else few are left
     for (size_t c = 0; c < graph_.clusters_count(); ++c)
         for (const Link& link : graph_.at(static_cast<int32_t>(c)).links)
-            if (!queue_.has(link.edge)) queue_.append(Price(graph_.cost(graph_.edge(link.edge))), link.edge);
+            if (!queue_.has(link.edge)) queue_.append(graph_.price(link.edge), link.edge);
     queue_.sort();
 }
 
 // Finds the exact volumes of the edges' hulls; or, at the first try, only that they cost more than this concavity.
 void Clustering::evaluate(std::span<const int32_t> edges, double concavity) {
     graph_.find_prices(edges, concavity);
-    for (const int32_t edge : edges) queue_.update(Price(graph_.cost(graph_.edge(edge))), edge);
+    for (const int32_t edge : edges) queue_.update(graph_.price(edge), edge);
+}
+
+// What comes soon in the queue is anywhere in memory: lets it begin, step by step as it rises.
+void Clustering::prefetch_soon(const EdgeQueue::Item* second) const {
+    for (const auto& item : queue_.items(5, 21)) prefetch_line(&graph_.edge(item.edge));
+    for (const auto& item : queue_.items(1, 5)) {
+        prefetch_line(&graph_.at(graph_.edge(item.edge).a));
+        prefetch_line(&graph_.at(graph_.edge(item.edge).b));
+    }
+    if (!second) return;
+    for (const int32_t c : {graph_.edge(second->edge).a, graph_.edge(second->edge).b}) {
+        graph_.at(c).hull.prefetch();
+        prefetch_line(graph_.at(c).links.begin());
+    }
+}
+
+// The same for the neighbours of an edge that is about to be contracted.
+void Clustering::prefetch_around(int32_t contracted) const {
+    for (const int32_t c : {graph_.edge(contracted).a, graph_.edge(contracted).b})
+        for (const Link& link : graph_.at(c).links) {
+            prefetch_line(&graph_.at(link.cluster));
+            prefetch_line(&graph_.edge(link.edge));
+            queue_.prefetch(link.edge);
+        }
 }
 
 void Clustering::contract_all() {
     while (!queue_.empty()) {
         const int32_t top = queue_.top().edge;
-        prefetch_soon(graph_, queue_);
-        if (!graph_.edge(top).exact) {
-            evaluate({&top, 1}, far_beyond_second(queue_));
+        const EdgeQueue::Item* const second = queue_.runner_up();
+        prefetch_soon(second);
+        if (!graph_.edge(top).exact) {  // no more need be known than that it costs far more than the second
+            evaluate({&top, 1}, second ? dear * second->concavity() : std::numeric_limits<double>::infinity());
             continue;
         }
         contract(top);
@@ -76,7 +105,7 @@ void Clustering::contract_all() {
 void Clustering::contract(int32_t contracted) {
     const Price price = queue_.top();
     queue_.remove(contracted);
-    prefetch_around(graph_, queue_, contracted);
+    prefetch_around(contracted);
     removed_.clear();
     int32_t merged;
     const auto number = static_cast<int32_t>(graph_.clusters_count() + tree_.merges.size());
@@ -86,7 +115,7 @@ void Clustering::contract(int32_t contracted) {
     unpriced_.clear();
     for (const Link& link : graph_.at(merged).links) {
         graph_.refresh(link.edge);
-        const Price bound(graph_.cost(graph_.edge(link.edge)));
+        const Price bound = graph_.price(link.edge);
         if (bound < price) {
             graph_.prefetch(link.edge, merged);
             unpriced_.push_back(link.edge);

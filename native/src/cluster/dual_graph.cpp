@@ -17,7 +17,7 @@ constexpr size_t edges_a_step = 65536, edges_a_piece = 4096;
 }  // namespace
 
 DualGraph::DualGraph(const TetMesh& mesh)
-    : mesh_(mesh), hulls_(mesh.vertices), first_links_(LinkPool::least * mesh.tetrahedra.size()), clusters_(mesh.tetrahedra.size()),
+    : mesh_(mesh), hulls_(mesh.vertices), first_links_(Links::least * mesh.tetrahedra.size()), clusters_(mesh.tetrahedra.size()),
       link_of_(mesh.tetrahedra.size(), -1) {
     const auto count = static_cast<int32_t>(mesh.tetrahedra.size());
     for (int32_t t = 0; t < count; ++t) {
@@ -25,7 +25,7 @@ DualGraph::DualGraph(const TetMesh& mesh)
         Cluster& c = at(t);
         c.volume = c.hull_volume = six_volumes(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3])) / 6;
         c.low = c.number = t;
-        c.links = Links(&first_links_[LinkPool::least * static_cast<size_t>(t)]);
+        c.links = Links(&first_links_[Links::least * static_cast<size_t>(t)]);
     }
     edges_.reserve(2 * mesh.tetrahedra.size());
     for (int32_t t = 0; t < count; ++t)
@@ -91,20 +91,16 @@ double DualGraph::enough(const DualEdge& e, double concavity) const {
     return (volume + concavity * (1 + 1e-8)) * (1 + 1e-10);
 }
 
-void DualGraph::find_price(int32_t edge_number, double concavity) {
-    DualEdge& e = edge(edge_number);
-    const auto [large, small] = by_size(e);
-    make_hull(large);
-    const auto [volume, exact] = hulls_.united_volume(at(large).hull, corners(small), enough(e, concavity));
-    e.hull_volume = exact ? volume : std::max(e.hull_volume, volume);
-    e.exact = exact;
-    e.tried = true;
-}
-
 void DualGraph::find_prices(std::span<const int32_t> edges, double concavity) {
     for (size_t i = 0; i < edges.size(); ++i) {
         if (i + 1 < edges.size()) hulls_.prefetch(corners(by_size(edge(edges[i + 1])).second));
-        find_price(edges[i], concavity);
+        DualEdge& e = edge(edges[i]);
+        const auto [large, small] = by_size(e);
+        make_hull(large);
+        const auto [volume, exact] = hulls_.united_volume(at(large).hull, corners(small), enough(e, concavity));
+        e.hull_volume = exact ? volume : std::max(e.hull_volume, volume);
+        e.exact = exact;
+        e.tried = true;
     }
 }
 

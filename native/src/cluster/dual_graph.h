@@ -3,10 +3,12 @@
 
 #include "base/large_pages.h"
 #include "base/prefetch.h"
-#include "cluster/cluster.h"
+#include "base/progress.h"
+#include "cluster/binary_tree.h"
 #include "cluster/edge_queue.h"
-#include "cluster/hull.h"
+#include "cluster/hull/hull.h"
 #include "cluster/links.h"
+#include "fill/tetrahedra.h"
 
 #include <algorithm>
 #include <limits>
@@ -19,9 +21,6 @@ namespace partwheel {
 // Volumes of hulls that were come by differently agree to far better than this: what a lower bound gives away so that
 // it stays one in spite of rounding.
 inline constexpr double bound_slack = 1e-11;
-
-// An edge that costs more than so many times what the next merges cost is not priced exactly yet.
-inline constexpr double dear = 2;
 
 struct alignas(64) Cluster {
     Hull hull;  // none while it is one tetrahedron
@@ -67,8 +66,9 @@ public:
     // The lower and upper corner of the box around a cluster that has its hull.
     std::pair<Point, Point> bounds(int32_t c) const { return hulls_.bounds(at(c).hull); }
 
-    // The edge's cost as far as its hull volume is known.
-    Cost cost(const DualEdge& e) const {
+    // What the edge costs as far as its hull volume is known.
+    Price price(int32_t edge) const {
+        const DualEdge& e = this->edge(edge);
         const Cluster &a = at(e.a), &b = at(e.b);
         const double hull_volume = e.exact ? e.hull_volume : e.hull_volume * (1 - bound_slack);
         const auto square = [](int32_t n) { return static_cast<double>(n) * static_cast<double>(n); };
@@ -86,10 +86,7 @@ public:
             prefetch_line(&mesh_.tetrahedra[static_cast<size_t>(other.low)]);
     }
 
-    // The exact volume of the edge's hull; or, at the first try, only that it costs more than this concavity.
-    void find_price(int32_t edge, double concavity);
-
-    // The same for several edges.
+    // Finds the exact volumes of the edges' hulls; or, at the first try, only that they cost more than this concavity.
     void find_prices(std::span<const int32_t> edges, double concavity);
 
     // Merges the edge's clusters into one of the two, which gets that number, and returns what was merged. The edges
@@ -118,41 +115,11 @@ private:
 
     const TetMesh& mesh_;
     HullKernel hulls_;  // outlives all hulls, as links_ does all lists of links
-    LinkPool links_;
+    Pool links_;
     LargeVector<Link> first_links_;  // where each cluster's links are at first
     LargeVector<Cluster> clusters_;
     LargeVector<DualEdge> edges_;
     LargeVector<int32_t> link_of_;  // scratch of contract(): cluster -> position in the merged links, or -1
 };
-
-// Of the queue's first edge no more need be known than that it costs more than this concavity.
-inline double far_beyond_second(const EdgeQueue& queue) {
-    const auto* second = queue.runner_up();
-    return second ? dear * second->concavity() : std::numeric_limits<double>::infinity();
-}
-
-// What comes soon in a queue is anywhere in memory: lets it begin, step by step as it rises.
-inline void prefetch_soon(const DualGraph& graph, const EdgeQueue& queue) {
-    for (const auto& item : queue.items(5, 21)) prefetch_line(&graph.edge(item.edge));
-    for (const auto& item : queue.items(1, 5)) {
-        prefetch_line(&graph.at(graph.edge(item.edge).a));
-        prefetch_line(&graph.at(graph.edge(item.edge).b));
-    }
-    if (const auto* second = queue.runner_up())
-        for (const int32_t c : {graph.edge(second->edge).a, graph.edge(second->edge).b}) {
-            graph.at(c).hull.prefetch();
-            prefetch_line(graph.at(c).links.begin());
-        }
-}
-
-// The same for the neighbours of an edge that is about to be contracted.
-inline void prefetch_around(const DualGraph& graph, const EdgeQueue& queue, int32_t contracted) {
-    for (const int32_t c : {graph.edge(contracted).a, graph.edge(contracted).b})
-        for (const Link& link : graph.at(c).links) {
-            prefetch_line(&graph.at(link.cluster));
-            prefetch_line(&graph.edge(link.edge));
-            queue.prefetch(link.edge);
-        }
-}
 
 }  // namespace partwheel

@@ -3,7 +3,6 @@
 
 #include "base/large_pages.h"
 #include "base/prefetch.h"
-#include "cluster/cluster.h"
 
 #include <algorithm>
 #include <bit>
@@ -16,18 +15,18 @@
 
 namespace partwheel {
 
-// A cost as three integers in its order. Most comparisons are settled by the first: concavity, or C2 among convex
-// unions.
+// Eq. 3 of the paper with its ties settled: ordered by concavity (ranked_concavity, 0 if convex), then by C2 (Eq. 2, t1^2
+// + t2^2, without its constant denominator and exact), then by the lowest tetrahedra of the two clusters, the lower one
+// first. As three integers in that order, most comparisons are settled by the first: concavity, or C2 among convex unions.
 struct Price {
     uint64_t rank = 0, balance = 0, tie = 0;
 
     Price() = default;
-    explicit Price(const Cost& cost)
+    Price(double concavity, double squares, int32_t low, int32_t high)
         // Doubles that are not negative are ordered as their bits; the free sign bit tells the class.
-        : rank(cost.concavity > 0 ? not_convex | std::bit_cast<uint64_t>(cost.concavity)
-                                  : std::bit_cast<uint64_t>(cost.balance)),
-          balance(std::bit_cast<uint64_t>(cost.balance)),
-          tie(uint64_t{static_cast<uint32_t>(cost.low)} << 32 | static_cast<uint32_t>(cost.high)) {}
+        : rank(concavity > 0 ? not_convex | std::bit_cast<uint64_t>(concavity) : std::bit_cast<uint64_t>(squares)),
+          balance(std::bit_cast<uint64_t>(squares)),
+          tie(uint64_t{static_cast<uint32_t>(low)} << 32 | static_cast<uint32_t>(high)) {}
 
     double concavity() const { return rank & not_convex ? std::bit_cast<double>(rank & ~not_convex) : 0; }
     bool operator<(const Price& other) const {

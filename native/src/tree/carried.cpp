@@ -2,11 +2,13 @@
 #include "tree/carried.h"
 
 #include "base/error.h"
-#include "cluster/hull.h"
+#include "cluster/hull/hull.h"
 #include "surface/prepare/rough.h"
 #include "tree/claims.h"
+#include "tree/dendrogram.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace partwheel {
@@ -35,25 +37,15 @@ struct Numbers {
 Numbers numbers(const Regrouped& parts, size_t leaves) {
     const std::vector<Merge>& merges = parts.tree.merges;
     const size_t joins = parts.scores.size() / 2, below = merges.size() - joins;
-    std::vector<int32_t> number(leaves + merges.size(), -1), todo = {static_cast<int32_t>(number.size()) - 1};
-    for (int32_t next = 0; !todo.empty();) {
-        const auto c = static_cast<size_t>(todo.back());
-        todo.pop_back();
-        if (c < leaves + below) {
-            number[c] = next++;
-        } else {
-            number[c] = static_cast<int32_t>(c - leaves - below + joins + 1);
-            todo.push_back(merges[c - leaves].right);
-            todo.push_back(merges[c - leaves].left);
-        }
-    }
+    std::vector<int32_t> number(leaves + merges.size(), -1);
+    int32_t next = 0;
+    for (const int32_t c : cut_undoing_last(merges, joins + 1)) number[at(c)] = next++;
     Numbers result;
-    for (size_t m = below; m < merges.size(); ++m)
-        result.joined.push_back(
-            {number[static_cast<size_t>(merges[m].left)], number[static_cast<size_t>(merges[m].right)]});
-    for (size_t m = below; m-- > 0;)
-        for (const int32_t child : {merges[m].left, merges[m].right})
-            number[static_cast<size_t>(child)] = number[leaves + m];
+    for (size_t m = below; m < merges.size(); ++m) {
+        number[leaves + m] = next++;
+        result.joined.push_back({number[at(merges[m].left)], number[at(merges[m].right)]});
+    }
+    hand_down(std::span(merges).first(below), leaves, number);
     number.resize(leaves);
     result.of_tetrahedron = std::move(number);
     return result;
@@ -64,8 +56,8 @@ Numbers numbers(const Regrouped& parts, size_t leaves) {
 std::vector<int32_t> spread(const Solid& solid, const std::vector<int32_t>& part_of_triangle, Progress& progress) {
     const TetMesh& mesh = solid.mesh;
     const auto size = [&](const Triangle& t) {
-        const auto at = [&](int32_t v) -> const Point& { return mesh.vertices[static_cast<size_t>(v)]; };
-        return area(at(t[0]), at(t[1]), at(t[2]));
+        const auto point = [&](int32_t v) -> const Point& { return mesh.vertices[at(v)]; };
+        return area(point(t[0]), point(t[1]), point(t[2]));
     };
     std::vector<Claim> claims;
     for (size_t i = 0; i < part_of_triangle.size(); ++i) {
@@ -75,16 +67,16 @@ std::vector<int32_t> spread(const Solid& solid, const std::vector<int32_t>& part
     while (!claims.empty()) {
         layer.clear();
         settle_claims(std::move(claims), [&](int32_t t, int32_t p) {
-            part[static_cast<size_t>(t)] = p;
+            part[at(t)] = p;
             layer.push_back(t);
         });
         claims.clear();
         for (const int32_t t : layer)
             for (size_t k = 0; k < 4; ++k) {
-                const int32_t next = mesh.neighbours[static_cast<size_t>(t)][k];
-                if (next < 0 || part[static_cast<size_t>(next)] >= 0) continue;
-                const Tetrahedron& tet = mesh.tetrahedra[static_cast<size_t>(t)];
-                claims.push_back({next, part[static_cast<size_t>(t)], size(facet(tet, k))});
+                const int32_t next = mesh.neighbours[at(t)][k];
+                if (next < 0 || part[at(next)] >= 0) continue;
+                const Tetrahedron& tet = mesh.tetrahedra[at(t)];
+                claims.push_back({next, part[at(t)], size(facet(tet, k))});
             }
         progress.advance(0);
     }
@@ -104,8 +96,7 @@ Grown joined(Grown a, Grown b, HullKernel& kernel, size_t leaves, std::vector<Me
     if (a.cluster < 0) return b;
     if (b.cluster < 0) return a;
     if (b.low < a.low) std::swap(a, b);
-    const bool by_facets = a.hull.facet_count() > b.hull.facet_count();
-    const Hull &large = by_facets ? a.hull : b.hull, &small = by_facets ? b.hull : a.hull;
+    const auto [small, large] = std::minmax(a.hull, b.hull, fewer_facets);
     Grown both{static_cast<int32_t>(leaves + merges.size()), a.low, a.volume + b.volume,
                kernel.unite(large, small.vertices())};
     const double hull = both.hull.volume();
@@ -138,14 +129,14 @@ Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& sol
     const Numbers number = numbers(parts, plain.tetrahedra.size());
     std::vector<int32_t> part_of_triangle;
     for (const int32_t t : plain.tet_of_triangle)
-        part_of_triangle.push_back(number.of_tetrahedron[static_cast<size_t>(t)]);
+        part_of_triangle.push_back(number.of_tetrahedron[at(t)]);
     const std::vector<int32_t> part = spread(solid, part_of_triangle, progress);
 
     // The paper's clusters within each part.
     TetMesh apart = solid.mesh;
     for (size_t t = 0; t < leaves; ++t)
         for (int32_t& n : apart.neighbours[t])
-            if (n >= 0 && part[static_cast<size_t>(n)] != part[t]) n = -1;
+            if (n >= 0 && part[at(n)] != part[t]) n = -1;
     Regrouped result;
     result.tree = cluster(apart, progress, threads);
     std::vector<Merge>& merges = result.tree.merges;
@@ -154,10 +145,8 @@ Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& sol
 
     // A part's tetrahedra may be in several pieces.
     std::vector<int32_t> piece(leaves + merges.size());
-    for (size_t c = 0; c < piece.size(); ++c) piece[c] = static_cast<int32_t>(c);
-    for (size_t m = merges.size(); m-- > 0;)
-        for (const int32_t child : {merges[m].left, merges[m].right})
-            piece[static_cast<size_t>(child)] = piece[leaves + m];
+    std::iota(piece.begin(), piece.end(), 0);
+    hand_down(merges, leaves, piece);
     struct Fragment {
         int32_t low = -1;
         double volume = 0;
@@ -166,21 +155,21 @@ Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& sol
     std::vector<Fragment> pieces(piece.size());
     std::vector<int32_t> in_order;  // by their lowest tetrahedra
     for (size_t t = 0; t < leaves; ++t) {
-        Fragment& p = pieces[static_cast<size_t>(piece[t])];
+        Fragment& p = pieces[at(piece[t])];
         if (p.low < 0) {
             p.low = static_cast<int32_t>(t);
             in_order.push_back(piece[t]);
         }
         const Tetrahedron& tet = solid.mesh.tetrahedra[t];
-        const auto at = [&](size_t k) { return solid.mesh.vertices[static_cast<size_t>(tet[k])]; };
-        p.volume += std::max(0.0, six_volumes(at(0), at(1), at(2), at(3)) / 6);
+        const auto corner = [&](size_t k) { return solid.mesh.vertices[at(tet[k])]; };
+        p.volume += std::max(0.0, six_volumes(corner(0), corner(1), corner(2), corner(3)) / 6);
         p.corners.insert(p.corners.end(), tet.begin(), tet.end());
     }
     HullKernel kernel(solid.mesh.vertices);
     std::vector<Grown> grown(2 * count - 1);
     for (const int32_t c : in_order) {
-        const Fragment& p = pieces[static_cast<size_t>(c)];
-        Grown& whole = grown[static_cast<size_t>(part[static_cast<size_t>(p.low)])];
+        const Fragment& p = pieces[at(c)];
+        Grown& whole = grown[at(part[at(p.low)])];
         whole = joined(std::move(whole), {c, p.low, p.volume, kernel.build(p.corners)}, kernel, leaves, merges);
         progress.advance(1);
     }
@@ -189,25 +178,15 @@ Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& sol
     const size_t top = leaves + merges.size();
     std::vector<double> score(top, 0);
     for (size_t p = 0; p < count; ++p)
-        if (grown[p].cluster >= 0) score[static_cast<size_t>(grown[p].cluster)] = parts.scores[p];
+        if (grown[p].cluster >= 0) score[at(grown[p].cluster)] = parts.scores[p];
     for (size_t j = 0; j + 1 < count; ++j) {
-        Grown& a = grown[static_cast<size_t>(number.joined[j][0])];
-        Grown& b = grown[static_cast<size_t>(number.joined[j][1])];
+        Grown& a = grown[at(number.joined[j][0])];
+        Grown& b = grown[at(number.joined[j][1])];
         grown[count + j] = joined(std::move(a), std::move(b), kernel, leaves, merges);
         if (leaves + merges.size() > score.size()) score.push_back(parts.scores[count + j]);
         progress.advance(1);
     }
-    std::vector<int32_t> todo = {static_cast<int32_t>(score.size()) - 1};
-    while (!todo.empty()) {
-        const auto c = static_cast<size_t>(todo.back());
-        todo.pop_back();
-        if (c < top) {
-            result.scores.push_back(score[c]);
-        } else {
-            todo.push_back(merges[c - leaves].right);
-            todo.push_back(merges[c - leaves].left);
-        }
-    }
+    for (const int32_t c : cut_undoing_last(merges, score.size() - top + 1)) result.scores.push_back(score[at(c)]);
     result.scores.insert(result.scores.end(), score.begin() + static_cast<std::ptrdiff_t>(top), score.end());
     return result;
 }

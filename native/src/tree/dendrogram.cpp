@@ -21,9 +21,27 @@ std::vector<uint8_t> pruned(std::span<const Merge> merges, size_t top, const std
         kept[m] = regrouped || !above[m] || costs[m] < *above[m];
         const Cost* below = regrouped ? nullptr : kept[m] ? &costs[m] : above[m];
         for (int32_t child : {merges[m].left, merges[m].right})
-            if (static_cast<size_t>(child) >= leaves) above[static_cast<size_t>(child) - leaves] = below;
+            if (at(child) >= leaves) above[at(child) - leaves] = below;
     }
     return kept;
+}
+
+// The clusters, in depth-first order, that are left when those that are to be are divided.
+template <class Divided>
+std::vector<int32_t> cut(std::span<const Merge> merges, const Divided& divided) {
+    const size_t leaves = merges.size() + 1;
+    std::vector<int32_t> left, todo = {static_cast<int32_t>(leaves + merges.size() - 1)};
+    while (!todo.empty()) {
+        const int32_t c = todo.back();
+        todo.pop_back();
+        if (at(c) < leaves || !divided(at(c) - leaves)) {
+            left.push_back(c);
+            continue;
+        }
+        todo.push_back(merges[at(c) - leaves].right);
+        todo.push_back(merges[at(c) - leaves].left);
+    }
+    return left;
 }
 
 }  // namespace
@@ -33,8 +51,7 @@ std::vector<NodeCost> node_costs(std::span<const Merge> merges) {
     std::vector<int32_t> size(leaves + merges.size(), 1);  // in tetrahedra
     std::vector<NodeCost> costs;
     for (size_t m = 0; m < merges.size(); ++m) {
-        const int32_t left = size[static_cast<size_t>(merges[m].left)],
-                      right = size[static_cast<size_t>(merges[m].right)];
+        const int32_t left = size[at(merges[m].left)], right = size[at(merges[m].right)];
         size[leaves + m] = left + right;
         const double a = double(left) / double(leaves), b = double(right) / double(leaves);
         if (merges[m].concavity > 0)
@@ -60,9 +77,7 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
     std::vector<std::vector<uint16_t>> split(merges.size());
     for (size_t i = 0; i < leaves; ++i) least[i] = {0.0};
     for (size_t m = 0; m < merges.size(); ++m) {
-        std::vector<double>& left = least[static_cast<size_t>(merges[m].left)];
-        std::vector<double>& right = least[static_cast<size_t>(merges[m].right)];
-        std::vector<double>& both = least[leaves + m];
+        auto &left = least[at(merges[m].left)], &right = least[at(merges[m].right)], &both = least[leaves + m];
         const size_t most = std::min(parts, left.size() + right.size());
         both.assign(most, std::numeric_limits<double>::infinity());
         both[0] = merges[m].concavity;
@@ -88,28 +103,15 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
             cut.push_back(static_cast<int32_t>(c));
             continue;
         }
-        const Merge& merge = merges[c - leaves];
         const size_t left = split[c - leaves][k - 2];
-        todo.push_back({static_cast<size_t>(merge.right), k - left});
-        todo.push_back({static_cast<size_t>(merge.left), left});
+        todo.push_back({at(merges[c - leaves].right), k - left});
+        todo.push_back({at(merges[c - leaves].left), left});
     }
     return cut;
 }
 
 std::vector<int32_t> cut_undoing_last(std::span<const Merge> merges, size_t parts) {
-    const size_t leaves = merges.size() + 1, whole = leaves + merges.size() - (parts - 1);
-    std::vector<int32_t> cut, todo = {static_cast<int32_t>(leaves + merges.size() - 1)};
-    while (!todo.empty()) {
-        const auto c = static_cast<size_t>(todo.back());
-        todo.pop_back();
-        if (c < whole) {
-            cut.push_back(static_cast<int32_t>(c));
-            continue;
-        }
-        todo.push_back(merges[c - leaves].right);
-        todo.push_back(merges[c - leaves].left);
-    }
-    return cut;
+    return cut(merges, [&](size_t m) { return m + parts > merges.size(); });
 }
 
 std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, std::span<const double> areas,
@@ -120,26 +122,14 @@ std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, std::span<cons
     for (size_t c = 0; c < best.size(); ++c) {
         best[c] = areas[c] * scores[c];
         if (c < leaves || scores[c] == 0) continue;
-        const Merge& merge = merges[c - leaves];
-        const auto left = static_cast<size_t>(merge.left), right = static_cast<size_t>(merge.right);
+        const size_t left = at(merges[c - leaves].left), right = at(merges[c - leaves].right);
         const double apart = best[left] + best[right];
         if (scores[left] > 0 && scores[right] > 0 && apart > best[c]) {
             best[c] = apart;
             divided[c - leaves] = 1;
         }
     }
-    std::vector<int32_t> cut, todo = {static_cast<int32_t>(best.size() - 1)};
-    while (!todo.empty()) {
-        const auto c = static_cast<size_t>(todo.back());
-        todo.pop_back();
-        if (c < leaves || !divided[c - leaves]) {
-            cut.push_back(static_cast<int32_t>(c));
-            continue;
-        }
-        todo.push_back(merges[c - leaves].right);
-        todo.push_back(merges[c - leaves].left);
-    }
-    return cut;
+    return cut(merges, [&](size_t m) { return divided[m] != 0; });
 }
 
 WheelStops wheel_stops(std::span<const double> areas, std::span<const double> scores) {

@@ -2,7 +2,7 @@
 // cuts of it, and the stops of the mouse wheel in the regrouped tree (in the paper's they are the whole path).
 #pragma once
 
-#include "cluster/cluster.h"
+#include "cluster/binary_tree.h"
 
 #include <span>
 

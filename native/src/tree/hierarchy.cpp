@@ -1,7 +1,7 @@
 // The finished hierarchy: flat arrays, questions, saving and loading.
 #include "tree/hierarchy.h"
 
-#include "cluster/hull.h"
+#include "cluster/hull/hull.h"
 #include "tree/claims.h"
 #include "tree/packed.h"
 
@@ -15,24 +15,6 @@
 namespace partwheel {
 
 namespace {
-
-// The tetrahedra in depth-first order of the tree.
-std::vector<int32_t> depth_first(std::span<const Merge> merges) {
-    const size_t leaves = merges.size() + 1;
-    std::vector<int32_t> order, todo = {static_cast<int32_t>(leaves + merges.size() - 1)};
-    order.reserve(leaves);
-    while (!todo.empty()) {
-        const auto c = static_cast<size_t>(todo.back());
-        todo.pop_back();
-        if (c < leaves) {
-            order.push_back(static_cast<int32_t>(c));
-        } else {
-            todo.push_back(merges[c - leaves].right);
-            todo.push_back(merges[c - leaves].left);
-        }
-    }
-    return order;
-}
 
 // The tetrahedron behind most of each face's area, and the areas.
 void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const int32_t> leaf_of_tet,
@@ -109,7 +91,7 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const Regroupe
     }
 
     const size_t leaves = mesh.tetrahedra.size();
-    const std::vector<int32_t> order = depth_first(tree.merges);
+    const std::vector<int32_t> order = cut_undoing_last(tree.merges, leaves);  // depth first
     std::vector<int32_t> leaf_of_tet(leaves);
     for (size_t i = 0; i < leaves; ++i) {
         leaf_of_tet[static_cast<size_t>(order[i])] = static_cast<int32_t>(i);
@@ -193,15 +175,9 @@ void Hierarchy::finish() {
     // The parts are the clusters that the regrouped merges join, and that are none of them.
     score_.resize(clusters);
     if (!scores_.empty()) {
-        std::vector<size_t> parts;
-        if (top == clusters) parts.push_back(top - 1);
-        for (size_t c = top; c < clusters; ++c) {
-            score_[c] = scores_[c - top + regrouped_merges() + 1];
-            for (const int32_t child : {merges_[c - leaves].left, merges_[c - leaves].right})
-                if (static_cast<size_t>(child) < top) parts.push_back(static_cast<size_t>(child));
-        }
-        std::sort(parts.begin(), parts.end(), [&](size_t a, size_t b) { return tet_first_[a] < tet_first_[b]; });
-        for (size_t p = 0; p < parts.size(); ++p) score_[parts[p]] = scores_[p];
+        auto given = scores_.begin();
+        for (const int32_t c : cut_undoing_last(merges_, regrouped_merges() + 1)) score_[at(c)] = *given++;
+        std::copy(given, scores_.end(), score_.begin() + static_cast<std::ptrdiff_t>(top));
     }
 
     // Nodes: all leaves, then the merges that were kept; so arrays by cluster become arrays by node where they are.

@@ -5,9 +5,9 @@
 // neural network (one hidden layer of softsigns, see fitted()) from 28 measures of the pair: sizes, convexity, the hull
 // of both, the area of the facets between them (the cross-section) and the length and the crease of the border on the
 // surface, after the ideas of Golovinskiy and Funkhouser, "Randomized Cuts for 3D Mesh Analysis" (2008). Another such
-// network scores each node of the result from 32 measures. regroup_measures.h names the measures and says what each is.
+// network scores each node of the result from 32 measures. measures.h names the measures and says what each is.
 // Both networks were fitted to segmentations made by people (tests/quality/fit.py); their weights are in
-// regroup_fitted.h. All of it is arithmetic without library functions but the square root, so it is the same on every
+// fitted.h. All of it is arithmetic without library functions but the square root, so it is the same on every
 // machine. tests/core/reference_regroup.py does the same from what is said here and there:
 //
 // The unit of length is the longest side of the bounding box.
@@ -39,7 +39,7 @@
 #pragma once
 
 #include "cluster/cluster.h"
-#include "tree/regroup/regroup_measures.h"
+#include "tree/regroup/measures.h"
 
 #include <array>
 #include <span>

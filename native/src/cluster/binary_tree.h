@@ -1,0 +1,51 @@
+// The binary tree of clusters: what was merged with what, and the concavity of each union (the paper's Eq. 1).
+#pragma once
+
+#include "base/geometry.h"
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace partwheel {
+
+// A cluster is convex if its concavity is at most this part of its hull's volume: well above the rounding of volumes
+// and of single-precision coordinates, well below what an eye can see.
+inline constexpr double convex_tolerance = 1e-6;
+
+// Concavities are compared after rounding to this many significant bits, so that merges that cost the same by symmetry
+// tie, whatever rounding errors their volumes carry.
+inline constexpr int concavity_bits = 28;
+
+// Eq. 1, rounded to concavity_bits; 0 if convex within convex_tolerance.
+inline double ranked_concavity(double hull_volume, double volume) {
+    const double concavity = hull_volume - volume;
+    if (!(concavity > convex_tolerance * hull_volume)) return 0;
+    constexpr uint64_t last = uint64_t{1} << (53 - concavity_bits);
+    return std::bit_cast<double>((std::bit_cast<uint64_t>(concavity) + last / 2) & ~(last - 1));
+}
+
+// Merge m joins two clusters: number i < T is the leaf of tetrahedron i, T + j what merge j made.
+struct Merge {
+    int32_t left = 0;  // the one that holds the lowest tetrahedron
+    int32_t right = 0;
+    double concavity = 0;    // ranked_concavity of the union
+    double hull_volume = 0;  // of the union
+};
+
+// T - 1 merges.
+struct BinaryTree {
+    std::vector<Merge> merges;
+    size_t components = 0;  // clusters left when the dual edges had run out
+};
+
+// From the top down, what is noted of a cluster is noted of all that it was merged from, unless it is below 0. leaves: T.
+inline void hand_down(std::span<const Merge> merges, size_t leaves, std::vector<int32_t>& noted) {
+    for (size_t m = merges.size(); m-- > 0;)
+        if (noted[leaves + m] >= 0)
+            noted[at(merges[m].left)] = noted[at(merges[m].right)] = noted[leaves + m];
+}
+
+}  // namespace partwheel

@@ -1,0 +1,46 @@
+// Which clusters of the paper's tree are the parts: it is cut where most surface lies in what is least convex, components
+// first.
+#include "tree/dendrogram.h"
+#include "tree/regroup/parts.h"
+
+#include <algorithm>
+#include <queue>
+#include <utility>
+
+namespace partwheel {
+
+std::vector<int32_t> choose_parts(const TetMesh& mesh, const BinaryTree& tree) {
+    const size_t leaves = mesh.tetrahedra.size(), merges = tree.merges.size();
+    std::vector<double> area(leaves + merges, 0);
+    for (size_t t = 0; t < leaves; ++t)
+        for (size_t k = 0; k < 4; ++k) {
+            if (mesh.neighbours[t][k] >= 0) continue;
+            const Triangle f = facet(mesh.tetrahedra[t], k);
+            area[t] += partwheel::area(mesh.vertices[at(f[0])], mesh.vertices[at(f[1])], mesh.vertices[at(f[2])]);
+        }
+    for (size_t m = 0; m < merges; ++m)
+        area[leaves + m] = area[at(tree.merges[m].left)] + area[at(tree.merges[m].right)];
+    std::priority_queue<std::pair<float, int32_t>> queue;  // the lower number first where they tie
+    std::vector<int32_t> chosen;
+    const auto offer = [&](int32_t c) {
+        float concavity = 0;  // rounded as costs are, see regroup.h
+        if (const Merge* m = at(c) < leaves ? nullptr : &tree.merges[at(c) - leaves]; m && m->concavity > 0)
+            concavity = static_cast<float>(m->concavity / m->hull_volume * area[at(c)]);
+        if (concavity > 0)
+            queue.push({concavity, -c});
+        else
+            chosen.push_back(c);
+    };
+    for (const int32_t c : cut_undoing_last(tree.merges, tree.components)) offer(c);
+    while (!queue.empty() && queue.size() + chosen.size() < most_regrouped_parts) {
+        const auto m = at(-queue.top().second) - leaves;
+        queue.pop();
+        offer(tree.merges[m].left);
+        offer(tree.merges[m].right);
+    }
+    for (; !queue.empty(); queue.pop()) chosen.push_back(-queue.top().second);
+    std::sort(chosen.begin(), chosen.end());
+    return chosen;
+}
+
+}  // namespace partwheel

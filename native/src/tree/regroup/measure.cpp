@@ -1,0 +1,179 @@
+// The parts measured: volumes, areas, hulls, and what lies between them, by the facets inside and the folds of the surface.
+#include "tree/regroup/parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+constexpr double concave_bend = 0.02;
+constexpr double middling_curvature = 4;  // of a model of unit area: squashed to a half
+constexpr int smoothing_passes = 4;
+
+// A side of an outer triangle.
+struct Side {
+    int32_t low, high;  // its vertices
+    int32_t triangle;
+    bool forward;  // from low to high
+    auto operator<=>(const Side&) const = default;
+};
+
+// Sorts: by the lower vertex first, which takes no comparisons.
+void sort_by_edge(std::vector<Side>& sides, size_t vertices) {
+    std::vector<size_t> end(vertices + 1, 0);
+    for (const Side& s : sides) ++end[at(s.low) + 1];
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    std::vector<Side> sorted(sides.size());
+    for (const Side& s : sides) sorted[end[at(s.low)]++] = s;
+    sides.swap(sorted);
+    auto begin = sides.begin();
+    for (size_t v = 0; v < vertices; ++v) {
+        const auto after = sides.begin() + static_cast<std::ptrdiff_t>(end[v]);
+        std::sort(begin, after);
+        begin = after;
+    }
+}
+
+}  // namespace
+
+Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_t count, double hull_volume,
+                    HullKernel& kernel, Progress& progress) {
+    const double length_unit = Frame::around(mesh.vertices).longest, area_unit = length_unit * length_unit;
+    Parts parts;
+    parts.all.resize(count);
+    parts.fine = count;
+    parts.volume_unit = area_unit * length_unit;
+    const auto point = [&](int32_t v) -> const Point& { return mesh.vertices[at(v)]; };
+
+    struct Between {
+        int32_t a, b;
+        bool facet;
+        Border border;
+    };
+    std::vector<Side> sides;
+    std::vector<Between> between;
+    std::vector<Point> normals;
+    std::vector<int32_t> part_behind;  // of each outer triangle
+    std::vector<double> curvature(mesh.vertices.size(), 0), around(mesh.vertices.size(), 0);
+    std::vector<std::vector<int32_t>> corners(count);
+    std::vector<int32_t> taken_by(mesh.vertices.size(), -1);  // of each vertex, the part seen last
+    for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+        const Tetrahedron& tet = mesh.tetrahedra[t];
+        const int32_t p = part_of[t];
+        std::vector<int32_t>& mine = corners[at(p)];
+        if (mine.empty()) parts[p].low = static_cast<int32_t>(t);
+        for (const int32_t v : tet)
+            if (std::exchange(taken_by[at(v)], p) != p) mine.push_back(v);
+        const double six = six_volumes(point(tet[0]), point(tet[1]), point(tet[2]), point(tet[3]));
+        parts[p].volume += six / 6 / parts.volume_unit;
+        for (size_t k = 0; k < 4; ++k) {
+            const int32_t other = mesh.neighbours[t][k];
+            const int32_t q = other < 0 ? -1 : part_of[at(other)];
+            if (other >= 0 && q <= p) continue;
+            const Triangle f = facet(tet, k);
+            Point n = cross(point(f[1]) - point(f[0]), point(f[2]) - point(f[0]));
+            const double twice = length(n);
+            const double size = twice / 2 / area_unit;
+            if (other >= 0) {
+                between.push_back({p, q, true, {size, 0, 0, 0, 0}});
+                continue;
+            }
+            if (twice > 0)
+                for (double& x : n) x /= twice;
+            parts[p].area += size;
+            const auto number = static_cast<int32_t>(normals.size());
+            normals.push_back(n);
+            part_behind.push_back(p);
+            for (size_t i = 0; i < 3; ++i) {
+                const int32_t v = f[i], w = f[(i + 1) % 3];
+                sides.push_back({std::min(v, w), std::max(v, w), number, v < w});
+                around[at(v)] += size / 3;
+            }
+        }
+    }
+    progress.advance(0.1);
+    for (size_t p = 0; p < count; ++p) {
+        Part& part = parts.all[p];
+        part.volume = std::max(0.0, part.volume);
+        part.hull = kernel.build(corners[p]);
+        part.hull_volume = part.hull.volume() / parts.volume_unit;
+        part.take_logs();
+        parts.whole.volume += part.volume;
+        parts.whole.area += part.area;
+        if (p % 16 == 0) progress.advance(0.1);
+    }
+    parts.whole.take_logs();
+    parts.whole.hull_volume = hull_volume / parts.volume_unit;
+
+    struct Fold {
+        int32_t low, high, s, t;
+        double length, bend;  // bend: the sine of half the angle, below 0 where concave
+    };
+    std::vector<Fold> folds;
+    sort_by_edge(sides, mesh.vertices.size());
+    for (size_t i = 0; i + 1 < sides.size(); ++i) {
+        const Side &x = sides[i], &y = sides[i + 1];
+        if (x.low != y.low || x.high != y.high) continue;
+        const Point &m = normals[at(x.triangle)], &n = normals[at(y.triangle)];
+        const Point along = point(x.high) - point(x.low);
+        const double turn = dot(cross(m, n), along) * (x.forward ? 1 : -1);
+        const double bend = std::sqrt(std::max(0.0, (1 - dot(m, n)) / 2)) * (turn < 0 ? -1 : 1);
+        const double length = partwheel::length(along) / length_unit;
+        folds.push_back({x.low, x.high, x.triangle, y.triangle, length, bend});
+        ++i;
+    }
+    // Mean curvature, smoothed over the surface: it finds creases that many small edges share. Only the quotient
+    // matters, so both sums may grow with each pass.
+    for (const Fold& f : folds)
+        for (const int32_t v : {f.low, f.high}) curvature[at(v)] += f.length * f.bend / 2;
+    for (int pass = 0; pass < smoothing_passes; ++pass) {
+        std::vector<double> c = curvature, r = around;
+        for (const Fold& f : folds) {
+            const auto i = at(f.low), j = at(f.high);
+            c[i] += curvature[j];
+            c[j] += curvature[i];
+            r[i] += around[j];
+            r[j] += around[i];
+        }
+        curvature.swap(c);
+        around.swap(r);
+    }
+    progress.advance(0.2);
+    const double unit = std::sqrt(parts.whole.area);
+    const auto curved = [&](int32_t v) {
+        const size_t i = at(v);
+        return around[i] > 0 ? curvature[i] / around[i] * unit : 0;
+    };
+    for (const Fold& f : folds) {
+        const auto [p, q] = std::minmax(part_behind[at(f.s)], part_behind[at(f.t)]);
+        if (p == q) continue;
+        const double h = (curved(f.low) + curved(f.high)) / 2;
+        between.push_back({p, q, false,
+                           {0, f.length, f.length * f.bend, f.bend < -concave_bend ? f.length : 0,
+                            f.length * h / (middling_curvature + std::abs(h))}});
+    }
+    std::stable_sort(between.begin(), between.end(), [](const Between& x, const Between& y) {
+        return std::pair(x.a, x.b) < std::pair(y.a, y.b);
+    });
+    for (size_t i = 0; i < between.size();) {
+        Pair pair{between[i].a, between[i].b, {}};
+        bool facet_shared = false;
+        for (; i < between.size() && between[i].a == pair.a && between[i].b == pair.b; ++i) {
+            pair.border += between[i].border;
+            facet_shared |= between[i].facet;
+        }
+        if (!facet_shared) continue;  // they only touch along an edge
+        for (const int32_t p : {pair.a, pair.b}) {
+            parts[p].rim += pair.border;
+            parts[p].pairs.push_back(static_cast<int32_t>(parts.pairs.size()));
+        }
+        parts.pairs.push_back(pair);
+    }
+    return parts;
+}
+
+}  // namespace partwheel
