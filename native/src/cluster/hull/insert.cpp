@@ -37,8 +37,8 @@ void HullKernel::make_plane(size_t f) {
                std::fabs(u[0] * v[1]) + std::fabs(u[1] * v[0]);
 }
 
-// The planes of the facets between the rim and the vertex, two at a time, as make_plane() gives them: they go to the places
-// in seen_. p is the vertex relative to the origin.
+// The planes of the facets between the rim and the vertex, two at a time, as make_plane() gives them: they go to the
+// places in seen_. p is the vertex relative to the origin.
 void HullKernel::make_facets(std::span<const RimEdge> rim, const Point& p, int32_t vertex) {
     const Point& c = at(vertex);
     for (size_t i = 0; i < rim.size(); i += 2) {
