@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The names of what regroup's networks are told, in order, from the one list of them: native/src/tree/regroup/measures.h."""
+"""The names of what regroup's networks are told, in order, from the only list of them."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,5 @@
 // The dendrogram against direct transcriptions: Listing 2 by Eq. 3, cuts by enumeration, the rules of the wheel.
+#include "cluster/cluster.h"
 #include "tree/dendrogram.h"
 
 #include "support/shapes.h"

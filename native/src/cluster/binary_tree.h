@@ -41,7 +41,7 @@ struct BinaryTree {
     size_t components = 0;  // clusters left when the dual edges had run out
 };
 
-// From the top down, what is noted of a cluster is noted of all that it was merged from, unless it is below 0. leaves: T.
+// From the top down, what is noted of a cluster, unless below 0, is noted of all that it was merged from. leaves: T.
 inline void hand_down(std::span<const Merge> merges, size_t leaves, std::vector<int32_t>& noted) {
     for (size_t m = merges.size(); m-- > 0;)
         if (noted[leaves + m] >= 0)

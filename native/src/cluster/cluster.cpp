@@ -135,7 +135,7 @@ void Clustering::join_components() {
     for (const int32_t c : rest) graph_.make_hull(c);
     std::vector<int32_t> edges;
     const auto join = [&](int32_t i, int32_t j) {
-        edges.push_back(graph_.add_edge(rest[static_cast<size_t>(i)], rest[static_cast<size_t>(j)]));
+        edges.push_back(graph_.add_edge(rest[at(i)], rest[at(j)]));
     };
     const auto price_all = [&] {
         queue_edges();
@@ -154,7 +154,7 @@ void Clustering::join_components() {
     using Box = bg::model::box<Corner>;
     std::vector<std::pair<Box, int32_t>> boxes;
     for (int32_t i = 0; i < count; ++i) {
-        const auto [low, high] = graph_.bounds(rest[static_cast<size_t>(i)]);
+        const auto [low, high] = graph_.bounds(rest[at(i)]);
         boxes.push_back({Box({low[0], low[1], low[2]}, {high[0], high[1], high[2]}), i});
     }
     const bg::index::rtree<std::pair<Box, int32_t>, bg::index::rstar<16>> tree(boxes);

@@ -17,8 +17,8 @@ constexpr size_t edges_a_step = 65536, edges_a_piece = 4096;
 }  // namespace
 
 DualGraph::DualGraph(const TetMesh& mesh)
-    : mesh_(mesh), hulls_(mesh.vertices), first_links_(Links::least * mesh.tetrahedra.size()), clusters_(mesh.tetrahedra.size()),
-      link_of_(mesh.tetrahedra.size(), -1) {
+    : mesh_(mesh), hulls_(mesh.vertices), first_links_(Links::least * mesh.tetrahedra.size()),
+      clusters_(mesh.tetrahedra.size()), link_of_(mesh.tetrahedra.size(), -1) {
     const auto count = static_cast<int32_t>(mesh.tetrahedra.size());
     for (int32_t t = 0; t < count; ++t) {
         const Tetrahedron& tet = mesh.tetrahedra[static_cast<size_t>(t)];

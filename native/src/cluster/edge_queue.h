@@ -15,9 +15,10 @@
 
 namespace partwheel {
 
-// Eq. 3 of the paper with its ties settled: ordered by concavity (ranked_concavity, 0 if convex), then by C2 (Eq. 2, t1^2
-// + t2^2, without its constant denominator and exact), then by the lowest tetrahedra of the two clusters, the lower one
-// first. As three integers in that order, most comparisons are settled by the first: concavity, or C2 among convex unions.
+// Eq. 3 of the paper with its ties settled: ordered by concavity (ranked_concavity, 0 if convex), then by C2 (Eq. 2
+// without its constant denominator: t1^2 + t2^2, exact), then by the lowest tetrahedra of the two clusters, the lower
+// one first. It is three integers in that order. Most comparisons are settled by the first: concavity, or C2 among
+// convex unions.
 struct Price {
     uint64_t rank = 0, balance = 0, tie = 0;
 

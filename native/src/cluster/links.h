@@ -15,8 +15,8 @@ struct Link {
     int32_t edge;
 };
 
-// Like a vector, but that who makes it larger says from which pool, and that it doesn't free its memory itself: release()
-// does, or the pool does in the end, which no list must outlive.
+// Like a vector, but that who makes it larger says from which pool, and that it doesn't free its memory itself:
+// release() does, or the pool in the end, which no list must outlive.
 class Links {
 public:
     // So many need no memory from the pool, if they are given a place.

@@ -88,6 +88,7 @@ struct Grown {
     int32_t cluster = -1;  // none yet
     int32_t low = 0;       // its lowest tetrahedron
     double volume = 0;
+    std::vector<int32_t> corners;  // of all its tetrahedra, while it has no hull
     Hull hull;
 };
 
@@ -97,7 +98,7 @@ Grown joined(Grown a, Grown b, HullKernel& kernel, size_t leaves, std::vector<Me
     if (b.cluster < 0) return a;
     if (b.low < a.low) std::swap(a, b);
     const auto [small, large] = std::minmax(a.hull, b.hull, fewer_facets);
-    Grown both{static_cast<int32_t>(leaves + merges.size()), a.low, a.volume + b.volume,
+    Grown both{static_cast<int32_t>(leaves + merges.size()), a.low, a.volume + b.volume, {},
                kernel.unite(large, small.vertices())};
     const double hull = both.hull.volume();
     merges.push_back({a.cluster, b.cluster, ranked_concavity(hull, both.volume), hull});
@@ -128,8 +129,7 @@ Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& sol
     const size_t leaves = solid.mesh.tetrahedra.size(), count = parts.scores.size() / 2 + 1;
     const Numbers number = numbers(parts, plain.tetrahedra.size());
     std::vector<int32_t> part_of_triangle;
-    for (const int32_t t : plain.tet_of_triangle)
-        part_of_triangle.push_back(number.of_tetrahedron[at(t)]);
+    for (const int32_t t : plain.tet_of_triangle) part_of_triangle.push_back(number.of_tetrahedron[at(t)]);
     const std::vector<int32_t> part = spread(solid, part_of_triangle, progress);
 
     // The paper's clusters within each part.
@@ -147,16 +147,13 @@ Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& sol
     std::vector<int32_t> piece(leaves + merges.size());
     std::iota(piece.begin(), piece.end(), 0);
     hand_down(merges, leaves, piece);
-    struct Fragment {
-        int32_t low = -1;
-        double volume = 0;
-        std::vector<int32_t> corners;
-    };
-    std::vector<Fragment> pieces(piece.size());
+    HullKernel kernel(solid.mesh.vertices);  // outlives all hulls
+    std::vector<Grown> pieces(piece.size());
     std::vector<int32_t> in_order;  // by their lowest tetrahedra
     for (size_t t = 0; t < leaves; ++t) {
-        Fragment& p = pieces[at(piece[t])];
-        if (p.low < 0) {
+        Grown& p = pieces[at(piece[t])];
+        if (p.cluster < 0) {
+            p.cluster = piece[t];
             p.low = static_cast<int32_t>(t);
             in_order.push_back(piece[t]);
         }
@@ -165,12 +162,11 @@ Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& sol
         p.volume += std::max(0.0, six_volumes(corner(0), corner(1), corner(2), corner(3)) / 6);
         p.corners.insert(p.corners.end(), tet.begin(), tet.end());
     }
-    HullKernel kernel(solid.mesh.vertices);
     std::vector<Grown> grown(2 * count - 1);
     for (const int32_t c : in_order) {
-        const Fragment& p = pieces[at(c)];
-        Grown& whole = grown[at(part[at(p.low)])];
-        whole = joined(std::move(whole), {c, p.low, p.volume, kernel.build(p.corners)}, kernel, leaves, merges);
+        Grown &p = pieces[at(c)], &whole = grown[at(part[at(p.low)])];
+        p.hull = kernel.build(p.corners);
+        whole = joined(std::move(whole), std::move(p), kernel, leaves, merges);
         progress.advance(1);
     }
 

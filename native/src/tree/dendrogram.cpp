@@ -135,8 +135,8 @@ std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, std::span<cons
 WheelStops wheel_stops(std::span<const double> areas, std::span<const double> scores) {
     constexpr double most_overlap = 0.85, shrink = 0.5;
     const auto root = static_cast<int32_t>(areas.size()) - 1;
-    const auto area = [&](int32_t i) { return areas[static_cast<size_t>(i)]; };
-    const auto score = [&](int32_t i) { return scores[static_cast<size_t>(i)]; };
+    const auto area = [&](int32_t i) { return areas[at(i)]; };
+    const auto score = [&](int32_t i) { return scores[at(i)]; };
     std::vector<int32_t> by_score;
     for (int32_t i = 0; i <= root; ++i)
         if (score(i) > 0 || i == root) by_score.push_back(i);

@@ -21,7 +21,7 @@ void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const i
                   std::vector<int32_t>& leaf, std::vector<double>& face_area) {
     std::vector<Piece> pieces = surface.pieces;
     const auto leaf_behind = [&](const Piece& piece) {
-        return leaf_of_tet[static_cast<size_t>(mesh.tet_of_triangle[static_cast<size_t>(piece.triangle)])];
+        return leaf_of_tet[at(mesh.tet_of_triangle[at(piece.triangle)])];
     };
     std::sort(pieces.begin(), pieces.end(), [&](const Piece& a, const Piece& b) {
         return std::tuple(a.face, leaf_behind(a), a) < std::tuple(b.face, leaf_behind(b), b);
@@ -33,7 +33,7 @@ void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const i
         const int32_t f = pieces[i].face, l = leaf_behind(pieces[i]);
         double shared = 0;
         for (; i < pieces.size() && pieces[i].face == f && leaf_behind(pieces[i]) == l; ++i) shared += pieces[i].area;
-        const auto face = static_cast<size_t>(f);
+        const auto face = at(f);
         face_area[face] += shared;
         if (shared > most[face]) {
             most[face] = shared;
@@ -48,20 +48,20 @@ std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh
     std::vector<Claim> claims;
     for (const Piece& piece : surface.pieces) claims.push_back({piece.triangle, piece.face, piece.area});
     std::vector<int32_t> face(surface.triangles.size(), -1);
-    settle_claims(std::move(claims), [&](int32_t t, int32_t f) { face[static_cast<size_t>(t)] = f; });
+    settle_claims(std::move(claims), [&](int32_t t, int32_t f) { face[at(t)] = f; });
     struct Outer {
         int32_t leaf, corner, face;
     };
     std::vector<Outer> outer;
     for (size_t t = 0; t < surface.triangles.size(); ++t) {
-        const auto tet = static_cast<size_t>(mesh.tet_of_triangle[t]);
+        const auto tet = at(mesh.tet_of_triangle[t]);
         const Triangle& triangle = surface.triangles[t];
         int32_t corner = 0;
         for (int32_t k = 0; k < 4; ++k)
-            if (std::find(triangle.begin(), triangle.end(), mesh.tetrahedra[tet][static_cast<size_t>(k)]) ==
+            if (std::find(triangle.begin(), triangle.end(), mesh.tetrahedra[tet][at(k)]) ==
                 triangle.end())
                 corner = k;
-        if (mesh.neighbours[tet][static_cast<size_t>(corner)] >= 0) continue;  // a wall with the solid on both sides
+        if (mesh.neighbours[tet][at(corner)] >= 0) continue;  // a wall with the solid on both sides
         outer.push_back({leaf_of_tet[tet], corner, face[t]});
     }
     std::sort(outer.begin(), outer.end(), [](const Outer& a, const Outer& b) {
@@ -82,27 +82,20 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const Regroupe
     source_ = surface.source_vertex;
     source_.resize(mesh.vertices.size(), -1);
     for (size_t v = 0; v < source_.size(); ++v) {
-        if (source_[v] < 0) {
-            vertices_.push_back(frame.to_caller(mesh.vertices[v]));
-            continue;
-        }
-        const double* p = caller_vertices + 3 * static_cast<size_t>(source_[v]);
-        vertices_.push_back({p[0], p[1], p[2]});
+        const double* p = source_[v] < 0 ? nullptr : caller_vertices + 3 * at(source_[v]);
+        vertices_.push_back(p ? Point{p[0], p[1], p[2]} : frame.to_caller(mesh.vertices[v]));
     }
 
     const size_t leaves = mesh.tetrahedra.size();
     const std::vector<int32_t> order = cut_undoing_last(tree.merges, leaves);  // depth first
     std::vector<int32_t> leaf_of_tet(leaves);
     for (size_t i = 0; i < leaves; ++i) {
-        leaf_of_tet[static_cast<size_t>(order[i])] = static_cast<int32_t>(i);
-        tetrahedra_.push_back(mesh.tetrahedra[static_cast<size_t>(order[i])]);
+        leaf_of_tet[at(order[i])] = static_cast<int32_t>(i);
+        tetrahedra_.push_back(mesh.tetrahedra[at(order[i])]);
     }
     merges_ = tree.merges;
-    const auto renumber = [&](int32_t c) {
-        return static_cast<size_t>(c) < leaves ? leaf_of_tet[static_cast<size_t>(c)] : c;
-    };
-    for (Merge& m : merges_)
-        m = {renumber(m.left), renumber(m.right), frame.volume_to_caller(m.concavity), 0};
+    const auto renumber = [&](int32_t c) { return at(c) < leaves ? leaf_of_tet[at(c)] : c; };
+    for (Merge& m : merges_) m = {renumber(m.left), renumber(m.right), frame.volume_to_caller(m.concavity), 0};
     if (!merges_.empty()) summary_.hull_volume = frame.volume_to_caller(tree.merges.back().hull_volume);
 
     assign_faces(surface, mesh, leaf_of_tet, leaf_, face_area_);
@@ -128,23 +121,22 @@ void Hierarchy::finish() {
     std::vector<Point> points;
     points.reserve(vertices_.size());
     for (const Point& p : vertices_) points.push_back(frame_.to_working(p));
-    volume_.resize(clusters);
-    area_.resize(clusters);
-    height_.resize(clusters);
-    tet_first_.resize(clusters);
-    tet_last_.resize(clusters);
+    const auto measures = {&volume_, &area_, &height_, &score_};
+    for (std::vector<double>* values : measures) values->resize(clusters);
+    for (std::vector<int32_t>* ends : {&tet_first_, &tet_last_}) ends->resize(clusters);
     for (size_t l = 0; l < leaves; ++l) {
-        const auto at = [&](size_t k) { return points[static_cast<size_t>(tetrahedra_[l][k])]; };
+        const auto corner = [&](size_t k) { return points[at(tetrahedra_[l][k])]; };
         // A sliver's volume may be rounded to less than nothing.
-        volume_[l] = frame_.volume_to_caller(std::max(0.0, six_volumes(at(0), at(1), at(2), at(3)) / 6));
+        const double volume = six_volumes(corner(0), corner(1), corner(2), corner(3)) / 6;
+        volume_[l] = frame_.volume_to_caller(std::max(0.0, volume));
         tet_first_[l] = static_cast<int32_t>(l);
         tet_last_[l] = static_cast<int32_t>(l + 1);
     }
-    for (size_t f = 0; f < faces; ++f) area_[static_cast<size_t>(leaf_[f])] += face_area_[f];
+    for (size_t f = 0; f < faces; ++f) area_[at(leaf_[f])] += face_area_[f];
     merge_pairs_.reserve(2 * merges);
     for (size_t c = leaves; c < clusters; ++c) {
         Merge& merge = merges_[c - leaves];
-        const auto left = static_cast<size_t>(merge.left), right = static_cast<size_t>(merge.right);
+        const auto left = at(merge.left), right = at(merge.right);
         merge_pairs_.push_back(merge.left);
         merge_pairs_.push_back(merge.right);
         tet_first_[c] = tet_first_[left];
@@ -165,15 +157,13 @@ void Hierarchy::finish() {
 
     // Faces sorted by leaf; face_begin[l] is where leaf l's start.
     std::vector<int32_t> face_begin(leaves + 1, 0);
-    for (int32_t l : leaf_) ++face_begin[static_cast<size_t>(l) + 1];
+    for (int32_t l : leaf_) ++face_begin[at(l) + 1];
     std::partial_sum(face_begin.begin(), face_begin.end(), face_begin.begin());
     order_.resize(faces);
     std::vector<int32_t> next(face_begin.begin(), face_begin.end() - 1);
-    for (size_t f = 0; f < faces; ++f)
-        order_[static_cast<size_t>(next[static_cast<size_t>(leaf_[f])]++)] = static_cast<int32_t>(f);
+    for (size_t f = 0; f < faces; ++f) order_[at(next[at(leaf_[f])]++)] = static_cast<int32_t>(f);
 
     // The parts are the clusters that the regrouped merges join, and that are none of them.
-    score_.resize(clusters);
     if (!scores_.empty()) {
         auto given = scores_.begin();
         for (const int32_t c : cut_undoing_last(merges_, regrouped_merges() + 1)) score_[at(c)] = *given++;
@@ -195,25 +185,24 @@ void Hierarchy::finish() {
         cost_[n] = costs[c - leaves].value;
         tet_first_[n] = tet_first_[c];
         tet_last_[n] = tet_last_[c];
-        for (std::vector<double>* values : {&volume_, &area_, &height_, &score_}) (*values)[n] = (*values)[c];
+        for (std::vector<double>* values : measures) (*values)[n] = (*values)[c];
         ++n;
     }
-    for (std::vector<double>* values : {&volume_, &area_, &height_, &score_}) values->resize(nodes);
-    tet_first_.resize(nodes);
-    tet_last_.resize(nodes);
+    for (std::vector<double>* values : measures) values->resize(nodes);
+    for (std::vector<int32_t>* ends : {&tet_first_, &tet_last_}) ends->resize(nodes);
     first_.reserve(nodes);
     last_.reserve(nodes);
-    for (const int32_t t : tet_first_) first_.push_back(face_begin[static_cast<size_t>(t)]);
-    for (const int32_t t : tet_last_) last_.push_back(face_begin[static_cast<size_t>(t)]);
+    for (const int32_t t : tet_first_) first_.push_back(face_begin[at(t)]);
+    for (const int32_t t : tet_last_) last_.push_back(face_begin[at(t)]);
     parent_.assign(nodes, -1);
     for (size_t m = merges; m-- > 0;) {
         // node[] of a pruned merge becomes the node that its children hang from.
         for (int32_t child : {merges_[m].left, merges_[m].right}) {
-            int32_t& below = node[static_cast<size_t>(child)];
+            int32_t& below = node[at(child)];
             if (below < 0)
                 below = node[leaves + m];
             else
-                parent_[static_cast<size_t>(below)] = node[leaves + m];
+                parent_[at(below)] = node[leaves + m];
         }
     }
 }
@@ -250,7 +239,7 @@ pw_arrays Hierarchy::arrays() const {
 
 std::vector<int32_t> Hierarchy::path(size_t face) const {
     std::vector<int32_t> nodes;
-    for (int32_t n = leaf_[face]; n >= 0; n = parent_[static_cast<size_t>(n)]) nodes.push_back(n);
+    for (int32_t n = leaf_[face]; n >= 0; n = parent_[at(n)]) nodes.push_back(n);
     return nodes;
 }
 
@@ -259,25 +248,24 @@ WheelStops Hierarchy::wheel(size_t face) const {
     if (scores_.empty()) return {nodes, 0};  // the paper's: all of the path, from the tetrahedron clicked
     std::vector<double> areas, scores;
     for (int32_t n : nodes) {
-        areas.push_back(area_[static_cast<size_t>(n)]);
-        scores.push_back(score_[static_cast<size_t>(n)]);
+        areas.push_back(area_[at(n)]);
+        scores.push_back(score_[at(n)]);
     }
     WheelStops wheel = wheel_stops(areas, scores);
-    for (int32_t& stop : wheel.stops) stop = nodes[static_cast<size_t>(stop)];
+    for (int32_t& stop : wheel.stops) stop = nodes[at(stop)];
     return wheel;
 }
 
 std::span<const int32_t> Hierarchy::faces(size_t node) const {
-    return std::span(order_).subspan(static_cast<size_t>(first_[node]),
+    return std::span(order_).subspan(at(first_[node]),
                                      static_cast<size_t>(last_[node] - first_[node]));
 }
 
 std::vector<int32_t> Hierarchy::cut_height(double height) const {
     std::vector<int32_t> bounds = {0};
-    while (static_cast<size_t>(bounds.back()) < tetrahedra_.size()) {
-        auto n = static_cast<size_t>(bounds.back());
-        while (parent_[n] >= 0 && height_[static_cast<size_t>(parent_[n])] <= height)
-            n = static_cast<size_t>(parent_[n]);
+    while (at(bounds.back()) < tetrahedra_.size()) {
+        size_t n = at(bounds.back());
+        while (parent_[n] >= 0 && height_[at(parent_[n])] <= height) n = at(parent_[n]);
         bounds.push_back(tet_last_[n]);
     }
     return bounds;
@@ -309,7 +297,7 @@ std::vector<int32_t> Hierarchy::cut_automatic() const {
 std::vector<int32_t> Hierarchy::bounds_of(std::span<const int32_t> clusters) const {
     std::vector<int32_t> bounds = {0};
     for (const int32_t c : clusters) {
-        const size_t leaves = tetrahedra_.size(), i = static_cast<size_t>(c);
+        const size_t leaves = tetrahedra_.size(), i = at(c);
         bounds.push_back(i < leaves ? c + 1 : merge_last_[i - leaves]);
     }
     return bounds;
@@ -321,7 +309,7 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last) const {
     std::sort(used.begin(), used.end());
     used.erase(std::unique(used.begin(), used.end()), used.end());
     std::vector<Point> points;
-    for (int32_t v : used) points.push_back(frame_.to_working(vertices_[static_cast<size_t>(v)]));
+    for (int32_t v : used) points.push_back(frame_.to_working(vertices_[at(v)]));
     std::vector<int32_t> all(points.size());
     std::iota(all.begin(), all.end(), 0);
     HullKernel kernel(points);
@@ -330,12 +318,12 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last) const {
     TriangleMesh mesh;
     std::vector<int32_t> number(points.size(), -1);
     for (int32_t v : hull.vertices()) {
-        number[static_cast<size_t>(v)] = static_cast<int32_t>(mesh.vertices.size());
-        mesh.vertices.push_back(vertices_[static_cast<size_t>(used[static_cast<size_t>(v)])]);
+        number[at(v)] = static_cast<int32_t>(mesh.vertices.size());
+        mesh.vertices.push_back(vertices_[at(used[at(v)])]);
     }
     for (const HullFacet& facet : hull.facets()) {
         Triangle t = facet.corners;
-        for (int32_t& v : t) v = number[static_cast<size_t>(v)];
+        for (int32_t& v : t) v = number[at(v)];
         mesh.triangles.push_back(t);
     }
     return mesh;
@@ -377,12 +365,12 @@ struct Header {
 
 static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Header) == 104);
 
-std::span<const double> numbers(const std::vector<Point>& points) {
-    return {points.data()->data(), 3 * points.size()};
-}
+// What a header and a summary both have.
+auto common(auto& s) { return std::tie(s.components, s.cavities, s.added_vertices, s.deviation, s.hull_volume); }
 
-std::span<const int32_t> numbers(const std::vector<Tetrahedron>& tetrahedra) {
-    return {tetrahedra.data()->data(), 4 * tetrahedra.size()};
+template <class T, size_t n>
+std::span<const T> numbers(const std::vector<std::array<T, n>>& arrays) {
+    return {arrays.data()->data(), n * arrays.size()};
 }
 
 }  // namespace
@@ -392,20 +380,16 @@ std::vector<uint8_t> Hierarchy::save() const {
     header.faces = leaf_.size();
     header.tetrahedra = tetrahedra_.size();
     header.vertices = vertices_.size();
-    header.components = summary_.components;
-    header.cavities = summary_.cavities;
-    header.added_vertices = summary_.added_vertices;
     header.account = account_.size();
     header.outer = outer_faces_.size();
     header.scores = scores_.size();
     header.rung = summary_.rung;
-    header.deviation = summary_.deviation;
-    header.hull_volume = summary_.hull_volume;
+    common(header) = common(summary_);
     // A merge joins the slices on both sides of a border between two tetrahedra, so that says all of it.
     std::vector<int32_t> borders;
     std::vector<double> concavities;
     for (const Merge& merge : merges_) {
-        const size_t leaves = tetrahedra_.size(), left = static_cast<size_t>(merge.left);
+        const size_t leaves = tetrahedra_.size(), left = at(merge.left);
         borders.push_back(left < leaves ? merge.left + 1 : merge_last_[left - leaves]);
         concavities.push_back(merge.concavity);
     }
@@ -444,14 +428,10 @@ Hierarchy Hierarchy::load(std::span<const uint8_t> bytes) {
     h.face_area_ = in.get_doubles(header.faces);
     h.outer_faces_ = in.get_integers(header.outer);
     h.scores_ = in.get_doubles(header.scores);
-    h.summary_.components = header.components;
-    h.summary_.cavities = header.cavities;
-    h.summary_.added_vertices = header.added_vertices;
     if (header.rung != PW_RUNG_EXACT && header.rung != PW_RUNG_REPAIRED && header.rung != PW_RUNG_WRAPPED)
         refuse_saved("its rung is unknown");
     h.summary_.rung = static_cast<pw_rung>(header.rung);
-    h.summary_.deviation = header.deviation;
-    h.summary_.hull_volume = header.hull_volume;
+    common(h.summary_) = common(header);
     if (!in.at_end()) refuse_saved("it goes on after its end");
     h.check_stored();
     h.finish();
@@ -472,12 +452,12 @@ void Hierarchy::plant(std::span<const int32_t> borders, std::span<const double> 
     }
     for (size_t m = 0; m < borders.size(); ++m) {
         if (borders[m] <= 0 || borders[m] >= leaves) refuse_saved("its tree is not a tree");
-        Side &a = left[static_cast<size_t>(borders[m])], &b = right[static_cast<size_t>(borders[m])];
+        Side &a = left[at(borders[m])], &b = right[at(borders[m])];
         if (a.cluster < 0) refuse_saved("its tree is not a tree");
         merges_.push_back({a.cluster, b.cluster, concavities[m], 0});
-        const auto merged = static_cast<int32_t>(static_cast<size_t>(leaves) + m);
-        right[static_cast<size_t>(a.far)] = {merged, b.far};
-        left[static_cast<size_t>(b.far)] = {merged, a.far};
+        const auto merged = static_cast<int32_t>(at(leaves) + m);
+        right[at(a.far)] = {merged, b.far};
+        left[at(b.far)] = {merged, a.far};
         a.cluster = b.cluster = -1;
     }
 }
@@ -488,7 +468,7 @@ constexpr double largest_coordinate = 1e101;
 // A hash can be forged: what finish() and the questions rely on is checked as well.
 void Hierarchy::check_stored() const {
     const size_t leaves = tetrahedra_.size();
-    const auto below = [](int32_t i, size_t size) { return i >= 0 && static_cast<size_t>(i) < size; };
+    const auto below = [](int32_t i, size_t size) { return i >= 0 && at(i) < size; };
     const auto measure = [](double x) { return x >= 0 && std::isfinite(x); };
     for (const Point& p : vertices_)
         for (double c : p)

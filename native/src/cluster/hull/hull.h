@@ -67,7 +67,6 @@ private:
 
 inline bool fewer_facets(const Hull& a, const Hull& b) { return a.facet_count() < b.facet_count(); }
 
-struct FacetPlane;
 struct FacetsView;
 
 // Does the hull work on one array of points, with scratch memory that it keeps between calls: one kernel a thread.
@@ -145,8 +144,7 @@ private:
     double look(int32_t vertex);
 
     bool load_simplex(std::span<const int32_t> vertices);
-    FacetPlane plane(const Triangle& corners) const;
-    void set_plane(size_t f, const FacetPlane& plane);
+    void make_plane(size_t f);
     void make_facets(std::span<const RimEdge> rim, const Point& p, int32_t vertex);
     void attach(int32_t vertex);
     void insert(int32_t vertex) {

@@ -23,25 +23,22 @@ void HullKernel::make_room(size_t facets) {
     facet_mark_.resize(room, 0);
 }
 
-FacetPlane HullKernel::plane(const Triangle& corners) const {
+// The plane of a facet whose corners are there.
+void HullKernel::make_plane(size_t f) {
+    const Triangle& corners = facets_[f].corners;
     const Point& c = at(corners[2]);
     const Point u = at(corners[0]) - c, v = at(corners[1]) - c;
     const Point n = cross(u, v);
-    const double size = std::fabs(u[1] * v[2]) + std::fabs(u[2] * v[1]) + std::fabs(u[2] * v[0]) +
-                        std::fabs(u[0] * v[2]) + std::fabs(u[0] * v[1]) + std::fabs(u[1] * v[0]);
-    return {n, dot(n, c - origin_), size};
+    x_[f] = n[0];
+    y_[f] = n[1];
+    z_[f] = n[2];
+    offset_[f] = dot(n, c - origin_);
+    size_[f] = std::fabs(u[1] * v[2]) + std::fabs(u[2] * v[1]) + std::fabs(u[2] * v[0]) + std::fabs(u[0] * v[2]) +
+               std::fabs(u[0] * v[1]) + std::fabs(u[1] * v[0]);
 }
 
-void HullKernel::set_plane(size_t f, const FacetPlane& plane) {
-    x_[f] = plane.normal[0];
-    y_[f] = plane.normal[1];
-    z_[f] = plane.normal[2];
-    offset_[f] = plane.offset;
-    size_[f] = plane.size;
-}
-
-// The planes of the facets between the rim and the vertex, two at a time, as plane() gives them: they go to the places
-// in seen_. p is the vertex relative to the origin.
+// The planes of the facets between the rim and the vertex, two at a time, as make_plane() gives them: they go to the
+// places in seen_. p is the vertex relative to the origin.
 void HullKernel::make_facets(std::span<const RimEdge> rim, const Point& p, int32_t vertex) {
     const Point& c = at(vertex);
     for (size_t i = 0; i < rim.size(); i += 2) {
@@ -81,7 +78,7 @@ void HullKernel::attach(int32_t vertex) {
     while (places < rim.size()) seen_[places++] = static_cast<uint32_t>(count_++);
     for (size_t i = rim.size(); i < seen_count_; ++i) {
         gaps_.push_back(seen_[i]);
-        set_plane(seen_[i], {{}, HUGE_VAL, 0});
+        offset_[seen_[i]] = HUGE_VAL;  // no point sees it
     }
     latest_ = seen_[0];
     make_facets(rim, p, vertex);
@@ -108,23 +105,15 @@ void HullKernel::attach(int32_t vertex) {
 bool HullKernel::load_simplex(std::span<const int32_t> vertices) {
     const auto first = vertices.begin(), end = vertices.end();
     if (first == end) return false;
-    auto second = first, third = first, fourth = first;
-    if (vertices.size() >= 4 &&
-        orientation(at(vertices[0]), at(vertices[1]), at(vertices[2]), at(vertices[3])) != 0) {
-        second = first + 1;
-        third = first + 2;
-        fourth = first + 3;
-    } else {
-        const Point& a = at(*first);
-        second = std::find_if(first, end, [&](int32_t v) { return at(v) != a; });
-        if (second == end) return false;
-        const Point& b = at(*second);
-        third = std::find_if(second, end, [&](int32_t v) { return !collinear(a, b, at(v)); });
-        if (third == end) return false;
-        const Point& c = at(*third);
-        fourth = std::find_if(first, end, [&](int32_t v) { return orientation(a, b, c, at(v)) != 0; });
-        if (fourth == end) return false;
-    }
+    const Point& a = at(*first);
+    const auto second = std::find_if(first, end, [&](int32_t v) { return at(v) != a; });
+    if (second == end) return false;
+    const Point& b = at(*second);
+    const auto third = std::find_if(second, end, [&](int32_t v) { return !collinear(a, b, at(v)); });
+    if (third == end) return false;
+    const Point& c = at(*third);
+    const auto fourth = std::find_if(first, end, [&](int32_t v) { return orientation(a, b, c, at(v)) != 0; });
+    if (fourth == end) return false;
 
     std::array<int32_t, 4> t = {*first, *second, *third, *fourth};
     if (orientation(at(t[0]), at(t[1]), at(t[2]), at(t[3])) < 0) std::swap(t[0], t[1]);
@@ -142,7 +131,7 @@ bool HullKernel::load_simplex(std::span<const int32_t> vertices) {
     latest_ = 0;
     for (size_t f = 0; f < 4; ++f) {
         facets_[f] = facets[f];
-        set_plane(f, plane(facets[f].corners));
+        make_plane(f);
     }
     // Once it is inside it stays there.
     centred_ = true;

@@ -66,7 +66,7 @@ void HullKernel::close_gaps() {
             continue;
         }
         const size_t f = gaps_[next++];
-        set_plane(f, {{x_[last], y_[last], z_[last]}, offset_[last], size_[last]});
+        for (auto* numbers : {&x_, &y_, &z_, &offset_, &size_}) (*numbers)[f] = (*numbers)[last];
         facets_[f] = facets_[last];
         for (const int32_t n : facets_[f].neighbours) {
             Triangle& back = facets_[static_cast<size_t>(n)].neighbours;

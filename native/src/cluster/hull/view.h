@@ -21,17 +21,11 @@ inline constexpr size_t plane_numbers = 5;
 
 inline double reach_of(const Point& p) { return std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])}); }
 
-// The plane of a facet. Of a point p relative to the hull's origin, x px + y py + z pz - offset is six times the volume
-// of facet and p.
-struct FacetPlane {
-    Point normal;
-    double offset;
-    double size;  // the sum of the absolute products in the normal
-};
-
-// A hull's facets, at rest or at work.
+// A hull's facets, at rest or at work, with their planes: of a point p relative to the hull's origin,
+// x px + y py + z pz - offset is six times the volume of facet and p.
 struct FacetsView {
-    const double *x, *y, *z, *offset, *size;
+    const double *x, *y, *z, *offset;
+    const double* size;  // the sums of the absolute products in the normals x, y, z
     const HullFacet* facets;
     size_t count;
     Point origin;

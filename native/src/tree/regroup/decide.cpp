@@ -109,7 +109,8 @@ NodeMeasures measures(const Parts& parts, size_t node) {
         dearest_above = std::max(dearest_above, parts[p].own_cost);
     }
     // How many parts there are when it comes, and when it goes.
-    const auto parts_at = [&](size_t n) { return static_cast<double>(n < parts.fine ? parts.fine : 2 * parts.fine - 1 - n); };
+    const size_t fine = parts.fine;
+    const auto parts_at = [&](size_t n) { return static_cast<double>(n < fine ? fine : 2 * fine - 1 - n); };
     return {
         .own = own,
         .parent_cost = out,

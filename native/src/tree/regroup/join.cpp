@@ -54,7 +54,7 @@ void Regrouping::take_parts() {
     for (size_t p = 0; p < chosen.size(); ++p) part_of[at(chosen[p])] = static_cast<int32_t>(p);
     hand_down(tree_.merges, leaves, part_of);
     parts_ = measure_parts(mesh_, part_of, chosen.size(), tree_.merges.back().hull_volume, kernel_, progress_);
-    if (trace_) trace_->part_of_tetrahedron.assign(part_of.begin(), part_of.begin() + static_cast<std::ptrdiff_t>(leaves));
+    if (trace_) trace_->part_of_tetrahedron.assign(part_of.data(), part_of.data() + leaves);
 
     result_.tree.components = tree_.components;
     std::iota(number.begin(), number.begin() + static_cast<std::ptrdiff_t>(leaves), 0);

@@ -1,4 +1,4 @@
-// The parts measured: volumes, areas, hulls, and what lies between them, by the facets inside and the folds of the surface.
+// The parts measured: volumes, areas, hulls; and what lies between them, by the facets inside and the surface's folds.
 #include "tree/regroup/parts.h"
 
 #include <algorithm>

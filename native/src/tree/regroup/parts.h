@@ -1,4 +1,4 @@
-// The parts that regroup() joins and what lies between them: which these are, how large, how long and creased their borders.
+// The parts that regroup() joins, and what lies between them.
 #pragma once
 
 #include "cluster/hull/hull.h"

@@ -1,14 +1,16 @@
-// The top of the tree built anew: a few hundred parts of the paper's tree, joined in the order that people would.
+// The top of the tree built anew by two small neural networks: a few hundred parts of the paper's tree, joined in the
+// order that people would. choose.cpp says which parts, measure.cpp measures them, decide.cpp has the networks,
+// join.cpp joins.
 //
 // Concavity alone joins a leg's two halves late and a cup's handle early. So the paper's tree is cut into some parts,
 // which are joined again bottom-up; the cost is how unlikely it is that people put both into one part, told by a small
 // neural network (one hidden layer of softsigns, see fitted()) from 28 measures of the pair: sizes, convexity, the hull
 // of both, the area of the facets between them (the cross-section) and the length and the crease of the border on the
 // surface, after the ideas of Golovinskiy and Funkhouser, "Randomized Cuts for 3D Mesh Analysis" (2008). Another such
-// network scores each node of the result from 32 measures. measures.h names the measures and says what each is.
-// Both networks were fitted to segmentations made by people (tests/quality/fit.py); their weights are in
-// fitted.h. All of it is arithmetic without library functions but the square root, so it is the same on every
-// machine. tests/core/reference_regroup.py does the same from what is said here and there:
+// network scores each node of the result from 32 measures. measures.h names the measures and says what each is. Both
+// networks were fitted to segmentations made by people (tests/quality/fit.py); their weights are in fitted.h. All of it
+// is arithmetic without library functions but the square root, so it is the same on every machine.
+// tests/core/reference_regroup.py does the same from what is said here and there:
 //
 // The unit of length is the longest side of the bounding box.
 //
