@@ -1,6 +1,9 @@
-"""Writes build/package/partwheel-VERSION-PLATFORM.zip from addon/partwheel: the same bytes for the same files.
+"""Writes the add-on with a wheel of the Python package inside: the same bytes for the same files. Called by scripts/package.
 
-Called by scripts/package, which builds the library first.
+    package_zip.py build/package/partwheel-VERSION-py3-none-TAG.whl
+
+Beside the wheel come partwheel-VERSION-PLATFORM.zip, an extension for Blender 4.2 and later, which installs the wheel;
+and -legacy.zip for 3.4 to 4.1, in which it is unpacked.
 """
 
 import ast
@@ -13,36 +16,33 @@ import zipfile
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 ADDON = ROOT / "addon" / "partwheel"
 MANIFEST = ADDON / "blender_manifest.toml"
-PACKAGES = ROOT / "build" / "package"
-PACKAGE = ROOT / "native" / "python" / "partwheel"
-LIBRARY = PACKAGE / "libpartwheel.so"
 MACHINES = {"x86_64": "x64", "aarch64": "arm64"}
-ROOM = "partwheel_addon"  # in the zip
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can hold
 
 
-def main():
-    version = agreed_version()
-    if not LIBRARY.exists():
-        sys.exit(f"{LIBRARY} is missing: run scripts/build.")
+def main(wheel):
     here = f"linux-{MACHINES.get(platform.machine(), platform.machine())}"
-    target = PACKAGES / f"partwheel-{version}-{here}.zip"
-    target.parent.mkdir(parents=True, exist_ok=True)
+    files = {path.relative_to(ADDON).as_posix(): path.read_bytes() for path in ADDON.rglob("*") if wanted(path)}
+    files["LICENSE"] = (ROOT / "LICENSE").read_bytes()
+    name = f"partwheel-{agreed_version()}-{here}"
+    write(wheel.with_name(f"{name}.zip"), "partwheel",
+          {**files, MANIFEST.name: manifest_for(here, wheel.name), f"wheels/{wheel.name}": wheel.read_bytes()})
+    with zipfile.ZipFile(wheel) as archive:
+        package = {f"packages/{name}": archive.read(name) for name in archive.namelist()
+                   if name.startswith("partwheel/") and not name.endswith("/")}
+    # The folder's name becomes the module's, which must not be the package's.
+    write(wheel.with_name(f"{name}-legacy.zip"), "partwheel_addon", {**files, **package})
 
-    # Both installers want all files in one folder: for a legacy add-on its name becomes the module's.
-    # That name must not be the Python package's, which the add-on brings and finds beside its own files.
-    files = {f"{ROOM}/{prefix}{path.relative_to(tree).as_posix()}": path.read_bytes()
-             for tree, prefix in ((ADDON, ""), (PACKAGE, "packages/partwheel/"))
-             for path in tree.rglob("*") if wanted(path.relative_to(tree)) and path.is_file()}
-    files[f"{ROOM}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
-    files[f"{ROOM}/blender_manifest.toml"] = manifest_for(here)
+
+def write(target, folder, files):
+    """A zip of these files in one folder, as both installers want them."""
     partial = target.with_suffix(".partial")
     with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         # Blender before 4.2 removes what an update replaces only if the zip names its folder. Else it would write over
         # the library while that is in use, and crash.
-        archive.writestr(entry(f"{ROOM}/", 0o040755), b"")
+        archive.writestr(entry(f"{folder}/", 0o040755), b"")
         for name in sorted(files):
-            archive.writestr(entry(name, 0o100644), files[name])
+            archive.writestr(entry(f"{folder}/{name}", 0o100644), files[name])
     partial.replace(target)
     print(target)
 
@@ -55,12 +55,14 @@ def entry(name, mode):
 
 
 def wanted(path):
-    return not any(part.startswith((".", "__pycache__")) for part in path.parts)
+    hidden = any(part.startswith((".", "__pycache__")) for part in path.relative_to(ADDON).parts)
+    return path.is_file() and path != MANIFEST and not hidden
 
 
-def manifest_for(here):
-    """The manifest, with the platform that the library in the zip is for in place of that in the source."""
-    text, count = re.subn(r"^platforms = .*$", f'platforms = ["{here}"]', MANIFEST.read_text(), flags=re.M)
+def manifest_for(here, wheel):
+    """The manifest, with the platform that the library in the wheel is for in place of that in the source."""
+    text, count = re.subn(r"^platforms = .*$", f'platforms = ["{here}"]\nwheels = ["./wheels/{wheel}"]',
+                          MANIFEST.read_text(), flags=re.M)
     if count != 1:
         sys.exit(f"{MANIFEST} must have one line that begins with platforms.")
     return text.encode()
@@ -69,7 +71,7 @@ def manifest_for(here):
 def agreed_version():
     """The version, which the header, the binding, the manifest and bl_info must agree on."""
     header = re.search(r'^#define PW_VERSION "([^"]+)"', (ROOT / "native/include/partwheel.h").read_text(), re.M)
-    binding = re.search(r'^VERSION = "([^"]+)"', (PACKAGE / "library.py").read_text(), re.M)
+    binding = re.search(r'^VERSION = "([^"]+)"', (ROOT / "native/python/partwheel/library.py").read_text(), re.M)
     manifest = re.search(r'^version = "([^"]+)"', MANIFEST.read_text(), re.M)
     assignments = (node for node in ast.parse((ADDON / "__init__.py").read_text()).body if isinstance(node, ast.Assign))
     bl_info = next(ast.literal_eval(node.value) for node in assignments if node.targets[0].id == "bl_info")
@@ -81,4 +83,4 @@ def agreed_version():
 
 
 if __name__ == "__main__":
-    main()
+    main(pathlib.Path(sys.argv[1]))

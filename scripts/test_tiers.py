@@ -107,7 +107,7 @@ def reliability():
 
 def addon():
     """The add-on as installed from the zip, without a window, in the distribution's Blender and in bpy from PyPI."""
-    package = make_package("addon")
+    extension, legacy = make_packages("addon")
     setup("addon", "setup_core", "setup_blender", "setup_bpy")
     versions = output_of("bash", "-c", ". scripts/setup.sh && echo $bpy_versions").split()
     interpreters = {"blender": ["blender", "-b", "-noaudio", "--factory-startup", "--python-exit-code", "9", "--python",
@@ -122,7 +122,8 @@ def addon():
         clean = {"PATH": os.environ["PATH"], "HOME": str(home), "LANG": "C.UTF-8"}
         clean |= {name: value for name, value in os.environ.items()
                   if name in {"PARTWHEEL_UNITES", "PARTWHEEL_UNITES_SEED", "PARTWHEEL_EVENTS"}}
-        return own_runner(f"addon-{name}", [*interpreters[name], package], clean)
+        return own_runner(f"addon-{name}", [*interpreters[name], legacy if name == "blender" else extension],
+                          clean)
 
     result = Result()
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -133,17 +134,17 @@ def addon():
 
 def gui():
     """Blender's own window under Xvfb, driven by mouse and key events."""
-    package = make_package("gui")
+    _, legacy = make_packages("gui")
     setup("gui", "setup_core", "setup_blender", "setup_display")
-    return own_runner("gui", [VENV / "core/bin/python", "tests/gui/run.py", package], dict(os.environ))
+    return own_runner("gui", [VENV / "core/bin/python", "tests/gui/run.py", legacy], dict(os.environ))
 
 
 def newest():
     """Scenarios of the GUI tier in the newest Blender that Debian has. It moves: without it they are skipped."""
-    package = make_package("newest")
+    extension, _ = make_packages("newest")
     result = Result()
     for suite in os.environ.get("PARTWHEEL_SUITES", "sid").split():
-        result += in_suite(suite, package)
+        result += in_suite(suite, extension)
     return result
 
 
@@ -217,9 +218,10 @@ def build(log, preset, *targets):
     require(log, "scripts/build", preset, *targets)
 
 
-def make_package(log):
+def make_packages(log):
+    """The add-on for Blender 4.2 and later, and the legacy one."""
     require(log, "scripts/package")
-    return pathlib.Path((OUTPUT / f"{log}.log").read_text().splitlines()[-1])
+    return map(pathlib.Path, (OUTPUT / f"{log}.log").read_text().splitlines()[-2:])
 
 
 def ctest(log, preset, *options):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is written in several places says the same in all: header, binding, library, bl_info, manifest."""
 
+import ast
 import platform
 import re
 import runpy
@@ -15,7 +16,11 @@ import pytest
 from conftest import ROOT
 from partwheel import library
 
-HEADER = "".join((ROOT / "native" / "include" / name).read_text() for name in ("partwheel_types.h", "partwheel.h", "partwheel_edit.h"))
+HEADER = "".join((ROOT / "native" / "include" / name).read_text() for name in
+                 ("partwheel_types.h", "partwheel.h", "partwheel_edit.h"))
+# Of the add-on, which can't be imported without Blender.
+BL_INFO = next(ast.literal_eval(node.value) for node in ast.parse((ROOT / "addon/partwheel/__init__.py").read_text()).body
+               if isinstance(node, ast.Assign) and node.targets[0].id == "bl_info")
 BARE = re.sub(r"/\*.*?\*/", "", HEADER, flags=re.S)
 
 
@@ -23,7 +28,7 @@ def test_versions_agree():
     (version,) = re.findall(r'#define PW_VERSION "(.*)"', HEADER)
     manifest = tomllib.loads((ROOT / "addon" / "partwheel" / "blender_manifest.toml").read_text())
     assert partwheel.version() == library.VERSION == version == manifest["version"]
-    assert ".".join(map(str, partwheel.bl_info["version"])) == version
+    assert ".".join(map(str, BL_INFO["version"])) == version
 
 
 @pytest.mark.parametrize("told, real, why", [
@@ -48,24 +53,29 @@ def test_a_library_of_another_version_is_refused(told, real, why, tmp_path, monk
 def test_manifest_is_complete():
     manifest = tomllib.loads((ROOT / "addon" / "partwheel" / "blender_manifest.toml").read_text())
     assert manifest["schema_version"] == "1.0.0" and manifest["type"] == "add-on"
-    assert manifest["id"] == "partwheel" and manifest["name"] == partwheel.bl_info["name"]
+    assert manifest["id"] == "partwheel" and manifest["name"] == BL_INFO["name"]
     assert len(manifest["tagline"]) <= 64 and manifest["tagline"][-1].isalnum()
     assert manifest["platforms"] == ["linux-x64"] and "SPDX:GPL-3.0-or-later" in manifest["license"]
-    assert manifest["blender_version_min"] == "4.2.0" and partwheel.bl_info["blender"] == (3, 4, 0)
+    assert manifest["blender_version_min"] == "4.2.0" and BL_INFO["blender"] == (3, 4, 0)
 
 
 @pytest.mark.parametrize(("machine", "named"), [("x86_64", "linux-x64"), ("aarch64", "linux-arm64")])
 def test_a_package_says_the_platform_that_it_was_made_on(machine, named, monkeypatch, tmp_path):
     monkeypatch.setattr(platform, "machine", lambda: machine)
-    names = runpy.run_path(str(ROOT / "scripts" / "package_zip.py"))
-    names["main"].__globals__["PACKAGES"] = tmp_path
-    names["main"]()
-    (package,) = tmp_path.iterdir()
-    assert package.name == f"partwheel-{partwheel.version()}-{named}.zip"
-    with zipfile.ZipFile(package) as archive:
-        manifest = tomllib.loads(archive.read("partwheel/blender_manifest.toml").decode())
+    wheel = tmp_path / f"partwheel-{library.VERSION}-py3-none-any.whl"
+    with zipfile.ZipFile(wheel, "w") as archive:
+        archive.writestr("partwheel/here.py", "a file")
+        archive.writestr("partwheel-0.dist-info/METADATA", "no file of the package")
+    runpy.run_path(str(ROOT / "scripts" / "package_zip.py"))["main"](wheel)
     written = tomllib.loads((ROOT / "addon" / "partwheel" / "blender_manifest.toml").read_text())
-    assert manifest == {**written, "platforms": [named]}
+    for end, folder, inside in (("", "partwheel", ["blender_manifest.toml", f"wheels/{wheel.name}"]),
+                                ("-legacy", "partwheel_addon", ["packages/partwheel/here.py"])):
+        with zipfile.ZipFile(tmp_path / f"partwheel-{partwheel.version()}-{named}{end}.zip") as archive:
+            assert [name for name in archive.namelist() if re.search("/wheels/|/packages/|toml", name)] == [
+                f"{folder}/{name}" for name in inside]
+            if not end:
+                manifest = tomllib.loads(archive.read(f"{folder}/blender_manifest.toml").decode())
+                assert manifest == {**written, "platforms": [named], "wheels": [f"./wheels/{wheel.name}"]}
 
 
 def test_every_function_is_bound_with_as_many_arguments():

@@ -110,7 +110,10 @@ def prepare_models(zip_path, work, names):
     """
     with zipfile.ZipFile(zip_path) as archive:
         archive.extractall(work / "zip")
-    sys.path.insert(0, str(work / "zip" / "partwheel_addon" / "packages"))
+    for wheel in (work / "zip").glob("*/wheels/*.whl"):
+        with zipfile.ZipFile(wheel) as archive:
+            archive.extractall(wheel.parents[1] / "packages")
+    sys.path.insert(0, str(next((work / "zip").glob("*/packages"))))
     from partwheel import Hierarchy
 
     scripts = "".join((HERE / "scenarios" / f"{name}.py").read_text() for name in names)
