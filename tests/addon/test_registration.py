@@ -4,6 +4,7 @@
 import gc
 import importlib.util
 import inspect
+import io
 import os
 import sys
 import tempfile
@@ -13,7 +14,7 @@ import zipfile
 
 import bpy
 import common
-from common import BOX, MeshTest, part, read_off
+from common import BOX, MeshTest, package, part, read_off
 from run import installed
 
 
@@ -72,6 +73,23 @@ def everything():
     return dir(bpy.types), operators, keymap_items(), handlers(), menu_entries(), timers(), properties(), tools()
 
 
+def add_updated(old, new):
+    """Writes the files of a zip, or of the wheel in it, into another: some say so, and a wheel has another version."""
+    for name in old.namelist():
+        data = old.read(name)
+        if name.endswith(".whl"):
+            wheel = io.BytesIO()
+            with zipfile.ZipFile(io.BytesIO(data)) as old_wheel, zipfile.ZipFile(wheel, "w") as new_wheel:
+                add_updated(old_wheel, new_wheel)
+            data = wheel.getvalue()
+        elif name.endswith(("/parts/session.py", "partwheel/hierarchy.py", "/pick/build.py")):
+            data += b"\nUPDATED = True\n"
+        elif ".dist-info/" in name:
+            data = data.replace(b"0.1.0", b"0.1.1")
+        data = data.replace(b"partwheel-0.1.0-py3", b"partwheel-0.1.1-py3") if name.endswith(".toml") else data
+        new.writestr(name.replace("partwheel-0.1.0", "partwheel-0.1.1"), data)
+
+
 class Registration(unittest.TestCase):
     def tearDown(self):
         bpy.ops.preferences.addon_enable(module=common.MODULE)
@@ -107,20 +125,17 @@ class Registration(unittest.TestCase):
     def test_an_update_is_used_at_once(self):
         """Installed over the enabled add-on: all its files are the new ones, also deep ones, without a restart; and the
         library in use is not written over, or the next call into it would end Blender."""
-        files = ("parts/session.py", "packages/partwheel/hierarchy.py", "pick/build.py")
-        files = [f"partwheel_addon/{name}" for name in files]
         names = [f"{common.MODULE}.parts.session", "partwheel.hierarchy", f"{common.MODULE}.pick.build"]
         before = everything()
         with tempfile.TemporaryDirectory() as directory:
             update = os.path.join(directory, os.path.basename(common.ZIP))
             with zipfile.ZipFile(common.ZIP) as old, zipfile.ZipFile(update, "w") as new:
-                for name in old.namelist():
-                    new.writestr(name, old.read(name) + (b"\nUPDATED = True\n" if name in files else b""))
+                add_updated(old, new)
             for path, updated in ((update, True), (common.ZIP, False)):
                 first = sys.modules[common.MODULE].__file__
                 installed_at = os.path.getmtime(first)
                 common.until(lambda: time.time() > installed_at + 0.1)  # or Blender takes the file for the same
-                with open(os.path.join(os.path.dirname(first), "packages/partwheel/libpartwheel.so"), "rb") as in_use:
+                with open(package("library").LIBRARY, "rb") as in_use:
                     installed(path)
                     self.assertEqual(os.fstat(in_use.fileno()).st_nlink, 0, "removed, not written over")
                 for name in names:
