@@ -93,7 +93,8 @@ class Tool:
         vars(self).update(properties)
 
     def __getattr__(self, name):
-        cls = getattr(part(f"operators.{self.operator}"), f"MESH_OT_partwheel_{self.operator}")
+        cls = next(each for key, each in vars(part(f"operators.{self.operator}")).items()
+                   if key.endswith(f"_OT_partwheel_{self.operator}"))
         found = [vars(each)[name] for each in cls.__mro__ if name in vars(each)]
         if not found:
             raise AttributeError(name)
