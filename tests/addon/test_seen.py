@@ -233,11 +233,12 @@ class Seen(MeshTest):
         modifier, own = obj.modifiers[0], positions(obj.data).copy()
         bpy.ops.object.mode_set(mode="EDIT")
         self.addCleanup(bpy.ops.object.mode_set, mode="OBJECT")
-        for modifier.show_in_editmode, modifier.show_on_cage in ((True, True), (True, False), (False, False)):
+        for shown in ((True, True, True), (True, True, False), (True, False, True), (False, True, True)):
+            modifier.show_viewport, modifier.show_in_editmode, modifier.show_on_cage = shown
             bpy.context.view_layer.update()
-            places = own + [0, 0, modifier.show_on_cage]
+            places = own + [0, 0, all(shown)]
             cage = part("mesh_arrays").cage_positions(obj)
-            if modifier.show_on_cage:
+            if all(shown):
                 np.testing.assert_allclose(cage, places, atol=1e-6)
             else:
                 self.assertIsNone(cage)
