@@ -9,6 +9,7 @@ import os
 import sys
 import tempfile
 import time
+import types
 import unittest
 import zipfile
 
@@ -274,3 +275,64 @@ class Polls(MeshTest):
                     message = text.partition(".poll() ")[2]
                     self.assertRegex(message, r"^[A-Z].*[^.\s]$")
         self.assertEqual(grey, {kind for kind, _ in self.operators()})
+
+
+class Layout:
+    """Notes the operators that are drawn, and how a click calls each."""
+
+    def __init__(self, offered=None):
+        self.operator_context, self.offered = "", {} if offered is None else offered
+
+    def column(self, **_):
+        return Layout(self.offered)
+
+    def separator(self):
+        self.offered["separator"] = len(self.offered)
+
+    def operator(self, name, text=""):
+        kind, _, short = name.partition(".")
+        assert getattr(getattr(bpy.ops, kind), short).get_rna_type(), f"there is no {name}"
+        button = self.offered[name] = types.SimpleNamespace(text=text, context=self.operator_context, write=None)
+        return button
+
+
+class Offers(unittest.TestCase):
+    """What menus and the panel of solids offer. Outside the panel's own default, an operator that follows the mouse must
+    be told to begin in the view."""
+
+    SOLIDS = ["mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_split", "mesh.partwheel_swap"]
+    MENUS = {
+        "VIEW3D_MT_edit_mesh": ["mesh.partwheel_deform", *SOLIDS],
+        "VIEW3D_MT_object": [*SOLIDS[2:], "object.partwheel_place", "object.partwheel_unite"],
+        "VIEW3D_MT_select_edit_mesh": ["mesh.partwheel_select"],
+        "VIEW3D_MT_select_object": ["object.partwheel_select"],
+        "VIEW3D_MT_face_sets": [("FACE_SET", "Face Set")],
+        "VIEW3D_MT_mask": [("MASK", "Mask")],
+        "VIEW3D_MT_paint_weight": [("VERTEX_GROUP", "Vertex Group")],
+        "VIEW3D_MT_paint_vertex": [("PAINT_MASK", "Paint Mask")],
+    }
+
+    def test_menus(self):
+        for menu, expected in self.MENUS.items():
+            with self.subTest(menu):
+                layout = Layout()
+                for draw in getattr(bpy.types, menu).draw._draw_funcs:
+                    if draw.__module__.startswith(common.MODULE + "."):
+                        draw(types.SimpleNamespace(layout=layout), bpy.context)
+                self.assertEqual(layout.offered.pop("separator"), 0)  # apart from Blender's own
+                self.assertEqual({each.context for each in layout.offered.values()}, {"INVOKE_REGION_WIN"})
+                if isinstance(expected[0], str):
+                    self.assertEqual(list(layout.offered), expected)
+                    continue
+                self.assertEqual(list(layout.offered), ["mesh.partwheel_paint"])
+                button, = layout.offered.values()
+                self.assertEqual((button.write, button.text), (expected[0][0], f"{expected[0][1]} from Part by Wheel"))
+
+    def test_the_panel_of_solids(self):
+        for mode, more in (("EDIT_MESH", []), ("OBJECT", ["object.partwheel_place", "object.partwheel_unite"])):
+            layout = Layout()
+            bpy.types.VIEW3D_PT_partwheel_copy.draw(types.SimpleNamespace(layout=layout),
+                                                    types.SimpleNamespace(mode=mode))
+            self.assertEqual(list(layout.offered), self.SOLIDS + more)
+            for name in self.SOLIDS[3:] + more:
+                self.assertEqual(layout.offered[name].context, "INVOKE_REGION_WIN")

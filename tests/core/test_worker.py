@@ -233,6 +233,21 @@ if LINUX and PLAIN:
             job.result()
         assert failed.value.name == "time limit" and state(job.process_id) is None
 
+    def test_larger_meshes_have_more_time(harm, clock):
+        """Unless a limit is given: two minutes and 2 ms a triangle."""
+        harm("sleep", 1)
+        shape = shapes.off("hand")
+        limit = 120 + 0.002 * len(shape.triangles)
+        assert limit > 124
+        job = Job(*shape, rungs=EXACT)
+        until(lambda: faults.harmed(job.process_id))
+        clock.set_on(limit - 1, job)
+        assert job.poll() and state(job.process_id)
+        while job.poll():  # what it worked before may be told only now
+            clock.set_on(limit + 1, job)
+        with pytest.raises(WorkerError, match=f"after {limit:g} seconds without any work"):
+            job.result()
+
     def test_a_slow_machine_is_no_reason_to_stop_a_build(clock, monkeypatch, tmp_path):
         """The worker is held up, all in all for longer than the limit, though it does not work for so long."""
         entry = tmp_path / "slow.py"
