@@ -23,7 +23,7 @@ import faults
 import numpy as np
 import pytest
 import shapes
-from conftest import ROOT
+from conftest import PACKAGES
 from partwheel import Hierarchy, PartwheelError, Stage, Status
 from partwheel.library import load
 from partwheel.worker import MESSAGE, Job, WorkerError
@@ -429,7 +429,7 @@ if LINUX and PLAIN:
 
     def parent(**environment):
         """(a process that builds, its worker's id)"""
-        path = os.pathsep.join([str(ROOT / "native" / "python"), str(HERE)])
+        path = os.pathsep.join([PACKAGES, str(HERE)])
         process = subprocess.Popen([sys.executable, "-c", PARENT], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                    text=True, env={**os.environ, "PYTHONPATH": path, **environment})
         return process, int(process.stdout.readline())
