@@ -6,6 +6,7 @@
 #include "part/deform.h"
 #include "part/fair.h"
 #include "part/polygons.h"
+#include "part/solid.h"
 #include "tree/carried.h"
 #include "tree/hierarchy.h"
 
@@ -14,6 +15,7 @@
 #include <cmath>
 #include <cstring>
 #include <exception>
+#include <initializer_list>
 #include <memory>
 #include <new>
 #include <span>
@@ -26,20 +28,19 @@ struct pw_context {
     std::atomic<pw_rung> rung{PW_RUNG_EXACT};
 };
 
-struct pw_hierarchy {
-    Hierarchy hierarchy;
+struct pw_hierarchy : Hierarchy {
+    explicit pw_hierarchy(Hierarchy&& made) : Hierarchy(std::move(made)) {}
+    const Solids solids{*this};
 };
 
-struct pw_mesh {
-    TriangleMesh mesh;
+struct pw_mesh : TriangleMesh {};
+
+struct pw_deformation : Deformation {
+    using Deformation::Deformation;
 };
 
-struct pw_deformation {
-    Deformation deformation;
-};
-
-struct pw_creases {
-    Creases creases;
+struct pw_creases : Creases {
+    using Creases::Creases;
 };
 
 namespace {
@@ -50,11 +51,32 @@ constexpr size_t most_struct = 4096;  // bytes of a struct of any version: more 
 
 thread_local std::string last_message;
 
-// Runs the body of a function; whatever it throws becomes a status and a message.
+void require(bool holds, const std::string& sentence) {
+    if (!holds) throw Error(PW_ERROR_ARGUMENT, sentence);
+}
+
+// An argument that must not be null.
+struct Needed {
+    const char* name;
+    const void* pointer;
+};
+
+void require_all(std::initializer_list<Needed> needed) {
+    if (std::ranges::all_of(needed, [](const Needed& each) { return each.pointer != nullptr; })) return;
+    std::string names;
+    for (const Needed& each : needed) {
+        const bool first = &each == needed.begin(), last = &each == needed.end() - 1;
+        names.append(first ? "" : last ? " and " : ", ").append(each.name);
+    }
+    require(false, names + " must not be null.");
+}
+
+// Runs the body of a function if it has what it needs; whatever it throws becomes a status and a message.
 template <class Body>
-pw_status guarded(Body&& body) noexcept {
+pw_status guarded(std::initializer_list<Needed> needed, Body&& body) noexcept {
     try {
         try {
+            require_all(needed);
             body();
             return PW_OK;
         } catch (const Error& e) {
@@ -74,31 +96,29 @@ pw_status guarded(Body&& body) noexcept {
     return PW_ERROR_INTERNAL;
 }
 
-void require(bool holds, const char* sentence) {
-    if (!holds) throw Error(PW_ERROR_ARGUMENT, sentence);
-}
-
-// Copies values to a caller's array if they fit, and always says how many there are.
-template <class T>
-void hand_out(std::span<const T> values, T* out, size_t capacity, size_t* count) {
+// Copies what make() returns to a caller's array if it fits, and always says how many there are.
+template <class T, class Make>
+void hand_out(const Make& make, T* out, size_t capacity, size_t* count) {
+    require(out != nullptr || capacity == 0, "The array to fill is null, but its capacity is not 0.");
+    const std::vector<T> values = make();
     *count = values.size();
     if (capacity >= values.size()) std::copy(values.begin(), values.end(), out);
 }
 
-void require_room(const void* out, size_t capacity, const size_t* count) {
-    require(count != nullptr, "count must not be null.");
-    require(out != nullptr || capacity == 0, "The array to fill is null, but its capacity is not 0.");
+void require_face(const Hierarchy& hierarchy, size_t face) {
+    require(face < hierarchy.face_count(), "There is no face of this index in the hierarchy.");
 }
 
-void require_face(const pw_hierarchy* hierarchy, size_t face) {
-    require(hierarchy != nullptr, "The hierarchy must not be null.");
-    require(face < hierarchy->hierarchy.face_count(), "There is no face of this index in the hierarchy.");
-}
-
-void require_parts(const pw_hierarchy* hierarchy, size_t parts) {
-    require(hierarchy != nullptr, "hierarchy must not be null.");
-    require(parts >= 1 && parts <= std::min(most_parts, hierarchy->hierarchy.tetrahedron_count()),
+void require_parts(const Hierarchy& hierarchy, size_t parts) {
+    require(parts >= 1 && parts <= std::min(most_parts, hierarchy.tetrahedron_count()),
             "The number of parts must be at least 1, and at most the number of tetrahedra and 4096.");
+}
+
+// Slices, or what they leave of the whole, that solids are made of.
+void require_slice(const Hierarchy& hierarchy, size_t tet_first, size_t tet_last) {
+    require(tet_first != tet_last && std::max(tet_first, tet_last) <= hierarchy.tetrahedron_count(),
+            "The tetrahedra must be a slice that is not empty: tet_first and tet_last differ and are at most their "
+            "number.");
 }
 
 // Ends what Progress::begin() began, however the build ends.
@@ -195,6 +215,11 @@ void hand_over(Struct own, Struct& callers) {
     std::fill(bytes + std::min(size, sizeof own), bytes + size, static_cast<unsigned char>(0));
 }
 
+// The name that stands at the place of this number.
+const char* name_of(std::span<const char* const> names, int number) {
+    return number >= 0 && at(number) < names.size() ? names[at(number)] : "unknown";
+}
+
 }  // namespace
 
 const char* pw_version(void) { return PW_VERSION; }
@@ -202,77 +227,44 @@ const char* pw_version(void) { return PW_VERSION; }
 int32_t pw_version_number(void) { return PW_VERSION_NUMBER; }
 
 const char* pw_status_name(pw_status status) {
-    switch (status) {
-        case PW_OK: return "ok";
-        case PW_ERROR_ARGUMENT: return "argument";
-        case PW_ERROR_EMPTY: return "empty";
-        case PW_ERROR_NOT_FINITE: return "not finite";
-        case PW_ERROR_INDEX: return "index";
-        case PW_ERROR_DEGENERATE: return "degenerate";
-        case PW_ERROR_OPEN: return "open";
-        case PW_ERROR_NON_MANIFOLD: return "non-manifold";
-        case PW_ERROR_ORIENTATION: return "orientation";
-        case PW_ERROR_SELF_INTERSECTION: return "self-intersection";
-        case PW_ERROR_NO_VOLUME: return "no volume";
-        case PW_ERROR_TETRAHEDRA: return "tetrahedra";
-        case PW_ERROR_CANCELLED: return "cancelled";
-        case PW_ERROR_MEMORY: return "memory";
-        case PW_ERROR_DATA: return "data";
-        case PW_ERROR_INTERNAL: return "internal";
-        case PW_ERROR_NOT_SOLID: return "not solid";
-    }
-    return "unknown";
+    constexpr const char* names[] = {
+        "ok", "argument", "empty", "not finite", "index", "degenerate", "open", "non-manifold", "orientation",
+        "self-intersection", "no volume", "tetrahedra", "cancelled", "memory", "data", "internal", "not solid"};
+    static_assert(std::size(names) == PW_ERROR_NOT_SOLID + 1);
+    return name_of(names, status);
 }
 
 const char* pw_stage_name(pw_stage stage) {
-    switch (stage) {
-        case PW_STAGE_SURFACE: return "surface";
-        case PW_STAGE_REPAIR: return "repair";
-        case PW_STAGE_TETRAHEDRA: return "tetrahedra";
-        case PW_STAGE_CLUSTER: return "cluster";
-        case PW_STAGE_DENDROGRAM: return "dendrogram";
-        case PW_STAGE_HIERARCHY: return "hierarchy";
-        case PW_STAGE_COUNT: break;
-    }
-    return "unknown";
+    constexpr const char* names[] = {"surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy"};
+    static_assert(std::size(names) == PW_STAGE_COUNT);
+    return name_of(names, stage);
 }
 
 const char* pw_error_message(void) { return last_message.c_str(); }
 
 pw_status pw_context_create(pw_context** context) {
-    return guarded([&] {
-        require(context != nullptr, "context must not be null.");
-        *context = new pw_context;
-    });
+    return guarded({{"context", context}}, [&] { *context = new pw_context; });
 }
 
 void pw_context_free(pw_context* context) { delete context; }
 
 pw_status pw_context_cancel(pw_context* context) {
-    return guarded([&] {
-        require(context != nullptr, "context must not be null.");
-        context->progress.cancel();
-    });
+    return guarded({{"context", context}}, [&] { context->progress.cancel(); });
 }
 
 pw_status pw_context_progress(const pw_context* context, double* fraction, pw_stage* stage) {
-    return guarded([&] {
-        require(context != nullptr, "context must not be null.");
+    return guarded({{"context", context}}, [&] {
         if (fraction) *fraction = context->progress.fraction();
         if (stage) *stage = context->progress.stage();
     });
 }
 
 pw_status pw_context_rung(const pw_context* context, pw_rung* rung) {
-    return guarded([&] {
-        require(context != nullptr && rung != nullptr, "context and rung must not be null.");
-        *rung = context->rung;
-    });
+    return guarded({{"context", context}, {"rung", rung}}, [&] { *rung = context->rung; });
 }
 
 pw_status pw_context_seconds(const pw_context* context, double* seconds) {
-    return guarded([&] {
-        require(context != nullptr && seconds != nullptr, "context and seconds must not be null.");
+    return guarded({{"context", context}, {"seconds", seconds}}, [&] {
         for (int s = 0; s < PW_STAGE_COUNT; ++s) seconds[s] = context->progress.seconds(static_cast<pw_stage>(s));
     });
 }
@@ -280,8 +272,7 @@ pw_status pw_context_seconds(const pw_context* context, double* seconds) {
 pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_count, const int32_t* triangles,
                    size_t triangle_count, const int32_t* faces, size_t face_count, const pw_build_options* options,
                    pw_hierarchy** hierarchy) {
-    return guarded([&] {
-        require(hierarchy != nullptr, "hierarchy must not be null.");
+    return guarded({{"hierarchy", hierarchy}}, [&] {
         const MeshView mesh = as_mesh(vertices, vertex_count, triangles, triangle_count, faces, face_count);
         const pw_build_options given = options ? taken(*options) : pw_build_options{};
         require(given.quality == 0 || (given.quality >= smallest_quality && std::isfinite(given.quality)),
@@ -297,57 +288,48 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
         const Watch watch(progress);
         const LadderOptions ladder{given.quality, given.rungs, given.open_surfaces == 1,
                                    [&](pw_rung rung) { if (context) context->rung = rung; }};
-        *hierarchy = new pw_hierarchy{build(mesh, ladder, static_cast<size_t>(given.threads), given.mode, progress)};
+        *hierarchy = new pw_hierarchy(build(mesh, ladder, static_cast<size_t>(given.threads), given.mode, progress));
     });
 }
 
 void pw_hierarchy_free(pw_hierarchy* hierarchy) { delete hierarchy; }
 
 pw_status pw_hierarchy_arrays(const pw_hierarchy* hierarchy, pw_arrays* arrays) {
-    return guarded([&] {
-        require(hierarchy != nullptr && arrays != nullptr, "hierarchy and arrays must not be null.");
-        hand_over(hierarchy->hierarchy.arrays(), *arrays);
-    });
+    return guarded({{"hierarchy", hierarchy}, {"arrays", arrays}}, [&] { hand_over(hierarchy->arrays(), *arrays); });
 }
 
 pw_status pw_hierarchy_summary(const pw_hierarchy* hierarchy, pw_summary* summary) {
-    return guarded([&] {
-        require(hierarchy != nullptr && summary != nullptr, "hierarchy and summary must not be null.");
-        hand_over(hierarchy->hierarchy.summary(), *summary);
+    return guarded({{"hierarchy", hierarchy}, {"summary", summary}}, [&] {
+        hand_over(hierarchy->summary(), *summary);
     });
 }
 
 const char* pw_hierarchy_account(const pw_hierarchy* hierarchy) {
-    return hierarchy ? hierarchy->hierarchy.account().c_str() : "";
+    return hierarchy ? hierarchy->account().c_str() : "";
 }
 
 pw_status pw_hierarchy_path(const pw_hierarchy* hierarchy, size_t face, int32_t* nodes, size_t capacity,
                             size_t* count) {
-    return guarded([&] {
-        require_face(hierarchy, face);
-        require_room(nodes, capacity, count);
-        hand_out<int32_t>(hierarchy->hierarchy.path(face), nodes, capacity, count);
+    return guarded({{"hierarchy", hierarchy}, {"count", count}}, [&] {
+        require_face(*hierarchy, face);
+        hand_out([&] { return hierarchy->path(face); }, nodes, capacity, count);
     });
 }
 
 pw_status pw_hierarchy_wheel(const pw_hierarchy* hierarchy, size_t face, int32_t* nodes, size_t capacity,
                              size_t* count, size_t* start) {
-    return guarded([&] {
-        require_face(hierarchy, face);
-        require_room(nodes, capacity, count);
-        require(start != nullptr, "start must not be null.");
-        const WheelStops wheel = hierarchy->hierarchy.wheel(face);
-        hand_out<int32_t>(wheel.stops, nodes, capacity, count);
+    return guarded({{"hierarchy", hierarchy}, {"count", count}, {"start", start}}, [&] {
+        require_face(*hierarchy, face);
+        const WheelStops wheel = hierarchy->wheel(face);
+        hand_out([&] { return wheel.stops; }, nodes, capacity, count);
         *start = wheel.start;
     });
 }
 
 pw_status pw_hierarchy_faces(const pw_hierarchy* hierarchy, size_t node, const int32_t** faces, size_t* count) {
-    return guarded([&] {
-        require(hierarchy != nullptr && faces != nullptr && count != nullptr,
-                "hierarchy, faces and count must not be null.");
-        require(node < hierarchy->hierarchy.node_count(), "There is no node of this index in the hierarchy.");
-        const std::span<const int32_t> slice = hierarchy->hierarchy.faces(node);
+    return guarded({{"hierarchy", hierarchy}, {"faces", faces}, {"count", count}}, [&] {
+        require(node < hierarchy->node_count(), "There is no node of this index in the hierarchy.");
+        const std::span<const int32_t> slice = hierarchy->faces(node);
         *faces = slice.data();
         *count = slice.size();
     });
@@ -355,81 +337,63 @@ pw_status pw_hierarchy_faces(const pw_hierarchy* hierarchy, size_t node, const i
 
 pw_status pw_hierarchy_cut_height(const pw_hierarchy* hierarchy, double height, int32_t* bounds, size_t capacity,
                                   size_t* count) {
-    return guarded([&] {
-        require(hierarchy != nullptr, "hierarchy must not be null.");
+    return guarded({{"hierarchy", hierarchy}, {"count", count}}, [&] {
         require(height >= 0, "height must be a number of at least 0.");
-        require_room(bounds, capacity, count);
-        hand_out<int32_t>(hierarchy->hierarchy.cut_height(height), bounds, capacity, count);
+        hand_out([&] { return hierarchy->cut_height(height); }, bounds, capacity, count);
     });
 }
 
 pw_status pw_hierarchy_cut_parts(const pw_hierarchy* hierarchy, size_t parts, int32_t* bounds, size_t capacity,
                                  size_t* count) {
-    return guarded([&] {
-        require_parts(hierarchy, parts);
-        require_room(bounds, capacity, count);
-        hand_out<int32_t>(hierarchy->hierarchy.cut_parts(parts), bounds, capacity, count);
+    return guarded({{"hierarchy", hierarchy}, {"count", count}}, [&] {
+        require_parts(*hierarchy, parts);
+        hand_out([&] { return hierarchy->cut_parts(parts); }, bounds, capacity, count);
     });
 }
 
 pw_status pw_hierarchy_cut_least_concavity(const pw_hierarchy* hierarchy, size_t parts, int32_t* bounds,
                                            size_t capacity, size_t* count) {
-    return guarded([&] {
-        require_parts(hierarchy, parts);
-        require_room(bounds, capacity, count);
-        hand_out<int32_t>(hierarchy->hierarchy.cut_least_concavity(parts), bounds, capacity, count);
+    return guarded({{"hierarchy", hierarchy}, {"count", count}}, [&] {
+        require_parts(*hierarchy, parts);
+        hand_out([&] { return hierarchy->cut_least_concavity(parts); }, bounds, capacity, count);
     });
 }
 
 pw_status pw_hierarchy_cut_automatic(const pw_hierarchy* hierarchy, int32_t* bounds, size_t capacity, size_t* count) {
-    return guarded([&] {
-        require(hierarchy != nullptr, "hierarchy must not be null.");
-        require_room(bounds, capacity, count);
-        hand_out<int32_t>(hierarchy->hierarchy.cut_automatic(), bounds, capacity, count);
+    return guarded({{"hierarchy", hierarchy}, {"count", count}}, [&] {
+        hand_out([&] { return hierarchy->cut_automatic(); }, bounds, capacity, count);
     });
 }
 
 pw_status pw_hierarchy_hull(const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last, pw_mesh** mesh) {
-    return guarded([&] {
-        require(hierarchy != nullptr && mesh != nullptr, "hierarchy and mesh must not be null.");
-        require(tet_first < tet_last && tet_last <= hierarchy->hierarchy.tetrahedron_count(),
+    return guarded({{"hierarchy", hierarchy}, {"mesh", mesh}}, [&] {
+        require(tet_first < tet_last && tet_last <= hierarchy->tetrahedron_count(),
                 "The tetrahedra must be a slice that is not empty: tet_first < tet_last <= their number.");
-        *mesh = new pw_mesh{hierarchy->hierarchy.hull(tet_first, tet_last)};
+        *mesh = new pw_mesh{hierarchy->hull(tet_first, tet_last)};
     });
 }
 
 pw_status pw_hierarchy_solid(const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last, const int32_t* middles,
                              size_t middle_count, pw_mesh** mesh) {
-    return guarded([&] {
-        require(hierarchy != nullptr && mesh != nullptr, "hierarchy and mesh must not be null.");
+    return guarded({{"hierarchy", hierarchy}, {"mesh", mesh}}, [&] {
         const auto edges = items<std::array<int32_t, 2>>(middles, middle_count, "middles", "middle_count");
-        const size_t count = hierarchy->hierarchy.tetrahedron_count();
-        require(tet_first != tet_last && tet_first <= count && tet_last <= count,
-                "The tetrahedra must be a slice that is not empty: tet_first and tet_last differ and are at most their "
-                "number.");
-        *mesh = new pw_mesh{hierarchy->hierarchy.solid(tet_first, tet_last, edges)};
+        require_slice(*hierarchy, tet_first, tet_last);
+        *mesh = new pw_mesh{hierarchy->solids.solid(tet_first, tet_last, edges)};
     });
 }
 
 pw_status pw_hierarchy_solid_of_faces(const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last,
                                       const uint8_t* inside, size_t face_count, pw_mesh** mesh) {
-    return guarded([&] {
-        require(hierarchy != nullptr && inside != nullptr && mesh != nullptr,
-                "hierarchy, inside and mesh must not be null.");
-        const Hierarchy& it = hierarchy->hierarchy;
-        require(tet_first != tet_last && std::max(tet_first, tet_last) <= it.tetrahedron_count(),
-                "The tetrahedra must be a slice that is not empty: tet_first and tet_last differ and are at most their "
-                "number.");
-        require(face_count == it.face_count(), "face_count is not the number of the hierarchy's source faces.");
-        *mesh = new pw_mesh{it.solid_of_faces(tet_first, tet_last, {inside, face_count})};
+    return guarded({{"hierarchy", hierarchy}, {"inside", inside}, {"mesh", mesh}}, [&] {
+        require_slice(*hierarchy, tet_first, tet_last);
+        require(face_count == hierarchy->face_count(), "face_count is not the number of the hierarchy's source faces.");
+        *mesh = new pw_mesh{hierarchy->solids.solid_of_faces(tet_first, tet_last, {inside, face_count})};
     });
 }
 
 pw_status pw_polygon_faults(const int32_t* corners, size_t corner_count, const int32_t* begin, size_t polygon_count,
                             size_t vertex_count, size_t* open, size_t* against, size_t* touching) {
-    return guarded([&] {
-        require(open != nullptr && against != nullptr && touching != nullptr,
-                "open, against and touching must not be null.");
+    return guarded({{"open", open}, {"against", against}, {"touching", touching}}, [&] {
         require_countable(vertex_count, "vertex_count");
         const PolygonFaults faults =
             polygon_faults(items<int32_t>(corners, corner_count, "corners", "corner_count"),
@@ -441,14 +405,11 @@ pw_status pw_polygon_faults(const int32_t* corners, size_t corner_count, const i
 }
 
 pw_status pw_mesh_origins(const pw_mesh* mesh, const int32_t** ends, const int32_t** faces, const int32_t** beyond) {
-    return guarded([&] {
-        require(mesh != nullptr && ends != nullptr && faces != nullptr && beyond != nullptr,
-                "mesh, ends, faces and beyond must not be null.");
-        require(mesh->mesh.faces.size() == mesh->mesh.triangles.size(),
-                "Only the mesh of a solid has origins, not a hull.");
-        *ends = mesh->mesh.ends.data()->data();
-        *faces = mesh->mesh.faces.data();
-        *beyond = mesh->mesh.beyond.data();
+    return guarded({{"mesh", mesh}, {"ends", ends}, {"faces", faces}, {"beyond", beyond}}, [&] {
+        require(mesh->faces.size() == mesh->triangles.size(), "Only the mesh of a solid has origins, not a hull.");
+        *ends = mesh->ends.data()->data();
+        *faces = mesh->faces.data();
+        *beyond = mesh->beyond.data();
     });
 }
 
@@ -456,87 +417,72 @@ void pw_mesh_free(pw_mesh* mesh) { delete mesh; }
 
 pw_status pw_mesh_arrays(const pw_mesh* mesh, const double** vertices, size_t* vertex_count, const int32_t** triangles,
                          size_t* triangle_count) {
-    return guarded([&] {
-        require(mesh && vertices && vertex_count && triangles && triangle_count, "No pointer may be null.");
-        *vertices = reinterpret_cast<const double*>(mesh->mesh.vertices.data());
-        *vertex_count = mesh->mesh.vertices.size();
-        *triangles = reinterpret_cast<const int32_t*>(mesh->mesh.triangles.data());
-        *triangle_count = mesh->mesh.triangles.size();
+    return guarded({{"mesh", mesh}, {"vertices", vertices}, {"vertex_count", vertex_count}, {"triangles", triangles},
+                    {"triangle_count", triangle_count}}, [&] {
+        *vertices = reinterpret_cast<const double*>(mesh->vertices.data());
+        *vertex_count = mesh->vertices.size();
+        *triangles = reinterpret_cast<const int32_t*>(mesh->triangles.data());
+        *triangle_count = mesh->triangles.size();
     });
 }
 
 pw_status pw_hierarchy_save(const pw_hierarchy* hierarchy, uint8_t* bytes, size_t capacity, size_t* count) {
-    return guarded([&] {
-        require(hierarchy != nullptr, "hierarchy must not be null.");
-        require_room(bytes, capacity, count);
-        hand_out<uint8_t>(hierarchy->hierarchy.save(), bytes, capacity, count);
+    return guarded({{"hierarchy", hierarchy}, {"count", count}}, [&] {
+        hand_out([&] { return hierarchy->save(); }, bytes, capacity, count);
     });
 }
 
 pw_status pw_hierarchy_load(const uint8_t* bytes, size_t count, pw_hierarchy** hierarchy) {
-    return guarded([&] {
-        require(hierarchy != nullptr, "hierarchy must not be null.");
+    return guarded({{"hierarchy", hierarchy}}, [&] {
         require(bytes != nullptr || count == 0, "bytes is null, but count is not 0.");
         require(count <= PTRDIFF_MAX, "count is more bytes than any memory has.");
-        *hierarchy = new pw_hierarchy{Hierarchy::load({bytes, count})};
+        *hierarchy = new pw_hierarchy(Hierarchy::load({bytes, count}));
     });
 }
 
 pw_status pw_deformation_create(const double* vertices, size_t vertex_count, const int32_t* triangles,
                                 size_t triangle_count, const int32_t* roles, pw_deformation** deformation) {
-    return guarded([&] {
-        require(deformation != nullptr, "deformation must not be null.");
+    return guarded({{"deformation", deformation}}, [&] {
         require(roles != nullptr || vertex_count == 0, "roles is null, but vertex_count is not 0.");
-        *deformation = new pw_deformation{Deformation(as_points(vertices, vertex_count),
-                                                      as_triangles(triangles, triangle_count), {roles, vertex_count})};
+        *deformation = new pw_deformation(as_points(vertices, vertex_count), as_triangles(triangles, triangle_count),
+                                          std::span(roles, vertex_count));
     });
 }
 
 void pw_deformation_free(pw_deformation* deformation) { delete deformation; }
 
 pw_status pw_deformation_move(pw_deformation* deformation, size_t handle, const double* matrix) {
-    return guarded([&] {
-        require(deformation != nullptr && matrix != nullptr, "deformation and matrix must not be null.");
-        require(handle < deformation->deformation.handle_count(), "There is no handle of this number.");
+    return guarded({{"deformation", deformation}, {"matrix", matrix}}, [&] {
+        require(handle < deformation->handle_count(), "There is no handle of this number.");
         Affine rows;
         std::copy_n(matrix, rows.size(), rows.begin());
-        deformation->deformation.move(handle, rows);
+        deformation->move(handle, rows);
     });
 }
 
 pw_status pw_deformation_iterate(pw_deformation* deformation, size_t iterations) {
-    return guarded([&] {
-        require(deformation != nullptr, "deformation must not be null.");
-        deformation->deformation.iterate(iterations);
-    });
+    return guarded({{"deformation", deformation}}, [&] { deformation->iterate(iterations); });
 }
 
 pw_status pw_deformation_energy(pw_deformation* deformation, double* energy) {
-    return guarded([&] {
-        require(deformation != nullptr && energy != nullptr, "deformation and energy must not be null.");
-        *energy = deformation->deformation.energy();
-    });
+    return guarded({{"deformation", deformation}, {"energy", energy}}, [&] { *energy = deformation->energy(); });
 }
 
 pw_status pw_deformation_positions(const pw_deformation* deformation, double* positions, size_t vertex_count) {
-    return guarded([&] {
-        require(deformation != nullptr && positions != nullptr, "deformation and positions must not be null.");
-        require(vertex_count == deformation->deformation.vertex_count(),
+    return guarded({{"deformation", deformation}, {"positions", positions}}, [&] {
+        require(vertex_count == deformation->vertex_count(),
                 "vertex_count is not the deformation's number of vertices.");
-        deformation->deformation.positions({reinterpret_cast<Point*>(positions), vertex_count});
+        deformation->positions({reinterpret_cast<Point*>(positions), vertex_count});
     });
 }
 
 pw_status pw_deformation_reset(pw_deformation* deformation) {
-    return guarded([&] {
-        require(deformation != nullptr, "deformation must not be null.");
-        deformation->deformation.reset();
-    });
+    return guarded({{"deformation", deformation}}, [&] { deformation->reset(); });
 }
 
 pw_status pw_vertex_normals(const double* vertices, size_t vertex_count, const int32_t* triangles,
                             size_t triangle_count, double* normals) {
-    return guarded([&] {
+    return guarded({}, [&] {
         require(normals != nullptr || vertex_count == 0, "normals must not be null.");
         vertex_normals(as_points(vertices, vertex_count), as_triangles(triangles, triangle_count),
                        {reinterpret_cast<Point*>(normals), vertex_count});
@@ -545,7 +491,7 @@ pw_status pw_vertex_normals(const double* vertices, size_t vertex_count, const i
 
 pw_status pw_surface_distances(const double* vertices, size_t vertex_count, const int32_t* triangles,
                                size_t triangle_count, const uint8_t* start, double* distance) {
-    return guarded([&] {
+    return guarded({}, [&] {
         require((start != nullptr && distance != nullptr) || vertex_count == 0, "start and distance must not be null.");
         surface_distances(as_points(vertices, vertex_count), as_triangles(triangles, triangle_count),
                           {start, vertex_count}, {distance, vertex_count});
@@ -554,7 +500,7 @@ pw_status pw_surface_distances(const double* vertices, size_t vertex_count, cons
 
 pw_status pw_faired(const double* vertices, size_t vertex_count, const int32_t* edges, size_t edge_count,
                     const uint8_t* free, double* result) {
-    return guarded([&] {
+    return guarded({}, [&] {
         require((vertices != nullptr && free != nullptr && result != nullptr) || vertex_count == 0,
                 "vertices, free and result must not be null.");
         const std::vector<Point> places =
@@ -566,21 +512,17 @@ pw_status pw_faired(const double* vertices, size_t vertex_count, const int32_t* 
 
 pw_status pw_creases_create(const double* vertices, size_t vertex_count, const int32_t* triangles,
                             size_t triangle_count, const int32_t* faces, size_t face_count, pw_creases** creases) {
-    return guarded([&] {
-        require(creases != nullptr, "creases is null.");
+    return guarded({{"creases", creases}}, [&] {
         *creases = nullptr;
-        *creases =
-            new pw_creases{Creases(as_mesh(vertices, vertex_count, triangles, triangle_count, faces, face_count))};
+        *creases = new pw_creases(as_mesh(vertices, vertex_count, triangles, triangle_count, faces, face_count));
     });
 }
 
 void pw_creases_free(pw_creases* creases) { delete creases; }
 
 pw_status pw_creases_snap(const pw_creases* creases, const uint8_t* inside, size_t face_count, uint8_t* result) {
-    return guarded([&] {
-        require(creases != nullptr && inside != nullptr && result != nullptr,
-                "creases, inside and result must not be null.");
-        require(face_count == creases->creases.count(), "face_count is not the number of the surface's faces.");
-        snapped_border(creases->creases, {inside, face_count}, {result, face_count});
+    return guarded({{"creases", creases}, {"inside", inside}, {"result", result}}, [&] {
+        require(face_count == creases->count(), "face_count is not the number of the surface's faces.");
+        snapped_border(*creases, {inside, face_count}, {result, face_count});
     });
 }

@@ -5,12 +5,22 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace partwheel {
 
 using Point = std::array<double, 3>;
 using Triangle = std::array<int32_t, 3>;    // vertex indices, counter-clockwise seen from outside
 using Tetrahedron = std::array<int32_t, 4>;  // vertex indices, positively oriented
+
+struct TriangleMesh {
+    std::vector<Point> vertices;
+    std::vector<Triangle> triangles;
+
+    // Of solids alone, see pw_mesh_origins; empty for hulls.
+    std::vector<std::array<int32_t, 2>> ends;
+    std::vector<int32_t> faces, beyond;
+};
 
 // An index as the standard library's containers take it.
 inline size_t at(int32_t index) { return static_cast<size_t>(index); }

@@ -1,8 +1,7 @@
 // The dual graph of a tet mesh while it is contracted: clusters, the edges between them, their prices.
 #pragma once
 
-#include "base/large_pages.h"
-#include "base/prefetch.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "cluster/binary_tree.h"
 #include "cluster/edge_queue.h"

@@ -1,8 +1,7 @@
 // Dual edges, cheapest first: their prices and the queue.
 #pragma once
 
-#include "base/large_pages.h"
-#include "base/prefetch.h"
+#include "base/memory.h"
 
 #include <algorithm>
 #include <bit>

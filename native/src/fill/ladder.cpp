@@ -42,6 +42,7 @@ Solid step(const Surface& source, pw_rung rung, double coarseness, const LadderO
         throw Error(PW_ERROR_SELF_INTERSECTION,
                     "The mesh is too broken to be repaired or wrapped. Remesh it and try again.");
     }
+    solid.surface.rung = rung;
     progress.enter(PW_STAGE_TETRAHEDRA);
     solid.mesh = tetrahedralize(solid.surface, options.quality, progress);
     return solid;

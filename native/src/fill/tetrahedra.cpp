@@ -1,6 +1,7 @@
 // The closed surface filled with tetrahedra by TetGen.
 #include "fill/tetrahedra.h"
 
+#include "base/groups.h"
 #include "base/numbered.h"
 #include "base/predicates.h"
 #include "fill/tetgen_host.h"
@@ -177,24 +178,6 @@ void run_tetgen(const Surface& surface, const InputOrder& order, double quality,
     check_tetrahedra(static_cast<size_t>(out.numberoftetrahedra));
 }
 
-// Keys sorted by counting: their order, equal ones as they come, and where each value's begin in it.
-struct Counted {
-    std::vector<int32_t> order, begin;  // begin: one per value below the number of values, and the end
-
-    template <class Key>
-    Counted(size_t count, size_t values, const Key& key) : order(count), begin(values + 1, 0) {
-        for (size_t i = 0; i < count; ++i) ++begin[static_cast<size_t>(key(i)) + 1];
-        std::partial_sum(begin.begin(), begin.end(), begin.begin());
-        std::vector<int32_t> next(begin.begin(), begin.end() - 1);
-        for (size_t i = 0; i < count; ++i)
-            order[static_cast<size_t>(next[static_cast<size_t>(key(i))]++)] = static_cast<int32_t>(i);
-    }
-    std::span<const int32_t> with(int32_t value) const {
-        const auto v = static_cast<size_t>(value);
-        return std::span(order).subspan(static_cast<size_t>(begin[v]), static_cast<size_t>(begin[v + 1] - begin[v]));
-    }
-};
-
 // All of TetGen's tetrahedra, those of cavities included, sorted by their corners, positively oriented.
 TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& out) {
     TetMesh mesh;
@@ -228,15 +211,16 @@ TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& ou
         std::sort(read[i].begin(), read[i].end(),
                   [](const Corner& a, const Corner& b) { return a.vertex < b.vertex; });
     }
-    const Counted by_lowest(tets, points, [&](size_t i) { return read[i][0].vertex; });
-    std::vector<int32_t> sorted = by_lowest.order, number(tets);
+    Grouped<int32_t> by_lowest(points, [&](const auto& put) {
+        for (size_t i = 0; i < tets; ++i) put(static_cast<size_t>(read[i][0].vertex), static_cast<int32_t>(i));
+    });
     const auto rest = [&](int32_t t) {
         const auto& c = read[static_cast<size_t>(t)];
         return std::array{c[1].vertex, c[2].vertex, c[3].vertex};
     };
-    for (size_t v = 0; v < points; ++v)
-        std::sort(sorted.begin() + by_lowest.begin[v], sorted.begin() + by_lowest.begin[v + 1],
-                  [&](int32_t a, int32_t b) { return rest(a) < rest(b); });
+    for (size_t v = 0; v < points; ++v) std::ranges::sort(by_lowest.with(v), {}, rest);
+    const std::span<const int32_t> sorted = by_lowest.items();
+    std::vector<int32_t> number(tets);
     for (size_t i = 0; i < tets; ++i) number[static_cast<size_t>(sorted[i])] = static_cast<int32_t>(i);
     for (const int32_t i : sorted) {
         std::array<Corner, 4> c = read[static_cast<size_t>(i)];
@@ -264,11 +248,14 @@ class Walls {
 public:
     Walls(const Surface& surface, const TetMesh& mesh)
         : triangles_(surface.triangles), mesh_(mesh),
-          by_lowest_(triangles_.size(), mesh.vertices.size(), [&](size_t t) { return triangles_[t][0]; }) {}
+          by_lowest_(mesh.vertices.size(), [&](const auto& put) {
+              for (size_t t = 0; t < triangles_.size(); ++t)
+                  put(static_cast<size_t>(triangles_[t][0]), static_cast<int32_t>(t));
+          }) {}
 
     Wall at(size_t tet, size_t opposite) const {
         const Triangle f = facet_from_lowest(mesh_.tetrahedra[tet], opposite);
-        for (const int32_t t : by_lowest_.with(f[0])) {
+        for (const int32_t t : by_lowest_.with(static_cast<size_t>(f[0]))) {
             const Triangle& wall = triangles_[static_cast<size_t>(t)];
             if (wall[1] == f[1] && wall[2] == f[2]) return {t, true};
             if (wall[1] == f[2] && wall[2] == f[1]) return {t, false};
@@ -279,7 +266,7 @@ public:
 private:
     std::span<const Triangle> triangles_;
     const TetMesh& mesh_;
-    Counted by_lowest_;
+    Grouped<int32_t> by_lowest_;
 };
 
 // The winding number of the surface about each tetrahedron: 0 outside, one more behind each triangle.

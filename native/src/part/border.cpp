@@ -104,64 +104,41 @@ void Creases::measure(const MeshView& mesh) {
 }
 
 void Creases::join(const MeshView& mesh) {
-    // Sides of triangles by their lower vertex, then by the higher one.
-    struct Side {
-        int32_t high, triangle;
-        bool upwards;
-    };
-    const auto for_sides = [&](const auto& task) {
-        for (size_t t = 0; t < mesh.triangle_count; ++t)
-            for (size_t k = 0; k < 3; ++k) {
-                const int32_t a = mesh.triangles[3 * t + k], b = mesh.triangles[3 * t + (k + 1) % 3];
-                task(at(std::min(a, b)), Side{std::max(a, b), static_cast<int32_t>(t), a < b});
-            }
-    };
-    std::vector<size_t> begin(mesh.vertex_count + 2, 0);
-    for_sides([&](size_t low, const Side&) { ++begin[low + 2]; });
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<Side> sides(3 * mesh.triangle_count);
-    for_sides([&](size_t low, const Side& side) { sides[begin[low + 1]++] = side; });
-
     struct Pair {
         int32_t one, other;
         Neighbour edge;  // as seen from one
     };
     std::vector<Pair> pairs;
-    pairs.reserve(sides.size() / 2);
+    pairs.reserve(3 * mesh.triangle_count / 2);
     bool closed = true;
-    for (size_t v = 0; v < mesh.vertex_count; ++v) {
-        Side *const first = sides.data() + begin[v], *const last = sides.data() + begin[v + 1];
-        std::sort(first, last, [](const Side& a, const Side& b) {
-            return a.high != b.high ? a.high < b.high : a.triangle < b.triangle;
-        });
-        for (Side* s = first; s != last;) {
-            Side* end = s + 1;
-            while (end != last && end->high == s->high) ++end;
-            const bool plain = end - s == 2 && s->upwards != s[1].upwards;
-            closed = closed && plain;
-            for (; s + 1 != end; ++s) {  // where more than two meet, each with the next
-                const auto one = static_cast<int32_t>(face_of(mesh, at(s->triangle)));
-                const auto other = static_cast<int32_t>(face_of(mesh, at(s[1].triangle)));
-                const auto low = static_cast<int32_t>(v);
-                if (one != other)
-                    pairs.push_back({one, other,
-                                     {other, s->upwards ? low : s->high, s->upwards ? s->high : low, !plain}});
-            }
-            s = end;
+    const auto ends = [&](size_t side) {
+        const int32_t* const t = mesh.triangles + side / 3 * 3;
+        return std::pair(t[side % 3], t[(side + 1) % 3]);
+    };
+    for_edges(mesh.vertex_count, 3 * mesh.triangle_count, ends, [&](int32_t low, std::span<const Side> sides) {
+        const bool plain = sides.size() == 2 && sides[0].upwards != sides[1].upwards;
+        closed = closed && plain;
+        for (size_t i = 0; i + 1 < sides.size(); ++i) {  // where more than two meet, each with the next
+            const Side& side = sides[i];
+            const auto one = static_cast<int32_t>(face_of(mesh, at(side.number) / 3));
+            const auto other = static_cast<int32_t>(face_of(mesh, at(sides[i + 1].number) / 3));
+            if (one != other)
+                pairs.push_back({one, other,
+                                 {other, side.upwards ? low : side.high, side.upwards ? side.high : low, !plain}});
         }
-    }
+    });
     inside_out_ = closed && volume_ < 0;
 
-    first_.assign(count() + 2, 0);
-    for (const Pair& pair : pairs) ++first_[at(pair.one) + 2], ++first_[at(pair.other) + 2];
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    neighbours_.resize(2 * pairs.size());
-    for (const auto& [one, other, edge] : pairs) {
-        neighbours_[first_[at(one) + 1]++] = edge;
-        neighbours_[first_[at(other) + 1]++] = {one, edge.end, edge.begin, edge.against};
-    }
-    beside_.reserve(neighbours_.size());
-    for (const Neighbour& edge : neighbours_) beside_.push_back(edge.face);
+    neighbours_ = Grouped<Neighbour>(count(), [&](const auto& put) {
+        for (const auto& [one, other, edge] : pairs) {
+            put(at(one), edge);
+            put(at(other), Neighbour{one, edge.end, edge.begin, edge.against});
+        }
+    });
+    beside_ = Grouped<int32_t>(count(), [&](const auto& put) {
+        for (size_t f = 0; f < count(); ++f)
+            for (const Neighbour& edge : around(f)) put(f, edge.face);
+    });
 }
 
 namespace {

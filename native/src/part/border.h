@@ -1,6 +1,7 @@
 // A part of a surface -> the same part with its border in the creases nearby: a minimum cut in a band around it.
 #pragma once
 
+#include "base/groups.h"
 #include "surface/surface.h"
 
 #include <cstddef>
@@ -24,14 +25,10 @@ public:
 
     size_t count() const { return centre_.size(); }
     double area(size_t face) const { return area_[face]; }
-    std::span<const Neighbour> around(size_t face) const {
-        return std::span(neighbours_).subspan(first_[face], first_[face + 1] - first_[face]);
-    }
+    std::span<const Neighbour> around(size_t face) const { return neighbours_.with(face); }
 
     // The faces there alone: what goes over all of a surface is done in half the time.
-    std::span<const int32_t> beside(size_t face) const {
-        return std::span(beside_).subspan(first_[face], first_[face + 1] - first_[face]);
-    }
+    std::span<const int32_t> beside(size_t face) const { return beside_.with(face); }
 
     // From the middle of the edge to the centre of the face on either side.
     double to_middle(size_t face, const Neighbour& edge) const;
@@ -47,9 +44,8 @@ private:
     std::vector<double> area_;
     double volume_ = 0;
     bool inside_out_ = false;  // a closed surface that winds the wrong way
-    std::vector<Neighbour> neighbours_;
-    std::vector<int32_t> beside_;  // their faces
-    std::vector<size_t> first_;  // of each face, where its neighbours begin
+    Grouped<Neighbour> neighbours_;
+    Grouped<int32_t> beside_;  // their faces
 };
 
 // Two faces of the band share an edge; what it costs to have the border there.

@@ -1,6 +1,7 @@
 // As-rigid-as-possible deformation of a triangle surface by handles, and distances along a surface.
 #include "part/deform.h"
 
+#include "base/curve.h"
 #include "base/error.h"
 #include "surface/surface.h"
 
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <queue>
 
 namespace partwheel {
@@ -149,39 +149,17 @@ void check(std::span<const Point> vertices, std::span<const Triangle> triangles)
 std::vector<int32_t> along_curve(std::span<const Point> points, const Point& low, const Point& high) {
     const double longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
     const double cells = longest > 0 ? 2097151 / longest : 0;
-    const auto spread = [](uint64_t x) {  // its 21 bits, two zeros after each
-        x = (x | x << 32) & 0x1f00000000ffff, x = (x | x << 16) & 0x1f0000ff0000ff;
-        x = (x | x << 8) & 0x100f00f00f00f00f, x = (x | x << 4) & 0x10c30c30c30c30c3;
-        return (x | x << 2) & 0x1249249249249249;
-    };
     std::vector<std::pair<uint64_t, int32_t>> keys;
     keys.reserve(points.size());
     for (size_t v = 0; v < points.size(); ++v) {
-        uint64_t key = 0;
-        for (size_t k = 0; k < 3; ++k) key |= spread(static_cast<uint64_t>((points[v][k] - low[k]) * cells)) << k;
-        keys.push_back({key, static_cast<int32_t>(v)});
+        const auto cell = [&](size_t k) { return static_cast<uint64_t>((points[v][k] - low[k]) * cells); };
+        keys.push_back({place_on_curve({cell(2), cell(1), cell(0)}), static_cast<int32_t>(v)});
     }
     std::sort(keys.begin(), keys.end());
     std::vector<int32_t> order;
     order.reserve(keys.size());
     for (const auto& [key, v] : keys) order.push_back(v);
     return order;
-}
-
-// The root of each vertex's component, all with paths of length 1.
-std::vector<int32_t> components(size_t vertex_count, std::span<const Triangle> triangles) {
-    std::vector<int32_t> root(vertex_count);
-    std::iota(root.begin(), root.end(), 0);
-    const auto find = [&](int32_t v) {
-        while (root[v] != v) v = root[v] = root[root[v]];
-        return v;
-    };
-    for (const auto& [a, b, c] : triangles) {
-        root[find(a)] = find(b);
-        root[find(b)] = find(c);
-    }
-    for (size_t v = 0; v < vertex_count; ++v) root[v] = find(static_cast<int32_t>(v));
-    return root;
 }
 
 }  // namespace
@@ -212,7 +190,11 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
     });
 
     // What nothing holds or moves stays.
-    std::vector<int32_t> root = components(vertices.size(), triangles);
+    Joined components(vertices.size());
+    for (const auto& [a, b, c] : triangles) {
+        components.join(at(a), at(b));
+        components.join(at(b), at(c));
+    }
     std::vector<uint8_t> held(vertices.size(), 0), used(vertices.size(), 0);
     for (const Triangle& triangle : triangles)
         for (const int32_t v : triangle) used[v] = 1;
@@ -220,11 +202,11 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
     for (size_t v = 0; v < vertices.size(); ++v) {
         if (role_[v] < PW_VERTEX_FIXED || role_[v] >= PW_MAX_COUNT)
             throw Error(PW_ERROR_ARGUMENT, "A vertex's role is neither free, nor fixed, nor a handle's number.");
-        if (role_[v] != PW_VERTEX_FREE) held[root[v]] = 1;
+        if (role_[v] != PW_VERTEX_FREE) held[components.find(v)] = 1;
         last_handle = std::max(last_handle, role_[v]);
     }
     for (size_t v = 0; v < vertices.size(); ++v)
-        if (role_[v] == PW_VERTEX_FREE && !(held[root[v]] && used[v])) role_[v] = PW_VERTEX_FIXED;
+        if (role_[v] == PW_VERTEX_FREE && !(held[components.find(v)] && used[v])) role_[v] = PW_VERTEX_FIXED;
 
     if (last_handle >= 0 && static_cast<size_t>(last_handle) >= vertices.size())
         throw Error(PW_ERROR_ARGUMENT, "Handles must be numbered 0, 1, 2 without a gap.");
@@ -253,14 +235,10 @@ void Deformation::build_elements(std::span<const Triangle> triangles) {
         elements_.push_back(
             {wide(cot[2] * (a - b) + cot[1] * (a - c)), wide(cot[2] * (b - a) + cot[0] * (b - c)), t});
     }
-    first_around_.assign(rest_.size() + 1, 0);
-    for (const Triangle& t : triangles)
-        for (const int32_t v : t) ++first_around_[v + 1];
-    std::partial_sum(first_around_.begin(), first_around_.end(), first_around_.begin());
-    around_.resize(3 * triangles.size());
-    std::vector<int32_t> next = first_around_;
-    for (size_t t = 0; t < triangles.size(); ++t)
-        for (int32_t k = 0; k < 3; ++k) around_[next[triangles[t][k]]++] = {static_cast<int32_t>(t), k};
+    around_ = Grouped<Corner>(rest_.size(), [&](const auto& put) {
+        for (size_t t = 0; t < triangles.size(); ++t)
+            for (int32_t k = 0; k < 3; ++k) put(at(triangles[t][k]), Corner{static_cast<int32_t>(t), k});
+    });
 }
 
 void Deformation::factorize(std::span<const Triangle> triangles) {
@@ -366,8 +344,8 @@ void Deformation::fit_rotations() {
     threads_.parallel_for(now_.size(), vertices_a_piece, [this](size_t first, size_t last) {
         for (size_t vertex = first; vertex < last; ++vertex) {
             Matrix s{};
-            for (int32_t p = first_around_[vertex]; p < first_around_[vertex + 1]; ++p) {
-                const Element& e = elements_[around_[p].element];
+            for (const Corner& corner : around_.with(vertex)) {
+                const Element& e = elements_[corner.element];
                 const Point& c = now_[e.corners[2]];
                 const Wide u = wide(now_[e.corners[0]] - c), v = wide(now_[e.corners[1]] - c);
                 const Point d0 = narrow(e.d0), d1 = narrow(e.d1);
@@ -389,10 +367,10 @@ void Deformation::place() {
         for (size_t vertex = first; vertex < last; ++vertex) {
             if (unknown_[vertex] < 0) continue;
             Wide sum{};
-            for (int32_t p = first_around_[vertex]; p < first_around_[vertex + 1]; ++p) {
-                const Element& e = elements_[around_[p].element];
-                const Point d = narrow(around_[p].corner == 0   ? e.d0
-                                       : around_[p].corner == 1 ? e.d1
+            for (const Corner& corner : around_.with(vertex)) {
+                const Element& e = elements_[corner.element];
+                const Point d = narrow(corner.corner == 0   ? e.d0
+                                       : corner.corner == 1 ? e.d1
                                                                 : -1.0 * (e.d0 + e.d1));
                 const Matrix &a = rotation_[e.corners[0]], &b = rotation_[e.corners[1]], &c = rotation_[e.corners[2]];
                 for (size_t j = 0; j < 3; ++j) sum = sum + d[j] * (a[j] + b[j] + c[j]);
@@ -466,46 +444,37 @@ void vertex_normals(std::span<const Point> vertices, std::span<const Triangle> t
 void surface_distances(std::span<const Point> vertices, std::span<const Triangle> triangles,
                        std::span<const uint8_t> start, std::span<double> distance) {
     check(vertices, triangles);
-    struct Side {
-        int32_t low, high, opposite;
-        auto operator<=>(const Side&) const = default;
-    };
     struct Way {
         int32_t to;
         double length;
     };
-    std::vector<Side> sides;
-    for (const Triangle& t : triangles)
-        for (size_t k = 0; k < 3; ++k) {
-            const auto [low, high] = std::minmax(t[(k + 1) % 3], t[(k + 2) % 3]);
-            sides.push_back({low, high, t[k]});
-        }
-    std::sort(sides.begin(), sides.end());
-
-    std::vector<std::pair<int32_t, Way>> ways;  // from, and where to
+    std::vector<std::pair<int32_t, Way>> told;  // from, and where to
     const auto add = [&](int32_t a, int32_t b, double length) {
-        ways.push_back({a, {b, length}});
-        ways.push_back({b, {a, length}});
+        told.push_back({a, {b, length}});
+        told.push_back({b, {a, length}});
     };
-    for (size_t i = 0, end = 0; i < sides.size(); i = end) {
-        const auto [low, high, opposite] = sides[i];
-        for (end = i; end < sides.size() && sides[end].low == low && sides[end].high == high;) ++end;
+    const auto ends = [&](size_t side) {
+        const Triangle& t = triangles[side / 3];
+        return std::pair(t[(side + 1) % 3], t[(side + 2) % 3]);
+    };
+    for_edges(vertices.size(), 3 * triangles.size(), ends, [&](int32_t low, std::span<const Side> sides) {
+        const int32_t high = sides[0].high;
         const Point along = vertices[high] - vertices[low];
         const double length = partwheel::length(along);
         add(low, high, length);
-        if (end != i + 2 || !(length > 0)) continue;
+        if (sides.size() != 2 || !(length > 0)) return;
         // Both opposite corners laid flat: along the edge from its low end, and away from it on either side.
-        const Point one = vertices[opposite] - vertices[low], other = vertices[sides[i + 1].opposite] - vertices[low];
+        const auto opposite = [&](size_t i) { return triangles[sides[i].number / 3][sides[i].number % 3]; };
+        const Point one = vertices[opposite(0)] - vertices[low], other = vertices[opposite(1)] - vertices[low];
         const double x = dot(one, along) / length, u = dot(other, along) / length;
         const double y = std::sqrt(std::max(dot(one, one) - x * x, 0.0));
         const double v = std::sqrt(std::max(dot(other, other) - u * u, 0.0));
         const double crossing = y + v > 0 ? (x * v + u * y) / (y + v) : -1;
-        if (crossing >= 0 && crossing <= length) add(opposite, sides[i + 1].opposite, std::hypot(x - u, y + v));
-    }
-    std::stable_sort(ways.begin(), ways.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    std::vector<size_t> first(vertices.size() + 1, 0);
-    for (const auto& [from, way] : ways) ++first[from + 1];
-    std::partial_sum(first.begin(), first.end(), first.begin());
+        if (crossing >= 0 && crossing <= length) add(opposite(0), opposite(1), std::hypot(x - u, y + v));
+    });
+    const Grouped<Way> ways(vertices.size(), [&](const auto& put) {
+        for (const auto& [from, way] : told) put(at(from), way);
+    });
 
     using Reached = std::pair<double, int32_t>;
     std::priority_queue<Reached, std::vector<Reached>, std::greater<>> front;
@@ -517,8 +486,7 @@ void surface_distances(std::span<const Point> vertices, std::span<const Triangle
         const auto [length, v] = front.top();
         front.pop();
         if (length > distance[v]) continue;
-        for (size_t i = first[v]; i < first[v + 1]; ++i) {
-            const Way& way = ways[i].second;
+        for (const Way& way : ways.with(at(v))) {
             const double through = length + way.length;
             if (through < distance[way.to]) {
                 distance[way.to] = through;

@@ -1,7 +1,7 @@
 // As-rigid-as-possible deformation of a triangle surface by handles, and distances along a surface.
 #pragma once
 
-#include "base/geometry.h"
+#include "base/groups.h"
 #include "base/parallel.h"
 #include "partwheel_edit.h"
 
@@ -89,8 +89,7 @@ private:
     struct Corner {
         int32_t element, corner;
     };
-    std::vector<int32_t> first_around_;  // of each vertex, where its corners begin in around_
-    std::vector<Corner> around_;
+    Grouped<Corner> around_;  // each vertex
     // L D L^T of the free vertices' part of the cotangent Laplacian: L by columns, without its unit diagonal.
     std::vector<int32_t> column_, row_;
     std::vector<double> value_, one_by_d_;

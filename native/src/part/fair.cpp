@@ -2,12 +2,12 @@
 #include "part/fair.h"
 
 #include "base/error.h"
+#include "base/groups.h"
 
 #include <Eigen/SparseCholesky>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace partwheel {
 
@@ -18,21 +18,16 @@ constexpr double least_length = 1e-3;
 
 // Afterwards only vertices from which a way of free ones leads to a fixed one are free.
 void fix_islands(std::span<const std::array<int32_t, 2>> edges, std::vector<bool>& free) {
-    std::vector<size_t> up(free.size());
-    std::iota(up.begin(), up.end(), size_t{0});
-    const auto find = [&](size_t i) {
-        while (up[i] != i) i = up[i] = up[up[i]];
-        return i;
-    };
+    Joined islands(free.size());
     for (const auto& [a, b] : edges)
-        if (free[at(a)] && free[at(b)]) up[find(at(a))] = find(at(b));
+        if (free[at(a)] && free[at(b)]) islands.join(at(a), at(b));
     std::vector<bool> held(free.size(), false);
     for (const auto& [a, b] : edges) {
-        if (free[at(a)] && !free[at(b)]) held[find(at(a))] = true;
-        if (free[at(b)] && !free[at(a)]) held[find(at(b))] = true;
+        if (free[at(a)] && !free[at(b)]) held[islands.find(at(a))] = true;
+        if (free[at(b)] && !free[at(a)]) held[islands.find(at(b))] = true;
     }
     for (size_t i = 0; i < free.size(); ++i)
-        if (free[i] && !held[find(i)]) free[i] = false;
+        if (free[i] && !held[islands.find(i)]) free[i] = false;
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include "part/polygons.h"
 
 #include "base/error.h"
-#include "base/geometry.h"
+#include "base/groups.h"
 
 #include <algorithm>
 #include <numeric>
@@ -37,36 +37,18 @@ PolygonFaults polygon_faults(std::span<const int32_t> corners, std::span<const i
     const std::vector<int32_t> next = next_corners(corners, begin, vertex_count);
     const size_t in_reach = corners.empty() ? 0 : at(std::ranges::max(corners)) + 1;  // no other vertex has a polygon
 
-    // Edges, each at the corner where a polygon begins to run along it, by their lower vertex.
-    struct Side {
-        int32_t high, corner;
-    };
-    std::vector<size_t> first(in_reach + 2, 0);
-    const auto low = [&](size_t c) { return std::min(corners[c], corners[at(next[c])]); };
-    for (size_t c = 0; c < corners.size(); ++c) ++first[at(low(c)) + 2];
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<Side> sides(corners.size());
-    for (size_t c = 0; c < corners.size(); ++c)
-        sides[first[at(low(c)) + 1]++] = {std::max(corners[c], corners[at(next[c])]), static_cast<int32_t>(c)};
-
     PolygonFaults faults;
     std::vector<int32_t> across(corners.size());
-    for (size_t v = 0; v < in_reach; ++v) {
-        const auto begin_of = sides.begin() + static_cast<std::ptrdiff_t>(first[v]);
-        const auto end_of = sides.begin() + static_cast<std::ptrdiff_t>(first[v + 1]);
-        std::sort(begin_of, end_of, [](const Side& a, const Side& b) { return a.high < b.high; });
-        for (auto s = begin_of; s != end_of;) {
-            auto after = s + 1;
-            while (after != end_of && after->high == s->high) ++after;
-            if (after - s != 2 || at(s->high) == v)
-                ++faults.open;
-            else if (corners[at(s[0].corner)] == corners[at(s[1].corner)])
-                ++faults.against;
-            else
-                across[at(s[0].corner)] = s[1].corner, across[at(s[1].corner)] = s[0].corner;
-            s = after;
-        }
-    }
+    // A side is the corner where a polygon begins to run along it.
+    const auto ends = [&](size_t corner) { return std::pair(corners[corner], corners[at(next[corner])]); };
+    for_edges(in_reach, corners.size(), ends, [&](int32_t low, std::span<const Side> sides) {
+        if (sides.size() != 2 || sides[0].high == low)
+            ++faults.open;
+        else if (sides[0].upwards == sides[1].upwards)
+            ++faults.against;
+        else
+            across[at(sides[0].number)] = sides[1].number, across[at(sides[1].number)] = sides[0].number;
+    });
     if (faults.open + faults.against > 0) return faults;
 
     // Around a vertex from corner to corner; a second round about it is a second fan.

@@ -2,12 +2,12 @@
 #include "part/solid.h"
 
 #include "base/error.h"
+#include "base/groups.h"
 #include "base/numbered.h"
 #include "part/border.h"
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <set>
 #include <tuple>
 
@@ -32,43 +32,32 @@ int32_t corner_of(const Tetrahedron& tet, int32_t vertex) {
 }
 
 std::vector<std::array<int32_t, 4>> neighbours_of(std::span<const Tetrahedron> tetrahedra) {
-    struct Side {
+    struct Outside {
         int32_t middle, high, tet, corner;
     };
     // By the lowest vertex of the facet: then there are few to compare.
     int32_t vertices = 0;
     for (const Tetrahedron& t : tetrahedra) vertices = std::max({vertices, t[0] + 1, t[1] + 1, t[2] + 1, t[3] + 1});
-    std::vector<size_t> begin(at(vertices) + 2, 0);
-    const auto sorted = [&](size_t tet, size_t corner) {
-        Triangle v = facet(tetrahedra[tet], corner);
-        std::sort(v.begin(), v.end());
-        return v;
-    };
-    for (size_t t = 0; t < tetrahedra.size(); ++t)
-        for (size_t c = 0; c < 4; ++c) {
-            const Triangle v = sorted(t, c);
-            if (v[0] == v[1] || v[1] == v[2]) refuse();
-            ++begin[at(v[0]) + 2];
-        }
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<Side> sides(4 * tetrahedra.size());
-    for (size_t t = 0; t < tetrahedra.size(); ++t)
-        for (size_t c = 0; c < 4; ++c) {
-            const Triangle v = sorted(t, c);
-            sides[begin[at(v[0]) + 1]++] = {v[1], v[2], static_cast<int32_t>(t), static_cast<int32_t>(c)};
-        }
+    Grouped<Outside> by_lowest(at(vertices), [&](const auto& put) {
+        for (size_t t = 0; t < tetrahedra.size(); ++t)
+            for (size_t c = 0; c < 4; ++c) {
+                Triangle v = facet(tetrahedra[t], c);
+                std::sort(v.begin(), v.end());
+                if (v[0] == v[1] || v[1] == v[2]) refuse();
+                put(at(v[0]), Outside{v[1], v[2], static_cast<int32_t>(t), static_cast<int32_t>(c)});
+            }
+    });
 
     std::vector<std::array<int32_t, 4>> neighbours(tetrahedra.size(), {-1, -1, -1, -1});
-    const auto same = [](const Side& a, const Side& b) { return a.middle == b.middle && a.high == b.high; };
+    const auto same = [](const Outside& a, const Outside& b) { return a.middle == b.middle && a.high == b.high; };
     for (size_t v = 0; v < at(vertices); ++v) {
-        const auto first = sides.begin() + static_cast<std::ptrdiff_t>(begin[v]);
-        const auto last = sides.begin() + static_cast<std::ptrdiff_t>(begin[v + 1]);
-        std::sort(first, last, [](const Side& a, const Side& b) {
+        const std::span<Outside> here = by_lowest.with(v);
+        std::sort(here.begin(), here.end(), [](const Outside& a, const Outside& b) {
             return std::tie(a.middle, a.high, a.tet) < std::tie(b.middle, b.high, b.tet);
         });
-        for (auto s = first; s != last; ++s) {
-            if (s + 1 == last || !same(s[0], s[1])) continue;
-            if (s[0].tet == s[1].tet || (s + 2 != last && same(s[1], s[2]))) refuse();
+        for (auto s = here.begin(); s != here.end(); ++s) {
+            if (s + 1 == here.end() || !same(s[0], s[1])) continue;
+            if (s[0].tet == s[1].tet || (s + 2 != here.end() && same(s[1], s[2]))) refuse();
             neighbours[at(s[0].tet)][at(s[0].corner)] = s[1].tet;
             neighbours[at(s[1].tet)][at(s[1].corner)] = s[0].tet;
             ++s;
@@ -76,23 +65,6 @@ std::vector<std::array<int32_t, 4>> neighbours_of(std::span<const Tetrahedron> t
     }
     return neighbours;
 }
-
-// The corners that are joined with each other, as one number each: union-find.
-class Joined {
-public:
-    explicit Joined(size_t size) : up_(size) { std::iota(up_.begin(), up_.end(), 0); }
-    size_t find(size_t i) {
-        while (at(up_[i]) != i) i = at(up_[i] = up_[at(up_[i])]);
-        return i;
-    }
-    void join(size_t a, size_t b) {
-        a = find(a), b = find(b);
-        up_[std::max(a, b)] = static_cast<int32_t>(std::min(a, b));
-    }
-
-private:
-    std::vector<int32_t> up_;
-};
 
 }  // namespace
 
@@ -369,47 +341,32 @@ TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<co
     // pair gets a vertex in its middle. Where the caller wants one, every pair gets it.
     std::set<std::pair<int32_t, int32_t>> wanted;
     for (const auto& [a, b] : middles) wanted.insert(std::minmax(a, b));
-    struct Pair {
-        int32_t high, edge;
-    };
     const auto back_of = [&](size_t edge) { return at(across[edge / 3][edge % 3]); };
-    const auto ends_of = [&](size_t edge) -> std::pair<int32_t, int32_t> {
-        return std::minmax(of_corner[edge], of_corner[edge % 3 == 2 ? edge - 2 : edge + 1]);
-    };
-    std::vector<size_t> begin(mesh.vertices.size() + 2, 0);  // of the pairs by their lower vertex: each has few
-    for (size_t edge = 0; edge < of_corner.size(); ++edge)
-        if (edge <= back_of(edge)) ++begin[at(ends_of(edge).first) + 2];
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<Pair> pairs(begin.back());
-    for (size_t edge = 0; edge < of_corner.size(); ++edge) {
-        if (edge > back_of(edge)) continue;
-        const auto [low, high] = ends_of(edge);
-        pairs[begin[at(low) + 1]++] = {high, static_cast<int32_t>(edge)};
-    }
-    const auto own = [&](int32_t edge) {  // of the two triangles at it, how many are the source's
+    const auto own = [&](size_t edge) {  // of the two triangles at it, how many are the source's
         const auto outer = [&](size_t e) {
             const Facet& facet = surface[e / 3];
             return neighbours_[at(facet.tet)][at(facet.corner)] < 0 ? 1 : 0;
         };
-        return outer(at(edge)) + outer(back_of(at(edge)));
+        return outer(edge) + outer(back_of(edge));
+    };
+    const auto ends = [&](size_t edge) {
+        return std::pair(of_corner[edge], of_corner[edge % 3 == 2 ? edge - 2 : edge + 1]);
     };
     std::vector<std::array<int32_t, 3>> middle(surface.size(), {-1, -1, -1});
-    for (size_t low = 0; low + 2 < begin.size(); ++low) {
-        const auto here = std::span(pairs).subspan(begin[low], begin[low + 1] - begin[low]);
-        std::ranges::sort(here, [&](const Pair& a, const Pair& b) {
-            if (a.high != b.high) return a.high < b.high;
-            return std::pair(-own(a.edge), a.edge) < std::pair(-own(b.edge), b.edge);
-        });
-        for (size_t i = 0; i < here.size(); ++i) {
-            const size_t edge = at(here[i].edge), back = back_of(edge);
-            const bool again = i > 0 && here[i].high == here[i - 1].high;
-            if (!again && (wanted.empty() || !wanted.contains(std::minmax(vertex(edge / 3, edge % 3),
-                                                                          vertex(edge / 3, edge % 3 + 1)))))
-                continue;
-            const int32_t m = add_vertex(vertex(edge / 3, edge % 3), vertex(edge / 3, edge % 3 + 1));
-            middle[edge / 3][edge % 3] = middle[back / 3][back % 3] = m;
+    std::vector<size_t> pairs;  // each by its lower edge
+    for_edges(mesh.vertices.size(), of_corner.size(), ends, [&](int32_t, std::span<const Side> sides) {
+        if (sides.size() == 2 && wanted.empty()) return;
+        pairs.clear();
+        for (const Side& side : sides)
+            if (at(side.number) <= back_of(at(side.number))) pairs.push_back(at(side.number));
+        std::ranges::sort(pairs, {}, [&](size_t edge) { return std::pair(-own(edge), edge); });
+        for (const size_t edge : pairs) {
+            const size_t back = back_of(edge);
+            const int32_t a = vertex(edge / 3, edge % 3), b = vertex(edge / 3, edge % 3 + 1);
+            if (edge == pairs.front() && !wanted.contains(std::minmax(a, b))) continue;
+            middle[edge / 3][edge % 3] = middle[back / 3][back % 3] = add_vertex(a, b);
         }
-    }
+    });
 
     for (size_t f = 0; f < surface.size(); ++f) {
         const Facet& facet = surface[f];
@@ -447,6 +404,27 @@ TriangleMesh Facets::solid(std::span<const Tetrahedron> tetrahedra, std::span<co
         }
     }
     return mesh;
+}
+
+const Facets& Solids::facets() const {
+    const std::lock_guard lock(mutex_);
+    if (!facets_)
+        facets_ = std::make_unique<Facets>(hierarchy_.tetrahedra(), hierarchy_.outer_faces(), hierarchy_.leaves(),
+                                           hierarchy_.summary().rung == PW_RUNG_EXACT);
+    return *facets_;
+}
+
+TriangleMesh Solids::solid(size_t tet_first, size_t tet_last,
+                           std::span<const std::array<int32_t, 2>> middles) const {
+    return facets().solid(hierarchy_.tetrahedra(), hierarchy_.vertices(), facets().at_home(tet_first, tet_last),
+                          middles);
+}
+
+TriangleMesh Solids::solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside) const {
+    const auto tetrahedra = hierarchy_.tetrahedra();
+    const auto vertices = hierarchy_.vertices();
+    return facets().solid(tetrahedra, vertices, facets().with_faces(tetrahedra, vertices, tet_first, tet_last, inside),
+                          {});
 }
 
 }  // namespace partwheel

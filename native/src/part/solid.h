@@ -1,24 +1,17 @@
 // Tetrahedra -> the closed, manifold surface around them: the source's own triangles, and caps where the rest was.
 #pragma once
 
-#include "base/geometry.h"
+#include "tree/hierarchy.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
 
 namespace partwheel {
-
-struct TriangleMesh {
-    std::vector<Point> vertices;
-    std::vector<Triangle> triangles;
-
-    // Of solids alone, see pw_mesh_origins; empty for hulls.
-    std::vector<std::array<int32_t, 2>> ends;
-    std::vector<int32_t> faces, beyond;
-};
 
 // How the tetrahedra of a hierarchy meet. Made once, for all of its solids.
 class Facets {
@@ -63,6 +56,25 @@ private:
     // whole where they can, and whatever the cut, its solids have each tetrahedron once.
     std::vector<int32_t> home_;
     std::vector<std::pair<int32_t, int32_t>> moved_;  // (home, tetrahedron) where they differ, sorted
+};
+
+// The solids of a hierarchy, which stays where it is: slices of its tetrahedra, as pw_hierarchy_solid documents them.
+class Solids {
+public:
+    explicit Solids(const Hierarchy& hierarchy) : hierarchy_(hierarchy) {}
+
+    TriangleMesh solid(size_t tet_first, size_t tet_last, std::span<const std::array<int32_t, 2>> middles) const;
+    // inside: of each source face, not 0 for those that the part is to have in place of its own.
+    TriangleMesh solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside) const;
+
+private:
+    const Facets& facets() const;
+
+    const Hierarchy& hierarchy_;
+    // Made when a solid is first asked for, whichever thread asks. Not by std::call_once: an exception would have to
+    // pass through the system's C library, which the C++ runtime that is linked into this library can't do.
+    mutable std::mutex mutex_;
+    mutable std::unique_ptr<Facets> facets_;
 };
 
 }  // namespace partwheel

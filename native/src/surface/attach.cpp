@@ -28,13 +28,6 @@ constexpr double rounding = 1e-12;
 
 Kernel::Point_3 to_cgal(const Point& p) { return {p[0], p[1], p[2]}; }
 
-double diagonal(const Surface& source) {
-    Point high{};  // the lower corner is the origin of working coordinates
-    for (const Point& p : source.vertices)
-        for (size_t k = 0; k < 3; ++k) high[k] = std::max(high[k], p[k]);
-    return length(high);
-}
-
 // By the parity of crossings along a ray in a direction that no model is likely to be built along. Not exact: it is
 // asked of many samples, and only of those far from the surface.
 bool is_outside(const Tree& tree, const Point& p) {
@@ -126,10 +119,21 @@ Attached attach(const Surface& source, Surface& surface, Progress& progress) {
     return {outside > near_enough * size ? outside / size : 0, area > 0 ? hidden / area : 0};
 }
 
+double diagonal(const Surface& source) {
+    Point high{};
+    for (const Point& p : source.vertices)
+        for (size_t k = 0; k < 3; ++k) high[k] = std::max(high[k], p[k]);
+    return length(high);
+}
+
 std::string percent(double share) {
     char text[32];  // printf would write a comma where the host's locale has one
     char* const end = std::to_chars(text, std::end(text), 100 * share, std::chars_format::general, 2).ptr;
     return std::string(text, end) + " %";
+}
+
+std::string at_most_away(double distance) {
+    return "The surface used is at most " + percent(distance) + " of the model's size away";
 }
 
 }  // namespace partwheel

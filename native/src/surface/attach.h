@@ -16,6 +16,9 @@ inline constexpr double near_enough = 1.0 / 200;
 // enter, or inside the solid.
 inline constexpr double hidden_beyond = 1.0 / 100;
 
+// Vertices at one place, where parts only touch, are moved inwards by this share of their shortest edge.
+inline constexpr double nudge = 1e-3;
+
 struct Attached {
     double outside = 0;  // how far the source reaches out of the solid, relative to the diagonal; 0 if near enough
     double hidden = 0;   // the share of the source's area that is
@@ -24,7 +27,13 @@ struct Attached {
 // Gives `surface`, which was made from `source`, its pieces, its deviation and its number of source faces.
 Attached attach(const Surface& source, Surface& surface, Progress& progress);
 
+// Of the bounding box of a surface in working coordinates, whose lower corner is the origin.
+double diagonal(const Surface& source);
+
 // "0.12 %"
 std::string percent(double share);
+
+// A sentence for the account, of a distance relative to the diagonal.
+std::string at_most_away(double distance);
 
 }  // namespace partwheel

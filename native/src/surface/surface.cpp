@@ -1,6 +1,8 @@
 // A surface put in a canonical order, and checked.
 #include "surface/surface.h"
 
+#include "base/curve.h"
+#include "base/groups.h"
 #include "base/predicates.h"
 
 #include <CGAL/Box_intersection_d/Box_with_info_d.h>
@@ -12,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -72,46 +73,29 @@ void check_degenerate(const Surface& surface) {
                                                             "geometry.");
 }
 
-struct HalfEdge {
-    uint64_t key;  // of the undirected edge
-    uint32_t half;  // 3 * triangle + k: from corner k to corner k + 1
-    bool forward;   // from the lower to the higher vertex
-};
-
 // Closed, manifold, oriented: every edge has two triangles that run through it in opposite directions, and the
 // triangles of every vertex are one fan.
 void check_manifold(const Surface& surface) {
     const size_t count = surface.triangles.size();
-    std::vector<HalfEdge> edges;
-    edges.reserve(3 * count);
-    for (size_t t = 0; t < count; ++t)
-        for (size_t k = 0; k < 3; ++k) {
-            const int32_t from = surface.triangles[t][k], to = surface.triangles[t][(k + 1) % 3];
-            const auto [low, high] = std::minmax({static_cast<uint32_t>(from), static_cast<uint32_t>(to)});
-            edges.push_back({uint64_t{low} << 32 | high, static_cast<uint32_t>(3 * t + k), from < to});
-        }
-    std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-        return std::pair(a.key, a.half) < std::pair(b.key, b.half);
-    });
-
     Finding open, crowded, turned;
-    std::vector<uint32_t> twin(3 * count);
-    for (size_t i = 0; i < edges.size();) {
-        size_t end = i + 1;
-        while (end < edges.size() && edges[end].key == edges[i].key) ++end;
-        const int32_t face = surface.pieces[edges[i].half / 3].face;
-        if (end - i == 1)
+    std::vector<int32_t> twin(3 * count);  // sides: 3 * triangle + k goes from corner k to corner k + 1
+    const auto ends = [&](size_t side) {
+        const Triangle& t = surface.triangles[side / 3];
+        return std::pair(t[side % 3], t[(side + 1) % 3]);
+    };
+    for_edges(surface.vertices.size(), 3 * count, ends, [&](int32_t, std::span<const Side> sides) {
+        const int32_t face = surface.pieces[at(sides[0].number) / 3].face;
+        if (sides.size() == 1)
             open.add(face);
-        else if (end - i > 2)
+        else if (sides.size() > 2)
             crowded.add(face);
-        else if (edges[i].forward == edges[i + 1].forward)
+        else if (sides[0].upwards == sides[1].upwards)
             turned.add(face);
         else {
-            twin[edges[i].half] = edges[i + 1].half;
-            twin[edges[i + 1].half] = edges[i].half;
+            twin[at(sides[0].number)] = sides[1].number;
+            twin[at(sides[1].number)] = sides[0].number;
         }
-        i = end;
-    }
+    });
     if (open.count)
         throw Error(PW_ERROR_OPEN, "The surface is open: " +
                                        counted(open.count, "edge has a face", "edges have a face") +
@@ -129,9 +113,9 @@ void check_manifold(const Surface& surface) {
 
     Finding pinched;
     std::vector<bool> visited(3 * count, false), has_fan(surface.vertices.size(), false);
-    for (uint32_t start = 0; start < 3 * count; ++start) {
+    for (size_t start = 0; start < 3 * count; ++start) {
         if (visited[start]) continue;
-        for (uint32_t h = start; !visited[h]; h = twin[h / 3 * 3 + (h + 2) % 3]) visited[h] = true;
+        for (size_t h = start; !visited[h]; h = at(twin[h / 3 * 3 + (h + 2) % 3])) visited[h] = true;
         const auto v = static_cast<size_t>(surface.triangles[start / 3][start % 3]);
         if (has_fan[v]) pinched.add(surface.pieces[start / 3].face);
         has_fan[v] = true;
@@ -239,29 +223,19 @@ void check_self_intersection(const Surface& surface) {
                     ". Unite overlapping parts with a Boolean or remesh, and separate parts that touch.");
 }
 
-// Spreads 21 bits so that two zeros follow each.
-uint64_t spread(uint64_t n) {
-    n = (n | n << 32) & 0x001f00000000ffff;
-    n = (n | n << 16) & 0x001f0000ff0000ff;
-    n = (n | n << 8) & 0x100f00f00f00f00f;
-    n = (n | n << 4) & 0x10c30c30c30c30c3;
-    return (n | n << 2) & 0x1249249249249249;
-}
-
 // The vertices' order along Morton's space-filling curve through their bounding box, so that what is near in space is
 // mostly near in memory: by the cell of a grid, then by x, y, z, then as they were given. Moving and scaling a model
 // change that no more than they change the ratios of its coordinates' differences.
 std::vector<int32_t> order_on_curve(std::span<const Point> vertices) {
-    constexpr int bits = 21;  // of each coordinate
     const Frame frame = Frame::around(vertices);
     std::vector<std::pair<uint64_t, int32_t>> places;
     for (const Point& p : vertices) {
-        uint64_t cell = 0;
+        std::array<uint64_t, 3> cell{};
         for (size_t k = 0; k < 3 && frame.longest > 0; ++k) {
             const double along = (p[k] - frame.origin[k]) / frame.longest * part_of_grid;
-            cell |= spread(static_cast<uint64_t>(std::ldexp(along, bits))) << (2 - k);
+            cell[k] = static_cast<uint64_t>(std::ldexp(along, curve_bits));
         }
-        places.emplace_back(cell, static_cast<int32_t>(places.size()));
+        places.emplace_back(place_on_curve(cell), static_cast<int32_t>(places.size()));
     }
     const auto key = [&](const std::pair<uint64_t, int32_t>& place) {
         return std::tuple(place.first, vertices[static_cast<size_t>(place.second)], place.second);

@@ -329,24 +329,6 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last) const {
     return mesh;
 }
 
-TriangleMesh Hierarchy::solid(size_t tet_first, size_t tet_last,
-                              std::span<const std::array<int32_t, 2>> middles) const {
-    return facets().solid(tetrahedra_, vertices_, facets().at_home(tet_first, tet_last), middles);
-}
-
-TriangleMesh Hierarchy::solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside) const {
-    return facets().solid(tetrahedra_, vertices_,
-                          facets().with_faces(tetrahedra_, vertices_, tet_first, tet_last, inside), {});
-}
-
-const Facets& Hierarchy::facets() const {
-    const std::lock_guard lock(facing_->mutex);
-    if (!facing_->facets)
-        facing_->facets =
-            std::make_unique<Facets>(tetrahedra_, outer_faces_, leaf_, summary_.rung == PW_RUNG_EXACT);
-    return *facing_->facets;
-}
-
 // ---- Saved form: a header, the stored arrays packed, a hash. ----
 
 namespace {

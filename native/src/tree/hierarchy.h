@@ -1,15 +1,12 @@
 // The finished, immutable hierarchy: flat arrays, questions, saving and loading.
 #pragma once
 
-#include "part/solid.h"
 #include "partwheel.h"
 #include "tree/dendrogram.h"
 #include "tree/regroup/regroup.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,6 +31,11 @@ public:
     size_t node_count() const { return parent_.size(); }
     size_t tetrahedron_count() const { return tetrahedra_.size(); }
     std::span<const Merge> merges() const { return merges_; }
+    std::span<const Point> vertices() const { return vertices_; }
+    std::span<const Tetrahedron> tetrahedra() const { return tetrahedra_; }  // in depth-first order
+    std::span<const int32_t> leaves() const { return leaf_; }                // of each source face
+    // The source face, or -1, of each facet that has nothing on its other side, by tetrahedron and then corner.
+    std::span<const int32_t> outer_faces() const { return outer_faces_; }
 
     std::vector<int32_t> path(size_t face) const;
     WheelStops wheel(size_t face) const;  // its stops are nodes
@@ -43,9 +45,6 @@ public:
     std::vector<int32_t> cut_least_concavity(size_t parts) const;  // likewise
     std::vector<int32_t> cut_automatic() const;             // likewise
     TriangleMesh hull(size_t tet_first, size_t tet_last) const;
-    TriangleMesh solid(size_t tet_first, size_t tet_last, std::span<const std::array<int32_t, 2>> middles) const;
-    // inside: of each source face, not 0 for those that the part is to have in place of its own.
-    TriangleMesh solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside) const;
 
 private:
     Hierarchy() = default;
@@ -55,7 +54,6 @@ private:
     std::vector<uint8_t> kept_merges() const;  // those that are nodes
     size_t regrouped_merges() const { return scores_.empty() ? 0 : (scores_.size() - 1) / 2; }
     std::vector<int32_t> bounds_of(std::span<const int32_t> clusters) const;
-    const Facets& facets() const;
 
     // Stored: all else follows from these. Tetrahedra are in depth-first order, lengths and volumes in the caller's
     // unit.
@@ -64,7 +62,7 @@ private:
     std::vector<Tetrahedron> tetrahedra_;
     std::vector<int32_t> leaf_;      // of each face
     std::vector<double> face_area_;
-    std::vector<int32_t> outer_faces_;  // see Facets
+    std::vector<int32_t> outer_faces_;  // see outer_faces()
     std::vector<Merge> merges_;      // but for their hull volumes, which finish() sets
     std::vector<double> scores_;     // see Regrouped; none: this is the paper's tree
     pw_summary summary_{};           // but for volume
@@ -77,14 +75,6 @@ private:
     std::vector<int32_t> order_, parent_, first_, last_, tet_first_, tet_last_;
     std::vector<uint8_t> cost_class_;
     std::vector<double> cost_, height_, volume_, area_, score_;
-
-    // Made when a solid is first asked for, whichever thread asks. Not by std::call_once: an exception would have to
-    // pass through the system's C library, which the C++ runtime that is linked into this library can't do.
-    struct Facing {
-        std::mutex mutex;
-        std::unique_ptr<Facets> facets;
-    };
-    std::unique_ptr<Facing> facing_ = std::make_unique<Facing>();
 };
 
 }  // namespace partwheel

@@ -5,8 +5,7 @@
 #pragma once
 
 #include "base/geometry.h"
-#include "base/large_pages.h"
-#include "base/prefetch.h"
+#include "base/memory.h"
 #include "cluster/hull/pool.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // done with it.
 #pragma once
 
-#include "base/large_pages.h"
+#include "base/memory.h"
 
 #include <cstddef>
 #include <new>

@@ -16,9 +16,6 @@ namespace partwheel {
 
 namespace {
 
-// Vertices at one place are moved by this share of their shortest edge.
-constexpr double nudge = 1e-3;
-
 // Passes of smoothing until a surface doesn't cross itself, one after the other, as multiples of the noise.
 constexpr double uncrossing_passes[] = {45, 70, 110};
 
@@ -91,18 +88,14 @@ std::optional<Surface> displaced(const Surface& source, Progress& progress) {
     if (outcome != Outcome::sound) return {};
 
     double farthest = 0;
-    Point high{};  // the lower corner is the origin
     for (size_t v = 0; v < source.vertices.size(); ++v) {
         const double way = length(surface.vertices[v] - source.vertices[v]);
         if (way > 0) surface.source_vertex[v] = -1;
         farthest = std::max(farthest, way);
-        for (size_t i = 0; i < 3; ++i) high[i] = std::max(high[i], source.vertices[v][i]);
     }
-    surface.deviation = farthest / length(high);
+    surface.deviation = farthest / diagonal(source);
     if (surface.deviation > farthest_moved) return {};
-    surface.rung = PW_RUNG_REPAIRED;
-    surface.account =
-        account + " The surface used is at most " + percent(surface.deviation) + " of the model's size away.";
+    surface.account = account + " " + at_most_away(surface.deviation) + ".";
     return surface;
 }
 

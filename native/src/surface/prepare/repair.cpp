@@ -35,9 +35,6 @@ constexpr double largest_crossed_share = 0.1;
 constexpr size_t most_crossed = 5000;          // faces of a part
 constexpr size_t most_faces_united = 2000000;  // of parts that are compared, each time they are
 
-// Vertices at one place, where parts only touch, are moved inwards by this share of their shortest edge.
-constexpr double nudge = 1e-3;
-
 [[noreturn]] void throw_tangled() {
     throw Error(PW_ERROR_SELF_INTERSECTION,
                 "The surface passes through itself in ways that can't be repaired. Remesh it, or unite its parts with "
@@ -130,10 +127,8 @@ size_t unite(std::vector<CgalMesh>& parts, Progress& progress) {
 // How far the mesh is from the surface used, of which nothing reaches out by more than near_enough.
 std::string how_far(double deviation) {
     if (deviation == 0) return "All of the mesh is on the surface used.";
-    if (deviation <= near_enough)
-        return "The surface used is at most " + percent(deviation) + " of the model's size away.";
-    return "The surface used is at most " + percent(near_enough) + " of the model's size away, but up to " +
-           percent(deviation) + " from what of the mesh is now inside.";
+    if (deviation <= near_enough) return at_most_away(deviation) + ".";
+    return at_most_away(near_enough) + ", but up to " + percent(deviation) + " from what of the mesh is now inside.";
 }
 
 }  // namespace
@@ -162,7 +157,6 @@ Surface repair(const Surface& source, Progress& progress) {
     Surface surface = to_surface(source, whole);
     check_surface(surface, progress);
     if (attach(source, surface, progress).outside > 0) throw_tangled();  // something was lost
-    surface.rung = PW_RUNG_REPAIRED;
     surface.account = "Repaired: " + account.text() + ". " + how_far(surface.deviation);
     return surface;
 }

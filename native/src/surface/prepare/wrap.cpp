@@ -127,12 +127,11 @@ Surface wrap(const Surface& source, bool open_surfaces, double coarseness, Progr
         if (sheet || hidden < much || alpha < worth_while * least) break;
         alpha = finer;
     }
-    surface.rung = PW_RUNG_WRAPPED;
     Account account;
     mended.done.tell(account);
     surface.account = std::string(sheet ? "Wrapped as a thin solid, for the mesh is a sheet" : "Wrapped") +
                       (account.text().empty() ? "" : ", after this: " + account.text()) +
-                      ". The surface used is at most " + percent(surface.deviation) + " of the model's size away.";
+                      ". " + at_most_away(surface.deviation) + ".";
     return surface;
 }
 

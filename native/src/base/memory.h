@@ -1,5 +1,5 @@
-// Memory in large pages, where the system has them: for arrays that are read and written all over, where looking up so
-// many small pages costs more than the memory itself.
+// Memory for arrays that are read and written all over: in large pages, where the system has them, since looking up so
+// many small ones costs more than the memory itself; and asked for before it is read.
 #pragma once
 
 #include <cstddef>
@@ -59,5 +59,12 @@ private:
 
 template <class T>
 using LargeVector = std::vector<T, LargePages<T>>;
+
+// Asks for the cache line at an address, which is not read: any will do.
+inline void prefetch_line(const void* address) {
+    __builtin_prefetch(address);
+    // Without this GCC takes a function that only prefetches to do nothing, and drops the calls of it.
+    asm volatile("");
+}
 
 }  // namespace partwheel

@@ -1,0 +1,88 @@
+// Groups, edges and joined sets against plain maps; the curve against a loop over bits.
+#include "base/curve.h"
+#include "base/groups.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+#include <tuple>
+
+namespace partwheel::test {
+namespace {
+
+TEST(Groups, HaveTheirItemsInTheOrderTold) {
+    std::mt19937 random(1);
+    std::vector<size_t> key(1000);
+    for (size_t& k : key) k = random() % 40;
+    std::map<size_t, std::vector<int>> expected;
+    for (size_t i = 0; i < key.size(); ++i) expected[key[i]].push_back(static_cast<int>(i));
+    const Grouped<int> groups(50, [&](const auto& put) {  // ten keys have none
+        for (size_t i = 0; i < key.size(); ++i) put(key[i], static_cast<int>(i));
+    });
+    EXPECT_EQ(groups.items().size(), key.size());
+    for (size_t k = 0; k < 50; ++k) {
+        const std::span<const int> here = groups.with(k);
+        EXPECT_EQ(std::vector<int>(here.begin(), here.end()), expected[k]) << k;
+    }
+}
+
+TEST(Groups, OfNothing) {
+    const Grouped<int> none(0, [](const auto&) {});
+    EXPECT_TRUE(none.items().empty());
+    for_edges(0, 0, [](size_t) { return std::pair(0, 0); }, [](int32_t, std::span<const Side>) { FAIL(); });
+}
+
+// Both ways along an edge, several at one edge, and from a vertex to itself.
+TEST(Edges, AreMetOnceInOrderWithAllTheirSides) {
+    std::mt19937 random(2);
+    std::vector<std::pair<int32_t, int32_t>> way(500);
+    for (auto& [from, to] : way) from = static_cast<int32_t>(random() % 12), to = static_cast<int32_t>(random() % 12);
+    using Told = std::tuple<int32_t, bool>;  // the side's number, and whether upwards
+    std::map<std::pair<int32_t, int32_t>, std::vector<Told>> expected;
+    for (size_t i = 0; i < way.size(); ++i) {
+        const auto [from, to] = way[i];
+        expected[{std::min(from, to), std::max(from, to)}].emplace_back(static_cast<int32_t>(i), from < to);
+    }
+    auto next = expected.begin();
+    for_edges(12, way.size(), [&](size_t i) { return way[i]; }, [&](int32_t low, std::span<const Side> sides) {
+        ASSERT_NE(next, expected.end());
+        std::vector<Told> told;
+        for (const Side& side : sides) {
+            EXPECT_EQ(std::pair(low, side.high), next->first);
+            told.emplace_back(side.number, side.upwards);
+        }
+        EXPECT_EQ(told, next->second);
+        ++next;
+    });
+    EXPECT_EQ(next, expected.end());
+}
+
+TEST(Joined, SetsAreKnownByTheirLowest) {
+    std::mt19937 random(3);
+    Joined joined(200);
+    std::vector<size_t> set(200);  // plainly: of each number, the lowest it is joined with
+    for (size_t i = 0; i < set.size(); ++i) set[i] = i;
+    for (int step = 0; step < 150; ++step) {
+        const size_t a = random() % 200, b = random() % 200;
+        const auto [low, high] = std::pair(std::min(set[a], set[b]), std::max(set[a], set[b]));
+        joined.join(a, b);
+        std::replace(set.begin(), set.end(), size_t{high}, size_t{low});
+        for (size_t i = 0; i < set.size(); ++i) ASSERT_EQ(joined.find(i), set[i]);
+    }
+}
+
+TEST(Curve, TakesTheBitsOfTheCoordinatesInTurn) {
+    std::mt19937_64 random(4);
+    for (int step = 0; step < 1000; ++step) {
+        std::array<uint64_t, 3> cell;
+        for (uint64_t& c : cell) c = step == 0 ? (1U << curve_bits) - 1 : random() >> (64 - curve_bits);
+        uint64_t expected = 0;
+        for (int bit = curve_bits - 1; bit >= 0; --bit)
+            for (const uint64_t c : cell) expected = expected << 1 | (c >> bit & 1);
+        ASSERT_EQ(place_on_curve(cell), expected);
+    }
+}
+
+}  // namespace
+}  // namespace partwheel::test
