@@ -93,9 +93,15 @@ def determinism():
 
 
 def core():
-    """The Python core on the library as built, without Blender."""
+    """The Python package as installed from its wheel, and the installed library, without Blender."""
+    setup("core", "setup_core")
     build("core", "release", "partwheel", "partwheel_checks")
-    return pytest("core", "tests/core")
+    make_packages("core")
+    packages = OUTPUT / "packages"
+    shutil.rmtree(packages, ignore_errors=True)
+    require("core", VENV / "core/bin/python", "-m", "pip", "install", "--no-deps", "--target", packages,
+            *(ROOT / "build/package").glob("*.whl"))
+    return pytest("core", "tests/core", PARTWHEEL_PACKAGES=str(packages))
 
 
 def reliability():

@@ -3,8 +3,10 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -108,10 +110,13 @@ def test_without_trimesh_a_clear_sentence(meshes_directory, tmp_path):
 
 
 def test_without_the_library_a_clear_sentence(hand, tmp_path):
-    result = run("build", hand, PARTWHEEL_LIBRARY=str(tmp_path / "libpartwheel.so"))
+    copy = tmp_path / "partwheel"
+    shutil.copytree(Path(PACKAGES) / "partwheel", copy, ignore=shutil.ignore_patterns("libpartwheel*", "__pycache__"))
+    alone = {"PYTHONPATH": str(tmp_path), "PARTWHEEL_LIBRARY": ""}
+    result = run("build", hand, **alone)
     assert result.returncode == 1 and "can't be loaded" in result.stderr and "Traceback" not in result.stderr
-    (tmp_path / "libpartwheel.so").write_bytes(b"not a library")
-    assert run("build", hand, PARTWHEEL_LIBRARY=str(tmp_path / "libpartwheel.so")).returncode == 1
+    (copy / "libpartwheel.so").write_bytes(b"not a library")
+    assert run("build", hand, **alone).returncode == 1
 
 
 def test_what_was_saved_loads_again(hand, tmp_path):

@@ -40,7 +40,8 @@ def test_a_library_of_another_version_is_refused(told, real, why, tmp_path, monk
     source = tmp_path / "other.c"
     source.write_text(f'const char *pw_version(void) {{ return "{told}"; }}')
     other = faults.compiled(source, tmp_path / "libother.so", real=library.load()._name if real else None)
-    monkeypatch.setenv("PARTWHEEL_LIBRARY", other)
+    monkeypatch.delenv("PARTWHEEL_LIBRARY", raising=False)
+    monkeypatch.setattr(library, "LIBRARY", other)
     with pytest.raises(partwheel.LibraryError) as refused:
         library.load.__wrapped__()
     assert other in str(refused.value) and why in str(refused.value)

@@ -41,15 +41,17 @@ NEVER = 600  # seconds until something counts as never happening
 
 
 @pytest.fixture(scope="session")
-def library_with_faults(tmp_path_factory):
-    return faults.library(load()._name, tmp_path_factory.mktemp("faults"))
+def faulty_entry(tmp_path_factory):
+    directory = tmp_path_factory.mktemp("faults")
+    return faults.entry(worker.ENTRY, faults.library(load()._name, directory), directory)
 
 
 @pytest.fixture
-def harm(library_with_faults, monkeypatch):
+def harm(faulty_entry, monkeypatch):
     """harm("segv", 2): from now on workers crash in stage 2. This process keeps the library that it has loaded."""
     def set_fault(fault, stage, rung=None):
-        monkeypatch.setenv("PARTWHEEL_LIBRARY", library_with_faults)
+        monkeypatch.setattr(worker, "ENTRY", faulty_entry)
+        monkeypatch.delenv("PARTWHEEL_LIBRARY", raising=False)  # which the sanitizers set, and which would come first
         monkeypatch.setenv("PARTWHEEL_FAULT", f"{fault}:{stage}")
         if rung:
             monkeypatch.setenv("PARTWHEEL_FAULT_RUNG", str(rung))
@@ -416,8 +418,9 @@ if LINUX and PLAIN:
     # ---- The end of the parent
 
     PARENT = textwrap.dedent("""
-        import signal, shapes
-        from partwheel.worker import Job
+        import signal, sys, shapes
+        from partwheel.worker import Job, job as worker
+        worker.ENTRY = sys.argv[1]
         # Processes started in the background of a shell ignore it.
         signal.signal(signal.SIGINT, signal.default_int_handler)
         job = Job(*shapes.off("hand"))
@@ -430,7 +433,7 @@ if LINUX and PLAIN:
     def parent(**environment):
         """(a process that builds, its worker's id)"""
         path = os.pathsep.join([PACKAGES, str(HERE)])
-        process = subprocess.Popen([sys.executable, "-c", PARENT], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        process = subprocess.Popen([sys.executable, "-c", PARENT, worker.ENTRY], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                    text=True, env={**os.environ, "PYTHONPATH": path, **environment})
         return process, int(process.stdout.readline())
 
@@ -443,7 +446,7 @@ if LINUX and PLAIN:
     @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
     def test_the_worker_ends_with_its_parent(harm, fault, number):
         harm(fault, 1)
-        process, worker = parent(PARTWHEEL_LIBRARY=os.environ["PARTWHEEL_LIBRARY"])
+        process, worker = parent()
         until(lambda: faults.harmed(worker))
         ends(process, number, worker)
 

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The wheel, as a stranger installs it: into an empty environment, with what it needs from PyPI."""
+
+import json
+import os
+import subprocess
+import venv
+
+import pytest
+from conftest import ROOT
+
+pytestmark = pytest.mark.skipif("PARTWHEEL_LIBRARY" in os.environ, reason="it is the release that is packed")
+
+
+def test_it_is_installed_and_builds(tmp_path, meshes_directory):
+    (wheel,) = (ROOT / "build" / "package").glob("partwheel-*-py3-none-manylinux_*.whl")  # made by scripts/package
+    venv.create(tmp_path / "venv", with_pip=True)
+    programs = tmp_path / "venv" / "bin"
+    clean = {"HOME": str(tmp_path), "PATH": f"{programs}:/usr/bin:/bin"}
+
+    def run(*command):
+        done = subprocess.run(command, cwd=tmp_path, env=clean, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+    run(programs / "python", "-m", "pip", "install", "--disable-pip-version-check", str(wheel))
+    found = run(programs / "python", "-c", "import partwheel; print(partwheel.__file__, partwheel.version())")
+    assert found.startswith(str(tmp_path / "venv"))
+    report = json.loads(run(programs / "partwheel", "build", meshes_directory / "armadillo.off", "--json"))
+    assert report["faces"] == int((meshes_directory / "armadillo.off").read_text().split()[2])
+    told = run(programs / "python", "-m", "pip", "show", "--verbose", "partwheel")
+    assert f"Version: {found.split()[1]}\n" in told and "Requires: numpy, trimesh\n" in told
