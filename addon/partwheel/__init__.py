@@ -29,9 +29,9 @@ if PACKAGES.is_dir() and str(PACKAGES) not in sys.path:
     sys.path.insert(0, str(PACKAGES))
 
 
-# What Blender is told of, in this order: a module's CLASSES, then its register().
+# What Blender is told of, in this order: a module's CLASSES, its HANDLERS (by name), then its register().
 MODULES = (
-    "preferences", "parts.session", "pick.prepared", "view.previews", "view.overlay",
+    "preferences", "parts.changes", "parts.files", "pick.prepared", "view.previews", "view.overlay",
     "pick.build", "pick.select", "pick.paint", "solid.copy_part", "compose.place", "compose.unite", "compose.swap",
     "deform.operator", "deform.proportional",
     "ui.panel", "ui.path", "ui.copy_panel", "ui.deform_panel", "ui.menu", "ui.keymap", "pick.hover", "pick.tool", "command",
@@ -42,16 +42,26 @@ def register():
     for module in _modules():
         for each in getattr(module, "CLASSES", ()):
             bpy.utils.register_class(each)
+        for handlers, function in _handlers(module):
+            handlers.append(function)
         if hasattr(module, "register"):
             module.register()
 
 
 def unregister():
     for module in reversed(_modules()):
+        for handlers, function in _handlers(module):
+            handlers.remove(function)
         if hasattr(module, "unregister"):
             module.unregister()
         for each in reversed(getattr(module, "CLASSES", ())):
             bpy.utils.unregister_class(each)
+
+
+def _handlers(module):
+    """[(a list of Blender's, the function for it)]; of newer lists none where this Blender hasn't got them."""
+    return [(getattr(bpy.app.handlers, name), function) for name, function in getattr(module, "HANDLERS", {}).items()
+            if hasattr(bpy.app.handlers, name)]
 
 
 def _modules():

@@ -23,7 +23,7 @@ from mathutils import Vector
 from .compose import placement, swapping, union
 from .deform import deforming
 from .mesh import selection
-from .parts import session
+from .parts import builds, picks, registry
 from .pick import borders, states
 from .solid import composition, solids
 from partwheel.joint import REACH
@@ -37,13 +37,13 @@ def build(obj, quality=0.0, open_surfaces=False, mode=None):
     preferences have it.
     """
     _check(obj)
-    return session.build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode).finish()
+    return builds.build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode).finish()
 
 
 def hierarchy(obj):
     """The Hierarchy of the object's mesh as it is now, built if there is none."""
     _check(obj)
-    return session.hierarchy(obj) or session.build(obj).finish()
+    return registry.hierarchy(obj) or builds.build(obj).finish()
 
 
 def path(obj, face):
@@ -68,7 +68,7 @@ def select(obj, face, level=0, extend=False, snap=False):
         selection.Selection(obj, obj.data).select(obj, chosen, picked.face, extend)
     else:
         selection.select_outside_edit_mode(obj.data, chosen, extend)
-    session.remember_pick(obj, picked.face, picked.node, snap)
+    picks.remember(obj, picked.face, picked.node, snap)
     return picked.node
 
 

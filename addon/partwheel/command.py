@@ -11,7 +11,7 @@ import bpy
 
 from . import api
 from partwheel import LibraryError, PartwheelError
-from .parts.session import Outdated
+from .parts.builds import Outdated
 
 NAME = "partwheel"
 _handle = None

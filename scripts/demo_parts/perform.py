@@ -18,7 +18,7 @@ import bpy
 import numpy
 from mathutils import Matrix
 from partwheel import meshes as mesh_files
-from partwheel_addon import session
+from partwheel_addon.parts import registry
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
@@ -168,7 +168,7 @@ def build(thing, report):
             raise
         report["refused"] = {key: text.strip() for key, text in refused.groupdict().items()}
         return None
-    hierarchy = session.hierarchy(thing)
+    hierarchy = registry.hierarchy(thing)
     report["seconds"] = {**hierarchy.seconds, "whole": time.perf_counter() - began}
     report["tetrahedra"] = len(hierarchy.tetrahedra)
     report["nodes"] = len(hierarchy.parent)

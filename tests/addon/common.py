@@ -18,7 +18,7 @@ MESHES = Path(__file__).resolve().parents[2] / "build" / "deps" / "meshes"
 
 
 def part(name):
-    """A module of the installed add-on: part("parts.session")."""
+    """A module of the installed add-on: part("parts.registry")."""
     return importlib.import_module(f"{MODULE}.{name}")
 
 
@@ -70,7 +70,7 @@ class MeshTest(unittest.TestCase):
         for data in (bpy.data.objects, bpy.data.meshes, bpy.data.libraries):
             for item in list(data):
                 data.remove(item)
-        part("parts.session")._after_loading()
+        part("parts.files").after_loading()
         part("view.status").Line.lines.clear()
         bpy.context.tool_settings.mesh_select_mode = (False, False, True)
 

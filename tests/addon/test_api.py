@@ -16,7 +16,7 @@ class Api(MeshTest):
         obj = self.add(*read_off("hand"))
         expected = self.hierarchy(obj)
         built = self.api.build(obj)
-        self.assertIs(part("parts.session").hierarchy(obj), built)
+        self.assertIs(part("parts.registry").hierarchy(obj), built)
         self.assertTrue((built.parent == expected.parent).all())
         self.assertEqual(self.api.path(obj, 700).tolist(), expected.path(700).tolist())
         for node in expected.path(700).tolist():
@@ -45,7 +45,7 @@ class Api(MeshTest):
             self.edit(obj)
             bpy.ops.mesh.partwheel_select(face_index=700, level=level)
             expected = selected(obj)
-            node = part("parts.session").picked(obj).node
+            node = part("parts.picks").picked(obj).node
             bpy.ops.mesh.select_all(action="DESELECT")
             self.assertEqual(self.api.select(obj, 700, level), node)
             self.assertEqual(selected(obj), expected)
@@ -101,20 +101,19 @@ class Api(MeshTest):
             self.api.select(obj, 6)
         with self.assertRaises(error):
             self.api.faces(obj, 10**6)
-        self.assertIsNone(part("parts.session").picked(obj))
+        self.assertIsNone(part("parts.picks").picked(obj))
 
 
 class PickedLast(MeshTest):
     def setUp(self):
         super().setUp()
-        self.session = part("parts.session")
         self.obj = self.add(*read_off("hand"))
 
     def expect(self, pick):
         """What picked() says; has_pick() must say the same."""
-        found = self.session.picked(self.obj)
+        found = part("parts.picks").picked(self.obj)
         self.assertEqual(found and (found.face, found.node), pick)
-        self.assertEqual(self.session.has_pick(self.obj), pick is not None)
+        self.assertEqual(part("parts.picks").picked_as_told(self.obj) is not None, pick is not None)
 
     def pick(self, face, level=0):
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=face, level=level), {"FINISHED"})
@@ -127,7 +126,7 @@ class PickedLast(MeshTest):
         self.edit(self.obj)
         first = self.pick(700, 1)
         self.expect(first)
-        self.assertIs(self.session.picked(self.obj).hierarchy, self.session.hierarchy(self.obj))
+        self.assertIs(part("parts.picks").picked(self.obj).hierarchy, part("parts.registry").hierarchy(self.obj))
         self.expect(self.pick(100))
         bpy.ops.object.mode_set(mode="OBJECT")
         other = self.obj
@@ -146,7 +145,7 @@ class PickedLast(MeshTest):
 
     def test_a_changed_mesh_or_another_hierarchy_has_none(self):
         for change in (lambda: bmesh.ops.delete(self.bm, geom=self.bm.faces[:1], context="FACES_ONLY"),
-                       bpy.ops.mesh.partwheel_build, bpy.ops.mesh.partwheel_clear, self.session._after_loading):
+                       bpy.ops.mesh.partwheel_build, bpy.ops.mesh.partwheel_clear, part("parts.files").after_loading):
             self.setUp()
             self.h = self.hierarchy(self.obj)
             self.bm = self.edit(self.obj)

@@ -20,7 +20,7 @@ def contents(mesh):
 
 class Build(MeshTest):
     def kept(self, obj):
-        return part("parts.session").hierarchy(obj)
+        return part("parts.registry").hierarchy(obj)
 
     def check_arrays(self, obj):
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
@@ -166,7 +166,7 @@ class Build(MeshTest):
         bpy.ops.mesh.partwheel_build()
         order = self.kept(obj).order
         expected = order.copy()
-        part("parts.session")._entries.clear()
+        part("parts.registry")._entries.clear()
         bpy.ops.mesh.partwheel_build()
         self.assertTrue(np.array_equal(order, expected))
 

@@ -270,7 +270,7 @@ class Copy(SolidTest):
         obj, hierarchy = self.built()
         self.edit(obj)
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=10, level=2), {"FINISHED"})
-        node = part("parts.session").picked(obj).node
+        node = part("parts.picks").picked(obj).node
         copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy)
         self.assertEqual((bpy.context.mode, bpy.context.selected_objects), ("OBJECT", [copy]))
         self.assertEqual((~caps(copy.data)).sum(), len(hierarchy.faces(node)))

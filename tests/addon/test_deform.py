@@ -99,8 +99,8 @@ class Deform(MeshTest):
         self.assertFalse(moved[numpy.setdiff1d(numpy.arange(len(before)), free)].any())
         self.assertGreater(moved[free].mean(), 0.9)
         numpy.testing.assert_allclose(after[tip] - before[tip], move[:3, 3], atol=1e-5 * size)
-        self.assertIsNotNone(part("parts.session").hierarchy(obj))
-        self.assertEqual(part("parts.session").state(obj.data)[0], part("parts.session").State.MOVED)
+        self.assertIsNotNone(part("parts.registry").hierarchy(obj))
+        self.assertEqual(part("parts.registry").state(obj.data)[0], part("parts.registry").State.MOVED)
         bpy.ops.object.mode_set(mode="OBJECT")
         numpy.testing.assert_array_equal(stored(obj.data.vertices), after.astype(numpy.float32))
 
@@ -281,7 +281,7 @@ class Deform(MeshTest):
     def test_refusals_change_nothing(self):
         obj, node, faces, free, tip = self.hand()
         before = edited(obj)
-        hierarchy = part("parts.session").hierarchy(obj)
+        hierarchy = part("parts.registry").hierarchy(obj)
         root = len(hierarchy.parent) - 1
         here = handle(tip, shift(0.1, 0, 0))
         self.assertIn("no handle", self.refusal())
@@ -406,7 +406,7 @@ class Deform(MeshTest):
         self.assertGreater(len(narrow.limb), len(wide.limb))
         self.assertLess(len(narrow.moving), len(wide.moving))
         before = edited(obj)
-        root = len(part("parts.session").hierarchy(obj).parent) - 1
+        root = len(part("parts.registry").hierarchy(obj).parent) - 1
         self.assertIn("whole mesh", self.refusal(method="JOINT", node=root, handles=[handle(tip, shift(1, 0, 0))]))
         with self.assertRaises(ValueError):
             part("api").bend(obj, root, numpy.eye(3))

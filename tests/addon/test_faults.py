@@ -95,7 +95,7 @@ class Faults(SolidTest):
             meshes[mesh.name] = (mesh.users, np.array([vertex.co for vertex in verts]).tobytes(),
                                  bytes(face.select for face in faces))
         return dict(handlers=handlers, counts=counts, objects=objects, meshes=meshes, mode=bpy.context.mode,
-                    active=bpy.context.view_layer.objects.active.name, running=part("parts.session").running())
+                    active=bpy.context.view_layer.objects.active.name, running=part("parts.builds").running())
 
     def compare(self, now, before, where):
         for name, value in before.items():
@@ -181,7 +181,7 @@ class Faults(SolidTest):
         self.edit(obj)
         node = limb(obj, hierarchy, 0, 1)
         face = int(hierarchy.faces(node)[0])
-        part("parts.session").remember_pick(obj, face, node, False)
+        part("parts.picks").remember(obj, face, node, False)
         cls = part("deform.operator").MESH_OT_partwheel_deform
         for method in ("RIGID", "PROPORTIONAL", "JOINT"):
             self.throw_everywhere(
@@ -210,7 +210,7 @@ class Faults(SolidTest):
 
     def test_build(self):
         obj = self.add(*read_off("hand"))
-        part("parts.session")._after_loading()
+        part("parts.files").after_loading()
         self.assertEqual(obj.mode, "OBJECT")
         cls = part("pick.build").MESH_OT_partwheel_build
         self.throw_everywhere(cls, [self.begins("A"), self.sends("TIMER"), self.sends("ESC")])
@@ -222,7 +222,7 @@ class Faults(SolidTest):
         show(obj)
         self.edit(obj)
         node = limb(obj, hierarchy, 0, 1)
-        part("parts.session").remember_pick(obj, int(hierarchy.faces(node)[0]), node, False)
+        part("parts.picks").remember(obj, int(hierarchy.faces(node)[0]), node, False)
         before, self.cursor, self.draws = self.everything(), [], []
         tool, context = self.begin(part("deform.operator").MESH_OT_partwheel_deform, {})
         for step in (self.begins("D"), self.sends("G"), self.sends("MOUSEMOVE", (200, 150), "NOTHING")):

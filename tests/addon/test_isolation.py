@@ -53,8 +53,8 @@ class Isolation(MeshTest):
     def unharmed(self, obj, before):
         self.assertEqual(obj.mode, "EDIT")
         self.assertTrue(flags(obj) == before, "the selection has changed")  # assertEqual() would tell how, for minutes
-        self.assertFalse(part("parts.session").running())
-        self.assertIsNone(part("parts.session").hierarchy(obj))
+        self.assertFalse(part("parts.builds").running())
+        self.assertIsNone(part("parts.registry").hierarchy(obj))
         self.assertEqual([thread.name for thread in threading.enumerate() if thread.name.startswith("partwheel-")], [])
 
     def test_crashes_at_each_stage(self):
@@ -85,15 +85,15 @@ class Isolation(MeshTest):
         except RuntimeError as refused:
             self.assertIn("No parts for", str(refused))
         else:
-            self.assertEqual(len(part("parts.session").hierarchy(obj).order), len(obj.data.polygons))
-            part("parts.session").forget(obj)
+            self.assertEqual(len(part("parts.registry").hierarchy(obj).order), len(obj.data.polygons))
+            part("parts.picks").forget(obj)
         self.unharmed(obj, before)
 
     def test_endless_loops_and_stopped_workers_at_each_stage(self):
         obj, before = self.edited()
-        build = part("parts.session").Job
-        self.addCleanup(setattr, part("parts.session"), "Job", build)
-        part("parts.session").Job = lambda *surface, **options: build(*surface, **{**options, "time_limit": 0.3})
+        build = part("parts.builds").Job
+        self.addCleanup(setattr, part("parts.builds"), "Job", build)
+        part("parts.builds").Job = lambda *surface, **options: build(*surface, **{**options, "time_limit": 0.3})
         for stage in package().Stage:
             for fault in ("loop", "stop"):
                 with self.subTest(f"{fault} {stage.name}"):
@@ -103,9 +103,9 @@ class Isolation(MeshTest):
 
     def test_memory_at_each_stage(self):
         obj, before = self.edited("hand")
-        available = part("parts.session").available_memory
-        self.addCleanup(setattr, part("parts.session"), "available_memory", available)
-        part("parts.session").available_memory = lambda: 500 * 2**20  # of which preferences allow 80 %
+        available = part("parts.builds").available_memory
+        self.addCleanup(setattr, part("parts.builds"), "available_memory", available)
+        part("parts.builds").available_memory = lambda: 500 * 2**20  # of which preferences allow 80 %
         for stage in package().Stage:
             with self.subTest(stage.name):
                 self.harm("fill", int(stage))
@@ -118,7 +118,6 @@ class Isolation(MeshTest):
     def test_killed_while_it_builds(self):
         obj, before = self.edited()
         self.harm("loop", 1)
-        session = part("parts.session")
         for number in (signal.SIGKILL, signal.SIGTERM):
             killed = []
 
@@ -129,7 +128,7 @@ class Isolation(MeshTest):
                         with contextlib.suppress(ProcessLookupError):  # it may just have ended
                             os.kill(killed[-1], number)
 
-            build, original = session.Build, session.Build.__init__
+            build, original = part("parts.builds").Build, part("parts.builds").Build.__init__
 
             def begin(self, *arguments, **options):
                 original(self, *arguments, **options)
@@ -150,7 +149,7 @@ class Isolation(MeshTest):
         self.refusal(bpy.ops.mesh.partwheel_build)
         package("worker.job").ENTRY = self.sound
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=3), {"FINISHED"})
-        self.assertEqual(len(part("parts.session").hierarchy(obj).order), len(obj.data.polygons))
+        self.assertEqual(len(part("parts.registry").hierarchy(obj).order), len(obj.data.polygons))
 
     def test_a_hostile_path(self):
         """Where python and python3 of the PATH are shims that fail, hang, or are not there, Blender started anew finds
@@ -182,6 +181,6 @@ class Isolation(MeshTest):
         self.addCleanup(os.environ.pop, "PARTWHEEL_LIBRARY")
         obj = self.add(*read_off("cross_quad"))
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        self.assertEqual(len(part("parts.session").hierarchy(obj).order), len(obj.data.polygons))
+        self.assertEqual(len(part("parts.registry").hierarchy(obj).order), len(obj.data.polygons))
         loaded = package("library").load.__wrapped__()._name  # once more, as the first time
         self.assertNotEqual(Path(loaded).resolve(), Path(self.library).resolve())

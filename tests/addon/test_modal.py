@@ -260,7 +260,7 @@ class Modal(ToolTest):
                 self.assertEqual((flags(self.obj), flags(other)), before)
         self.assertEqual(bpy.context.edit_object, other)
         self.assertEqual(selected(self.obj), set())
-        self.assertEqual(part("parts.session").picked(other).node, stops[start])
+        self.assertEqual(part("parts.picks").picked(other).node, stops[start])
 
     def test_an_error_inside_restores_reports_and_ends(self):
         self.start()
@@ -299,7 +299,7 @@ class Modal(ToolTest):
         self.send("E", point, shift=True, ctrl=True)
         self.assertEqual(self.send("RET"), {"FINISHED"})
         self.assertEqual((self.tool.face_index, self.tool.level, self.tool.snap), (face, 1, True))
-        self.assertTrue(part("parts.session").picked(self.obj).snap)
+        self.assertTrue(part("parts.picks").picked(self.obj).snap)
         bpy.ops.mesh.select_all(action="DESELECT")
         bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", face_index=face, level=1, snap=True)
         self.assertEqual(selected(self.obj), snapped(1))
@@ -450,10 +450,9 @@ class HeldWorkers(ToolTest):
 
     def setUp(self):
         super().setUp()
-        self.session = part("parts.session")
         self.gate = Gate(package("worker.job"))
         self.addCleanup(self.gate.remove)
-        self.addCleanup(self.session._after_loading)
+        self.addCleanup(part("parts.files").after_loading)
 
 
 class WhileBuilding(HeldWorkers):
@@ -463,12 +462,12 @@ class WhileBuilding(HeldWorkers):
         """Starts the tool over a face of a mesh without a hierarchy, or beside the mesh."""
         self.start(name, build=False)
         self.send("ESC")
-        part("parts.session")._after_loading()
+        part("parts.files").after_loading()
         self.tool, self.context = Tool(), FakeContext()
         point, self.face = self.centre() if over else ((1, 1), None)
         self.before = flags(self.obj)
         self.assertEqual(self.tool.invoke(self.context, event("W", point, ctrl=True)), {"RUNNING_MODAL"})
-        self.assertTrue(part("parts.session").running())
+        self.assertTrue(part("parts.builds").running())
         self.assertEqual((len(self.context.handlers), len(self.context.timers)), (1, 1))
         self.assertIn("Esc", self.context.status[-1])
         self.job = self.tool.building.build.job
@@ -480,7 +479,7 @@ class WhileBuilding(HeldWorkers):
         return self.send("TIMER")
 
     def nothing_runs(self):
-        self.assertFalse(part("parts.session").running())
+        self.assertFalse(part("parts.builds").running())
         self.assertEqual(self.context.timers, [])
         self.assertIsNone(self.context.status[-1])
         self.assertFalse(alive(self.job.process_id))
@@ -497,7 +496,7 @@ class WhileBuilding(HeldWorkers):
         self.obj.matrix_world = Matrix.Translation((0, 0, 500)) @ self.obj.matrix_world  # as if the view had turned
         bpy.context.view_layer.update()
         self.assertEqual(self.build_on(), {"RUNNING_MODAL"})
-        self.assertEqual((self.context.timers, part("parts.session").running()), ([], False))
+        self.assertEqual((self.context.timers, part("parts.builds").running()), ([], False))
         self.expect(self.face, 0)
         self.send("WHEELUPMOUSE")
         self.expect(self.face, 1)
@@ -528,7 +527,7 @@ class WhileBuilding(HeldWorkers):
         self.nothing_runs()
         self.assertEqual(flags(self.obj), self.before)
         self.assertIn("Cancelled", self.tool.reports[-1][1])
-        self.assertIsNone(part("parts.session").hierarchy(self.obj))
+        self.assertIsNone(part("parts.registry").hierarchy(self.obj))
 
     def test_edited_meanwhile(self):
         self.begin()
@@ -538,7 +537,7 @@ class WhileBuilding(HeldWorkers):
         self.nothing_runs()
         self.assertEqual(self.tool.reports[-1][0], {"WARNING"})
         self.assertIn("edited", self.tool.reports[-1][1])
-        self.assertIsNone(part("parts.session").hierarchy(self.obj))
+        self.assertIsNone(part("parts.registry").hierarchy(self.obj))
 
     def test_moved_meanwhile(self):
         self.begin()
@@ -547,18 +546,16 @@ class WhileBuilding(HeldWorkers):
         bm.verts[0].co.x += 0.01
         self.assertEqual(self.build_on(), {"RUNNING_MODAL"})
         self.expect(self.face, 0)
-        session = part("parts.session")
-        self.assertEqual(session.state(self.obj.data)[0], session.State.MOVED)
+        self.assertEqual(part("parts.registry").state(self.obj.data)[0], part("parts.registry").State.MOVED)
 
     def test_an_operator_that_makes_the_mesh_anew_wants_no_build_of_the_former(self):
-        session = part("parts.session")
         self.begin()
-        session.drop_outdated_builds()
-        self.assertTrue(session.running())
+        part("parts.builds").drop_outdated()
+        self.assertTrue(part("parts.builds").running())
         bm = bmesh.from_edit_mesh(self.obj.data)
         bm.verts.ensure_lookup_table()
         bm.verts[0].co.x += 0.01  # as a union with a wider blend has the same polygons, elsewhere
-        session.drop_outdated_builds()
+        part("parts.builds").drop_outdated()
         self.assertEqual(self.build_on(), {"CANCELLED"})
         self.nothing_runs()
 
@@ -590,7 +587,7 @@ class WhileBuilding(HeldWorkers):
         self.assertEqual(self.build_on(), {"CANCELLED"})
         self.nothing_runs()
         self.assertEqual(self.tool.reports[-1][0], {"INFO"})
-        self.assertIsNotNone(part("parts.session").hierarchy(self.obj))
+        self.assertIsNotNone(part("parts.registry").hierarchy(self.obj))
 
     def test_deleted_meanwhile(self):
         self.begin()
@@ -599,7 +596,7 @@ class WhileBuilding(HeldWorkers):
         self.assertEqual(self.build_on(), {"CANCELLED"})
         self.nothing_runs()
         self.assertIn("gone", self.tool.reports[-1][1])
-        self.assertFalse(part("parts.session")._entries)
+        self.assertFalse(part("parts.registry")._entries)
 
     def test_a_mesh_that_can_not_be_built_is_reported(self):
         self.obj = self.add(*SHEET)
@@ -626,7 +623,7 @@ class WhileBuilding(HeldWorkers):
         self.tool.cancel(self.context)
         self.nothing_runs()
         self.assertIn("Cancelled", self.tool.reports[-1][1])
-        self.assertIsNone(part("parts.session").hierarchy(self.obj))
+        self.assertIsNone(part("parts.registry").hierarchy(self.obj))
 
     def test_disabling_the_add_on_kills_the_worker(self):
         self.begin()
@@ -641,12 +638,12 @@ class WhileBuilding(HeldWorkers):
         bpy.ops.object.mode_set(mode="OBJECT")
         bpy.ops.wm.read_homefile(app_template="", use_empty=False)
         until(lambda: not alive(self.job.process_id))
-        self.assertFalse(part("parts.session").running())
+        self.assertFalse(part("parts.builds").running())
 
     def test_the_build_operator(self):
         self.start(build=False)
         self.send("ESC")
-        part("parts.session")._after_loading()
+        part("parts.files").after_loading()
         for over, answer in (("ESC", {"CANCELLED"}), ("TIMER", {"FINISHED"})):
             self.tool, self.context = Tool("build", quality=1.4), FakeContext()
             self.assertEqual(self.tool.invoke(self.context, event("A")), {"RUNNING_MODAL"})
@@ -654,7 +651,7 @@ class WhileBuilding(HeldWorkers):
             self.assertEqual(self.send("LEFTMOUSE"), {"PASS_THROUGH"})
             self.assertEqual(self.build_on() if over == "TIMER" else self.send(over), answer)
             self.nothing_runs()
-            self.assertEqual(part("parts.session").hierarchy(self.obj) is None, over == "ESC")
+            self.assertEqual(part("parts.registry").hierarchy(self.obj) is None, over == "ESC")
 
 
 class ManyMeshes(HeldWorkers):
@@ -745,8 +742,8 @@ class ManyMeshes(HeldWorkers):
         self.assertEqual((self.tick(first), self.tick(second)), ({"CANCELLED"}, {"RUNNING_MODAL"}))
         self.assertEqual((selected(hand), selected(homer)), (set(), second.meant))
         for obj in (hand, homer):
-            self.assertEqual(self.session.hierarchy(obj).save(), self.hierarchies[obj].save())
-        self.assertFalse(self.session.running())
+            self.assertEqual(part("parts.registry").hierarchy(obj).save(), self.hierarchies[obj].save())
+        self.assertFalse(part("parts.builds").running())
 
     def test_escape_takes_the_one_that_waits_out_of_the_queue(self):
         hand, homer = self.show_two()
@@ -757,9 +754,9 @@ class ManyMeshes(HeldWorkers):
         self.assertEqual(self.tick(first), {"PASS_THROUGH"})
         self.until_built(first)
         self.tick(first)
-        self.assertIsNotNone(self.session.hierarchy(hand))
-        self.assertIsNone(self.session.hierarchy(homer))
-        self.assertFalse(self.session.running())
+        self.assertIsNotNone(part("parts.registry").hierarchy(hand))
+        self.assertIsNone(part("parts.registry").hierarchy(homer))
+        self.assertFalse(part("parts.builds").running())
 
     def test_escape_lets_the_next_one_begin(self):
         hand, homer = self.show_two()
@@ -788,7 +785,7 @@ class ManyMeshes(HeldWorkers):
         first, _ = self.click(hand)
         bpy.ops.mesh.select_all(action="SELECT")
         bpy.ops.mesh.subdivide()
-        second = self.session.build(hand)
+        second = part("parts.builds").build(hand)
         self.assertIsNot(second, first.building.build)
         self.assertEqual(self.tick(first), {"CANCELLED"})
         self.assertTrue(second.job)
@@ -803,8 +800,8 @@ class ManyMeshes(HeldWorkers):
 
     def test_a_click_while_parts_are_found_anew_waits_for_them(self):
         _, homer = self.show_two(built=["homer"])
-        old = self.session.hierarchy(homer)
-        self.session.build(homer, quality=1.4)
+        old = part("parts.registry").hierarchy(homer)
+        part("parts.builds").build(homer, quality=1.4)
         tool, answer = self.click(homer)
         self.assertEqual((answer, selected(homer)), ({"RUNNING_MODAL"}, set()))
         self.until_built(tool)
@@ -827,9 +824,9 @@ class ManyMeshes(HeldWorkers):
         self.gate.open()
         finer = part("api").build(hand, quality=1.4)
         self.assertEqual(self.tick(tool), {"CANCELLED"})
-        self.assertIs(self.session.hierarchy(hand), finer)
+        self.assertIs(part("parts.registry").hierarchy(hand), finer)
         self.assertGreater(len(finer.tetrahedra), len(self.hierarchies[hand].tetrahedra))
-        self.assertFalse(self.session.running())
+        self.assertFalse(part("parts.builds").running())
 
     # ---- Esc, and the answer in the same moment
 
@@ -841,9 +838,9 @@ class ManyMeshes(HeldWorkers):
         self.until_built(tool)
         self.assertEqual(self.tick(tool, "ESC"), {"CANCELLED"})
         self.assertEqual(flags(hand), before)
-        self.assertIsNone(self.session.hierarchy(hand))  # just as when Esc came a moment earlier
+        self.assertIsNone(part("parts.registry").hierarchy(hand))  # just as when Esc came a moment earlier
         self.assertIn("Cancelled", tool.reports[-1][1])
-        self.assertFalse(self.session.running())
+        self.assertFalse(part("parts.builds").running())
 
     def test_escape_right_after_the_answer(self):
         """The part is selected, though not drawn yet."""
@@ -855,7 +852,7 @@ class ManyMeshes(HeldWorkers):
         self.assertEqual(selected(hand), tool.meant)
         self.assertEqual(self.tick(tool, "ESC"), {"CANCELLED"})
         self.assertEqual(flags(hand), before)
-        self.assertFalse(self.session.running())
+        self.assertFalse(part("parts.builds").running())
 
     def test_escape_while_a_script_has_had_the_answer(self):
         hand, _ = self.show_two()

@@ -52,7 +52,7 @@ class Paint(MeshTest):
         rest = set(range(2390)) - first - second
         self.assertEqual(len({found[index] for index in rest}), 1)
         self.assertEqual(len(set(found)), 3)
-        self.assertEqual(part("parts.session").picked(self.obj).face, 1100)
+        self.assertEqual(part("parts.picks").picked(self.obj).face, 1100)
 
     def test_mask(self):
         self.begin("SCULPT")
@@ -76,7 +76,7 @@ class Paint(MeshTest):
         self.assertEqual(self.group(0), self.vertices[0])
         self.paint(1100)
         self.assertEqual([self.group(index) for index in range(len(self.obj.vertex_groups))], self.vertices)
-        node = part("parts.session").picked(self.obj).node
+        node = part("parts.picks").picked(self.obj).node
         self.assertEqual(self.obj.vertex_groups.active.name, f"Part {node}")
         self.paint(extend=True)
         self.assertEqual(self.group(1), self.vertices[0] | self.vertices[1])

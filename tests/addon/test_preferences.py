@@ -50,9 +50,8 @@ class Preferences(MeshTest):
         return str(refused.exception)
 
     def test_memory_is_a_share_of_what_is_available(self):
-        session = part("parts.session")
-        self.addCleanup(setattr, session, "available_memory", session.available_memory)
-        session.available_memory = lambda: 10 * 2**30
+        self.addCleanup(setattr, part("parts.builds"), "available_memory", part("parts.builds").available_memory)
+        part("parts.builds").available_memory = lambda: 10 * 2**30
         self.worker(REFUSES)
         self.assertIn("It may use 8.0 GiB", self.refusal())
         for share in (25, 100):

@@ -83,7 +83,7 @@ def add_updated(old, new):
             with zipfile.ZipFile(io.BytesIO(data)) as old_wheel, zipfile.ZipFile(wheel, "w") as new_wheel:
                 add_updated(old_wheel, new_wheel)
             data = wheel.getvalue()
-        elif name.endswith(("/parts/session.py", "partwheel/hierarchy.py", "/pick/build.py")):
+        elif name.endswith(("/parts/registry.py", "partwheel/hierarchy.py", "/pick/build.py")):
             data += b"\nUPDATED = True\n"
         elif ".dist-info/" in name:
             data = data.replace(b"0.1.0", b"0.1.1")
@@ -126,7 +126,7 @@ class Registration(unittest.TestCase):
     def test_an_update_is_used_at_once(self):
         """Installed over the enabled add-on: all its files are the new ones, also deep ones, without a restart; and the
         library in use is not written over, or the next call into it would end Blender."""
-        names = [f"{common.MODULE}.parts.session", "partwheel.hierarchy", f"{common.MODULE}.pick.build"]
+        names = [f"{common.MODULE}.parts.registry", "partwheel.hierarchy", f"{common.MODULE}.pick.build"]
         before = everything()
         with tempfile.TemporaryDirectory() as directory:
             update = os.path.join(directory, os.path.basename(common.ZIP))
@@ -142,7 +142,7 @@ class Registration(unittest.TestCase):
                 for name in names:
                     module = importlib.import_module(name)
                     self.assertEqual(hasattr(module, "UPDATED"), updated, name)
-                self.assertEqual(hasattr(sys.modules[f"{common.MODULE}.parts.session"], "UPDATED"), updated)
+                self.assertEqual(hasattr(sys.modules[f"{common.MODULE}.parts.registry"], "UPDATED"), updated)
                 self.assertIs(bpy.types.MESH_OT_partwheel_build, getattr(
                     importlib.import_module(names[2]), "MESH_OT_partwheel_build"))
                 after = everything()

@@ -19,13 +19,13 @@ class Saved(MeshTest):
         directory = tempfile.TemporaryDirectory()
         self.addCleanup(directory.cleanup)
         self.path = str(Path(directory.name) / "saved.blend")
-        self.State = part("parts.session").State
+        self.State = part("parts.registry").State
 
     def state(self, obj):
-        return part("parts.session").state(obj.data)[0]
+        return part("parts.registry").state(obj.data)[0]
 
     def kept(self, obj):
-        return part("parts.session").hierarchy(obj)
+        return part("parts.registry").hierarchy(obj)
 
     def built(self, name="hand"):
         obj = self.add(*(BOX if name == "box" else read_off(name)))
@@ -61,10 +61,9 @@ class Saved(MeshTest):
         self.save()
         obj = self.open()
         self.edit(obj)
-        session = part("parts.session")
-        original = session.Build
-        self.addCleanup(setattr, session, "Build", original)
-        session.Build = None
+        original = part("parts.builds").Build
+        self.addCleanup(setattr, part("parts.builds"), "Build", original)
+        part("parts.builds").Build = None
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=700), {"FINISHED"})
 
     def test_saved_in_edit_mode_and_again_unopened(self):
@@ -173,17 +172,17 @@ class Saved(MeshTest):
         self.built("box")
         bpy.ops.wm.open_mainfile(filepath=self.path)
         self.assertEqual(self.state(bpy.data.objects["model"]), self.State.NONE)
-        self.assertFalse(part("parts.session")._entries)
+        self.assertFalse(part("parts.registry")._entries)
 
     # ---- Bytes that are not sound
 
     def after_tampering(self, change):
         """The hierarchy after opening a file whose bytes were changed, which must be said on the console."""
         obj = self.built("cross_quad")
-        stored, session = part("parts.stored"), part("parts.session")
+        stored = part("parts.stored")
         packed = stored.pack(part("mesh.arrays").fingerprint(obj.data), self.kept(obj))
         self.assertEqual(len(stored.unpack(packed)[1].order), len(obj.data.polygons))
-        session._entries.clear()
+        part("parts.registry")._entries.clear()
         obj.data[stored.PROPERTY] = change(packed)
         output = io.StringIO()
         with contextlib.redirect_stdout(output):
@@ -227,9 +226,9 @@ class Saved(MeshTest):
     def taken(self, obj, hierarchy, moved=False):
         """Whether the hierarchy is accepted for the object's mesh when a file says it is its own; moved: a vertex has
         been moved since."""
-        stored, session = part("parts.stored"), part("parts.session")
-        session._entries.clear()
-        session._retired.clear()
+        stored = part("parts.stored")
+        part("parts.registry")._entries.clear()
+        part("parts.registry")._retired.clear()
         obj.data[stored.PROPERTY] = stored.pack(part("mesh.arrays").fingerprint(obj.data), hierarchy)
         place = obj.data.vertices[0].co.copy()
         if moved:

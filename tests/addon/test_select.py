@@ -218,7 +218,7 @@ class Select(MeshTest):
         partly = [distance for index, distance in enumerate(moved) if index not in chosen and 0.01 < distance < 0.99]
         self.assertGreater(len(partly), 10)
         self.assertTrue(any(distance < 1e-6 for distance in moved))
-        self.assertIsNotNone(part("parts.session").hierarchy(obj))  # only positions changed
+        self.assertIsNotNone(part("parts.registry").hierarchy(obj))  # only positions changed
 
     def test_duplicate_takes_the_part_over(self):
         obj = self.add(*read_off("hand"))
@@ -228,4 +228,4 @@ class Select(MeshTest):
         bpy.ops.mesh.duplicate_move(TRANSFORM_OT_translate={"value": (0, 0, 1)})
         bm = bmesh.from_edit_mesh(obj.data)
         self.assertEqual((len(bm.faces), len(selected(obj))), (2390 + count, count))
-        self.assertIsNone(part("parts.session").hierarchy(obj))
+        self.assertIsNone(part("parts.registry").hierarchy(obj))

@@ -9,17 +9,17 @@ from common import BOX, MeshTest, part, read_off
 class Staleness(MeshTest):
     def setUp(self):
         super().setUp()
-        self.State = part("parts.session").State
+        self.State = part("parts.registry").State
 
     def kept(self, obj):
         """The hierarchy in use, after a check that it is the very one that a build would give."""
-        h = part("parts.session").hierarchy(obj)
+        h = part("parts.registry").hierarchy(obj)
         if h:
             self.assertEqual(h.save(), self.hierarchy(obj).save())
         return h
 
     def state(self, obj):
-        return part("parts.session").state(obj.data)[0]
+        return part("parts.registry").state(obj.data)[0]
 
     def built(self, name="cross_quad"):
         obj = self.add(*(BOX if name == "box" else read_off(name)))
@@ -37,7 +37,7 @@ class Staleness(MeshTest):
         obj.data.update()
         bpy.context.view_layer.update()
         self.assertEqual(self.state(obj), self.State.MOVED)
-        self.assertIs(part("parts.session").hierarchy(obj), first)
+        self.assertIs(part("parts.registry").hierarchy(obj), first)
         self.assertEqual(self.state(obj), self.State.MOVED)
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         self.assertEqual(self.state(obj), self.State.FITS)
@@ -49,7 +49,7 @@ class Staleness(MeshTest):
         bm = self.edit(obj)
         bm.verts.ensure_lookup_table()
         bm.verts[0].co.x += 0.01
-        self.assertIs(part("parts.session").hierarchy(obj), first)
+        self.assertIs(part("parts.registry").hierarchy(obj), first)
         self.assertEqual(self.state(obj), self.State.MOVED)
         bm.verts[0].co.x += 0.01
         bpy.ops.object.mode_set(mode="OBJECT")
@@ -60,17 +60,17 @@ class Staleness(MeshTest):
         """
         obj = self.built()
         bm = self.edit(obj)
-        prepared, session = part("pick.prepared").prepared, part("parts.session")
-        session.hierarchy(obj)
-        first, revision = prepared(obj), session.revision(obj.data)
-        session.hierarchy(obj)
-        self.assertEqual(session.revision(obj.data), revision)
+        prepared = part("pick.prepared").prepared
+        part("parts.registry").hierarchy(obj)
+        first, revision = prepared(obj), part("parts.changes").revision(obj.data)
+        part("parts.registry").hierarchy(obj)
+        self.assertEqual(part("parts.changes").revision(obj.data), revision)
         self.assertIs(prepared(obj), first)
         bm.verts.ensure_lookup_table()
         bm.verts[0].co.x += 0.01
         bmesh.update_edit_mesh(obj.data)
-        session.hierarchy(obj)
-        self.assertNotEqual(session.revision(obj.data), revision)
+        part("parts.registry").hierarchy(obj)
+        self.assertNotEqual(part("parts.changes").revision(obj.data), revision)
         self.assertIsNot(prepared(obj), first)
 
     def test_other_edits_do_not(self):
@@ -221,7 +221,7 @@ class Staleness(MeshTest):
         bpy.data.meshes.remove(obj.data)
         self.add(*read_off("cross_quad"), "another")
         bpy.ops.mesh.partwheel_build()
-        self.assertEqual(len(part("parts.session")._entries), 1)
+        self.assertEqual(len(part("parts.registry")._entries), 1)
 
     # ---- Clear
 

@@ -146,7 +146,7 @@ class Unite(SolidTest):
         target = self.cube()
         self.place(target, self.cube().data.copy(), Matrix.Translation((1, 0.9, 0.8)))
         self.assertEqual(bpy.ops.object.partwheel_unite(), {"FINISHED"})
-        self.assertEqual(len(part("parts.session").hierarchy(target).order), len(target.data.polygons))
+        self.assertEqual(len(part("parts.registry").hierarchy(target).order), len(target.data.polygons))
 
     def test_undo_brings_the_parts_back_too(self):
         target = self.cube()
@@ -156,15 +156,15 @@ class Unite(SolidTest):
         bpy.ops.ed.undo_push(message="before")
         name = target.name
         self.assertEqual(bpy.ops.object.partwheel_unite("EXEC_DEFAULT", True), {"FINISHED"})
-        united = part("parts.session").hierarchy(bpy.data.objects[name])
+        united = part("parts.registry").hierarchy(bpy.data.objects[name])
         self.assertIsNot(united, hierarchy)
         bpy.ops.ed.undo()
         target = bpy.data.objects[name]
         self.assertEqual(len(target.data.polygons), 6)
-        self.assertIs(part("parts.session").hierarchy(target), hierarchy)
-        self.assertIs(part("parts.session").picked(target).hierarchy, hierarchy)
+        self.assertIs(part("parts.registry").hierarchy(target), hierarchy)
+        self.assertIs(part("parts.picks").picked(target).hierarchy, hierarchy)
         bpy.ops.ed.redo()
-        self.assertIs(part("parts.session").hierarchy(bpy.data.objects[name]), united)
+        self.assertIs(part("parts.registry").hierarchy(bpy.data.objects[name]), united)
 
     def test_what_belongs_to_the_mesh_stays(self):
         """Its settings and properties, whoever else uses it; a fake user, which only the very same mesh can keep."""

@@ -145,10 +145,10 @@ class Stage:
         yield "some time has passed", lambda: counts.own >= counts.TICKS
         self.check(counts.others == 0, "no timer runs")
         self.check(not self._drawing, lambda: f"nothing is drawn by the add-on ({self._drawing})")
-        self.check(not self.session.running(), "nothing is being built")
+        self.check(not self.builds.running(), "nothing is being built")
         bar = bpy.types.STATUSBAR_HT_header
         self.check(bar.draw == getattr(bar, "_draw_orig", bar.draw), "the status bar is Blender's own")
-        package = self.session.__name__.rpartition(".")[0]
+        package = self.registry.__name__.rpartition(".parts.")[0]
         addon_utils.disable(package)
         yield from self.drawn()  # without the add-on's tool, panels and gizmos
         left = leftovers(package)
@@ -252,9 +252,14 @@ class Stage:
         return importlib.import_module(f"partwheel.{name}".rstrip("."))
 
     @property
-    def session(self):
-        """The add-on's module that knows what is built, and what is being built."""
-        return self.part("parts.session")
+    def registry(self):
+        """The add-on's module that knows what is built."""
+        return self.part("parts.registry")
+
+    @property
+    def builds(self):
+        """The one that knows what is being built."""
+        return self.part("parts.builds")
 
     def hold_workers(self):
         """A closed Gate: workers that are started from now on wait until it is opened."""
@@ -299,7 +304,7 @@ class Stage:
             if build:
                 bpy.ops.mesh.partwheel_build()
             else:
-                self.session._after_loading()  # or the parts of the same model, opened before, would serve
+                self.part("parts.files").after_loading()  # or the parts of the same model, opened before, would serve
         self.view_3d.view_rotation = model.matrix_world.to_quaternion() @ Quaternion(VIEWS[name])
         self.view_3d.view_perspective = "PERSP"
         self.view_3d.view_location = model.matrix_world @ Vector((low + high) / 2)
@@ -438,7 +443,7 @@ class Stage:
         self.check(self.drawn_things() == 0, "the overlay is gone")
         bar = bpy.types.STATUSBAR_HT_header
         self.check(bar.draw == getattr(bar, "_draw_orig", bar.draw), "the status bar is Blender's own again")
-        self.check(not self.session.running(), "nothing is being built")
+        self.check(not self.builds.running(), "nothing is being built")
         selection, distance = self.selection(), self.view_3d.view_distance
         self.mouse.wheel(1)
         yield from self.until("the wheel zooms again", lambda: self.view_3d.view_distance < distance)

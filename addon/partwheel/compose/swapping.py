@@ -10,7 +10,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from ..mesh import arrays
-from ..parts import session
+from ..parts import registry
 from ..solid import composition
 from . import placement, union
 from partwheel import compatible
@@ -88,7 +88,7 @@ class Place:
 
     def offer(self, other, node=None):
         """The Offer of this node of an object, or of the object itself, a part. Raises NotSwapped or PartwheelError."""
-        hierarchy = session.hierarchy(other)
+        hierarchy = registry.hierarchy(other)
         if node is None:
             shape = _whole(other)
         elif hierarchy and 0 <= node < len(hierarchy.parent):
@@ -162,7 +162,7 @@ class Place:
 
 def _hierarchy_of(offer):
     """Of the object that the offer's node is of. Raises NotSwapped."""
-    hierarchy = session.hierarchy(named(offer.name))
+    hierarchy = registry.hierarchy(named(offer.name))
     if not hierarchy or offer.node >= len(hierarchy.parent):
         raise NotSwapped(f"{offer.name} was changed and has other parts now. Start again.")
     return hierarchy
@@ -189,7 +189,7 @@ def _same(hierarchy, one, other):
 
 def _parts(obj):
     """(hierarchy or None, [(node or None, Shape), ...]) of an object, or None if it has no parts and is none."""
-    hierarchy, whole = session.hierarchy(obj), _whole(obj)
+    hierarchy, whole = registry.hierarchy(obj), _whole(obj)
     if not hierarchy and not whole:
         return None
     parts = [(None, whole)] if whole else []

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..parts import session
+from ..parts import builds
 from . import union
 from partwheel import PartwheelError
 from ..mesh.linked import changeable
@@ -12,7 +12,7 @@ from ..mesh.linked import changeable
 def find_parts(operator):
     """Has the parts of the active object found, whose mesh is a union that this operator made."""
     try:
-        session.drop_outdated_builds()  # of the union before, when the last operation is repeated with other options
+        builds.drop_outdated()  # of the union before, when the last operation is repeated with other options
         bpy.ops.mesh.partwheel_find("INVOKE_DEFAULT")
     except Exception as error:  # any: they are united all the same
         operator.report({"WARNING"}, str(error))

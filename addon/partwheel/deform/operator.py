@@ -10,7 +10,7 @@ from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_
 from mathutils import Matrix, Vector
 
 from ..mesh import objects
-from ..parts import session
+from ..parts import picks, registry
 from ..pick import borders
 from ..view import keys
 from . import handle_gizmo, handle_points
@@ -90,7 +90,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         if context.mode != "EDIT_MESH" or obj is None:
             cls.poll_message_set("Parts are deformed in Edit Mode of a mesh")
             return False
-        if session.state(obj.data)[0] not in {session.State.FITS, session.State.MOVED}:
+        if registry.state(obj.data)[0] not in {registry.State.FITS, registry.State.MOVED}:
             cls.poll_message_set(NO_PART)
             return False
         return True
@@ -138,13 +138,13 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     def _faces(self, obj):
         """The part's faces. Raises Refused."""
         if self.node < 0:
-            picked = session.picked(obj)
+            picked = picks.picked(obj)
             if not picked:
                 raise Refused(f"{NO_PART}.")
             self.node = picked.node
             if not self.properties.is_property_set("snap"):
                 self.snap = picked.snap
-        hierarchy = session.hierarchy(obj)
+        hierarchy = registry.hierarchy(obj)
         if not hierarchy or self.node >= len(hierarchy.parent):
             raise Refused(f"There is no part {self.node}. {NO_PART}.")
         return borders.faces(obj, hierarchy, self.node, self.snap)
@@ -157,7 +157,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         with waiting(context):
             self.faces = self._faces(obj)
             self.regions = [self._region(obj, self.faces)]
-            picked = session.picked(obj)
+            picked = picks.picked(obj)
             self.placed = [self._handle_of(obj, picked and picked.face)]
             self.confirmed, self.behind, self.settling, self.recompute = False, False, False, False
             self._hold()

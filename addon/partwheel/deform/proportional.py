@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays
-from ..parts import session
+from ..parts import picks, registry
 
 REACH = 0.5  # beyond the part, by the square root of its area
 TICK = 0.05  # seconds between two looks for the end of Blender's tool
@@ -26,13 +26,13 @@ class MESH_OT_partwheel_move(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        if context.mode != "EDIT_MESH" or not session.has_pick(context.edit_object):
+        if context.mode != "EDIT_MESH" or picks.picked_as_told(context.edit_object) is None:
             cls.poll_message_set("Pick a part first, in Edit Mode")
             return False
         return True
 
     def invoke(self, context, _event):
-        if not session.picked(context.edit_object):
+        if not picks.picked(context.edit_object):
             self.report({"ERROR"}, "The mesh was changed: pick the part anew.")
             return {"CANCELLED"}
         global _waiting
@@ -51,7 +51,7 @@ class MESH_OT_partwheel_move(bpy.types.Operator):
 def _reach(obj):
     """In the world's unit."""
     area = arrays.read(obj.data.polygons, "area", np.float32)
-    part = session.hierarchy(obj).faces(session.picked(obj).node)
+    part = registry.hierarchy(obj).faces(picks.picked(obj).node)
     return REACH * float(np.sqrt(area[part].sum())) * obj.matrix_world.median_scale
 
 

@@ -4,7 +4,7 @@
 import numpy as np
 
 from ..mesh import arrays
-from ..parts import session
+from ..parts import registry
 from partwheel import Creases
 
 _kept = None  # (Fingerprint, Creases) of the mesh that was asked about last
@@ -17,7 +17,7 @@ def faces(obj, hierarchy, node, snap):
 
 
 def inside(obj, hierarchy, node):
-    """(F,) bool: the faces of a node with its border in creases. The hierarchy is what session.hierarchy(obj) said."""
+    """(F,) bool: the faces of a node with its border in creases. The hierarchy is what registry.hierarchy(obj) said."""
     part = np.zeros(len(hierarchy.order), bool)
     part[hierarchy.faces(node)] = True
     return _creases(obj).snapped(part) if part.any() else part
@@ -26,7 +26,7 @@ def inside(obj, hierarchy, node):
 def _creases(obj):
     """Of the object's mesh as it was when its hierarchy was asked for last."""
     global _kept
-    seen = session.seen(obj.data)
+    seen = registry.entry_of(obj.data).seen
     if not _kept or _kept[0] != seen:
         _kept = seen, Creases(*arrays.surface(obj.data))
     return _kept[1]

@@ -9,7 +9,7 @@ import time
 
 import bpy
 
-from ..parts import session
+from ..parts import builds, picks, registry
 from partwheel import LibraryError, PartwheelError, Status
 from ..view import status
 from ..view.in_view import InView
@@ -23,10 +23,10 @@ class Building:
     hierarchy: None until it is done, and if it fails."""
 
     def __init__(self, operator, obj, **options):
-        """options: of session.build(). Raises LibraryError or PartwheelError when it can't even begin."""
+        """options: of builds.build(). Raises LibraryError or PartwheelError when it can't even begin."""
         self.operator, self.hierarchy = operator, None
         self.began = time.perf_counter()
-        self.build = session.build(obj, **options)
+        self.build = builds.build(obj, **options)
         self.timer, self.line = None, status.Line()
         self.printed = 0
 
@@ -117,7 +117,7 @@ class Building:
             report({"INFO" if cancelled else "ERROR"}, "Cancelled: no parts were built." if cancelled
                    else f"No parts for {name} ({error.name}): {error}{where}")
             return
-        except session.Outdated as reason:
+        except builds.Outdated as reason:
             report({"WARNING"}, str(reason))
             return
         for failure in self.build.job.failures:
@@ -220,13 +220,13 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         obj = context.active_object
-        if obj is None or obj.type != "MESH" or session.state(obj.data)[0] == session.State.NONE:
+        if obj is None or obj.type != "MESH" or registry.state(obj.data)[0] == registry.State.NONE:
             cls.poll_message_set("The active object has no parts")
             return False
         return True
 
     def execute(self, context):
-        session.forget(context.active_object)
+        picks.forget(context.active_object)
         for area in context.screen.areas if context.screen else ():
             area.tag_redraw()
         return {"FINISHED"}

@@ -7,7 +7,7 @@ What happens to the part meanwhile, and once it is confirmed, is the business of
 
 import bpy
 
-from ..parts import session
+from ..parts import builds, picks, registry
 from ..view import keys, overlay, picking
 from . import borders, states
 from partwheel import PartwheelError
@@ -78,7 +78,7 @@ class PartPicker(InView):
 
     def execute(self, context):
         obj = self._objects(context)[0]
-        hierarchy = session.hierarchy(obj)
+        hierarchy = registry.hierarchy(obj)
         if not hierarchy:
             building = start(self, obj)
             hierarchy = building and building.wait(context)
@@ -90,7 +90,7 @@ class PartPicker(InView):
             self.report({"ERROR"}, f"Face {self.face_index} can't be picked: {error}")
             return {"CANCELLED"}
         result = self._apply(context, obj, borders.faces(obj, hierarchy, picked.node, self.snap), picked)
-        session.remember_pick(obj, picked.face, picked.node, self.snap)
+        picks.remember(obj, picked.face, picked.node, self.snap)
         return result
 
     # ---- With the mouse: from nothing to a part
@@ -131,7 +131,7 @@ class PartPicker(InView):
     @staticmethod
     def _parts(obj):
         """The hierarchy of the object's mesh; None if there is none, or a new one is on its way."""
-        return None if session.being_built(obj) else session.hierarchy(obj)
+        return None if builds.being_built(obj) else registry.hierarchy(obj)
 
     def _pick(self, context, event, obj, face):
         self.hierarchy = self._parts(obj)
@@ -185,7 +185,7 @@ class PartPicker(InView):
     def _handle(self, context, event):
         if isinstance(self.state, states.Building):
             return self._built_on(context, event)
-        if self.target and session.known(self._object(context).data) is not self.hierarchy:
+        if self.target and registry.known(self._object(context).data) is not self.hierarchy:
             self.report({"WARNING"}, "Partwheel stopped: the parts were found anew. Pick one of them.")
             return {"CANCELLED"}
         if event.type in keys.SYSTEM:
@@ -277,7 +277,7 @@ class PartPicker(InView):
         obj = self._object(context)
         # What the panel of the last operation, and Repeat Last, do again.
         self.face_index, self.level = self.state.face, self.state.level
-        session.remember_pick(obj, self.state.face, self.state.node, self.snap)
+        picks.remember(obj, self.state.face, self.state.node, self.snap)
         return self._commit(context)
 
     def _take_back(self, context):

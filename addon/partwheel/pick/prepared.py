@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What hovering, picking and drawing need of a mesh, made at its first use and kept while the mesh stays as it is."""
 
-import bmesh
 import bpy
 
-from ..parts import session
+from ..mesh.kept import counts, key
+from ..parts import changes, registry
 from ..view import overlay, picking, seen
 
-_kept = {}  # session.key(mesh) -> Prepared
+_kept = {}  # key(mesh) -> Prepared
 
 
 class Prepared:
@@ -21,10 +21,10 @@ class Prepared:
         self._asked = False
 
     def hierarchy(self, obj):
-        """session.hierarchy(obj), asked again only when there is a new one."""
-        if not self._asked or session.known(obj.data) is not self._known:
-            self._hierarchy, self._asked, self._parts = session.hierarchy(obj), True, None
-            self._known = session.known(obj.data)
+        """registry.hierarchy(obj), asked again only when there is a new one."""
+        if not self._asked or registry.known(obj.data) is not self._known:
+            self._hierarchy, self._asked, self._parts = registry.hierarchy(obj), True, None
+            self._known = registry.known(obj.data)
         return self._hierarchy
 
     def parts(self, obj):
@@ -37,41 +37,29 @@ class Prepared:
 
 def prepared(obj):
     """The Prepared of the object's mesh as it is now, as far as Blender has told of changes."""
-    stamp, key = _stamp(obj), session.key(obj.data)
-    if key not in _kept or _kept[key].stamp != stamp:
-        for gone in _kept.keys() - {session.key(mesh) for mesh in bpy.data.meshes}:
+    stamp, kept = _stamp(obj), _kept.get(key(obj.data))
+    if not kept or kept.stamp != stamp:
+        for gone in _kept.keys() - {key(mesh) for mesh in bpy.data.meshes}:
             del _kept[gone]
-        _kept[key] = Prepared(obj, stamp)
-    return _kept[key]
+        kept = _kept[key(obj.data)] = Prepared(obj, stamp)
+    return kept
 
 
 def current(obj, parts):
     """Whether these parts are of the object's mesh as it is now. Makes nothing, so it may be asked while Blender draws.
     """
-    kept = _kept.get(session.key(obj.data))
+    kept = _kept.get(key(obj.data))
     return kept is not None and kept._parts is parts and kept.stamp == _stamp(obj)
 
 
 def _stamp(obj):
-    return obj.name_full, obj.mode, session.revision(obj.data), _counts(obj)
-
-
-def _counts(obj):
-    if obj.mode == "EDIT":
-        bm = bmesh.from_edit_mesh(obj.data)
-        return len(bm.verts), len(bm.faces)
-    return len(obj.data.vertices), len(obj.data.polygons)
+    return obj.name_full, obj.mode, changes.revision(obj.data), counts(obj.data)
 
 
 @bpy.app.handlers.persistent
-def _after_loading(*_):
+def unregister(*_):
+    """Nothing is kept, nor of another file."""
     _kept.clear()
 
 
-def register():
-    bpy.app.handlers.load_post.append(_after_loading)
-
-
-def unregister():
-    bpy.app.handlers.load_post.remove(_after_loading)
-    _kept.clear()
+HANDLERS = {"load_post": unregister}

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import bpy
 
-from ..parts import session
+from ..parts import registry
 from ..preferences import draw_overlays
 
 ICON = str(Path(__file__).with_name("partwheel.select"))  # Blender adds ".dat"
@@ -31,8 +31,8 @@ class SelectPart(bpy.types.WorkSpaceTool):
 
     def draw_settings(context, layout, tool):
         obj = context.edit_object
-        state = session.state(obj.data)[0] if obj else session.State.NONE
-        if state in {session.State.NONE, session.State.CHANGED}:
+        state = registry.state(obj.data)[0] if obj else registry.State.NONE
+        if state in {registry.State.NONE, registry.State.CHANGED}:
             layout.label(text="Parts are built at the first click", icon="INFO")
         layout.prop(tool.operator_properties("mesh.partwheel_select"), "snap")
         layout.popover("VIEW3D_PT_partwheel_overlays", text="Overlay")

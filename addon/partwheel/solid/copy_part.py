@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..parts import session
+from ..parts import picks, registry
 from . import composition, solids
 from partwheel import PartwheelError
 from ..mesh.linked import changeable
@@ -45,7 +45,7 @@ class OnParts:
         return {"FINISHED"}
 
     def hierarchy(self, context, obj):
-        found = session.hierarchy(obj)
+        found = registry.hierarchy(obj)
         if not found:
             raise solids.NotClosed(f"{obj.name} has no parts for its mesh as it is now. Build them first.")
         return found
@@ -79,7 +79,7 @@ class OnPart:
         if self.node >= len(found.parent):
             raise solids.NotClosed(f"There is no part {self.node}: the hierarchy has {len(found.parent)}.")
         if self.node < 0:
-            picked = session.picked(obj)
+            picked = picks.picked(obj)
             if not picked:
                 raise solids.NotClosed("No part is picked. Pick one with Select Part by Wheel, and confirm it.")
             self.node = picked.node

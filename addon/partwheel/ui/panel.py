@@ -5,10 +5,10 @@ import textwrap
 
 import bpy
 
-from ..parts import session
+from ..parts import builds, registry
 from .menu import draw_handoffs
 
-State = session.State
+State = registry.State
 STATES = {
     State.NONE: ["No parts yet"],
     State.UNOPENED: ["Parts came with the file"],
@@ -45,13 +45,13 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
             draw_handoffs(column)
             column.operator("mesh.partwheel_path")
             layout.separator()
-        state, entry = session.state(context.active_object.data)
+        state, entry = registry.state(context.active_object.data)
         if entry:
             self._describe(context, entry.hierarchy)
         column = layout.column(align=True)
         for line in STATES[state]:
             column.label(text=line)
-        if state in {State.NONE, State.CHANGED} and session.refused_as_sheet(context.active_object.data):
+        if state in {State.NONE, State.CHANGED} and builds.refused_as_sheet(context.active_object.data):
             for line in SHEET:
                 column.label(text=line)
             column.operator("mesh.partwheel_build", text="Take as Thin Solid").open_surfaces = True

@@ -6,14 +6,14 @@ import math
 
 import bpy
 
-from ..parts import session
+from ..parts import picks
 from ..pick import states
 
 SMALLEST = 0.25  # share of the width that the smallest part's bar takes
 
 
 def rows(pick):
-    """[(number from 1, node, faces, share of the area, cost as text, bar 0..1)] of a session.Picked, growing."""
+    """[(number from 1, node, faces, share of the area, cost as text, bar 0..1)] of a picks.Picked, growing."""
     hierarchy = pick.hierarchy
     picked = states.pick(hierarchy, pick.face)
     counts = [len(hierarchy.faces(node)) for node in picked.stops]
@@ -41,7 +41,7 @@ class VIEW3D_PT_partwheel_path(bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return context.mode == "EDIT_MESH" and session.has_pick(context.edit_object)
+        return context.mode == "EDIT_MESH" and picks.picked_as_told(context.edit_object) is not None
 
     def draw(self, context):
         draw_path(self.layout, context.edit_object)
@@ -56,7 +56,7 @@ class MESH_OT_partwheel_path(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        if context.mode != "EDIT_MESH" or not session.has_pick(context.edit_object):
+        if context.mode != "EDIT_MESH" or picks.picked_as_told(context.edit_object) is None:
             cls.poll_message_set("Pick a part first, in Edit Mode")
             return False
         return True
@@ -72,7 +72,7 @@ class MESH_OT_partwheel_path(bpy.types.Operator):
 
 
 def draw_path(layout, obj):
-    pick = session.picked_as_told(obj)
+    pick = picks.picked_as_told(obj)
     if not pick:
         return
     start = states.pick(pick.hierarchy, pick.face).start

@@ -45,10 +45,8 @@ def end(*_):
         del obj[MARK]
 
 
-def register():
-    bpy.app.handlers.load_post.append(end)
+HANDLERS = {"load_post": end}
 
 
 def unregister():
-    bpy.app.handlers.load_post.remove(end)
     end()

@@ -15,13 +15,12 @@ def alive(process):
 
 def play(stage):
     x, y, stops, start = yield from close_to(stage, "large")
-    session = stage.session
     stage.select([3])
     stage.mouse.move(x, y)
     gate = stage.hold_workers()
     stage.shortcut("mesh.partwheel_select")
-    yield from stage.until("a build has begun", session.running)
-    build, = session._builds.values()
+    yield from stage.until("a build has begun", stage.builds.running)
+    build, = stage.builds._builds.values()
     for _ in range(5):
         yield from stage.drawn()
     stage.check(build.poll() is not None, "the window is drawn ten times while the build goes on")
@@ -31,7 +30,7 @@ def play(stage):
     stage.mouse.key("ESC")
     yield from stage.settle()
     stage.check(not alive(process), "once Esc has been handled the worker is gone")
-    stage.check(not session.running(), "the tool has ended")
+    stage.check(not stage.builds.running(), "the tool has ended")
     yield from stage.selected({3}, "after Esc")
 
     gate.open()
@@ -46,7 +45,7 @@ def play(stage):
     for wanted, path in (yield from saved(stage)).items():
         hierarchy = reopened(stage, path)
         stage.check((hierarchy is not None) == wanted, "the parts are there if they were saved")
-        stage.check(not session.running(), "nothing is built for that")
+        stage.check(not stage.builds.running(), "nothing is built for that")
         yield from stage.settle()
         stage.check(not bpy.data.is_dirty, "a file just opened counts as saved")
 
@@ -79,4 +78,4 @@ def saved(stage):
 def reopened(stage, path):
     """Opens the file: the Hierarchy of its mesh, or None."""
     bpy.ops.wm.open_mainfile(filepath=path, load_ui=False)
-    return stage.session.hierarchy(stage.object)
+    return stage.registry.hierarchy(stage.object)

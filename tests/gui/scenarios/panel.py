@@ -45,10 +45,10 @@ def play(stage):
     yield from stage.until("the panel is drawn in Object Mode", lambda: "OBJECT" in drawn)
     yield from stage.screenshot("object")
 
-    session = stage.session
 
     def shown(state, name):
-        yield from stage.until(f"the state is {state.name}", lambda: session.state(stage.object.data)[0] == state)
+        yield from stage.until(f"the state is {state.name}",
+                               lambda: stage.registry.state(stage.object.data)[0] == state)
         drawn.clear()
         sidebar.tag_redraw()
         yield from stage.until("the panel is drawn", lambda: drawn)
@@ -58,18 +58,18 @@ def play(stage):
     mesh.vertices[0].co.x += 0.001
     mesh.update()
     sidebar = next(region for region in stage.area.regions if region.type == "UI")
-    yield from shown(session.State.MOVED, "moved")
+    yield from shown(stage.registry.State.MOVED, "moved")
     bm = bmesh.new()
     bm.from_mesh(mesh)
     bm.faces.ensure_lookup_table()
     bmesh.ops.delete(bm, geom=[bm.faces[0]], context="FACES_ONLY")
     bm.to_mesh(mesh)
     bm.free()
-    yield from shown(session.State.CHANGED, "changed")
+    yield from shown(stage.registry.State.CHANGED, "changed")
     with stage.override():
         bpy.ops.mesh.partwheel_build()
-    stage.check(session.hierarchy(stage.object).account != "", "the panel has something to tell")
-    yield from shown(session.State.FITS, "mended")
+    stage.check(stage.registry.hierarchy(stage.object).account != "", "the panel has something to tell")
+    yield from shown(stage.registry.State.FITS, "mended")
     with stage.override():
         bpy.ops.mesh.partwheel_clear()
-    yield from shown(session.State.NONE, "cleared")
+    yield from shown(stage.registry.State.NONE, "cleared")

@@ -8,9 +8,9 @@ import bpy
 OTHER = """
 import bpy, sys
 def play():
-    session = next(module for name, module in sys.modules.items() if name.endswith(".parts.session"))
+    registry = next(module for name, module in sys.modules.items() if name.endswith(".parts.registry"))
     model = bpy.data.objects["hand"]
-    assert session.hierarchy(model) is not None, "the parts came with the file"
+    assert registry.hierarchy(model) is not None, "the parts came with the file"
     model.data.vertices[0].co.z += 1000
     bpy.ops.ed.undo_push(message="moved")
     print("parts seen")
@@ -51,7 +51,7 @@ def recovered(stage, height):
     mesh = bpy.data.objects["hand"].data
     stage.check(abs(mesh.vertices[0].co.z - height) < 1, "the vertex is where it was moved before")
     stage.check(list(mesh.keys()) == [], "no bytes of ours are on the mesh")
-    stage.check(stage.session.state(mesh)[0] == stage.session.State.NONE, "no parts are claimed that are not there")
+    stage.check(stage.registry.state(mesh)[0] == stage.registry.State.NONE, "no parts are claimed that are not there")
     mesh.vertices[0].co.z -= 1000
     stage.window.view_layer.objects.active = bpy.data.objects["hand"]
     with stage.override():

@@ -8,14 +8,13 @@ import bpy
 def play(stage):
     gate = stage.hold_workers()
     yield from stage.open("bear", build=False)
-    session = stage.session
 
     def begin(place, above=1):
         """Starts the tool over a face: (face, stops, start)."""
         x, y, face = stage.spot(*place, above=above)
         stage.mouse.move(x, y)
         stage.shortcut("mesh.partwheel_select")
-        yield from stage.until("a build has begun", session.running)
+        yield from stage.until("a build has begun", stage.builds.running)
         return face, *stage.wheels.stops(face)
 
     stage.select([3])
@@ -27,7 +26,7 @@ def play(stage):
     stage.mouse.key("NUMPAD_3")
     yield from stage.until("the view turns", lambda: stage.view_state() != before)
     yield from stage.until("the selection is undone", lambda: stage.selection() == earlier)
-    stage.check(session.running(), "the build is still under way")
+    stage.check(stage.builds.running(), "the build is still under way")
     yield from stage.screenshot("turned")
     gate.open()
     yield from stage.selected(stops[start], "once built, though the view has turned and an undo has come between")
@@ -42,7 +41,7 @@ def play(stage):
     stage.select([3])
     yield from begin((0.5, 0.8))
     stage.mouse.key("ESC")
-    yield from stage.until("Esc ends the build", lambda: not session.running())
+    yield from stage.until("Esc ends the build", lambda: not stage.builds.running())
     stage.check("Cancelled" in stage.reports(), "that is reported")
     stage.mouse.move(*stage.empty_spot())
     yield from stage.ended()
@@ -52,8 +51,8 @@ def play(stage):
     stage.mouse.key("TAB")
     yield from stage.until("Edit Mode is left", lambda: stage.object.mode == "OBJECT")
     gate.open()
-    yield from stage.until("the build ends", lambda: not session.running())
-    stage.check(session.state(stage.object.data)[0] == session.State.FITS, "the parts are kept")
+    yield from stage.until("the build ends", lambda: not stage.builds.running())
+    stage.check(stage.registry.state(stage.object.data)[0] == stage.registry.State.FITS, "the parts are kept")
     stage.check("The parts are built" in stage.reports(), "that is reported")
     stage.mouse.key("TAB")
     yield from stage.until("Edit Mode is back", lambda: stage.object.mode == "EDIT")
@@ -67,9 +66,9 @@ def play(stage):
     bmesh.ops.poke(bm, faces=[bm.faces[0]])
     bmesh.update_edit_mesh(stage.object.data)
     gate.open()
-    yield from stage.until("a build for another mesh is left aside", lambda: not session.running())
+    yield from stage.until("a build for another mesh is left aside", lambda: not stage.builds.running())
     stage.check("was edited while" in stage.reports(), "that is reported")
-    stage.check(session.hierarchy(stage.object) is None, "nothing is kept for a mesh that has changed")
+    stage.check(stage.registry.hierarchy(stage.object) is None, "nothing is kept for a mesh that has changed")
 
     yield from escape_and_the_answer_at_once(stage, gate, begin)
     yield from another_mesh(stage, gate)
@@ -82,13 +81,13 @@ def escape_and_the_answer_at_once(stage, gate, begin):
     yield from stage.open("bear", build=False)
     stage.select([3])
     yield from begin((0.5, 0.8))
-    build, = stage.session._builds.values()
+    build, = stage.builds._builds.values()
     gate.open()
     while not build.job.wait(1):  # Blender itself is held up
         pass
     stage.mouse.key("ESC")
     yield from stage.settle()
-    stage.check(not stage.session.running(), "nothing is being built")
+    stage.check(not stage.builds.running(), "nothing is being built")
     yield from stage.selected({3}, "after Esc and the answer, whichever was first")
     yield from stage.ended()
 
@@ -105,12 +104,12 @@ def another_mesh(stage, gate):
         bpy.ops.mesh.partwheel_build("INVOKE_DEFAULT")
         stage.window.view_layer.objects.active = model
         bpy.ops.object.mode_set(mode="EDIT")
-    yield from stage.until("a build has begun", stage.session.running)
+    yield from stage.until("a build has begun", stage.builds.running)
     stage.use_tool()
     stops, start = yield from stage.take(stage.spot(0.5, 0.9, above=1), "while another mesh's parts are being found")
     gate.open()
-    yield from stage.until("these are found", lambda: not stage.session.running())
-    stage.check(stage.session.known(torus.data) is not None, "the parts are kept")
+    yield from stage.until("these are found", lambda: not stage.builds.running())
+    stage.check(stage.registry.known(torus.data) is not None, "the parts are kept")
     yield from stage.selected(stops[start + 1], "the pick is as it was")
     stage.mouse.wheel(-1)
     yield from stage.selected(stops[start], "and goes on")

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is remembered of meshes. No pointer into Blender's data is: undo and file loading would make it dangle. So it is
+under a key; tables of it are emptied when another file is opened, and when the add-on ends."""
+
+import bmesh
+import bpy
+
+
+class PerMesh(dict):
+    """Something of each mesh, by key(mesh)."""
+
+    tables = []  # all that there are
+
+    def __init__(self, gone=dict.pop):
+        """gone(table, key): what drop_gone() does with what it finds, if it isn't to be forgotten."""
+        self._gone = gone
+        PerMesh.tables.append(self)
+
+    def drop_gone(self):
+        """Nothing of meshes that are no more is kept."""
+        for gone in self.keys() - {key(mesh) for mesh in bpy.data.meshes}:
+            self._gone(self, gone)
+
+
+def key(mesh):
+    """A mesh's identity that outlives undo. Before Blender 4.1 its full name: renaming it means building again."""
+    return getattr(mesh, "session_uid", None) or mesh.name_full
+
+
+def counts(mesh):
+    """(vertices, polygons), at once, also in Edit Mode: when these are others, the mesh is another one."""
+    if mesh.is_editmode:
+        bm = bmesh.from_edit_mesh(mesh)
+        return len(bm.verts), len(bm.faces)
+    return len(mesh.vertices), len(mesh.polygons)

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hierarchies being built: one at a time, in a process of its own; the others wait for their turn."""
+
+import bpy
+
+from ..mesh import arrays
+from ..mesh.kept import PerMesh, counts, key
+from ..preferences import preferences
+from . import registry
+from .opening import unopened
+from partwheel import Mode, PartwheelError, Status
+from partwheel.library import load
+from partwheel.worker import WAIT_SECONDS, Job, available_memory
+
+_builds = {}  # those that have not ended, in the order in which they were asked for, by the key of their mesh
+_sheets = PerMesh()  # how many vertices and polygons a mesh had when it was refused for being a sheet
+
+
+class Outdated(Exception):
+    """A build ended and its mesh is not there any more, or not as it was. str() is sentences for the user."""
+
+
+def running():
+    """Whether any build is under way or waits."""
+    return bool(_builds)
+
+
+def being_built(obj):
+    """Whether parts of the object's mesh as it is now are being found, or are to be."""
+    build = _builds.get(key(obj.data))
+    return build is not None and build.serves(arrays.fingerprint(arrays.up_to_date(obj)))
+
+
+def build(obj, **options):
+    """The Build of the object's mesh: the one that is under way, or else a new one. options: those of Build; without
+    any whatever is under way will do. If the mesh has changed, or with other options, that is cancelled for a new one.
+    """
+    former = _builds.get(key(obj.data))
+    if former:
+        if former.serves(arrays.fingerprint(arrays.up_to_date(obj)), options):
+            return former
+        former.cancel()
+    return Build(obj, **options)
+
+
+class Build:
+    """A build of the object's mesh as it is now, in a process of its own, once those asked for earlier are over. The
+    mesh is not changed, nor kept from changing. To be had from build(): there is one a mesh."""
+
+    def __init__(self, obj, quality=0.0, open_surfaces=False, mode=None):
+        """mode: a partwheel.Mode; None: the preferences'. open_surfaces holds for later builds of the mesh too."""
+        load()  # a missing library is better told here
+        mesh = arrays.up_to_date(obj)
+        self.name = mesh.name
+        self._key, self._counts, self._built = key(mesh), counts(mesh), arrays.fingerprint(mesh)
+        former = registry.entry_of(mesh)
+        self._open_surfaces = open_surfaces or (former is not None and former.open_surfaces)
+        self._mode = Mode[preferences().parts] if mode is None else mode
+        self._options = {"quality": quality, "open_surfaces": open_surfaces, "mode": mode}
+        self._surface = arrays.surface(mesh)
+        self._hierarchy = self._error = None
+        self._cancelled = False
+        self.job = None  # from its turn on
+        _builds[self._key] = self
+        _turn()
+
+    def serves(self, now, options=None):
+        """Whether whoever wants a build of the mesh as it is now, with these options or whatever, can have this one."""
+        return now.topology == self._built.topology and (
+            not options or now == self._built and self._options == {**self._options, **options})
+
+    def start(self):
+        """It is its turn: whether it has a worker now."""
+        share, seconds = preferences().memory_share / 100, 60 * preferences().time_limit
+        try:
+            self.job = Job(*self._surface, quality=self._options["quality"], open_surfaces=self._open_surfaces,
+                           mode=self._mode, memory_limit=int(share * available_memory()), time_limit=seconds or None,
+                           python=bpy.path.abspath(preferences().python))
+        except Exception as error:  # whatever it is, finish() raises it
+            self._error = error
+            self._leave()
+        return self.job is not None
+
+    def poll(self):
+        """(fraction 0..1 that never falls, what is done or waited for); None once finish() won't block."""
+        turn = _turn()
+        if self.job:
+            return self.job.poll()
+        return None if self._cancelled or self._error else (0.0, f"after those of {turn.name}")
+
+    def wait(self, seconds):
+        """Waits so long at most, and says whether finish() won't block."""
+        turn = None if self.poll() is None else self if self.job else _turn()
+        if turn:
+            turn.job.wait(seconds)
+        return self.poll() is None
+
+    def cancel(self):
+        """Takes it out of the queue and kills the worker. finish() is still to be called, and tells of the cancel even
+        if the answer is there: nobody has seen that yet, and what Esc does must not depend on who was faster."""
+        self._cancelled = True
+        self._leave()
+        if self.job:
+            self.job.cancel()
+
+    def _leave(self):
+        if _builds.get(self._key) is self:
+            del _builds[self._key]
+
+    def finish(self):
+        """Waits for the end and keeps the result: the Hierarchy. Raises PartwheelError, or Outdated if the mesh was
+        edited or deleted meanwhile. All who wait for it may call it."""
+        try:
+            while not self.wait(WAIT_SECONDS):
+                pass
+        except BaseException:  # Ctrl-C
+            self.cancel()
+            raise
+        self._leave()
+        if self._cancelled:
+            raise PartwheelError(Status.CANCELLED, "The build was cancelled.")
+        if self._error:
+            raise self._error
+        if not self._hierarchy:
+            self._keep(self._answer())
+        return self._hierarchy
+
+    def _answer(self):
+        try:
+            return self.job.result()
+        except PartwheelError as error:
+            if error.status == Status.NOT_SOLID:
+                _sheets[self._key] = self._counts
+            raise
+
+    def _keep(self, built):
+        obj = _user(self._key)
+        if obj is None:
+            raise Outdated(f"The mesh {self.name} is gone, so its parts were left aside.")
+        mesh = arrays.up_to_date(obj)
+        now = arrays.fingerprint(mesh)
+        if now.topology != self._built.topology:
+            raise Outdated(f"{mesh.name} was edited while its parts were being built, so they were left aside. Build "
+                           "them again when the mesh is as you want it.")
+        for table in PerMesh.tables:
+            table.drop_gone()
+        unopened.pop(self._key, None)
+        _sheets.pop(self._key, None)
+        registry.keep(mesh, registry.Entry(self._built, self._counts, built, open_surfaces=self._open_surfaces), now)
+        self._hierarchy = built
+
+    def outdated(self):
+        """Whether its mesh is gone, or is another one by now, be it only by places of vertices."""
+        obj = _user(self._key)
+        return obj is None or arrays.fingerprint(arrays.up_to_date(obj)) != self._built
+
+
+def _turn():
+    """The Build that has a worker; if none has, the one that has waited longest gets one. None if none waits."""
+    return (next((each for each in _builds.values() if each.job and each.job.poll()), None)
+            or next((each for each in list(_builds.values()) if not each.job and each.start()), None))
+
+
+def drop_outdated():
+    """Cancels those whose mesh is not there any more as it was."""
+    for each in list(_builds.values()):
+        if each.outdated():
+            each.cancel()
+
+
+def _user(wanted):
+    """An object with the mesh of this key, in Edit Mode if there is one such, or None."""
+    users = [obj for obj in bpy.data.objects if obj.type == "MESH" and key(obj.data) == wanted]
+    return next((obj for obj in users if obj.mode == "EDIT"), users[0] if users else None)
+
+
+def refused_as_sheet(mesh):
+    """Whether the last build refused the mesh for being a sheet, as far as the counts tell that it is the same."""
+    return _sheets.get(key(mesh)) == counts(mesh)
+
+
+def stop():
+    """Cancels all."""
+    for each in list(_builds.values()):
+        each.cancel()

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What Blender has told of changes to meshes."""
+
+import bpy
+from bpy.app.handlers import persistent
+
+from ..mesh import arrays
+from ..mesh.kept import PerMesh, key
+
+_edits, _shown = PerMesh(), PerMesh()  # how often the mesh was changed, or what modifiers show of it
+_undos = 0
+
+
+def edits(mesh):
+    """Something that is another after each change of the mesh's geometry, or of what is hidden, that Blender told of.
+    Selecting is none."""
+    return _edits.get(key(mesh), 0), _undos
+
+
+def revision(mesh):
+    """The same, and another also after a change of what modifiers show of it, be it on the cage."""
+    return edits(mesh), _shown.get(key(mesh), 0)
+
+
+@persistent
+def _edited(_scene, depsgraph):
+    if arrays.writing_back:
+        return
+    for update in depsgraph.updates:
+        if not update.is_updated_geometry:
+            continue
+        if isinstance(update.id, bpy.types.Mesh):
+            _count(_edits, update.id.original)
+        elif (isinstance(update.id, bpy.types.Object) and update.id.type == "MESH"
+              and (update.id.mode != "EDIT" or arrays.on_cage(update.id))):
+            _count(_shown, update.id.original.data)
+
+
+def _count(table, mesh):
+    table[key(mesh)] = table.get(key(mesh), 0) + 1
+
+
+@persistent
+def _undone(*_):
+    global _undos
+    _undos += 1
+
+
+HANDLERS = {"depsgraph_update_post": _edited, "undo_post": _undone, "redo_post": _undone}
