@@ -24,7 +24,7 @@ sys.path.insert(0, str(ROOT / "native" / "python"))
 # The add-on from the checkout, under the name that it has where it is installed.
 spec = importlib.util.spec_from_file_location("partwheel_addon", ROOT / "addon" / "partwheel" / "__init__.py")
 sys.modules[spec.name] = importlib.util.module_from_spec(spec)
-deforming = importlib.import_module("partwheel_addon.deforming")
+deforming = importlib.import_module("partwheel_addon.deform.deforming")
 
 
 def edited(vertices, triangles):

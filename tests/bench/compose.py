@@ -2,6 +2,7 @@
 """What copying parts and uniting solids cost in Blender. Called by scripts/bench_compose: in plain Python it prepares
 the models in a directory, in Blender it prints a row of a table."""
 
+import importlib.util
 import sys
 import time
 from pathlib import Path
@@ -56,8 +57,12 @@ def seconds(action):
 def measure(directory):
     import bpy
     from mathutils import Matrix
-    from partwheel import solids, union
     from partwheel import Hierarchy
+
+    # The add-on from the checkout, under the name that it has where it is installed.
+    spec = importlib.util.spec_from_file_location("partwheel_addon", ROOT / "addon" / "partwheel" / "__init__.py")
+    sys.modules[spec.name] = importlib.util.module_from_spec(spec)
+    solids, union = (importlib.import_module(f"partwheel_addon.{name}") for name in ("solid.solids", "compose.union"))
 
     def clear():
         for items in (bpy.data.objects, bpy.data.meshes):
