@@ -148,7 +148,7 @@ class Stage:
         self.check(not self.session.running(), "nothing is being built")
         bar = bpy.types.STATUSBAR_HT_header
         self.check(bar.draw == getattr(bar, "_draw_orig", bar.draw), "the status bar is Blender's own")
-        package = self.session.__name__.rpartition(".")[0]
+        package = self.session.__name__.rpartition(".parts.")[0]
         addon_utils.disable(package)
         yield from self.drawn()  # without the add-on's tool, panels and gizmos
         left = leftovers(package)
