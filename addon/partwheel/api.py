@@ -1,49 +1,157 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""For scripts: what the operators do, as functions of a mesh object, in any mode, with or without a window.
+"""For scripts and other add-ons: what the operators do, as functions of a mesh object, in any mode, with or without a
+window. While the add-on is enabled, whatever its repository is called, and in Blender 3.4 too:
 
-    import bpy
-    from partwheel import api          # Blender 4.2 and later: from bl_ext.user_default.partwheel import api
+    from partwheel import api
 
     obj = bpy.context.active_object
-    api.build(obj)
-    nodes = api.path(obj, face=42)     # from the face's own small part up to the whole
-    api.select(obj, face=42, level=2)  # a click on face 42 and two notches up
-    labels = api.cut(obj, parts=8)     # (F,) the part of each face, 0 to 7
-    copy = api.copy_part(obj, node)    # the part as a closed solid, a new object
-    api.swap(obj, node, other)         # exchanged for the most compatible part of another object
+    arm = api.part(obj, 42, level=2)       # a click on face 42 and two notches up
+    api.select(obj, arm)
+    copy = api.copy_part(obj, arm)         # the part as a closed solid, a new object
+    labels = api.cut(obj, parts=8)         # (F,) the part of each face, 0 to 7
+    api.swap(obj, arm, other)              # exchanged for the most compatible part of another object
 
-Nodes are numbers of the object's hierarchy, a partwheel.Hierarchy, which build() returns and hierarchy() finds. The other
-functions build it if there is none. One build runs at a time: those that are under way already come first. All raise
-partwheel.PartwheelError, whose text says what is wrong, or ValueError for an object that holds no mesh.
+The object comes first, then the node: a number of the object's hierarchy, a partwheel.Hierarchy, or the Part that
+part() gives. Lengths, areas and matrices are in the object's own space unless it says "world", angles in radians. snap:
+with the part's border moved to the creases nearby. Functions build the hierarchy if there is none; only start_build()
+does not wait for it. One build runs at a time: those that are under way already come first.
+
+Errors are partwheel.Error, whose text says what is wrong and what to do, most of them PartwheelError, whose status
+tells what kind; or ValueError for what can't be meant: no mesh object, one linked from another file that is to change,
+one that is in Edit Mode where that matters. Nothing has changed then. Undo steps are the caller's.
 """
+
+import operator
+import sys
+import time
+from dataclasses import dataclass, field
 
 import numpy
 from mathutils import Vector
 
+import partwheel
 from .compose import placement, swapping, union
 from .deform import deforming
-from .mesh import selection
+from .mesh import arrays, selection
+from .mesh.linked import read_only
 from .parts import builds, picks, registry
 from .pick import borders, states
 from .solid import composition, solids
+from partwheel import PartwheelError, Status
+from partwheel.deform import MOST_ITERATIONS
 from partwheel.joint import REACH
+from partwheel.worker import WAIT_SECONDS
+
+State = registry.State
 
 
-def build(obj, quality=0.0, open_surfaces=False, mode=None):
-    """Builds the hierarchy of the object's mesh and keeps it; waits until it is done. The Hierarchy.
+# ---- Hierarchies
+
+
+class Build:
+    """A build under way, in a process of its own, that start_build() began or found. Ask it from the main thread."""
+
+    def __init__(self, build):
+        self._build = build
+
+    def poll(self):
+        """(fraction 0..1 that never falls, what is done or waited for); None once result() won't block."""
+        return self._build.poll()
+
+    def wait(self, seconds):
+        """Waits so long at most; whether result() won't block."""
+        return self._build.wait(seconds)
+
+    def cancel(self):
+        """Ends it at once. result() then raises PartwheelError, status CANCELLED, and no hierarchy is kept."""
+        self._build.cancel()
+
+    def result(self, progress=None):
+        """Waits for the end and keeps the Hierarchy, which is returned; without this call it is not kept.
+        progress(fraction, what): called ten times a second; returning True cancels. Raises PartwheelError: why the mesh
+        has no parts, or a limit was met; partwheel.Error: the mesh was edited or deleted meanwhile."""
+        try:
+            while progress and (told := self.poll()):
+                if progress(*told):
+                    self.cancel()
+                self.wait(WAIT_SECONDS)
+        except BaseException:  # what progress() raised, or Ctrl-C
+            self.cancel()
+            raise
+        return self._build.finish()
+
+
+def start_build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None):
+    """A Build of the object's mesh as it is now; returns at once. It changes nothing until its result() is asked for.
+    The one under way is found again, if it is of the same mesh and options; else it is cancelled for this one.
 
     quality: 0 adds no points inside the mesh; from 1.1 on it bounds how stretched the tetrahedra may be. open_surfaces:
-    take a sheet for a thin solid, instead of refusing it. mode: a partwheel.Mode, how parts are joined; None: as the add-on's
-    preferences have it.
-    """
-    _check(obj)
-    return builds.build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode).finish()
+    take a sheet for a thin solid, instead of refusing it. mode: a partwheel.Mode, how parts are joined. time_limit:
+    seconds of processor time. memory_limit: bytes, kept on Linux only. None: as the add-on's preferences have it."""
+    _mesh(obj)
+    return Build(builds.build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode, time_limit=time_limit,
+                               memory_limit=memory_limit))
+
+
+def build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None, progress=None):
+    """Builds the hierarchy of the object's mesh, keeps it and returns it: start_build() and its result()."""
+    return start_build(obj, quality, open_surfaces, mode, time_limit, memory_limit).result(progress)
 
 
 def hierarchy(obj):
     """The Hierarchy of the object's mesh as it is now, built if there is none."""
-    _check(obj)
+    _mesh(obj)
     return registry.hierarchy(obj) or builds.build(obj).finish()
+
+
+def state(obj):
+    """How the object's mesh stands to its hierarchy, a State: NONE; UNOPENED, one came with the file and is opened, or
+    refused, at its first use; FITS; MOVED, usable, but vertices have moved since; CHANGED, not usable, the next
+    function that needs one builds anew. Builds nothing."""
+    _mesh(obj)
+    if registry.state(obj.data)[0] != State.UNOPENED:
+        registry.hierarchy(obj)  # looks at the mesh itself, for what Blender has not told of yet
+    return registry.state(obj.data)[0]
+
+
+def clear(obj):
+    """Lets the hierarchy of the object's mesh go, also one that came with the file. The mesh stays as it is."""
+    _mesh(obj)
+    picks.forget(obj)
+
+
+# ---- Parts
+
+
+@dataclass(frozen=True)
+class Part:
+    """A node of a hierarchy, seen from a face that it holds. Wherever a node is wanted, the Part will do."""
+
+    node: int
+    face: int
+    stops: tuple  # nodes, growing up to the whole: where the wheel stops after a click on the face
+    start: int  # index of the stop that a click alone takes
+    faces: numpy.ndarray = field(compare=False, repr=False)  # (n,) indices of the mesh's polygons
+    area: float  # of the node's own faces, in the object's units squared
+    parent: int  # the node above; None for the whole
+    children: tuple  # the two nodes that it was joined of; () for a single tetrahedron
+
+    def __index__(self):
+        return self.node
+
+
+def part(obj, face, level=0, size=None, snap=False):
+    """The Part that a click on this face, an index of the mesh's polygons, takes, after level notches of the wheel
+    (negative: down; held at both ends). size: not from where a click lands, but from the largest stop of at most this
+    share of the whole's area, 0..1, or else the smallest stop. snap: for its faces. PartwheelError: no such face."""
+    built = hierarchy(obj)
+    picked = states.pick(built, operator.index(face))
+    if size is not None:
+        picked = picked.at(sum(built.area[stop] <= size * built.area[-1] for stop in picked.stops) - 1)
+    node = picked.turned(level).node
+    return Part(node, picked.face, picked.stops, picked.start, borders.faces(obj, built, node, snap),
+                float(built.area[node]), int(built.parent[node]) if built.parent[node] >= 0 else None,
+                tuple(numpy.flatnonzero(built.parent == node).tolist()))
 
 
 def path(obj, face):
@@ -53,91 +161,114 @@ def path(obj, face):
 
 
 def faces(obj, node, snap=False):
-    """(n,) the faces of a node: indices of the mesh's polygons, read-only. snap: with its border in the creases nearby.
-    """
-    return borders.faces(obj, hierarchy(obj), node, snap)
+    """(n,) the faces of a node: indices of the mesh's polygons, in no certain order, read-only."""
+    built, node = _node(obj, node)
+    return borders.faces(obj, built, node, snap)
 
 
-def select(obj, face, level=0, extend=False, snap=False):
-    """Selects the part that a click on this face takes, after level notches of the wheel (negative: down), and makes it
-    the part picked last. With extend the selection before stays too. In Edit Mode as the select mode has it. Hidden
-    faces stay as they are. snap: as for faces(). The node."""
-    picked = states.pick(hierarchy(obj), face, level)
-    chosen = faces(obj, picked.node, snap)
-    if obj.mode == "EDIT":
-        selection.Selection(obj, obj.data).select(obj, chosen, picked.face, extend)
+def select(obj, node=None, faces=None, extend=False, deselect=False, snap=False):
+    """Selects a node, which so becomes the part picked last, or these faces, indices of polygons; and nothing else,
+    but with extend what was selected before too, with deselect only what was and is not among these. In Edit Mode as
+    the select mode has it. Hidden faces stay as they are. snap: of a node. Returns (n,) the faces."""
+    if (node is None) == (faces is None):
+        raise ValueError("Say what to select: a node, or faces=.")
+    _mesh(obj, changes=True)  # Blender drops a selection that is set on a linked mesh, without a word
+    face = None
+    if node is not None:
+        built, number = _node(obj, node)
+        chosen = borders.faces(obj, built, number, snap)
+        face = node.face if isinstance(node, Part) else int(chosen[0]) if len(chosen) else None
     else:
-        selection.select_outside_edit_mode(obj.data, chosen, extend)
-    picks.remember(obj, picked.face, picked.node, snap)
-    return picked.node
+        chosen, count = numpy.array(faces, int).ravel(), len(arrays.up_to_date(obj).polygons)
+        if len(chosen) and not 0 <= chosen.min() <= chosen.max() < count:
+            raise ValueError(f"{obj.name} has the faces 0 to {count - 1}; others were to be selected.")
+    if obj.mode == "EDIT":
+        selection.Selection(obj).select(obj, chosen, face, extend, deselect)
+    else:
+        selection.select_outside_edit_mode(obj.data, chosen, extend, deselect)
+    if face is not None:
+        picks.remember(obj, face, number, snap)
+    return chosen
 
 
-def cut(obj, parts=None, height=None, least_concavity=None):
-    """(F,) the part of each face, counted from 0, when the whole is cut: give one of the three. parts: into so many,
+def cut(obj, parts=None, height=None, least_concavity=None, automatic=False):
+    """(F,) the part of each face, counted from 0, when the whole is cut: give one of the four. parts: into so many,
     the last merges undone. least_concavity: into so many, those with the least concavity in total, as for convex hulls.
-    height: at this height of the dendrogram. A part inside the solid has no face."""
+    height: at this height of the dendrogram. automatic: into as many as people would most likely take. A part inside
+    the solid has no face."""
     built = hierarchy(obj)
-    return built.face_labels(_bounds(built, parts, height, least_concavity))
+    return built.face_labels(_bounds(built, parts, height, least_concavity, automatic))
+
+
+# ---- Solids. smooth: caps that go on as the surface does, not the flat facets inside the solid. material: caps get a
+# ---- material of their own.
 
 
 def copy_part(obj, node, smooth=False, material=False, snap=False):
     """A new object in the part's place: the node as a closed solid. Its polygons keep all their attributes; the caps
-    that close it are marked by the face attribute "partwheel_cap". smooth: caps that go on as the surface does, not the
-    flat facets inside the solid. material: caps get a material of their own. snap: its border is moved to the creases
-    nearby, as far as the tetrahedra about it let it be there. solids.NotClosed: it can't be closed."""
-    return composition.copied(obj, hierarchy(obj), node, solids.Options(smooth, material), snap)
+    that close it are marked by the face attribute "partwheel_cap". snap: as far as the tetrahedra about the border let
+    it be there. partwheel.Error: it can't be closed. Outside Edit Mode only."""
+    _mesh(obj, edited=False)
+    built, node = _node(obj, node)
+    return composition.copied(obj, built, node, solids.Options(smooth, material), snap)
 
 
 def remove(obj, node, smooth=False, material=False, snap=False):
-    """Takes the node out of the object's mesh, which must not be in Edit Mode, and closes the hole; options as for
-    copy_part(). What it removes and what copy_part() gives make the whole."""
-    _check(obj)
-    if obj.mode == "EDIT":
-        raise ValueError(f"{obj.name} is in Edit Mode. Leave it before a part is removed by a script.")
-    composition.removed(obj, hierarchy(obj), node, solids.Options(smooth, material), snap)
+    """Takes the node out of the object's mesh and closes the hole; arguments and errors as for copy_part(). What it
+    removes and what copy_part() gives make the whole. Outside Edit Mode only."""
+    _mesh(obj, edited=False, changes=True)
+    built, node = _node(obj, node)
+    composition.removed(obj, built, node, solids.Options(smooth, material), snap)
 
 
-def split(obj, parts=None, height=None, explode=0.0, smooth=False, material=False, least_concavity=None):
-    """New objects in a new collection, one for each part of a cut as cut() makes it: closed solids whose caps match
-    exactly (unless smooth). Each is moved out by explode times its distance from the middle."""
+def split(obj, parts=None, height=None, explode=0.0, smooth=False, material=False, least_concavity=None,
+          automatic=False):
+    """[object, ...] new ones in a new collection, one for each part of a cut as cut() makes it: closed solids whose
+    caps match exactly (unless smooth). Each is moved out by explode times its distance from the middle. Outside Edit
+    Mode only."""
+    _mesh(obj, edited=False)
     built = hierarchy(obj)
-    bounds = _bounds(built, parts, height, least_concavity)
+    bounds = _bounds(built, parts, height, least_concavity, automatic)
     return composition.split(obj, built, bounds, solids.Options(smooth, material), explode)
 
 
-def place(part, location, normal=(0, 0, 1), scale=1.0, angle=0.0, depth=0.0, target=None, fit=False, mirror=False):
+def place(obj, location, normal=(0, 0, 1), scale=1.0, angle=0.0, depth=0.0, target=None, fit=False, mirror=False):
     """Moves an object, one that copy_part() made for instance, so that its border, the largest group of its caps, comes
-    to location in the world, turned against the surface's normal there. scale: times its size. angle: about the normal,
-    in radians. depth: how far it is sunk in, times the border's radius, beyond the little that a union needs.
+    to location in the world, turned against the surface's normal there. scale: times its size. angle: about the normal.
+    depth: how far it is sunk in, times the border's radius, beyond the little that a union needs.
 
     target: the mesh object it goes onto. fit: onto the target's border nearest to location, and of its size. mirror:
-    the mirror image across the target's own YZ plane as well; it is returned, else None. ValueError: no border there."""
-    _check(part)
+    the mirror image across the target's own YZ plane as well; it is returned, else None. ValueError: no border
+    there. Outside Edit Mode only."""
+    _mesh(obj, edited=False)
+    if obj.library:
+        raise ValueError(f"{obj.name} is linked from another file and can't be moved: make it local first.")
     if fit or mirror:
-        _check(target)
-    return placement.place(part, target, placement.Pose(Vector(location), Vector(normal), scale, angle, depth, fit),
+        _mesh(target, edited=False)
+    return placement.place(obj, target, placement.Pose(Vector(location), Vector(normal), scale, angle, depth, fit),
                            mirror)
 
 
-def unite(target, others, blend=0.0):
-    """Makes the target's mesh the union of it and the other objects, which stay, by Blender's Boolean: n-gons, layers
+def unite(obj, others, blend=0.0):
+    """Makes the object's mesh the union of it and the other objects, which stay, by Blender's Boolean: n-gons, layers
     and materials kept, modifiers of the others applied. Outside Edit Mode only.
 
     blend: the width of a smooth transition on either side of each seam, times the seam's radius; it moves vertices
-    there, and has no more of them than the solids. union.NotUnited, before anything has changed: one of them is not
+    there, and has no more of them than the solids. partwheel.Error, before anything has changed: one of them is not
     closed, or no solver gave a closed mesh of a possible volume."""
-    for obj in (target, *others):
-        _check(obj)
-    if any(obj.mode == "EDIT" for obj in (target, *others)):
-        raise ValueError("Leave Edit Mode before solids are united by a script.")
-    union.unite(target, others, blend)
+    _mesh(obj, edited=False, changes=True)
+    for other in others:
+        _mesh(other, edited=False)
+    if not others or obj in others:
+        raise ValueError(f"Say which other objects {obj.name} is to be united with.")
+    union.unite(obj, others, blend)
 
 
 def compatible(obj, node, other):
     """[(node, score), ...] parts of another mesh object that can stand in for the node, the most compatible first; each
     clearly another part than those before. score: 1 for the same shape, down to 0. The node is None for the other
     object itself, if it is a part that was copied as a solid. other may be obj: then parts beside the node.
-    swapping.NotSwapped: the node is the whole, or has no border; or the other has no parts."""
+    partwheel.Error: the node is the whole, or has no border; or the other has no parts. Outside Edit Mode only."""
     return [(offer.node, offer.score) for offer in _place(obj, node, other).offers([other])]
 
 
@@ -145,66 +276,118 @@ def swap(obj, node, other, other_node=None, scale=1.0, angle=0.0, depth=0.0, mir
          snap=False):
     """Exchanges the node for a part of another object: what is left without it is united with a copy of the other's
     part, brought there border to border, of its size, and turned as it fits best. other_node: None for the most
-    compatible one. scale, angle (about the border's normal, radians), depth (radii of the border) change that; mirror
-    takes its mirror image; blend is that of unite(); snap moves both parts' borders to the creases nearby. The other
-    object stays as it is. The other's node that stood in, or None if it was the object itself.
+    compatible one. scale, angle (about the border's normal), depth (radii of the border) change that; mirror takes its
+    mirror image; blend is that of unite(); snap moves both parts' borders. The other object stays as it is. The other's
+    node that stood in, or None if it was the object itself.
 
-    swapping.NotSwapped, solids.NotClosed, union.NotUnited, before anything has changed. Outside Edit Mode only."""
+    partwheel.Error, before anything has changed: as for compatible(), copy_part() and unite(). Outside Edit Mode only.
+    """
+    _mesh(obj, changes=True)
     place = _place(obj, node, other, snap)
-    if obj.mode == "EDIT":
-        raise ValueError(f"{obj.name} is in Edit Mode. Leave it before a part is exchanged by a script.")
-    offer = place.offers([other])[0] if other_node is None else place.offer(other, other_node)
+    offer = place.offers([other])[0] if other_node is None else place.offer(other, operator.index(other_node))
     place.swap(offer, swapping.Adjustment(scale, angle, depth, mirror), blend)
     return offer.node
 
 
-def _place(obj, node, other, snap=False):
-    built = hierarchy(obj)
-    if other.type == "MESH" and placement.caps(other.data) is None:
-        hierarchy(other)
-    _check(other)
-    return swapping.Place(obj, built, node, snap)
+# ---- Deforming: in the shape key that is active, if any, and across the x axis too if the mesh has that on, in any
+# ---- mode. progress(fraction, what): called at every iteration, with the share of those allowed; most need few.
+# ---- Returning True cancels, and so does time_limit, seconds by the clock: PartwheelError, status CANCELLED.
 
 
-def _bounds(built, parts, height, least_concavity):
-    given = [(cut, value) for cut, value in ((built.cut_parts, parts), (built.cut_height, height),
-                                             (built.cut_least_concavity, least_concavity)) if value is not None]
-    if len(given) != 1:
-        raise ValueError("Say how to cut by one of the three: parts=, least_concavity= or height=.")
-    (cut, value), = given
-    return cut(value)
-
-
-def deform(obj, node, handle_vertices, matrix, rings=0):
-    """Deforms a node's part as rigidly as possible: these vertices of it (indices of the mesh's) go to matrix (4,4), in
-    the object's space, times their place; the part's border and all beyond stay. In the shape key that is active, if
-    any, and across the x axis too if the mesh has that on. rings: so many rings of faces around the part take part.
-    Raises ValueError if there is nothing to deform, or nothing to hold it."""
-    region = deforming.Region(obj, faces(obj, node), rings, obj.data.use_mirror_x)
-    inside = numpy.searchsorted(region.vertices, handle_vertices)
+def deform(obj, node, handle, matrix, rings=0, snap=False, progress=None, time_limit=None):
+    """Deforms a node's part as rigidly as possible: the handle, vertices of it (indices of the mesh's), go to matrix
+    (4,4) times their place; the part's border and all beyond stay. rings: so many rings of faces around the part take
+    part. ValueError: there is nothing to deform, or nothing to hold it, or the handle is not inside."""
+    _mesh(obj, changes=True)
+    region = deforming.Region(obj, faces(obj, node, snap), rings, obj.data.use_mirror_x)
+    inside = numpy.searchsorted(region.vertices, handle)
     known = inside < len(region.vertices)
-    if not (known.all() and (region.vertices[inside] == handle_vertices).all() and region.free[inside].all()):
+    if not (known.all() and (region.vertices[inside] == handle).all() and region.free[inside].all()):
         raise ValueError("The handle has vertices that are not inside the part: on its border, beyond it, or hidden.")
     if not len(inside):
         raise ValueError("The handle has no vertices.")
-    shape = deforming.AsRigidAsPossible(region, [inside])
-    shape.jump([numpy.asarray(matrix, float)])
-    deforming.Pen(obj, region).write(obj, shape.points())
+    _deform(obj, region, deforming.AsRigidAsPossible(region, [inside]), matrix, progress, time_limit)
 
 
-def bend(obj, node, rotation, reach=REACH):
-    """Turns a node's part about the joint where it hangs on the rest, the middle of its border, by rotation (3,3) in the
-    object's space. The part keeps its shape, but what is within reach of its border, in radii of that, bends, on either
-    side; all beyond stays. Shape keys and the x axis as for deform(). Raises ValueError if there is no such joint."""
-    region = deforming.Region(obj, faces(obj, node), mirror=obj.data.use_mirror_x, reach=reach)
+def bend(obj, node, rotation, reach=REACH, snap=False, progress=None, time_limit=None):
+    """Turns a node's part about the joint where it hangs on the rest, the middle of its border, by rotation (3,3). The
+    part keeps its shape, but what is within reach of its border, in radii of that, bends, on either side; all beyond
+    stays. ValueError: there is no such joint."""
+    _mesh(obj, changes=True)
+    region = deforming.Region(obj, faces(obj, node, snap), mirror=obj.data.use_mirror_x, reach=reach)
     matrix = numpy.eye(4)
     matrix[:3, :3] = rotation
     matrix[:3, 3] = region.center - matrix[:3, :3] @ region.center
-    shape = deforming.AtJoint(region)
-    shape.jump([matrix])
+    _deform(obj, region, deforming.AtJoint(region), matrix, progress, time_limit)
+
+
+def _deform(obj, region, shape, matrix, progress, time_limit):
+    watch = _Watch(progress, time_limit)
+    shape.jump([numpy.asarray(matrix, float)], watch)
+    if watch.reason:
+        raise PartwheelError(Status.CANCELLED, f"{watch.reason} The mesh is as it was.")
     deforming.Pen(obj, region).write(obj, shape.points())
 
 
-def _check(obj):
+class _Watch:
+    """Asked before each iteration whether to stop, as a threading.Event would be; so it tells how far that is."""
+
+    def __init__(self, progress, time_limit):
+        self.progress, self.seconds, self.began = progress, time_limit, time.monotonic()
+        self.asked, self.reason = 0, None
+
+    def is_set(self):
+        if self.seconds is not None and time.monotonic() - self.began > self.seconds:
+            self.reason = f"The deformation was not done in {self.seconds:g} seconds."
+        elif self.progress and self.progress(min(self.asked / MOST_ITERATIONS, 1.0), "deform"):
+            self.reason = "The deformation was cancelled."
+        self.asked += 1
+        return self.reason is not None
+
+
+# ---- What they share
+
+
+def _mesh(obj, edited=True, changes=False):
+    """Raises ValueError for what is no mesh object; unless edited, for one in Edit Mode; if its mesh is to change, for
+    one that can't."""
     if obj is None or obj.type != "MESH":
         raise ValueError(f"{obj.name if obj else 'None'} is not a mesh object.")
+    if changes and read_only(obj):
+        raise ValueError(f"{read_only(obj)}.")
+    if obj.mode == "EDIT" and not edited:
+        raise ValueError(f"{obj.name} is in Edit Mode. Leave it before a script does this.")
+
+
+def _node(obj, node):
+    """(the Hierarchy of the object, the number of one of its nodes); PartwheelError: it has no such node."""
+    built, number = hierarchy(obj), operator.index(node)
+    built.faces(number)
+    return built, number
+
+
+def _place(obj, node, other, snap=False):
+    for each in (obj, other):
+        _mesh(each, edited=False)
+    built, node = _node(obj, node)
+    if placement.caps(other.data) is None:
+        hierarchy(other)
+    return swapping.Place(obj, built, node, snap)
+
+
+def _bounds(built, parts, height, least_concavity, automatic):
+    given = [(cut, value) for cut, value in ((built.cut_parts, parts), (built.cut_height, height),
+                                             (built.cut_least_concavity, least_concavity)) if value is not None]
+    if len(given) + bool(automatic) != 1:
+        raise ValueError("Say how to cut by one of the four: parts=, least_concavity=, height= or automatic=True.")
+    return built.cut_automatic() if automatic else given[0][0](given[0][1])
+
+
+def register():
+    """Scripts find this module in the package, whose name is the same wherever the add-on is."""
+    partwheel.api = sys.modules[__name__]
+
+
+def unregister():
+    if getattr(partwheel, "api", None) is sys.modules[__name__]:
+        del partwheel.api

@@ -10,8 +10,7 @@ import argparse
 import bpy
 
 from . import api
-from partwheel import LibraryError, PartwheelError
-from .parts.builds import Outdated
+from partwheel import Error
 
 NAME = "partwheel"
 _handle = None
@@ -30,7 +29,7 @@ def run(arguments):
     for obj in {obj.data: obj for obj in objects}.values():
         try:
             print(options.do(obj, options), flush=True)
-        except (PartwheelError, LibraryError, Outdated) as error:
+        except Error as error:
             print(f"{obj.name}: {error}", flush=True)
             failed += 1
     bpy.ops.wm.save_as_mainfile(filepath=options.output or options.file)

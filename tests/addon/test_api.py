@@ -1,16 +1,281 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """partwheel.api, and the part that was picked last, which other operators act on."""
 
+import os
+import tempfile
+
 import bmesh
 import bpy
 import numpy as np
 from common import BOX, MeshTest, package, part, read_off, selected
 
 
+def places(obj):
+    """(V,3), in either mode."""
+    return np.array([vertex.co[:] for vertex in part("mesh.arrays").up_to_date(obj).vertices])
+
+
 class Api(MeshTest):
     def setUp(self):
         super().setUp()
         self.api = part("api")
+
+    def click(self, obj, face, level=0, **options):
+        """The node that it selects, which is the one picked last then, by this face."""
+        found = self.api.part(obj, face, level)
+        self.api.select(obj, found, **options)
+        picked = part("parts.picks").picked(obj)
+        self.assertEqual((picked.node, picked.face), (found.node, face))
+        return found.node
+
+    def chosen(self, obj):
+        return {polygon.index for polygon in part("mesh.arrays").up_to_date(obj).polygons if polygon.select}
+
+    def in_both_modes(self, obj):
+        for mode in ("OBJECT", "EDIT"):
+            bpy.ops.object.mode_set(mode=mode)
+            with self.subTest(mode):
+                yield mode
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_found_by_its_name_in_the_package(self):
+        from partwheel import api
+        self.assertIs(api, self.api)
+        self.api.unregister()
+        try:
+            with self.assertRaises(ImportError):
+                from partwheel import api
+        finally:
+            self.api.register()
+        from partwheel import api as again
+        self.assertIs(again, self.api)
+
+    def test_a_build_that_is_waited_for(self):
+        obj = self.add(*read_off("hand"))
+        for mode in self.in_both_modes(obj):
+            self.api.clear(obj)
+            build, told = self.api.start_build(obj), []
+            self.assertEqual(self.api.state(obj), self.api.State.NONE)
+            while not build.wait(0.01):
+                told.append(build.poll() or (1.0, ""))
+            self.assertIsNone(build.poll())
+            found = build.result()
+            self.assertIs(found, self.api.hierarchy(obj))
+            self.assertIs(found, build.result())
+            self.assertEqual(found.save(), self.hierarchy(obj).save())
+            fractions = [fraction for fraction, _ in told]
+            self.assertTrue(fractions and fractions == sorted(fractions) and 0 <= fractions[0] <= fractions[-1] <= 1)
+
+    def test_a_build_that_is_ended(self):
+        obj, error = self.add(*read_off("hand")), package().PartwheelError
+        asked = []
+
+        def once(fraction, what):
+            asked.append((fraction, what))
+            return True
+
+        def broken(_fraction, _what):
+            raise KeyError("a script's own")
+
+        cancelled = self.api.start_build(obj)
+        cancelled.cancel()
+        for ended in (cancelled.result, lambda: self.api.build(obj, progress=once)):
+            with self.assertRaises(error) as raised:
+                ended()
+            self.assertEqual(raised.exception.status, package().Status.CANCELLED)
+        self.assertTrue(asked and all(0 <= fraction <= 1 and what for fraction, what in asked))
+        with self.assertRaises(KeyError):
+            self.api.build(obj, progress=broken)
+        for limit, name in (({"time_limit": 1e-9}, "time limit"), ({"memory_limit": 2**20}, "memory")):
+            with self.subTest(name), self.assertRaises(error) as raised:
+                self.api.build(obj, **limit)
+            self.assertIn(raised.exception.name, (name, "worker"))  # a worker that can't even begin with so little
+        self.assertEqual(self.api.state(obj), self.api.State.NONE)
+        self.assertFalse(part("parts.builds").running())
+        edited = self.api.start_build(obj)
+        bm = self.edit(obj)
+        bmesh.ops.delete(bm, geom=list(bm.faces)[:1], context="FACES_ONLY")
+        with self.assertRaisesRegex(package().Error, "edited while"):
+            edited.result()
+
+    def test_state_and_clear(self):
+        obj, state = self.add(*read_off("hand")), self.api.State
+        for mode in self.in_both_modes(obj):
+            self.assertEqual(self.api.state(obj), state.NONE)
+            self.api.build(obj)
+            self.assertEqual(self.api.state(obj), state.FITS)
+            if mode == "EDIT":
+                bm = bmesh.from_edit_mesh(obj.data)
+                bm.verts.ensure_lookup_table()
+                bm.verts[0].co.x += 1e-4
+            else:  # a way that Blender tells nobody of
+                obj.data.vertices[0].co.x += 1e-4
+            self.assertEqual(self.api.state(obj), state.MOVED)
+            self.api.clear(obj)
+        twin = self.link(obj.copy())
+        self.api.build(obj)
+        twin.data = obj.data.copy()
+        self.assertEqual(self.api.state(twin), state.FITS)
+        bm = self.edit(twin)
+        bmesh.ops.delete(bm, geom=list(bm.faces)[:1], context="FACES_ONLY")
+        self.assertEqual(self.api.state(twin), state.CHANGED)
+        self.assertEqual(self.api.state(obj), state.FITS)
+
+    def test_state_of_what_came_with_the_file(self):
+        obj, state = self.add(*read_off("hand")), self.api.State
+        self.api.build(obj)
+        for touch, expected in ((self.api.hierarchy, state.FITS), (self.api.clear, state.NONE)):
+            with tempfile.TemporaryDirectory() as folder:
+                bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, "a.blend"))
+                bpy.ops.wm.open_mainfile(filepath=os.path.join(folder, "a.blend"))
+            obj = bpy.data.objects["model"]
+            self.assertEqual(self.api.state(obj), state.UNOPENED)
+            touch(obj)
+            self.assertEqual(self.api.state(obj), expected)
+
+    def test_part(self):
+        """Against the core's wheel, Blender's areas and the tree walked from each node."""
+        obj = self.add(*read_off("hand"))
+        h, areas = self.hierarchy(obj), np.array([polygon.area for polygon in obj.data.polygons])
+        stops, start = h.wheel(700)
+        for mode in self.in_both_modes(obj):
+            for level in (-10**6, -1, 0, 1, 10**6):
+                found = self.api.part(obj, 700, level)
+                index = min(max(start + level, 0), len(stops) - 1)
+                self.assertEqual((found.node, found.face, list(found.stops), found.start),
+                                 (stops[index], 700, stops.tolist(), start))
+                self.assertEqual(sorted(found.faces.tolist()), sorted(h.faces(found.node).tolist()))
+                self.assertAlmostEqual(found.area / areas[found.faces].sum(), 1, places=4)
+                self.assertEqual(-1 if found.parent is None else found.parent, h.parent[found.node])
+                self.assertEqual(list(found.children), [n for n, up in enumerate(h.parent) if up == found.node])
+                self.assertEqual(sorted(sum((h.faces(child).tolist() for child in found.children), [])),
+                                 sorted(found.faces.tolist()))
+                self.assertEqual(self.api.faces(obj, found).tolist(), h.faces(found.node).tolist())  # stands for it
+            for size in (0, 0.01, 0.2, 0.5, 1):
+                shares = [areas[h.faces(stop)].sum() / areas.sum() for stop in stops]
+                fitting = [stop for stop, share in zip(stops, shares) if share <= size + 1e-6]
+                self.assertEqual(self.api.part(obj, 700, size=size).node, (fitting or stops)[-1 if fitting else 0])
+        self.api.build(obj, mode=package().Mode.PAPER)
+        self.assertEqual(self.api.part(obj, 700).children, ())  # a tetrahedron
+        snapped = self.api.part(obj, 700, 9, snap=True)
+        self.assertEqual(snapped.faces.tolist(), self.api.faces(obj, snapped, snap=True).tolist())
+
+    def test_select_faces_and_less(self):
+        obj = self.add(*read_off("hand"))
+        found = self.api.part(obj, 700)
+        for mode in self.in_both_modes(obj):
+            some = set(found.faces.tolist()[:7])
+            self.api.select(obj, found)
+            self.assertEqual(self.chosen(obj), set(found.faces.tolist()))
+            self.api.select(obj, faces=sorted(some), deselect=True)
+            self.assertEqual(self.chosen(obj), set(found.faces.tolist()) - some)
+            self.api.select(obj, faces=[0, 5])
+            self.api.select(obj, faces=np.array([9]), extend=True)
+            self.assertEqual(self.chosen(obj), {0, 5, 9})
+            for wrong in ({}, {"node": 0, "faces": [0]}, {"faces": [2390]}, {"faces": [-1]}):
+                with self.assertRaises(ValueError):
+                    self.api.select(obj, **wrong)
+            self.assertEqual(self.chosen(obj), {0, 5, 9})
+            self.api.select(obj, faces=[])
+            self.assertEqual(self.chosen(obj), set())
+            self.assertEqual(part("parts.picks").picked(obj).node, found.node)  # stays
+
+    def test_a_deformation_tells_how_far_it_is_and_can_be_stopped(self):
+        obj, turn = self.add(*read_off("hand")), np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]])
+        found = self.api.part(obj, 700, size=0.2)
+        outside = {v for p in obj.data.polygons if p.index not in set(found.faces.tolist()) for v in p.vertices}
+        tip = sorted({v for p in found.faces.tolist() for v in obj.data.polygons[p].vertices} - outside)[0]
+        matrix = np.eye(4)
+        matrix[:3, 3] = 0.1, 0, 0
+        before = places(obj)
+        for mode in self.in_both_modes(obj):
+            for change in (lambda **options: self.api.deform(obj, found, [tip], matrix, **options),
+                           lambda **options: self.api.bend(obj, found, turn, **options)):
+                told = []
+                for options in ({"progress": lambda *_: True}, {"time_limit": 0}):
+                    with self.assertRaisesRegex(package().PartwheelError, "as it was") as raised:
+                        change(**options)
+                    self.assertEqual(raised.exception.status, package().Status.CANCELLED)
+                    self.assertTrue((places(obj) == before).all())
+                change(progress=lambda fraction, what: told.append(fraction), time_limit=10**6)
+                after = places(obj)
+                self.assertTrue((after != before).any() and told == sorted(told) and 0 <= told[0] <= told[-1] <= 1)
+                bpy.ops.object.mode_set(mode="OBJECT")
+                obj.data.vertices.foreach_set("co", before.astype(np.float32).ravel())
+                obj.data.update()
+                bpy.ops.object.mode_set(mode=mode)
+                change()
+                self.assertTrue((places(obj) == after).all())  # who watches changes nothing
+                bpy.ops.object.mode_set(mode="OBJECT")
+                obj.data.vertices.foreach_set("co", before.astype(np.float32).ravel())
+                obj.data.update()
+                bpy.ops.object.mode_set(mode=mode)
+
+    def changing(self, obj, other):
+        """Calls that change the mesh, and those of them that need Object Mode first."""
+        node = len(self.hierarchy(other).parent) - 2
+        return (lambda: self.api.remove(obj, node), lambda: self.api.unite(obj, [other]),
+                lambda: self.api.swap(obj, node, other)), (
+                lambda: self.api.deform(obj, node, [0], np.eye(4)), lambda: self.api.bend(obj, node, np.eye(3)),
+                lambda: self.api.select(obj, node), lambda: self.api.select(obj, faces=[0]))
+
+    def test_a_linked_mesh(self):
+        """All that only reads it is as for a local one; all that would change it says why not."""
+        local = self.add(*read_off("hand"))
+        expected = self.hierarchy(local)
+        other = self.add(*read_off("hand"), "other")
+        obj = self.linked(local)
+        before = places(obj)
+        self.assertEqual(self.api.start_build(obj).result().save(), expected.save())
+        self.assertEqual(self.api.state(obj), self.api.State.FITS)
+        found = self.api.part(obj, 700)
+        self.assertEqual(found.node, expected.wheel(700)[0][expected.wheel(700)[1]])
+        self.assertEqual(self.api.cut(obj, parts=4).tolist(), expected.face_labels(expected.cut_parts(4)).tolist())
+        self.assertGreater(len(self.api.copy_part(obj, found).data.polygons), len(found.faces))
+        self.assertEqual(len(self.api.split(obj, parts=3)), 3)
+        for change in sum(self.changing(obj, other), ()):
+            with self.assertRaisesRegex(ValueError, "linked from another file"):
+                change()
+        with self.assertRaisesRegex(ValueError, "linked from another file"):
+            self.api.place(obj, (0, 0, 0))
+        self.assertTrue((places(obj) == before).all())
+        self.api.clear(obj)
+        self.assertEqual(self.api.state(obj), self.api.State.NONE)
+
+    def test_what_needs_object_mode_says_so(self):
+        other, obj = self.add(*read_off("hand"), "other"), self.add(*read_off("hand"))
+        node = self.api.part(obj, 700).node
+        self.edit(obj)
+        before = places(obj), len(bpy.data.objects)
+        for refused in (*self.changing(obj, other)[0], lambda: self.api.copy_part(obj, node),
+                        lambda: self.api.split(obj, parts=2), lambda: self.api.unite(other, [obj]),
+                        lambda: self.api.swap(other, node, obj), lambda: self.api.compatible(other, node, obj),
+                        lambda: self.api.place(obj, (0, 0, 0)),
+                        lambda: self.api.place(other, (0, 0, 0), target=obj, fit=True)):
+            with self.assertRaisesRegex(ValueError, "Edit Mode"):
+                refused()
+        self.assertTrue((places(obj) == before[0]).all() and len(bpy.data.objects) == before[1])
+
+    def test_what_is_no_mesh_object(self):
+        obj = self.add(*BOX)
+        for wrong in (None, self.link(bpy.data.objects.new("empty", None))):
+            calls = [lambda f=f, a=a: f(wrong, *a) for f, a in (
+                (self.api.start_build, ()), (self.api.build, ()), (self.api.hierarchy, ()), (self.api.state, ()),
+                (self.api.clear, ()), (self.api.part, (0,)), (self.api.path, (0,)), (self.api.faces, (0,)),
+                (self.api.select, (0,)), (self.api.select, (None, [0])), (self.api.copy_part, (0,)),
+                (self.api.remove, (0,)), (self.api.place, ((0, 0, 0),)), (self.api.unite, ([obj],)),
+                (self.api.compatible, (0, obj)), (self.api.swap, (0, obj)), (self.api.deform, (0, [0], np.eye(4))),
+                (self.api.bend, (0, np.eye(3))))]
+            calls += [lambda: self.api.cut(wrong, parts=2), lambda: self.api.split(wrong, parts=2),
+                      lambda: self.api.unite(obj, [wrong]), lambda: self.api.swap(obj, 0, wrong),
+                      lambda: self.api.compatible(obj, 0, wrong),
+                      lambda: self.api.place(obj, (0, 0, 0), target=wrong, fit=True)]
+            for number, call in enumerate(calls):
+                with self.subTest(number), self.assertRaisesRegex(ValueError, "not a mesh object"):
+                    call()
+        for others in ([], [obj]):
+            with self.assertRaisesRegex(ValueError, "united with"):
+                self.api.unite(obj, others)
 
     def test_build_path_faces(self):
         obj = self.add(*read_off("hand"))
@@ -47,11 +312,11 @@ class Api(MeshTest):
             expected = selected(obj)
             node = part("parts.picks").picked(obj).node
             bpy.ops.mesh.select_all(action="DESELECT")
-            self.assertEqual(self.api.select(obj, 700, level), node)
+            self.assertEqual(self.click(obj, 700, level), node)
             self.assertEqual(selected(obj), expected)
             bpy.ops.mesh.select_all(action="DESELECT")
             bpy.ops.object.mode_set(mode="OBJECT")
-            self.assertEqual(self.api.select(obj, 700, level), node)
+            self.assertEqual(self.click(obj, 700, level), node)
             self.assertEqual({p.index for p in obj.data.polygons if p.select}, expected)
             corners = {v for p in obj.data.polygons if p.select for v in p.vertices}
             self.assertEqual({v.index for v in obj.data.vertices if v.select}, corners)
@@ -64,7 +329,7 @@ class Api(MeshTest):
         obj.data.polygons.foreach_set("select", np.arange(2390) == 2000)
         hidden = np.arange(2390) % 3 == 0
         obj.data.polygons.foreach_set("hide", hidden)
-        node = self.api.select(obj, 700, extend=True)
+        node = self.click(obj, 700, extend=True)
         expected = set(self.api.faces(obj, node).tolist()) - set(np.flatnonzero(hidden).tolist()) | {2000}
         self.assertEqual({p.index for p in obj.data.polygons if p.select}, expected)
 
@@ -79,7 +344,9 @@ class Api(MeshTest):
                              h.face_labels(h.cut_least_concavity(parts)).tolist())
         self.assertEqual(self.api.cut(obj, height=0.5 * h.height[-1]).tolist(),
                          h.face_labels(h.cut_height(0.5 * h.height[-1])).tolist())
-        for arguments in ({}, {"parts": 2, "height": 0.5}, {"parts": 2, "least_concavity": 2}):
+        self.assertEqual(self.api.cut(obj, automatic=True).tolist(), h.face_labels(h.cut_automatic()).tolist())
+        for arguments in ({}, {"parts": 2, "height": 0.5}, {"parts": 2, "least_concavity": 2},
+                          {"parts": 2, "automatic": True}):
             with self.assertRaises(ValueError):
                 self.api.cut(obj, **arguments)
 
@@ -88,7 +355,7 @@ class Api(MeshTest):
         self.api.build(obj, mode=package().Mode.PAPER)
         path = self.api.path(obj, 700).tolist()
         for level in (0, 1, 5, len(path) - 1):
-            self.assertEqual(self.api.select(obj, 700, level), path[level])
+            self.assertEqual(self.click(obj, 700, level), path[level])
 
     def test_refusals(self):
         error = package().PartwheelError
@@ -98,7 +365,7 @@ class Api(MeshTest):
             self.api.faces(self.link(bpy.data.objects.new("empty", None)), 0)
         obj = self.add(*BOX)
         with self.assertRaises(error):
-            self.api.select(obj, 6)
+            self.api.part(obj, 6)
         with self.assertRaises(error):
             self.api.faces(obj, 10**6)
         self.assertIsNone(part("parts.picks").picked(obj))

@@ -48,7 +48,8 @@ class Deform(MeshTest):
         stops, start = hierarchy.wheel(FINGER)
         # The finger is the largest part that is no more than a fifth of the hand.
         finger = sum(hierarchy.area[stop] <= 0.2 * hierarchy.area[-1] for stop in stops) - 1
-        node = api.select(obj, FINGER, finger - start)
+        node = api.part(obj, FINGER, finger - start).node
+        api.select(obj, node)
         faces = api.faces(obj, node).tolist()
         free = inner(obj, faces)
         co = stored(obj.data.vertices)
@@ -74,7 +75,7 @@ class Deform(MeshTest):
         level = start.stops.index(node) - start.start
         for picked, arguments, chosen in ((True, {}, snapped), (False, {}, faces), (True, {"snap": False}, faces),
                                           (False, {"snap": True}, snapped)):
-            part("api").select(obj, FINGER, level, snap=picked)
+            part("api").select(obj, part("api").part(obj, FINGER, level), snap=picked)
             self.assertEqual(self.run_operator(handles=[handle(tip, move, 0)], **arguments), {"FINISHED"})
             moved = numpy.flatnonzero((edited(obj) != before).any(axis=1))
             self.assertLessEqual(set(moved.tolist()), set(inner(obj, chosen)))

@@ -13,12 +13,12 @@ from ..mesh import arrays
 from ..parts import registry
 from ..solid import composition
 from . import placement, union
-from partwheel import compatible
+from partwheel import Error, compatible
 from ..mesh.arrays import read
 from ..mesh.objects import named
 
 
-class NotSwapped(Exception):
+class NotSwapped(Error):
     """Why a part can't be exchanged. str() is sentences for the user."""
 
 

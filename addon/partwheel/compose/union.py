@@ -10,7 +10,7 @@ from mathutils.bvhtree import BVHTree
 
 from ..mesh import arrays, pieces
 from . import pinches, seams
-from partwheel import polygon_faults
+from partwheel import Error, polygon_faults
 from ..mesh.arrays import read
 
 # (solver, whether it also unites what overlaps within one mesh), in the order tried. Blenders before 4.5 have no
@@ -23,7 +23,7 @@ TOLERANCE = 1e-5  # of the sum of the volumes: coordinates are of 24 bits
 SETTINGS = ("remesh_", "use_remesh_", "use_mirror_", "use_paint_", "use_auto_", "auto_smooth", "radial", "texspace")
 
 
-class NotUnited(Exception):
+class NotUnited(Error):
     """Why meshes can't be united. str() is a sentence for the user."""
 
 

@@ -8,7 +8,7 @@ from ..mesh.kept import PerMesh, counts, key
 from ..preferences import preferences
 from . import registry
 from .opening import unopened
-from partwheel import Mode, PartwheelError, Status
+from partwheel import Error, Mode, PartwheelError, Status
 from partwheel.library import load
 from partwheel.worker import WAIT_SECONDS, Job, available_memory
 
@@ -16,7 +16,7 @@ _builds = {}  # those that have not ended, in the order in which they were asked
 _sheets = PerMesh()  # how many vertices and polygons a mesh had when it was refused for being a sheet
 
 
-class Outdated(Exception):
+class Outdated(Error):
     """A build ended and its mesh is not there any more, or not as it was. str() is sentences for the user."""
 
 
@@ -47,8 +47,9 @@ class Build:
     """A build of the object's mesh as it is now, in a process of its own, once those asked for earlier are over. The
     mesh is not changed, nor kept from changing. To be had from build(): there is one a mesh."""
 
-    def __init__(self, obj, quality=0.0, open_surfaces=False, mode=None):
-        """mode: a partwheel.Mode; None: the preferences'. open_surfaces holds for later builds of the mesh too."""
+    def __init__(self, obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None):
+        """mode: a partwheel.Mode; limits: as Job has them; None: the preferences'. open_surfaces holds for later builds
+        of the mesh too."""
         load()  # a missing library is better told here
         mesh = arrays.up_to_date(obj)
         self.name = mesh.name
@@ -56,7 +57,8 @@ class Build:
         former = registry.entry_of(mesh)
         self._open_surfaces = open_surfaces or (former is not None and former.open_surfaces)
         self._mode = Mode[preferences().parts] if mode is None else mode
-        self._options = {"quality": quality, "open_surfaces": open_surfaces, "mode": mode}
+        self._options = {"quality": quality, "open_surfaces": open_surfaces, "mode": mode, "time_limit": time_limit,
+                         "memory_limit": memory_limit}
         self._surface = arrays.surface(mesh)
         self._hierarchy = self._error = None
         self._cancelled = False
@@ -71,10 +73,11 @@ class Build:
 
     def start(self):
         """It is its turn: whether it has a worker now."""
-        share, seconds = preferences().memory_share / 100, 60 * preferences().time_limit
+        share, options = preferences().memory_share / 100, self._options
         try:
-            self.job = Job(*self._surface, quality=self._options["quality"], open_surfaces=self._open_surfaces,
-                           mode=self._mode, memory_limit=int(share * available_memory()), time_limit=seconds or None,
+            self.job = Job(*self._surface, quality=options["quality"], open_surfaces=self._open_surfaces,
+                           mode=self._mode, memory_limit=options["memory_limit"] or int(share * available_memory()),
+                           time_limit=options["time_limit"] or 60 * preferences().time_limit or None,
                            python=bpy.path.abspath(preferences().python))
         except Exception as error:  # whatever it is, finish() raises it
             self._error = error

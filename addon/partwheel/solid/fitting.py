@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..mesh import arrays
-from partwheel import PartwheelError, Solid, Status
+from partwheel import Error, PartwheelError, Solid, Status
 from ..mesh.arrays import read
 from ..mesh.pieces import Origins, Plan
 
 
-class NotClosed(Exception):
+class NotClosed(Error):
     """A part that can't be made a solid. str() is a sentence for the user."""
 
 
