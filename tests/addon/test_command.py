@@ -60,5 +60,23 @@ class Command(MeshTest):
         self.assertEqual(code, 1)
         self.assertIn("named none", printed)
 
+    def test_each_object_is_told_of_at_once(self):
+        """Also into a pipe or a file: what has failed is said before the next is begun, too."""
+        for name, mesh in (("a", BOX), ("b", SHEET), ("c", BOX)):
+            self.add(*mesh, name)
+        self.save()
+        written, told = io.BytesIO(), []
+        api, build = part("api"), part("api").build
+        self.addCleanup(setattr, api, "build", build)
+
+        def noted(*arguments):
+            told.append([line[:2] for line in written.getvalue().decode().splitlines()])
+            return build(*arguments)
+
+        api.build = noted
+        with contextlib.redirect_stdout(io.TextIOWrapper(written, "utf-8")):
+            part("command").run(["build", self.path])
+        self.assertEqual(told, [[], ["a:"], ["a:", "b:"]])
+
     def test_registered_where_blender_has_commands(self):
         self.assertEqual(part("command")._handle is not None, hasattr(bpy.utils, "register_cli_command"))

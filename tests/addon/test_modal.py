@@ -93,7 +93,8 @@ class Tool:
         vars(self).update(properties)
 
     def __getattr__(self, name):
-        cls = getattr(bpy.types, f"MESH_OT_partwheel_{self.operator}")
+        kinds = (getattr(bpy.types, f"{kind}_OT_partwheel_{self.operator}", None) for kind in ("MESH", "OBJECT"))
+        cls = next(filter(None, kinds))
         found = [vars(each)[name] for each in cls.__mro__ if name in vars(each)]
         if not found:
             raise AttributeError(name)

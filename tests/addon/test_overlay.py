@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is tinted in which colour. Without a graphics card: which triangles would be handed to it."""
 
+import types
+
 import bpy
 import numpy as np
-from common import MeshTest, part, read_off
+from common import BOX, MeshTest, part, read_off
+from mathutils import Matrix
 
 
 class Tints(MeshTest):
@@ -53,3 +56,32 @@ class Tints(MeshTest):
         snapped = np.setdiff1d(self.h.faces(larger), self.h.faces(larger)[:5])
         self.assertEqual(self.tinted(node, larger, snapped), {
             self.overlay.PART: sorted(snapped.tolist()), self.overlay.NEXT: sorted(self.h.faces(larger)[:5].tolist())})
+
+
+class State:
+    """gpu.state: what is set, as add-ons drawing before have left it."""
+
+    def __init__(self):
+        self.now = {"blend": "ADDITIVE", "depth_test": "GREATER", "depth_mask": True}
+
+    def __getattr__(self, name):
+        what, _, way = name.rpartition("_")
+        return (lambda: self.now[what]) if way == "get" else (lambda value: self.now.update({what: value}))
+
+
+class Drawing(MeshTest):
+    def test_tints_are_blended_and_the_state_is_given_back(self):
+        """The mesh shows through, what lies before it hides them, and who draws next finds all as it was."""
+        overlay, state, drawn = part("view.overlay"), State(), []
+        self.addCleanup(setattr, overlay, "gpu", overlay.gpu)
+        overlay.gpu = types.SimpleNamespace(state=state, types=types.SimpleNamespace(
+            Buffer=lambda *what: what, GPUUniformBuf=lambda buffer: buffer))
+        shader = types.SimpleNamespace(bind=lambda: None, uniform_block=lambda *_: None)
+        batch = types.SimpleNamespace(draw=lambda _shader: drawn.append(dict(state.now)))
+        before = dict(state.now)
+        view = types.SimpleNamespace(is_perspective=True, view_matrix=Matrix(), perspective_matrix=Matrix(),
+                                     use_clip_planes=False)
+        overlay._draw(types.SimpleNamespace(region_data=view), self.add(*BOX),
+                      [(shader, batch, overlay.PART, 0.0), (shader, batch, overlay.NEXT, 0.0)])
+        self.assertEqual(drawn, 2 * [{"blend": "ALPHA", "depth_test": "LESS_EQUAL", "depth_mask": False}])
+        self.assertEqual(state.now, before)

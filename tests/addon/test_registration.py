@@ -4,16 +4,18 @@
 import gc
 import importlib.util
 import inspect
+import io
 import os
 import sys
 import tempfile
 import time
+import types
 import unittest
 import zipfile
 
 import bpy
 import common
-from common import BOX, MeshTest, part, read_off
+from common import BOX, MeshTest, package, part, read_off
 from run import installed
 
 
@@ -72,6 +74,23 @@ def everything():
     return dir(bpy.types), operators, keymap_items(), handlers(), menu_entries(), timers(), properties(), tools()
 
 
+def add_updated(old, new):
+    """Writes the files of a zip, or of the wheel in it, into another: some say so, and a wheel has another version."""
+    for name in old.namelist():
+        data = old.read(name)
+        if name.endswith(".whl"):
+            wheel = io.BytesIO()
+            with zipfile.ZipFile(io.BytesIO(data)) as old_wheel, zipfile.ZipFile(wheel, "w") as new_wheel:
+                add_updated(old_wheel, new_wheel)
+            data = wheel.getvalue()
+        elif name.endswith(("/parts/session.py", "partwheel/hierarchy.py", "/pick/build.py")):
+            data += b"\nUPDATED = True\n"
+        elif ".dist-info/" in name:
+            data = data.replace(b"0.1.0", b"0.1.1")
+        data = data.replace(b"partwheel-0.1.0-py3", b"partwheel-0.1.1-py3") if name.endswith(".toml") else data
+        new.writestr(name.replace("partwheel-0.1.0", "partwheel-0.1.1"), data)
+
+
 class Registration(unittest.TestCase):
     def tearDown(self):
         bpy.ops.preferences.addon_enable(module=common.MODULE)
@@ -107,20 +126,17 @@ class Registration(unittest.TestCase):
     def test_an_update_is_used_at_once(self):
         """Installed over the enabled add-on: all its files are the new ones, also deep ones, without a restart; and the
         library in use is not written over, or the next call into it would end Blender."""
-        files = ("parts/session.py", "packages/partwheel/hierarchy.py", "pick/build.py")
-        files = [f"partwheel_addon/{name}" for name in files]
         names = [f"{common.MODULE}.parts.session", "partwheel.hierarchy", f"{common.MODULE}.pick.build"]
         before = everything()
         with tempfile.TemporaryDirectory() as directory:
             update = os.path.join(directory, os.path.basename(common.ZIP))
             with zipfile.ZipFile(common.ZIP) as old, zipfile.ZipFile(update, "w") as new:
-                for name in old.namelist():
-                    new.writestr(name, old.read(name) + (b"\nUPDATED = True\n" if name in files else b""))
+                add_updated(old, new)
             for path, updated in ((update, True), (common.ZIP, False)):
                 first = sys.modules[common.MODULE].__file__
                 installed_at = os.path.getmtime(first)
                 common.until(lambda: time.time() > installed_at + 0.1)  # or Blender takes the file for the same
-                with open(os.path.join(os.path.dirname(first), "packages/partwheel/libpartwheel.so"), "rb") as in_use:
+                with open(package("library").LIBRARY, "rb") as in_use:
                     installed(path)
                     self.assertEqual(os.fstat(in_use.fileno()).st_nlink, 0, "removed, not written over")
                 for name in names:
@@ -259,3 +275,64 @@ class Polls(MeshTest):
                     message = text.partition(".poll() ")[2]
                     self.assertRegex(message, r"^[A-Z].*[^.\s]$")
         self.assertEqual(grey, {kind for kind, _ in self.operators()})
+
+
+class Layout:
+    """Notes the operators that are drawn, and how a click calls each."""
+
+    def __init__(self, offered=None):
+        self.operator_context, self.offered = "", {} if offered is None else offered
+
+    def column(self, **_):
+        return Layout(self.offered)
+
+    def separator(self):
+        self.offered["separator"] = len(self.offered)
+
+    def operator(self, name, text=""):
+        kind, _, short = name.partition(".")
+        assert getattr(getattr(bpy.ops, kind), short).get_rna_type(), f"there is no {name}"
+        button = self.offered[name] = types.SimpleNamespace(text=text, context=self.operator_context, write=None)
+        return button
+
+
+class Offers(unittest.TestCase):
+    """What menus and the panel of solids offer. Outside the panel's own default, an operator that follows the mouse must
+    be told to begin in the view."""
+
+    SOLIDS = ["mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_split", "mesh.partwheel_swap"]
+    MENUS = {
+        "VIEW3D_MT_edit_mesh": ["mesh.partwheel_deform", *SOLIDS],
+        "VIEW3D_MT_object": [*SOLIDS[2:], "object.partwheel_place", "object.partwheel_unite"],
+        "VIEW3D_MT_select_edit_mesh": ["mesh.partwheel_select"],
+        "VIEW3D_MT_select_object": ["object.partwheel_select"],
+        "VIEW3D_MT_face_sets": [("FACE_SET", "Face Set")],
+        "VIEW3D_MT_mask": [("MASK", "Mask")],
+        "VIEW3D_MT_paint_weight": [("VERTEX_GROUP", "Vertex Group")],
+        "VIEW3D_MT_paint_vertex": [("PAINT_MASK", "Paint Mask")],
+    }
+
+    def test_menus(self):
+        for menu, expected in self.MENUS.items():
+            with self.subTest(menu):
+                layout = Layout()
+                for draw in getattr(bpy.types, menu).draw._draw_funcs:
+                    if draw.__module__.startswith(common.MODULE + "."):
+                        draw(types.SimpleNamespace(layout=layout), bpy.context)
+                self.assertEqual(layout.offered.pop("separator"), 0)  # apart from Blender's own
+                self.assertEqual({each.context for each in layout.offered.values()}, {"INVOKE_REGION_WIN"})
+                if isinstance(expected[0], str):
+                    self.assertEqual(list(layout.offered), expected)
+                    continue
+                self.assertEqual(list(layout.offered), ["mesh.partwheel_paint"])
+                button, = layout.offered.values()
+                self.assertEqual((button.write, button.text), (expected[0][0], f"{expected[0][1]} from Part by Wheel"))
+
+    def test_the_panel_of_solids(self):
+        for mode, more in (("EDIT_MESH", []), ("OBJECT", ["object.partwheel_place", "object.partwheel_unite"])):
+            layout = Layout()
+            bpy.types.VIEW3D_PT_partwheel_copy.draw(types.SimpleNamespace(layout=layout),
+                                                    types.SimpleNamespace(mode=mode))
+            self.assertEqual(list(layout.offered), self.SOLIDS + more)
+            for name in self.SOLIDS[3:] + more:
+                self.assertEqual(layout.offered[name].context, "INVOKE_REGION_WIN")

@@ -227,6 +227,31 @@ class Seen(MeshTest):
         self.assertIsNot(prepared(obj), made)
         np.testing.assert_allclose(prepared(obj).parts(obj).positions, positions(obj.data), atol=1e-4)
 
+    def test_modifiers_on_the_cage_move_what_is_picked_in_edit_mode(self):
+        """Those beside the cage don't; both as Blender shows it."""
+        obj = self.modified("DISPLACE", strength=1, direction="Z", mid_level=0)
+        modifier, own = obj.modifiers[0], positions(obj.data).copy()
+        bpy.ops.object.mode_set(mode="EDIT")
+        self.addCleanup(bpy.ops.object.mode_set, mode="OBJECT")
+        for shown in ((True, True, True), (True, True, False), (True, False, True), (False, True, True)):
+            modifier.show_viewport, modifier.show_in_editmode, modifier.show_on_cage = shown
+            bpy.context.view_layer.update()
+            places = own + [0, 0, all(shown)]
+            cage = part("mesh.arrays").cage_positions(obj)
+            if all(shown):
+                np.testing.assert_allclose(cage, places, atol=1e-6)
+            else:
+                self.assertIsNone(cage)
+            region, region_view = camera(obj, True)
+            tree = part("view.picking").FaceTree(obj)
+            right = 0
+            for face in obj.data.polygons:
+                middle = Vector(places[list(face.vertices)].mean(axis=0))
+                point = location_3d_to_region_2d(region, region_view, middle)
+                found = tree.under(obj.matrix_world, region, region_view, point)
+                right += bool(found and found[0] == face.index)
+            self.assertGreater(right, len(obj.data.polygons) / 4)  # those that are turned to the camera
+
     def face_at(self, obj, places, face, region, region_view):
         """The face picked at the pixel of a face's middle."""
         middle = obj.matrix_world @ Vector(places[list(obj.data.polygons[face].vertices)].mean(axis=0))
@@ -350,6 +375,38 @@ class Views(MeshTest):
         self.assertEqual(name, "far")
         self.assertLess((location - self.far.matrix_world.translation).length, 2)
         self.alone(self.far)
+
+    def test_what_is_placed_follows_the_mouse_and_the_keys(self):
+        """After each event it is where placing it there by a script brings it, and the header says so."""
+        placed = self.box("placed", -1)
+        bpy.context.view_layer.objects.active = placed
+        start, context = placed.matrix_world.copy(), FakeContext()
+        tool = Tool("place", target="", location=Vector(), normal=Vector((0, 0, 1)), scale=1, angle=0, depth=0,
+                    fit=False, mirror=False)
+        middle, seen = (self.region.width // 2, self.region.height // 2), [start]
+
+        def check(told):
+            bpy.context.view_layer.update()
+            found, placed.matrix_world = placed.matrix_world.copy(), start
+            part("compose.placement").place(placed, self.near, tool._pose())
+            np.testing.assert_allclose(found, placed.matrix_world, atol=1e-5)
+            self.assertGreater(min(np.abs(np.array(found - each)).max() for each in seen), 1e-3)
+            seen.append(found)
+            self.assertIn(told, context.header[-1])
+
+        self.addCleanup(lambda: tool._end(context))
+        self.assertEqual(tool.invoke(context, event("MOUSEMOVE", (1, 1))), {"RUNNING_MODAL"})
+        self.assertEqual((tool.target, placed.matrix_world), ("", start))
+        for kind, point, told, held in (("MOUSEMOVE", middle, "Onto near, size 1.00", False),
+                                        ("MOUSEMOVE", (middle[0] + 3, middle[1]), "Onto near", False),
+                                        ("WHEELUPMOUSE", None, "size 1.05", False),
+                                        ("WHEELUPMOUSE", None, "turn 5", True),
+                                        ("PAGE_UP", None, "depth -0.05", False)):
+            self.assertEqual(tool.modal(context, event(kind, point, shift=held)), {"RUNNING_MODAL"})
+            check(told)
+        self.assertEqual(tool.modal(context, event("ESC")), {"CANCELLED"})
+        bpy.context.view_layer.update()
+        np.testing.assert_allclose(placed.matrix_world, start, atol=1e-6)
 
     def test_edit_mode_begins_on_what_is_shown(self):
         operator = part("pick.paint").OBJECT_OT_partwheel_select

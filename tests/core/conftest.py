@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes partwheel importable from the checkout, and builds each shape of shapes.py once for all tests.
+"""Makes partwheel importable from the checkout, or from PARTWHEEL_PACKAGES, and builds each shape of shapes.py once for
+all tests.
 
 PARTWHEEL_TEST_COMMA=1 runs all of them in a locale in which numbers have a comma, as some host programs do.
 """
@@ -14,7 +15,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "native" / "python"), str(ROOT / "tests" / "faults"), str(Path(__file__).parent)]
+# The package that is tested: an installed one where the caller says so, else the checkout's.
+PACKAGES = os.environ.get("PARTWHEEL_PACKAGES", str(ROOT / "native" / "python"))
+sys.path[:0] = [PACKAGES, str(ROOT / "tests" / "faults"), str(Path(__file__).parent)]
 
 import shapes  # noqa: E402
 from partwheel import Hierarchy, Mode  # noqa: E402

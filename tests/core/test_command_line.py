@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import PACKAGES
 from partwheel import Hierarchy
 
 STAGES = ["surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy"]
@@ -17,7 +17,7 @@ STAGES = ["surface", "repair", "tetrahedra", "cluster", "dendrogram", "hierarchy
 def run(*arguments, python=(sys.executable,), **environment):
     return subprocess.run(
         [*python, "-m", "partwheel", *map(str, arguments)], capture_output=True, text=True, timeout=1800,
-        env={**os.environ, "PYTHONPATH": str(ROOT / "native" / "python"), **environment},
+        env={**os.environ, "PYTHONPATH": PACKAGES, **environment},
     )
 
 
@@ -101,7 +101,7 @@ def test_an_output_that_can_not_be_written(hand, tmp_path):
 
 def test_without_trimesh_a_clear_sentence(meshes_directory, tmp_path):
     (tmp_path / "trimesh.py").write_text("raise ImportError('none here')")
-    path = os.pathsep.join([str(tmp_path), str(ROOT / "native" / "python")])
+    path = os.pathsep.join([str(tmp_path), PACKAGES])
     result = run("build", meshes_directory / "sphere.stl", PYTHONPATH=path)
     assert result.returncode == 1 and "pip install trimesh" in result.stderr and "Traceback" not in result.stderr
     assert run("build", meshes_directory / "hand.off", PYTHONPATH=path).returncode == 0

@@ -10,7 +10,7 @@ import numpy as np
 import partwheel
 import pytest
 import shapes
-from conftest import ROOT
+from conftest import PACKAGES, ROOT
 from partwheel import Hierarchy, PartwheelError, Rung, Status, library, meshes, worker
 
 CUBE = shapes.cube()
@@ -155,7 +155,7 @@ if "libasan" not in os.environ.get("LD_PRELOAD", ""):
                 except PartwheelError as error:
                     print(error.name)
         """)
-        path = os.pathsep.join([str(ROOT / "native" / "python"), str(ROOT / "tests" / "core")])
+        path = os.pathsep.join([PACKAGES, str(ROOT / "tests" / "core")])
         run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=1800,
                              env={**os.environ, "PYTHONPATH": path})
         assert run.returncode == 0, run.stderr

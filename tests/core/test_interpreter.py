@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapes
-from conftest import ROOT
+from conftest import PACKAGES, ROOT
 from partwheel import Hierarchy, PartwheelError, Status
 from partwheel.worker import interpreter
 from partwheel.worker.ending import ending
@@ -183,7 +183,7 @@ def test_a_hostile_path(shim, does):
               "from partwheel.worker import Job\n"
               "import shapes\n"
               "print(len(Job(*shapes.cube(), memory_limit=0).result().order))")
-    path = os.pathsep.join([str(ROOT / "native" / "python"), str(ROOT / "tests" / "core"), str(Path(np.__file__).parents[1])])
+    path = os.pathsep.join([PACKAGES, str(ROOT / "tests" / "core"), str(Path(np.__file__).parents[1])])
     run = subprocess.run(["python3", "-c", script], executable=os.path.realpath(REAL), text=True, capture_output=True,
                          env={**os.environ, "PATH": str(Path(python).parent), "PYTHONPATH": path})
     assert run.stdout.split() == [python, "6"], run.stderr

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import shapes
 import trimesh
-from conftest import ROOT
+from conftest import PACKAGES
 from partwheel import Hierarchy, meshes, polygons
 
 
@@ -95,7 +95,7 @@ def test_textures_are_not_looked_at(tmp_path):
               "    print(json.dumps([mesh.vertices.tolist(), mesh.triangles.tolist()]))")
     files = sorted([*tmp_path.glob("*.obj"), *tmp_path.glob("*.ply")])
     run = subprocess.run([sys.executable, "-c", script, *files], capture_output=True, text=True,
-                         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT / "native" / "python")])})
+                         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), PACKAGES])})
     assert run.returncode == 0, run.stderr
     for file, line in zip(files, run.stdout.splitlines(), strict=True):
         vertices, triangles = json.loads(line)

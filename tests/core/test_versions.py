@@ -8,7 +8,6 @@ import runpy
 import sys
 import tomllib
 import zipfile
-from pathlib import Path
 
 import faults
 import partwheel
@@ -40,9 +39,7 @@ def test_a_library_of_another_version_is_refused(told, real, why, tmp_path, monk
     """Be it the real one but for the version that it tells, or one that lacks functions."""
     source = tmp_path / "other.c"
     source.write_text(f'const char *pw_version(void) {{ return "{told}"; }}')
-    path = Path(library.load()._name).resolve()
-    others = ["-Wl,--no-as-needed", path, f"-Wl,-rpath,{path.parent}"] if real else []
-    other = faults.compiled(source, tmp_path / "libother.so", *others)
+    other = faults.compiled(source, tmp_path / "libother.so", real=library.load()._name if real else None)
     monkeypatch.setenv("PARTWHEEL_LIBRARY", other)
     with pytest.raises(partwheel.LibraryError) as refused:
         library.load.__wrapped__()

@@ -23,7 +23,7 @@ import faults
 import numpy as np
 import pytest
 import shapes
-from conftest import ROOT
+from conftest import PACKAGES
 from partwheel import Hierarchy, PartwheelError, Stage, Status
 from partwheel.library import load
 from partwheel.worker import MESSAGE, Job, WorkerError
@@ -233,6 +233,21 @@ if LINUX and PLAIN:
             job.result()
         assert failed.value.name == "time limit" and state(job.process_id) is None
 
+    def test_larger_meshes_have_more_time(harm, clock):
+        """Unless a limit is given: two minutes and 2 ms a triangle."""
+        harm("sleep", 1)
+        shape = shapes.off("hand")
+        limit = 120 + 0.002 * len(shape.triangles)
+        assert limit > 124
+        job = Job(*shape, rungs=EXACT)
+        until(lambda: faults.harmed(job.process_id))
+        clock.set_on(limit - 1, job)
+        assert job.poll() and state(job.process_id)
+        while job.poll():  # what it worked before may be told only now
+            clock.set_on(limit + 1, job)
+        with pytest.raises(WorkerError, match=f"after {limit:g} seconds without any work"):
+            job.result()
+
     def test_a_slow_machine_is_no_reason_to_stop_a_build(clock, monkeypatch, tmp_path):
         """The worker is held up, all in all for longer than the limit, though it does not work for so long."""
         entry = tmp_path / "slow.py"
@@ -414,7 +429,7 @@ if LINUX and PLAIN:
 
     def parent(**environment):
         """(a process that builds, its worker's id)"""
-        path = os.pathsep.join([str(ROOT / "native" / "python"), str(HERE)])
+        path = os.pathsep.join([PACKAGES, str(HERE)])
         process = subprocess.Popen([sys.executable, "-c", PARENT], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                    text=True, env={**os.environ, "PYTHONPATH": path, **environment})
         return process, int(process.stdout.readline())

@@ -2,14 +2,21 @@
 """Compiles the library that goes wrong on purpose (faults.c) around the real one. Linux only."""
 
 import contextlib
+import re
 import subprocess
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 
 
-def compiled(source, target, *options):
-    """A shared library from one C file: its path."""
+def compiled(source, target, *options, real=None):
+    """A shared library from one C file: its path. real: another that it is linked with, and which stands for all that it
+    has not itself."""
+    if real:
+        real, beside = Path(real).resolve(), Path(target).parent
+        headers = subprocess.run(["objdump", "-p", real], capture_output=True, text=True, check=True).stdout
+        (beside / re.search(r"SONAME +(\S+)", headers)[1]).symlink_to(real)  # the name that it will be looked up by
+        options = [*options, "-Wl,--no-as-needed", real, f"-Wl,-rpath,{beside}"]
     subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-Wall", "-Werror", "-pthread", "-o", target, source, *options],
                    check=True)
     return str(target)
@@ -32,6 +39,5 @@ def harmed(process):
 
 def library(real, directory):
     """The path of a library in this directory that is the real one, save for what faults.c says."""
-    real = Path(real).resolve()
-    return compiled(HERE / "faults.c", Path(directory) / "libfaults.so", f"-I{HERE.parents[1]}/native/include", real,
-                    f"-Wl,-rpath,{real.parent}", "-Wl,--no-as-needed", "-ldl")
+    return compiled(HERE / "faults.c", Path(directory) / "libfaults.so", f"-I{HERE.parents[1]}/native/include", "-ldl",
+                    real=real)

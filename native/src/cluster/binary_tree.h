@@ -1,4 +1,4 @@
-// The binary tree of clusters: what was merged with what, and the concavity of each union (the paper's Eq. 1).
+// The binary tree of clusters: merges, the concavity of each union (the paper's Eq. 1), walks and cuts.
 #pragma once
 
 #include "base/geometry.h"
@@ -46,6 +46,30 @@ inline void hand_down(std::span<const Merge> merges, size_t leaves, std::vector<
     for (size_t m = merges.size(); m-- > 0;)
         if (noted[leaves + m] >= 0)
             noted[at(merges[m].left)] = noted[at(merges[m].right)] = noted[leaves + m];
+}
+
+// The clusters, in depth-first order, that are left when those that are to be are divided.
+template <class Divided>
+std::vector<int32_t> cut_where(std::span<const Merge> merges, const Divided& divided) {
+    const size_t leaves = merges.size() + 1;
+    std::vector<int32_t> left, todo = {static_cast<int32_t>(leaves + merges.size() - 1)};
+    while (!todo.empty()) {
+        const int32_t c = todo.back();
+        todo.pop_back();
+        if (at(c) < leaves || !divided(at(c) - leaves)) {
+            left.push_back(c);
+            continue;
+        }
+        todo.push_back(merges[at(c) - leaves].right);
+        todo.push_back(merges[at(c) - leaves].left);
+    }
+    return left;
+}
+
+// The cut that is left when the last parts - 1 merges are undone, as if clustering had stopped there: the clusters, in
+// depth-first order. 1 <= parts <= T.
+inline std::vector<int32_t> cut_undoing_last(std::span<const Merge> merges, size_t parts) {
+    return cut_where(merges, [&](size_t m) { return m + parts > merges.size(); });
 }
 
 }  // namespace partwheel

@@ -26,24 +26,6 @@ std::vector<uint8_t> pruned(std::span<const Merge> merges, size_t top, const std
     return kept;
 }
 
-// The clusters, in depth-first order, that are left when those that are to be are divided.
-template <class Divided>
-std::vector<int32_t> cut(std::span<const Merge> merges, const Divided& divided) {
-    const size_t leaves = merges.size() + 1;
-    std::vector<int32_t> left, todo = {static_cast<int32_t>(leaves + merges.size() - 1)};
-    while (!todo.empty()) {
-        const int32_t c = todo.back();
-        todo.pop_back();
-        if (at(c) < leaves || !divided(at(c) - leaves)) {
-            left.push_back(c);
-            continue;
-        }
-        todo.push_back(merges[at(c) - leaves].right);
-        todo.push_back(merges[at(c) - leaves].left);
-    }
-    return left;
-}
-
 }  // namespace
 
 std::vector<NodeCost> node_costs(std::span<const Merge> merges) {
@@ -110,10 +92,6 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
     return cut;
 }
 
-std::vector<int32_t> cut_undoing_last(std::span<const Merge> merges, size_t parts) {
-    return cut(merges, [&](size_t m) { return m + parts > merges.size(); });
-}
-
 std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, std::span<const double> areas,
                                    std::span<const double> scores) {
     const size_t leaves = merges.size() + 1;
@@ -129,7 +107,7 @@ std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, std::span<cons
             divided[c - leaves] = 1;
         }
     }
-    return cut(merges, [&](size_t m) { return divided[m] != 0; });
+    return cut_where(merges, [&](size_t m) { return divided[m] != 0; });
 }
 
 WheelStops wheel_stops(std::span<const double> areas, std::span<const double> scores) {

@@ -31,10 +31,6 @@ std::vector<uint8_t> prune_regrouped(std::span<const Merge> merges, size_t top);
 // tree: O(T parts) time at most. Returns the clusters' numbers (see Merge), in depth-first order. 1 <= parts <= T.
 std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t parts);
 
-// The cut that is left when the last parts - 1 merges are undone, as if clustering had stopped there; numbers as above.
-// 1 <= parts <= T.
-std::vector<int32_t> cut_undoing_last(std::span<const Merge> merges, size_t parts);
-
 // The cut whose clusters have the largest sum of area x score: the parts that people would most likely take. areas,
 // scores: of each cluster; those with a score of 0 are not divided. Numbers as above.
 std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, std::span<const double> areas,

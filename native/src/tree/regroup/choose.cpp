@@ -1,6 +1,5 @@
 // Which clusters of the paper's tree are the parts: it is cut where most surface lies in what is least convex,
 // components first.
-#include "tree/dendrogram.h"
 #include "tree/regroup/parts.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // The parts joined bottom-up, the likeliest pair first, then the components; and what that makes of the tree.
-#include "tree/dendrogram.h"
 #include "tree/regroup/fitted.h"
 #include "tree/regroup/parts.h"
 
