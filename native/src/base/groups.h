@@ -25,7 +25,6 @@ public:
         tell([&](size_t key, const Item& item) { items_[begin_[key + 1]++] = item; });
     }
 
-    size_t keys() const { return begin_.size() - 2; }
     std::span<const Item> items() const { return items_; }
     std::span<Item> with(size_t key) { return std::span(items_).subspan(begin_[key], begin_[key + 1] - begin_[key]); }
     std::span<const Item> with(size_t key) const {

@@ -1,9 +1,10 @@
 // The parts measured: volumes, areas, hulls; and what lies between them, by the facets inside and the surface's folds.
 #include "tree/regroup/parts.h"
 
+#include "base/groups.h"
+
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace partwheel {
@@ -13,30 +14,6 @@ namespace {
 constexpr double concave_bend = 0.02;
 constexpr double middling_curvature = 4;  // of a model of unit area: squashed to a half
 constexpr int smoothing_passes = 4;
-
-// A side of an outer triangle.
-struct Side {
-    int32_t low, high;  // its vertices
-    int32_t triangle;
-    bool forward;  // from low to high
-    auto operator<=>(const Side&) const = default;
-};
-
-// Sorts: by the lower vertex first, which takes no comparisons.
-void sort_by_edge(std::vector<Side>& sides, size_t vertices) {
-    std::vector<size_t> end(vertices + 1, 0);
-    for (const Side& s : sides) ++end[at(s.low) + 1];
-    std::partial_sum(end.begin(), end.end(), end.begin());
-    std::vector<Side> sorted(sides.size());
-    for (const Side& s : sides) sorted[end[at(s.low)]++] = s;
-    sides.swap(sorted);
-    auto begin = sides.begin();
-    for (size_t v = 0; v < vertices; ++v) {
-        const auto after = sides.begin() + static_cast<std::ptrdiff_t>(end[v]);
-        std::sort(begin, after);
-        begin = after;
-    }
-}
 
 }  // namespace
 
@@ -54,7 +31,7 @@ Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_
         bool facet;
         Border border;
     };
-    std::vector<Side> sides;
+    std::vector<Triangle> outer;
     std::vector<Between> between;
     std::vector<Point> normals;
     std::vector<int32_t> part_behind;  // of each outer triangle
@@ -85,14 +62,10 @@ Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_
             if (twice > 0)
                 for (double& x : n) x /= twice;
             parts[p].area += size;
-            const auto number = static_cast<int32_t>(normals.size());
+            outer.push_back(f);
             normals.push_back(n);
             part_behind.push_back(p);
-            for (size_t i = 0; i < 3; ++i) {
-                const int32_t v = f[i], w = f[(i + 1) % 3];
-                sides.push_back({std::min(v, w), std::max(v, w), number, v < w});
-                around[at(v)] += size / 3;
-            }
+            for (const int32_t v : f) around[at(v)] += size / 3;
         }
     }
     progress.advance(0.1);
@@ -114,18 +87,21 @@ Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_
         double length, bend;  // bend: the sine of half the angle, below 0 where concave
     };
     std::vector<Fold> folds;
-    sort_by_edge(sides, mesh.vertices.size());
-    for (size_t i = 0; i + 1 < sides.size(); ++i) {
-        const Side &x = sides[i], &y = sides[i + 1];
-        if (x.low != y.low || x.high != y.high) continue;
-        const Point &m = normals[at(x.triangle)], &n = normals[at(y.triangle)];
-        const Point along = point(x.high) - point(x.low);
-        const double turn = dot(cross(m, n), along) * (x.forward ? 1 : -1);
-        const double bend = std::sqrt(std::max(0.0, (1 - dot(m, n)) / 2)) * (turn < 0 ? -1 : 1);
-        const double length = partwheel::length(along) / length_unit;
-        folds.push_back({x.low, x.high, x.triangle, y.triangle, length, bend});
-        ++i;
-    }
+    const auto ends = [&](size_t side) {
+        const Triangle& t = outer[side / 3];
+        return std::pair(t[side % 3], t[(side + 1) % 3]);
+    };
+    for_edges(mesh.vertices.size(), 3 * outer.size(), ends, [&](int32_t low, std::span<const Side> sides) {
+        for (size_t i = 0; i + 1 < sides.size(); i += 2) {
+            const int32_t high = sides[i].high, s = sides[i].number / 3, t = sides[i + 1].number / 3;
+            const Point &m = normals[at(s)], &n = normals[at(t)];
+            const Point along = point(high) - point(low);
+            const double turn = dot(cross(m, n), along) * (sides[i].upwards ? 1 : -1);
+            const double bend = std::sqrt(std::max(0.0, (1 - dot(m, n)) / 2)) * (turn < 0 ? -1 : 1);
+            const double length = partwheel::length(along) / length_unit;
+            folds.push_back({low, high, s, t, length, bend});
+        }
+    });
     // Mean curvature, smoothed over the surface: it finds creases that many small edges share. Only the quotient
     // matters, so both sums may grow with each pass.
     for (const Fold& f : folds)
