@@ -22,7 +22,8 @@ PACKAGES = Path(__file__).parent / "packages"  # with the Python package partwhe
 
 # An update may have been installed over what is loaded. Blender before 4.2 then reloads this file alone, later ones
 # forget the add-on's modules but not the package's: all are forgotten here.
-for name in [name for name in sys.modules if f"{name}.".startswith((f"{__name__}.", "partwheel.")) and name != __name__]:
+ours = f"{__name__}.", "partwheel."
+for name in [name for name in sys.modules if f"{name}.".startswith(ours) and name != __name__]:
     del sys.modules[name]
     globals().pop(name[len(__name__) + 1:], None)
 if PACKAGES.is_dir() and str(PACKAGES) not in sys.path:
@@ -34,7 +35,8 @@ MODULES = (
     "preferences", "parts.changes", "parts.files", "pick.prepared", "view.previews", "view.overlay",
     "pick.build", "pick.select", "pick.paint", "solid.copy_part", "compose.place", "compose.unite", "compose.swap",
     "deform.operator", "deform.proportional",
-    "ui.panel", "ui.path", "ui.copy_panel", "ui.deform_panel", "ui.menu", "ui.keymap", "pick.hover", "pick.tool", "api", "command",
+    "ui.panel", "ui.path", "ui.copy_panel", "ui.deform_panel", "ui.menu", "ui.keymap", "pick.hover", "pick.tool", "api",
+    "command",
 )
 
 
