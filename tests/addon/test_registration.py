@@ -52,8 +52,9 @@ def menu_entries():
 
 
 def timers():
-    """Wherever they were made: also those that only Blender holds."""
-    return [each for each in gc.get_objects() if inspect.isfunction(each)
+    """Wherever they were made: also those that only Blender holds. (isinstance() would ask an operator of a class that is
+    unregistered by now for its own, which raises an error.)"""
+    return [each for each in gc.get_objects() if type(each) is types.FunctionType
             and (each.__module__ or "").startswith(common.MODULE) and bpy.app.timers.is_registered(each)]
 
 
