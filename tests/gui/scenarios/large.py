@@ -63,7 +63,7 @@ def close_to(stage, name):
 
 def saved(stage):
     """{whether with its parts: path of the file}"""
-    addon = next(addon for addon in bpy.context.preferences.addons if addon.module.endswith("partwheel"))
+    addon = next(addon for addon in bpy.context.preferences.addons if "partwheel" in addon.module)
     paths = {}
     for wanted in (True, False):
         addon.preferences.save_with_file = wanted
