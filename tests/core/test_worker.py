@@ -51,7 +51,6 @@ def harm(faulty_entry, monkeypatch):
     """harm("segv", 2): from now on workers crash in stage 2. This process keeps the library that it has loaded."""
     def set_fault(fault, stage, rung=None):
         monkeypatch.setattr(worker, "ENTRY", faulty_entry)
-        monkeypatch.delenv("PARTWHEEL_LIBRARY", raising=False)  # which the sanitizers set, and which would come first
         monkeypatch.setenv("PARTWHEEL_FAULT", f"{fault}:{stage}")
         if rung:
             monkeypatch.setenv("PARTWHEEL_FAULT_RUNG", str(rung))

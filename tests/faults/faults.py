@@ -23,9 +23,11 @@ def compiled(source, target, *options, real=None):
 
 
 def entry(real, library, directory):
-    """The path of a program in this directory that is the worker's, the real one, but uses this library."""
+    """The path of a program in this directory that is the worker's, the real one, but uses this library, also where
+    PARTWHEEL_LIBRARY names another, as for the sanitizers."""
     real, path = Path(real).resolve(), Path(directory) / "entry.py"
-    path.write_text(f"import runpy, sys\nsys.path.insert(0, {str(real.parents[1])!r})\nimport library\n"
+    path.write_text("import os, runpy, sys\nos.environ.pop('PARTWHEEL_LIBRARY', None)\n"
+                    f"sys.path.insert(0, {str(real.parents[1])!r})\nimport library\n"
                     f"library.LIBRARY = {str(library)!r}\nrunpy.run_path({str(real)!r}, run_name='__main__')\n")
     return path
 
