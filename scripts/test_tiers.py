@@ -6,6 +6,7 @@ Called by scripts/test. Everything that runs writes to build/test/TIER*.log; the
 import argparse
 import concurrent.futures
 import dataclasses
+import functools
 import json
 import os
 import pathlib
@@ -96,7 +97,7 @@ def core():
     """The Python package as installed from its wheel, and the installed library, without Blender."""
     setup("core", "setup_core")
     build("core", "release", "partwheel", "partwheel_checks")
-    make_packages("core")
+    make_packages()
     packages = OUTPUT / "packages"
     shutil.rmtree(packages, ignore_errors=True)
     require("core", VENV / "core/bin/python", "-m", "pip", "install", "--no-deps", "--target", packages,
@@ -113,7 +114,7 @@ def reliability():
 
 def addon():
     """The add-on as installed from the zip, without a window, in the distribution's Blender and in bpy from PyPI."""
-    extension, legacy = make_packages("addon")
+    extension, legacy = make_packages()
     setup("addon", "setup_core", "setup_blender", "setup_bpy")
     versions = output_of("bash", "-c", ". scripts/setup.sh && echo $bpy_versions").split()
     interpreters = {"blender": ["blender", "-b", "-noaudio", "--factory-startup", "--python-exit-code", "9", "--python",
@@ -140,14 +141,14 @@ def addon():
 
 def gui():
     """Blender's own window under Xvfb, driven by mouse and key events."""
-    _, legacy = make_packages("gui")
+    _, legacy = make_packages()
     setup("gui", "setup_core", "setup_blender", "setup_display")
     return own_runner("gui", [VENV / "core/bin/python", "tests/gui/run.py", legacy], dict(os.environ))
 
 
 def newest():
     """Scenarios of the GUI tier in the newest Blender that Debian has. It moves: without it they are skipped."""
-    extension, _ = make_packages("newest")
+    extension, _ = make_packages()
     result = Result()
     for suite in os.environ.get("PARTWHEEL_SUITES", "sid").split():
         result += in_suite(suite, extension)
@@ -224,10 +225,11 @@ def build(log, preset, *targets):
     require(log, "scripts/build", preset, *targets)
 
 
-def make_packages(log):
-    """The add-on for Blender 4.2 and later, and the legacy one."""
-    require(log, "scripts/package")
-    return map(pathlib.Path, (OUTPUT / f"{log}.log").read_text().splitlines()[-2:])
+@functools.cache
+def make_packages():
+    """The add-on for Blender 4.2 and later, and the legacy one: made once for all tiers that need them."""
+    require("package", "scripts/package")
+    return tuple(map(pathlib.Path, (OUTPUT / "package.log").read_text().splitlines()[-2:]))
 
 
 def ctest(log, preset, *options):

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..mesh import arrays
 from ..parts import picks, registry
+from ..pick.polls import NeedsPick
 
 REACH = 0.5  # beyond the part, by the square root of its area
 TICK = 0.05  # seconds between two looks for the end of Blender's tool
@@ -17,19 +18,12 @@ TICK = 0.05  # seconds between two looks for the end of Blender's tool
 _waiting = None  # the timer that looks
 
 
-class MESH_OT_partwheel_move(bpy.types.Operator):
+class MESH_OT_partwheel_move(NeedsPick, bpy.types.Operator):
     """Move the part that was picked last; its surroundings follow, as far as suits its size. R turns and S scales it"""
 
     bl_idname = "mesh.partwheel_move"
     bl_label = "Move Part Proportionally"
     bl_options = {"INTERNAL"}
-
-    @classmethod
-    def poll(cls, context):
-        if context.mode != "EDIT_MESH" or picks.picked_as_told(context.edit_object) is None:
-            cls.poll_message_set("Pick a part first, in Edit Mode")
-            return False
-        return True
 
     def invoke(self, context, _event):
         if not picks.picked(context.edit_object):

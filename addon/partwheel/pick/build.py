@@ -13,6 +13,7 @@ from ..parts import builds, picks, registry
 from partwheel import LibraryError, PartwheelError, Status
 from ..view import status
 from ..view.in_view import InView
+from .polls import NeedsMesh
 
 TICK = 0.1  # seconds between two looks at the worker
 
@@ -137,7 +138,7 @@ def start(operator, obj, **options):
         return None
 
 
-class _Build(InView):
+class _Build(NeedsMesh, InView):
     """What building and finding have in common."""
 
     quality: bpy.props.FloatProperty(
@@ -152,14 +153,6 @@ class _Build(InView):
                     "refusing it",
         default=False,
     )
-
-    @classmethod
-    def poll(cls, context):
-        obj = context.active_object
-        if obj is None or obj.type != "MESH" or obj.mode not in {"OBJECT", "EDIT"}:
-            cls.poll_message_set("Needs an active mesh object, in Edit Mode or Object Mode")
-            return False
-        return True
 
     def execute(self, context):
         building = self._start(context)

@@ -4,25 +4,18 @@
 import bpy
 
 from ..parts import picks, registry
+from ..pick.polls import NeedsMesh
 from . import composition, solids
 from partwheel import PartwheelError
 from ..mesh.linked import changeable
 
 
-class OnParts:
+class OnParts(NeedsMesh):
     """What operators on an object with parts share: Edit Mode, errors."""
 
     bl_options = {"REGISTER", "UNDO"}
     edits = False  # whether it changes the mesh itself: then Edit Mode goes on afterwards
     refusals = PartwheelError, solids.NotClosed  # with sentences for the user
-
-    @classmethod
-    def poll(cls, context):
-        obj = context.active_object
-        if obj is None or obj.type != "MESH" or obj.mode not in {"EDIT", "OBJECT"}:
-            cls.poll_message_set("Needs an active mesh object, in Edit Mode or Object Mode")
-            return False
-        return True
 
     def execute(self, context):
         obj = context.active_object

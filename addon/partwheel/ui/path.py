@@ -8,6 +8,7 @@ import bpy
 
 from ..parts import picks
 from ..pick import states
+from ..pick.polls import NeedsPick
 
 SMALLEST = 0.25  # share of the width that the smallest part's bar takes
 
@@ -47,19 +48,12 @@ class VIEW3D_PT_partwheel_path(bpy.types.Panel):
         draw_path(self.layout, context.edit_object)
 
 
-class MESH_OT_partwheel_path(bpy.types.Operator):
+class MESH_OT_partwheel_path(NeedsPick, bpy.types.Operator):
     """Show the parts that the wheel goes through, from the smallest to the whole, and click one to take it"""
 
     bl_idname = "mesh.partwheel_path"
     bl_label = "Path of the Part"
     bl_options = {"INTERNAL"}
-
-    @classmethod
-    def poll(cls, context):
-        if context.mode != "EDIT_MESH" or picks.picked_as_told(context.edit_object) is None:
-            cls.poll_message_set("Pick a part first, in Edit Mode")
-            return False
-        return True
 
     def invoke(self, context, _event):
         return context.window_manager.invoke_popup(self, width=380)
