@@ -62,7 +62,21 @@ else()
   if(NOT EXISTS "${tetgen_include}/tetgen.cxx")
     message(FATAL_ERROR "TetGen was not found: no ${tetgen_include}/tetgen.cxx. ${fix}")
   endif()
-  add_library(partwheel_tetgen STATIC "${tetgen_include}/tetgen.cxx" "${tetgen_include}/predicates.cxx")
+  # The pinned source with one change: where its pools and arrays are filled, emptied and gone through it calls
+  # partwheel_tetgen_poll(), in which a cancellation is asked for. Else whole passes could not be interrupted.
+  file(READ "${tetgen_include}/tetgen.cxx" tetgen_source)
+  foreach(head "memorypool::alloc()" "memorypool::dealloc(void *dyingitem)" "memorypool::traverse()"
+               "arraypool::newindex(void **newptr)")
+    string(REPLACE "${head}\n{\n" "${head}\n{\n  partwheel_tetgen_poll();\n" polled "${tetgen_source}")
+    if(polled STREQUAL tetgen_source)
+      message(FATAL_ERROR "This TetGen has no ${head}, where a cancellation is to be asked for. ${fix}")
+    endif()
+    set(tetgen_source "${polled}")
+  endforeach()
+  file(CONFIGURE OUTPUT tetgen_polled.cxx CONTENT "${tetgen_source}" @ONLY)
+  set(polled "${CMAKE_CURRENT_BINARY_DIR}/tetgen_polled.cxx")
+  add_library(partwheel_tetgen STATIC "${polled}" "${tetgen_include}/predicates.cxx")
+  target_include_directories(partwheel_tetgen PRIVATE "${tetgen_include}")
   target_compile_options(partwheel_tetgen PRIVATE -w)
   if(PARTWHEEL_SANITIZE MATCHES undefined)  # its memory pools keep pointers at unaligned addresses
     target_compile_options(partwheel_tetgen PRIVATE -fno-sanitize=undefined)
@@ -72,8 +86,7 @@ else()
   endif()
   target_compile_definitions(partwheel_tetgen PRIVATE NDEBUG PARTWHEEL_COMPILES_TETGEN)
   # Not in predicates.cxx, where it is defined.
-  set_source_files_properties("${tetgen_include}/tetgen.cxx" PROPERTIES
-                              COMPILE_DEFINITIONS orient3d=partwheel_tetgen_orient3d)
+  set_source_files_properties("${polled}" PROPERTIES COMPILE_DEFINITIONS orient3d=partwheel_tetgen_orient3d)
   target_compile_options(partwheel_tetgen PRIVATE "SHELL:-include \"${PROJECT_SOURCE_DIR}/native/src/fill/tetgen_host.h\"")
 endif()
 file(STRINGS "${tetgen_include}/tetgen.h" line REGEX "^// Version [0-9]")

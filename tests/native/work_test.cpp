@@ -1,5 +1,6 @@
 // How much the ladder's rooms do, and how often they ask whether they are to stop: counted, for seconds tell nothing. The
 // linker sends the rooms' calls of Progress and of TetGen here (--wrap in cmake/tests.cmake).
+#include "partwheel.h"
 #include "fill/ladder.h"
 #include "fill/tetgen_host.h"
 #include "support/real_meshes.h"
@@ -31,7 +32,7 @@ namespace partwheel::test {
 namespace {
 
 size_t polls = 0, tetgen_calls = 0;  // since they were last set to 0
-std::function<void()> when_repairing;  // at each poll in that stage
+std::function<void(pw_stage)> at_poll;  // is told of each
 std::function<void(const std::function<void()>&)> around_tetgen;  // is given each call
 
 }  // namespace
@@ -42,7 +43,7 @@ void PW_NAME(__real_, PW_ADVANCE)(partwheel::Progress*, double);
 void PW_NAME(__wrap_, PW_ADVANCE)(partwheel::Progress* progress, double part) {
     using namespace partwheel::test;
     ++polls;
-    if (when_repairing && progress->stage() == PW_STAGE_REPAIR) when_repairing();
+    if (at_poll) at_poll(progress->stage());
     PW_NAME(__real_, PW_ADVANCE)(progress, part);
 }
 void PW_NAME(__real_, PW_TETGEN)(tetgenbehavior*, tetgenio*, tetgenio*, tetgenio*, tetgenio*);
@@ -268,6 +269,42 @@ TEST(Work, TetGenIsCancelledWithinItsCall) {
     around_tetgen = {};
 }
 
+// Every stage that takes long looks whether it is to stop so many times a face that a hundredth of a second holds some,
+// TetGen's own passes among them; and wherever that is, the build stops there.
+TEST(Work, EveryStageLooksForACancellation) {
+    const TriMesh mesh = real_mesh("elk.off");  // which needs a repair
+    const auto faces = static_cast<double>(mesh.triangles.size());
+    std::map<pw_stage, double> looks;
+    at_poll = [&](pw_stage stage) { ++looks[stage]; };
+    pw_hierarchy* hierarchy = nullptr;
+    const auto build = [&](pw_context* context) {
+        return pw_build(context, mesh.vertices[0].data(), mesh.vertices.size(), mesh.triangles[0].data(),
+                        mesh.triangles.size(), nullptr, mesh.triangles.size(), nullptr, &hierarchy);
+    };
+    ASSERT_EQ(build(nullptr), PW_OK);
+    pw_hierarchy_free(hierarchy);
+    EXPECT_GT(looks[PW_STAGE_SURFACE], faces / 500);
+    EXPECT_GT(looks[PW_STAGE_TETRAHEDRA], faces / 50);
+    EXPECT_GT(looks[PW_STAGE_CLUSTER], faces / 50);
+    EXPECT_GT(looks[PW_STAGE_DENDROGRAM], 100);
+    EXPECT_GT(looks[PW_STAGE_REPAIR], faces / 100);
+    for (const pw_stage stage :
+         {PW_STAGE_SURFACE, PW_STAGE_REPAIR, PW_STAGE_TETRAHEDRA, PW_STAGE_CLUSTER, PW_STAGE_DENDROGRAM}) {
+        pw_context* context = nullptr;
+        ASSERT_EQ(pw_context_create(&context), PW_OK);
+        double later = 0, at = 0;
+        at_poll = [&](pw_stage here) {
+            later += here > stage;
+            if (here == stage && ++at == std::floor(looks[stage] / 2)) pw_context_cancel(context);
+        };
+        EXPECT_EQ(build(context), PW_ERROR_CANCELLED) << pw_stage_name(stage);
+        EXPECT_EQ(later, 0) << pw_stage_name(stage);
+        EXPECT_GE(at, std::floor(looks[stage] / 2));
+        pw_context_free(context);
+    }
+    at_poll = {};
+}
+
 // ---- Mistakes
 
 TEST(Work, OnlyAssertionsOfCgalLeadToTheNextRung) {
@@ -275,16 +312,20 @@ TEST(Work, OnlyAssertionsOfCgalLeadToTheNextRung) {
     const LadderOptions repaired{0, PW_RUNG_REPAIRED, false, {}};
     Progress progress;
     progress.begin();
-    when_repairing = [] { throw CGAL::Assertion_exception("CGAL", "a == b", "file", 1, "message"); };
+    at_poll = [](pw_stage stage) {
+        if (stage == PW_STAGE_REPAIR) throw CGAL::Assertion_exception("CGAL", "a == b", "file", 1, "message");
+    };
     try {
         (void)climb(mesh.view(), repaired, progress);
         ADD_FAILURE() << "built";
     } catch (const Error& error) {
         EXPECT_EQ(error.status(), PW_ERROR_SELF_INTERSECTION);
     }
-    when_repairing = [] { throw std::out_of_range("our own"); };
+    at_poll = [](pw_stage stage) {
+        if (stage == PW_STAGE_REPAIR) throw std::out_of_range("our own");
+    };
     EXPECT_THROW((void)climb(mesh.view(), repaired, progress), std::out_of_range);
-    when_repairing = {};
+    at_poll = {};
 }
 
 }  // namespace

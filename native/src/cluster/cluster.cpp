@@ -24,7 +24,7 @@ constexpr double dear = 2;
 
 class Clustering {
 public:
-    Clustering(const TetMesh& mesh, Progress& progress, size_t threads) : progress_(progress), graph_(mesh) {
+    Clustering(const TetMesh& mesh, Progress& progress, size_t threads) : progress_(progress), graph_(mesh, progress) {
         graph_.price_all(progress, threads);
         tree_.merges.reserve(mesh.tetrahedra.size());
     }
@@ -87,7 +87,10 @@ void Clustering::prefetch_around(int32_t contracted) const {
 }
 
 void Clustering::contract_all() {
-    while (!queue_.empty()) {
+    for (size_t step = 1; !queue_.empty(); ++step) {
+        if (step % 64 == 0)
+            progress_.advance(0.1 + 0.9 * static_cast<double>(tree_.merges.size()) /
+                                        static_cast<double>(graph_.clusters_count()));
         const int32_t top = queue_.top().edge;
         const EdgeQueue::Item* const second = queue_.runner_up();
         prefetch_soon(second);
@@ -96,9 +99,6 @@ void Clustering::contract_all() {
             continue;
         }
         contract(top);
-        if (tree_.merges.size() % 256 == 0)
-            progress_.advance(0.1 + 0.9 * static_cast<double>(tree_.merges.size()) /
-                                        static_cast<double>(graph_.clusters_count()));
     }
 }
 

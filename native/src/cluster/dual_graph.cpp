@@ -16,7 +16,7 @@ constexpr size_t edges_a_step = 65536, edges_a_piece = 4096;
 
 }  // namespace
 
-DualGraph::DualGraph(const TetMesh& mesh)
+DualGraph::DualGraph(const TetMesh& mesh, Progress& progress)
     : mesh_(mesh), hulls_(mesh.vertices), first_links_(Links::least * mesh.tetrahedra.size()),
       clusters_(mesh.tetrahedra.size()), link_of_(mesh.tetrahedra.size(), -1) {
     const auto count = static_cast<int32_t>(mesh.tetrahedra.size());
@@ -28,9 +28,12 @@ DualGraph::DualGraph(const TetMesh& mesh)
         c.links = Links(&first_links_[Links::least * static_cast<size_t>(t)]);
     }
     edges_.reserve(2 * mesh.tetrahedra.size());
-    for (int32_t t = 0; t < count; ++t)
+    progress.advance(0);
+    for (int32_t t = 0; t < count; ++t) {
         for (const int32_t other : mesh.neighbours[static_cast<size_t>(t)])
             if (other > t) add_edge(t, other);
+        if (t % 65536 == 0) progress.advance(0);
+    }
 }
 
 void DualGraph::price_all(Progress& progress, size_t threads) {

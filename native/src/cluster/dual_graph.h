@@ -43,7 +43,7 @@ struct DualEdge {
 class DualGraph {
 public:
     // One tetrahedron a cluster; the edges are not priced.
-    explicit DualGraph(const TetMesh& mesh);
+    DualGraph(const TetMesh& mesh, Progress& progress);
 
     // Of a graph as it was made. threads: at most so many; 0: as many as help.
     void price_all(Progress& progress, size_t threads);

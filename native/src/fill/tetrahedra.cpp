@@ -23,7 +23,7 @@ namespace {
 
 // TetGen's call that runs; guarded by the lock in run_tetgen().
 uint32_t tetgen_random = 1;
-uint64_t tetgen_steps = 0, most_tetgen_steps = 0;
+uint64_t tetgen_steps = 0, most_tetgen_steps = 0, tetgen_polls = 0;
 partwheel::Progress* tetgen_progress = nullptr;
 
 class Endless : public partwheel::Error {  // thrown from inside TetGen
@@ -46,8 +46,12 @@ int partwheel_tetgen_rand() {  // Park and Miller's generator
 
 double partwheel_tetgen_orient3d(double* a, double* b, double* c, double* d) {
     if (++tetgen_steps > most_tetgen_steps) throw Endless();
-    if (tetgen_steps % 4096 == 0) tetgen_progress->advance(0);
+    partwheel_tetgen_poll();
     return orient3d(a, b, c, d);
+}
+
+void partwheel_tetgen_poll() {
+    if (++tetgen_polls % 4096 == 0) tetgen_progress->advance(0);
 }
 
 namespace partwheel {
@@ -178,8 +182,10 @@ void run_tetgen(const Surface& surface, const InputOrder& order, double quality,
     check_tetrahedra(static_cast<size_t>(out.numberoftetrahedra));
 }
 
+constexpr size_t looks = 65536;  // tetrahedra between two looks at whether all is cancelled
+
 // All of TetGen's tetrahedra, those of cavities included, sorted by their corners, positively oriented.
-TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& out) {
+TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& out, Progress& progress) {
     TetMesh mesh;
     const auto points = static_cast<size_t>(out.numberofpoints), tets = static_cast<size_t>(out.numberoftetrahedra);
     const size_t given = surface.vertices.size();
@@ -202,6 +208,7 @@ TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& ou
     };
     std::vector<std::array<Corner, 4>> read(tets);
     for (size_t i = 0; i < tets; ++i) {
+        if (i % looks == 0) progress.advance(0.9);
         const int* corners = out.tetrahedronlist + i * static_cast<size_t>(out.numberofcorners);
         const int* beyond = out.neighborlist + 4 * i;
         for (size_t k = 0; k < 4; ++k) {
@@ -220,9 +227,11 @@ TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& ou
     };
     for (size_t v = 0; v < points; ++v) std::ranges::sort(by_lowest.with(v), {}, rest);
     const std::span<const int32_t> sorted = by_lowest.items();
+    progress.advance(0.9);
     std::vector<int32_t> number(tets);
     for (size_t i = 0; i < tets; ++i) number[static_cast<size_t>(sorted[i])] = static_cast<int32_t>(i);
     for (const int32_t i : sorted) {
+        if (mesh.tetrahedra.size() % looks == 0) progress.advance(0.9);
         std::array<Corner, 4> c = read[static_cast<size_t>(i)];
         const auto at = [&](size_t k) { return mesh.vertices[static_cast<size_t>(c[k].vertex)]; };
         if (orientation(at(0), at(1), at(2), at(3)) < 0) std::swap(c[2], c[3]);
@@ -320,12 +329,15 @@ std::vector<int32_t> winding_numbers(const TetMesh& mesh, const std::vector<std:
 }
 
 // Takes away the tetrahedra outside the solid, and finds the one behind each triangle.
-void keep_solid(const Surface& surface, TetMesh& mesh) {
+void keep_solid(const Surface& surface, TetMesh& mesh, Progress& progress) {
     std::vector<std::array<Wall, 4>> walls(mesh.tetrahedra.size());
     const Walls finder(surface, mesh);
-    for (size_t t = 0; t < walls.size(); ++t)
+    for (size_t t = 0; t < walls.size(); ++t) {
+        if (t % looks == 0) progress.advance(0.95);
         for (size_t k = 0; k < 4; ++k) walls[t][k] = finder.at(t, k);
+    }
     const std::vector<int32_t> winding = winding_numbers(mesh, walls, mesh.cavities);
+    progress.advance(0.95);
 
     std::vector<int32_t> number(mesh.tetrahedra.size(), -1);
     size_t kept = 0;
@@ -386,8 +398,8 @@ TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progres
             tetgenio out;
             run_tetgen(surface, order, quality, improve, out, progress);
             progress.advance(0.9);
-            TetMesh mesh = read(surface, order, out);
-            keep_solid(surface, mesh);
+            TetMesh mesh = read(surface, order, out, progress);
+            keep_solid(surface, mesh, progress);
             progress.advance(1);
             return mesh;
         } catch (const Endless&) {

@@ -168,7 +168,7 @@ bool surely_apart(const Surface& surface, const Triangle& t, const Triangle& u) 
 }
 
 // The triangles that may have something in common with another but shared corners.
-std::vector<size_t> doubtful_triangles(const Surface& surface) {
+std::vector<size_t> doubtful_triangles(const Surface& surface, Progress& progress) {
     using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, size_t>;
     std::vector<Box> boxes;
     for (const Triangle& t : surface.triangles) {
@@ -180,10 +180,12 @@ std::vector<size_t> doubtful_triangles(const Surface& surface) {
         boxes.emplace_back(low.data(), high.data(), boxes.size());
     }
     std::vector<bool> doubtful(boxes.size(), false);
+    size_t pairs = 0;
     constexpr std::ptrdiff_t scanned = 2000;  // so many boxes are compared by a scan, as in CGAL's own check
     CGAL::box_self_intersection_d(
         boxes.begin(), boxes.end(),
         [&](const Box& a, const Box& b) {
+            if (++pairs % 1024 == 0) progress.advance(0.5);
             if (!surely_apart(surface, surface.triangles[a.info()], surface.triangles[b.info()]))
                 doubtful[a.info()] = doubtful[b.info()] = true;
         },
@@ -194,12 +196,30 @@ std::vector<size_t> doubtful_triangles(const Surface& surface) {
     return found;
 }
 
-void check_self_intersection(const Surface& surface) {
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+
+// A mesh's points, for a function of CGAL that can't be interrupted but in asking for one.
+struct PolledPoints {
+    using key_type = Mesh::Vertex_index;
+    using value_type = Kernel::Point_3;
+    using reference = const value_type&;
+    using category = boost::readable_property_map_tag;
+    const Mesh& mesh;
+    Progress& progress;
+    mutable size_t asked = 0;
+
+    friend reference get(const PolledPoints& points, key_type v) {
+        if (++points.asked % 4096 == 0) points.progress.advance(0.7);
+        return points.mesh.point(v);
+    }
+};
+
+void check_self_intersection(const Surface& surface, Progress& progress) {
     namespace pmp = CGAL::Polygon_mesh_processing;
-    using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-    using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
-    const std::vector<size_t> doubtful = doubtful_triangles(surface);
+    const std::vector<size_t> doubtful = doubtful_triangles(surface, progress);
     if (doubtful.empty()) return;
+    progress.advance(0.7);
     Mesh mesh;
     for (const Point& p : surface.vertices) mesh.add_vertex({p[0], p[1], p[2]});
     const auto vertex = [](int32_t v) { return Mesh::Vertex_index(static_cast<Mesh::size_type>(v)); };
@@ -210,8 +230,9 @@ void check_self_intersection(const Surface& surface) {
     std::vector<Mesh::Face_index> faces;
     for (const size_t t : doubtful) faces.emplace_back(static_cast<Mesh::size_type>(t));
     std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
-    pmp::self_intersections<CGAL::Sequential_tag>(faces, mesh, std::back_inserter(pairs),
-                                                  CGAL::parameters::maximum_number(1));
+    pmp::self_intersections<CGAL::Sequential_tag>(
+        faces, mesh, std::back_inserter(pairs),
+        CGAL::parameters::maximum_number(1).vertex_point_map(PolledPoints{mesh, progress}));
     if (pairs.empty()) return;
     const auto source = [&](Mesh::Face_index f) { return surface.pieces[static_cast<size_t>(f)].face; };
     const auto [low, high] = std::minmax({source(pairs[0].first), source(pairs[0].second)});
@@ -371,7 +392,7 @@ void check_surface(const Surface& surface, Progress& progress) {
     check_degenerate(surface);
     check_manifold(surface);
     progress.advance(0.5);
-    check_self_intersection(surface);
+    check_self_intersection(surface, progress);
     progress.advance(1);
 }
 
