@@ -8,6 +8,7 @@ import datetime
 import json
 import sys
 
+import any_mesh
 import deform
 import peers
 import plot
@@ -18,7 +19,7 @@ import table
 import worst
 from programs import BUILD, ROOT, Failure, machine
 
-SECTIONS = {module.__name__: module for module in (ratio, scale, worst, queries, deform, peers)}
+SECTIONS = {"any": any_mesh, **{module.__name__: module for module in (ratio, scale, worst, queries, deform, peers)}}
 
 
 def main():

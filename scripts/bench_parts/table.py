@@ -11,7 +11,8 @@ PLOT = "docs/images/scale.png"
 
 def text(reports):
     """The table of all sections that there are reports of."""
-    makers = {"ratio": ratio, "scale": scale, "worst": worst, "queries": queries, "deform": deform}
+    makers = {"ratio": ratio, "scale": scale, "worst": worst, "queries": queries, "deform": deform,
+              "any": any_mesh}
     rows = [("", "measured", "goal", "holds")]
     for name, rows_of in makers.items():
         if name in reports:
@@ -78,6 +79,17 @@ def deform(report):
         rows += [row(f"{move}, all that is done for it in Blender {each['blender']}, ms", 1000 * each["whole"],
                      size["goal"], "{:.1f}") for each in size["blenders"]]
     return rows
+
+
+def any_mesh(report):
+    ways = ", ".join(f"{count} {way}" for way, count in report["ways"])
+    return [
+        row(f"the longest of {len(report['models'])} models ({ways}) / 10 s, or 5 s for each 100,000 faces",
+            report["longest"], 1, "{:.2f}"),
+        row(f"time of one that is broken / clean ones of as many faces, median of {report['broken']}",
+            report["broken_over_clean"], 3, "{:.2f}"),
+        row("refused and no sheet, or lost", report["refused"], 0, "{}"),
+    ]
 
 
 def row(what, value, goal, form):

@@ -88,6 +88,28 @@ def scramble(draw, vertices, triangles):
     return vertices, triangles
 
 
+def slivers(draw, vertices, triangles):
+    """Triangles fall into three, with the new corner almost on an edge."""
+    chosen = some(draw, len(triangles), 0.3)
+    weights = np.array([0.5, 0.5, 0]) + np.array([-1, -1, 2]) * 10 ** draw.uniform(-9, -3)
+    middle = np.einsum("k,nkx->nx", weights, vertices[triangles[chosen]])
+    new = len(vertices) + np.arange(len(chosen), dtype=triangles.dtype)
+    a, b, c = triangles[chosen].T
+    thirds = [np.column_stack([new, b, c]), np.column_stack([a, new, c]), np.column_stack([a, b, new])]
+    return np.vstack([vertices, middle]), np.vstack([np.delete(triangles, chosen, axis=0), *thirds])
+
+
+def dust(draw, vertices, triangles):
+    """Specks about the model: triangles of their own, and tiny tetrahedra."""
+    count, size = draw.integers(1, 100), np.ptp(vertices, axis=0).max()
+    places = vertices.min(axis=0) + draw.uniform(size=(count, 1, 3)) * np.ptp(vertices, axis=0)
+    corners = places + draw.normal(size=(count, 4, 3)) * size * 10 ** draw.uniform(-6, -2)
+    facets = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])[:draw.choice([1, 4])]
+    specks = len(vertices) + 4 * np.arange(count)[:, None, None] + facets
+    return np.vstack([vertices, corners.reshape(-1, 3)]), \
+        np.vstack([triangles, specks.reshape(-1, 3)]).astype(np.int32)
+
+
 def permute(draw, vertices, triangles):
     """The same mesh in another order."""
     order = draw.permutation(len(vertices))
@@ -128,7 +150,7 @@ def no_such_vertex(draw, vertices, triangles):
 
 
 ORDINARY = (flip, duplicate, delete, cut, weld, collapse, flatten, intersect, spikes, tremble, loosen, scramble,
-            permute, huge, tiny, far, plane)
+            slivers, dust, permute, huge, tiny, far, plane)
 REFUSED = {not_a_number: "not finite", no_such_vertex: "index"}
 
 
