@@ -6,6 +6,7 @@
 #include "part/deform.h"
 #include "part/fair.h"
 #include "part/polygons.h"
+#include "part/rays.h"
 #include "part/solid.h"
 #include "tree/carried.h"
 #include "tree/hierarchy.h"
@@ -41,6 +42,10 @@ struct pw_deformation : Deformation {
 
 struct pw_creases : Creases {
     using Creases::Creases;
+};
+
+struct pw_ray_target : RayTarget {
+    using RayTarget::RayTarget;
 };
 
 namespace {
@@ -524,5 +529,28 @@ pw_status pw_creases_snap(const pw_creases* creases, const uint8_t* inside, size
     return guarded({{"creases", creases}, {"inside", inside}, {"result", result}}, [&] {
         require(face_count == creases->count(), "face_count is not the number of the surface's faces.");
         snapped_border(*creases, {inside, face_count}, {result, face_count});
+    });
+}
+
+pw_status pw_ray_target_create(const double* vertices, size_t vertex_count, const int32_t* triangles,
+                               size_t triangle_count, pw_ray_target** target) {
+    return guarded({{"target", target}}, [&] {
+        *target = new pw_ray_target(as_mesh(vertices, vertex_count, triangles, triangle_count, nullptr, triangle_count));
+    });
+}
+
+void pw_ray_target_free(pw_ray_target* target) { delete target; }
+
+pw_status pw_ray_target_first(const pw_ray_target* target, const double* origin, const double* direction, double beyond,
+                              int32_t* triangle, double* distance) {
+    return guarded({{"target", target}, {"origin", origin}, {"direction", direction}, {"triangle", triangle},
+                    {"distance", distance}}, [&] {
+        const Point from = *as_points(origin, 1).data(), along = *as_points(direction, 1).data();
+        const double size = length(along);
+        if (!std::isfinite(length(from)) || !std::isfinite(size) || size == 0 || std::isnan(beyond))
+            throw Error(PW_ERROR_NOT_FINITE, "The ray has no origin or no direction.");
+        const RayHit hit = target->first(from, along, beyond);
+        *triangle = hit.triangle;
+        *distance = hit.distance;
     });
 }

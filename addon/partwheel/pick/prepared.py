@@ -3,6 +3,7 @@
 
 import bpy
 
+from ..mesh import arrays
 from ..mesh.kept import counts, key
 from ..parts import changes, registry
 from ..view import overlay, picking, seen
@@ -15,7 +16,8 @@ class Prepared:
 
     def __init__(self, obj, stamp):
         self.stamp = stamp
-        self._seen = None if obj.mode == "EDIT" else seen.seen(obj)  # in Edit Mode its mesh may not be up to date
+        arrays.up_to_date(obj)
+        self._seen = seen.seen(obj)
         self.tree = picking.FaceTree(obj, self._seen)
         self._hierarchy = self._parts = self._known = None
         self._asked = False
@@ -31,7 +33,7 @@ class Prepared:
         """An overlay.Parts, or None without a hierarchy."""
         hierarchy = self.hierarchy(obj)
         if hierarchy and not self._parts:
-            self._parts = overlay.Parts(self._seen or seen.seen(obj), hierarchy)
+            self._parts = overlay.Parts(self._seen, hierarchy)
         return self._parts
 
 

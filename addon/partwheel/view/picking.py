@@ -4,12 +4,11 @@ out, and what is seen under modifiers leads to the mesh's own faces."""
 
 from typing import NamedTuple
 
-import bmesh
 import bpy
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 from mathutils import Matrix, Vector
-from mathutils.bvhtree import BVHTree
 
+from partwheel import RayTarget
 from ..mesh import arrays
 from .seen import seen
 
@@ -18,54 +17,29 @@ BEHIND = 1e-6  # the same behind what a view does not show, as a share of the co
 
 
 class FaceTree:
-    """What is seen of an object's faces as they are now, to be searched by rays."""
+    """What is seen of an object's faces as they are now, to be searched by rays. Not to be made while Blender draws."""
 
     def __init__(self, obj, shown=None):
-        """shown: its seen.Seen, if that is there already; of no use in Edit Mode."""
-        if obj.mode == "EDIT":
-            self._fill(bmesh.from_edit_mesh(obj.data), arrays.cage_positions(obj))
-            return
-        shown = shown or seen(obj)
-        self._indices = shown.faces.tolist()
-        self._tree = BVHTree.FromPolygons(shown.positions.tolist(), shown.triangles.tolist(), all_triangles=True)
-
-    def _fill(self, bm, cage=None):
-        """cage: (V,3) where the vertices are shown, if elsewhere."""
-        bm.faces.index_update()
-        if cage is not None:
-            bm.verts.index_update()
-            faces = [face for face in bm.faces if not face.hide]
-            self._indices = [face.index for face in faces]
-            corners = [[vertex.index for vertex in face.verts] for face in faces]
-            self._tree = BVHTree.FromPolygons(cage.tolist(), corners)
-            return
-        hidden = [face.index for face in bm.faces if face.hide]
-        self._indices = None  # of the faces in the mesh; none is needed where all are visible
-        if not hidden:
-            self._tree = BVHTree.FromBMesh(bm)
-            return
-        visible = bm.copy()
-        visible.faces.ensure_lookup_table()
-        self._indices = [face.index for face in bm.faces if not face.hide]
-        bmesh.ops.delete(visible, geom=[visible.faces[index] for index in hidden], context="FACES_ONLY")
-        visible.faces.index_update()
-        self._tree = BVHTree.FromBMesh(visible)
-        visible.free()
+        """shown: its seen.Seen, if that is there already."""
+        if not shown:
+            arrays.up_to_date(obj)
+            shown = seen(obj)
+        self._faces, self._target = shown.faces, RayTarget(shown.positions, shown.triangles)
 
     def under(self, matrix, region, view, point):
         """(face index, distance along the ray in world units), or None; NO_FACE: modifiers have put there what is seen.
         matrix: the object's to the world. view: a RegionView3D. point: (x, y) in pixels of the region."""
         to_local = matrix.inverted_safe()
         eye = region_2d_to_origin_3d(region, view, point)
-        towards = to_local.to_3x3() @ region_2d_to_vector_3d(region, view, point)
-        origin = to_local @ eye
-        while True:
-            hit, _, index, distance = self._tree.ray_cast(origin, towards)
-            if index is None:
-                return None
-            if not clipped(view, matrix @ hit):
-                return self._indices[index] if self._indices else index, (matrix @ hit - eye).length
-            origin = hit + towards.normalized() * max(distance, hit.length) * STEP
+        origin, towards = to_local @ eye, to_local.to_3x3() @ region_2d_to_vector_3d(region, view, point)
+        hit = self._target.first(origin, towards)
+        while hit:
+            triangle, distance = hit
+            place = matrix @ (origin + distance * towards)
+            if not clipped(view, place):
+                return int(self._faces[triangle]), (place - eye).length
+            hit = self._target.first(origin, towards, distance * (1 + STEP))
+        return None
 
 
 def clipped(view, point):

@@ -7,7 +7,8 @@ from .fair import faired
 from .hierarchy import Hierarchy, Solid, Summary
 from .library import Error, LibraryError, Mode, PartwheelError, Rung, Stage, Status, version
 from .polygons import Faults, polygon_faults
+from .rays import RayTarget
 
-__all__ = ["Creases", "Deformation", "Error", "Faults", "Hierarchy", "LibraryError", "Mode", "PartwheelError", "Rung",
-           "Solid", "Stage", "Status", "Summary", "faired", "polygon_faults", "snapped_border", "surface_distances",
-           "version"]
+__all__ = ["Creases", "Deformation", "Error", "Faults", "Hierarchy", "LibraryError", "Mode", "PartwheelError",
+           "RayTarget", "Rung", "Solid", "Stage", "Status", "Summary", "faired", "polygon_faults", "snapped_border",
+           "surface_distances", "version"]

@@ -1,0 +1,128 @@
+// Rays and triangles: boxes about runs of them along a space-filling curve, and the sides on which a ray passes their
+// edges (Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", 2013).
+#include "part/rays.h"
+
+#include "base/curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+constexpr size_t run = 16;
+constexpr int cell_bits = curve_bits - 1;  // the far corner of the bounding box has a cell, too
+
+// By how much rounding may put a box's near side behind its far one.
+constexpr double rounding = 1e-12;
+
+}  // namespace
+
+// Along its longest direction, z; what it meets is told by where the ray, moved to x = y = 0, passes.
+struct RayTarget::Ray {
+    Point origin, direction;
+    double beyond;
+    size_t x, y, z;
+
+    Ray(const Point& from, const Point& along, double farther) : origin(from), direction(along), beyond(farther) {
+        z = 0;
+        for (size_t k = 1; k < 3; ++k) z = std::fabs(along[k]) > std::fabs(along[z]) ? k : z;
+        x = (z + 1) % 3, y = (z + 2) % 3;
+    }
+
+    Point seen(const Point& p) const {
+        const Point way = p - origin;
+        const double far = way[z] / direction[z];
+        return {way[x] - far * direction[x], way[y] - far * direction[y], far};
+    }
+};
+
+RayTarget::RayTarget(const MeshView& mesh) {
+    if (mesh.triangle_count == 0) return;
+    check_arrays(mesh);
+    const auto* vertices = reinterpret_cast<const Point*>(mesh.vertices);
+    const auto* triangles = reinterpret_cast<const Triangle*>(mesh.triangles);
+    vertices_.assign(vertices, vertices + mesh.vertex_count);
+    const Frame frame = Frame::around(vertices_);
+    std::vector<uint64_t> order;  // the place on the curve, as far as 32 bits tell, and the number
+    order.reserve(mesh.triangle_count);
+    for (size_t t = 0; t < mesh.triangle_count; ++t) {
+        std::array<uint64_t, 3> cell{};
+        for (size_t k = 0; k < 3 && frame.longest > 0; ++k) {
+            const double low = vertices_[at(triangles[t][0])][k] - frame.origin[k];
+            cell[k] = static_cast<uint64_t>(std::ldexp(low / frame.longest, cell_bits));
+        }
+        order.push_back(place_on_curve(cell) >> 31 << 32 | t);
+    }
+    std::sort(order.begin(), order.end());
+    for (const uint64_t place : order) {
+        numbers_.push_back(static_cast<int32_t>(place & 0xffffffff));
+        triangles_.push_back(triangles[numbers_.back()]);
+    }
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto add_level = [&](size_t count, const auto& extend) {
+        std::vector<Box> boxes((count + run - 1) / run, {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}});
+        for (size_t i = 0; i < count; ++i) extend(boxes[i / run], i);
+        levels_.push_back(std::move(boxes));
+    };
+    const auto include = [](Box& box, const Point& low, const Point& high) {
+        for (size_t k = 0; k < 3; ++k) {
+            box.low[k] = std::min(box.low[k], low[k]);
+            box.high[k] = std::max(box.high[k], high[k]);
+        }
+    };
+    add_level(triangles_.size(), [&](Box& box, size_t t) {
+        for (const int32_t v : triangles_[t]) include(box, vertices_[at(v)], vertices_[at(v)]);
+    });
+    while (levels_.back().size() > 1) {
+        const std::vector<Box> below = levels_.back();
+        add_level(below.size(), [&](Box& box, size_t b) { include(box, below[b].low, below[b].high); });
+    }
+}
+
+RayHit RayTarget::first(const Point& origin, const Point& direction, double beyond) const {
+    RayHit best{-1, std::numeric_limits<double>::infinity()};
+    if (!levels_.empty()) search({origin, direction, beyond}, levels_.size() - 1, 0, best);
+    return best.triangle < 0 ? RayHit{} : best;
+}
+
+void RayTarget::search(const Ray& ray, size_t level, size_t index, RayHit& best) const {
+    const Box& box = levels_[level][index];
+    double near = ray.beyond, far = best.distance;
+    for (size_t k = 0; k < 3; ++k) {
+        double enter = (box.low[k] - ray.origin[k]) / ray.direction[k];
+        double leave = (box.high[k] - ray.origin[k]) / ray.direction[k];
+        if (enter > leave) std::swap(enter, leave);
+        if (enter > near) near = enter;  // 0 / 0, along a side of the box, is no bound
+        if (leave < far) far = leave;
+    }
+    if (near > far + rounding * std::fabs(far)) return;
+
+    const size_t begin = index * run;
+    if (level > 0) {
+        const size_t end = std::min(begin + run, levels_[level - 1].size());
+        for (size_t i = begin; i < end; ++i) search(ray, level - 1, i, best);
+        return;
+    }
+    for (size_t t = begin; t < std::min(begin + run, triangles_.size()); ++t) {
+        std::array<Point, 3> corner;
+        for (size_t k = 0; k < 3; ++k) corner[k] = ray.seen(vertices_[at(triangles_[t][k])]);
+        // On which side the ray passes each edge. Rounding may make it 0, which counts as either, but never turns it.
+        std::array<double, 3> side;
+        for (size_t k = 0; k < 3; ++k) {
+            const Point &p = corner[(k + 1) % 3], &q = corner[(k + 2) % 3];
+            side[k] = p[0] * q[1] - p[1] * q[0];
+        }
+        const auto [least, most] = std::minmax({side[0], side[1], side[2]});
+        const double sum = side[0] + side[1] + side[2];
+        if ((least < 0 && most > 0) || sum == 0) continue;
+        const double distance = (side[0] * corner[0][2] + side[1] * corner[1][2] + side[2] * corner[2][2]) / sum;
+        if (distance > ray.beyond && std::pair(distance, numbers_[t]) < std::pair(best.distance, best.triangle))
+            best = {numbers_[t], distance};
+    }
+}
+
+}  // namespace partwheel

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rays, against one that tries every triangle in numpy."""
+
+import numpy as np
+import pytest
+import shapes
+from partwheel import PartwheelError, RayTarget, Status
+from scipy.spatial import ConvexHull
+
+
+def every(vertices, triangles, origin, direction, beyond=0.0):
+    """(triangle, distance) by Cramer's rule, or None."""
+    a, b, c = (vertices[triangles[:, k]] - origin for k in range(3))
+    normal = np.cross(b - a, c - a)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        distance = (normal * a).sum(1) / (normal @ direction)
+        place = distance[:, None] * direction
+        inside = np.all([(np.cross(q - p, place - p) * normal).sum(1) >= 0
+                         for p, q in ((a, b), (b, c), (c, a))], axis=0)
+    hits = np.flatnonzero(inside & (distance > beyond))
+    return (hits[np.argmin(distance[hits])], distance[hits].min()) if len(hits) else None
+
+
+@pytest.mark.parametrize("shuffled", (False, True))
+def test_as_by_every_triangle(shuffled):
+    draw = np.random.default_rng(1)
+    vertices, triangles, *_ = shapes.off("homer")
+    triangles = draw.permutation(triangles) if shuffled else triangles
+    target, middle, size = RayTarget(vertices, triangles), vertices.mean(0), np.ptp(vertices, axis=0).max()
+    met = 0
+    for _ in range(300):
+        origin = middle + draw.normal(size=3) * size * draw.choice([0.1, 2])
+        direction = (middle + draw.normal(size=3) * size / 4 - origin) * 10.0 ** draw.integers(-3, 3)
+        beyond = 0.0
+        for _ in range(4):  # and what is behind it
+            found, expected = target.first(origin, direction, beyond), every(vertices, triangles, origin, direction, beyond)
+            assert (found is None) == (expected is None)
+            if not found:
+                break
+            assert found == (expected[0], pytest.approx(expected[1], rel=1e-9))
+            beyond, met = found[1] * (1 + 1e-9), met + 1
+    assert met > 300
+
+
+def test_no_ray_passes_between():
+    """From inside a convex surface through its edges and vertices, wherever it is."""
+    draw = np.random.default_rng(2)
+    points = draw.normal(size=(2000, 3))
+    points /= np.linalg.norm(points, axis=1)[:, None]
+    triangles = ConvexHull(points).simplices
+    edges = np.unique(np.sort(np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]]]), axis=1), axis=0)
+    for middle in ((0, 0, 0), (1e3, -7, 1e-3), (0.1, 0.2, 0.3)):
+        vertices = points + middle
+        target = RayTarget(vertices, triangles)
+        for towards in np.vstack([vertices, vertices[edges].mean(1)]):
+            hit = target.first(middle, towards - middle)
+            assert hit and hit[1] == pytest.approx(1, rel=1e-6)
+
+
+def test_far_away_and_flat():
+    vertices, triangles = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.0]]), np.array([[0, 1, 2]])
+    target = RayTarget(vertices, triangles)
+    assert target.first((0.25, 0.25, 1e8), (0, 0, -1)) == (0, pytest.approx(1e8))
+    assert target.first((0.25, 0.25, 1), (0, 0, 1)) is None
+    assert target.first((-1, 0.25, 0), (1, 0, 0)) is None  # along its plane
+    assert target.first((0.75, 0.75, 1), (0, 0, -1)) is None
+    assert target.first((0.25, 0.25, 1), (0, 0, -1), 1.0) is None
+
+
+def test_nothing_and_nonsense():
+    assert RayTarget(np.empty((0, 3)), np.empty((0, 3), int)).first((0, 0, 0), (0, 0, 1)) is None
+    target = RayTarget(*shapes.cube()[:2])
+    for origin, direction in (((0, 0, 0), (0, 0, 0)), ((np.nan, 0, 0), (0, 0, 1)), ((0, 0, 0), (0, np.inf, 0))):
+        with pytest.raises(PartwheelError) as refused:
+            target.first(origin, direction)
+        assert refused.value.status == Status.NOT_FINITE
+    with pytest.raises(PartwheelError) as refused:
+        RayTarget(np.zeros((3, 3)), np.array([[0, 1, 3]]))
+    assert refused.value.status == Status.INDEX
