@@ -116,7 +116,7 @@ typedef struct pw_build_options {
      * names what is wrong with the surface. */
     uint32_t rungs;
     /* 0: an open surface that is not meant as a solid (plane, cloth, car door) is refused with PW_ERROR_NOT_SOLID.
-     * 1: it is wrapped as a thin solid. */
+     * 1: it is taken as a thin solid. */
     int32_t open_surfaces;
     /* 0: as many threads as help. 1 or more: at most so many. One clusters; others share only what falls into pieces that
      * have nothing to do with each other. The result is the same, bit for bit, also where the system starts none. */
@@ -144,7 +144,8 @@ typedef struct pw_hierarchy pw_hierarchy;
  * is moved and none is added to it (PW_RUNG_EXACT). Any number of components and cavities is fine; a region is solid
  * where the winding number of the surface about it is not 0. Any other surface is repaired (where only vertices touch,
  * these are set apart; where it is rough all over, as with noise, it is smoothed until it no longer passes through
- * itself) or wrapped, as options->rungs allows, and every source face goes with the part of the surface used that is
+ * itself); or else tetrahedra are made of points on it, and those kept that it winds around, whose boundary is then the
+ * surface used: as options->rungs allows. Every source face goes with the part of the surface used that is
  * nearest to it: pw_summary and pw_hierarchy_account() say what was done. The caller's mesh is never changed.
  *
  * The result does not depend on the order of the vertices or triangles, nor on the corner a triangle starts with. Any

@@ -31,7 +31,7 @@ typedef enum pw_status {
 /* The stages of a build, in their order; each is a source file of the library. */
 typedef enum pw_stage {
     PW_STAGE_SURFACE = 0,    /* checks of the input */
-    PW_STAGE_REPAIR = 1,     /* repairing or wrapping it; passed over in no time if it is clean */
+    PW_STAGE_REPAIR = 1,     /* mending or repairing it; passed over in no time if it is clean */
     PW_STAGE_TETRAHEDRA = 2, /* TetGen */
     PW_STAGE_CLUSTER = 3,    /* Listing 1 of the paper */
     PW_STAGE_DENDROGRAM = 4, /* Listing 2 of the paper */
@@ -43,7 +43,7 @@ typedef enum pw_stage {
 typedef enum pw_rung {
     PW_RUNG_EXACT = 1,    /* the caller's surface as it is: closed, manifold, oriented, free of self-intersection */
     PW_RUNG_REPAIRED = 2, /* stitched, oriented, holes filled, overlaps united; most vertices are the caller's */
-    PW_RUNG_WRAPPED = 4   /* a new, closed surface close around it */
+    PW_RUNG_POINTS = 4    /* not at all: filled from points on it, inside where it winds around them */
 } pw_rung;
 
 #endif

@@ -138,16 +138,16 @@ private:
     Progress& progress_;
 };
 
-Hierarchy build(const MeshView& mesh, const LadderOptions& options, size_t threads, int32_t mode, Progress& progress) {
+Hierarchy build(const MeshView& mesh, const LadderOptions& options, int32_t mode, Progress& progress) {
     const Solid solid = climb(mesh, options, progress);
     std::optional<TetMesh> plain;
-    if (mode != PW_MODE_PAPER) plain = plain_filling(solid, options.quality > 0, progress);
+    if (mode != PW_MODE_PAPER && solid.surface.rung != PW_RUNG_POINTS) plain = plain_filling(solid, options.quality > 0, progress);
     const TetMesh& mesh_of_parts = plain ? *plain : solid.mesh;
     progress.enter(PW_STAGE_CLUSTER);
-    Regrouped regrouped{cluster(mesh_of_parts, progress, threads), {}};
+    Regrouped regrouped{cluster(mesh_of_parts, progress, options.threads), {}};
     progress.enter(PW_STAGE_DENDROGRAM);
     if (mode != PW_MODE_PAPER) regrouped = regroup(mesh_of_parts, regrouped.tree, progress);
-    if (plain) regrouped = carried(*plain, regrouped, solid, progress, threads);
+    if (plain) regrouped = carried(*plain, regrouped, solid, progress, options.threads);
     progress.enter(PW_STAGE_HIERARCHY);
     Hierarchy hierarchy(solid.surface, solid.mesh, regrouped, mesh.vertices);
     progress.advance(1);
@@ -282,8 +282,8 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
         const pw_build_options given = options ? taken(*options) : pw_build_options{};
         require(given.quality == 0 || (given.quality >= smallest_quality && std::isfinite(given.quality)),
                 "quality must be 0, or a number of at least 1.1.");
-        require(given.rungs <= (PW_RUNG_EXACT | PW_RUNG_REPAIRED | PW_RUNG_WRAPPED),
-                "rungs must be a sum of 1 (exact), 2 (repaired) and 4 (wrapped), or 0 for all.");
+        require(given.rungs <= (PW_RUNG_EXACT | PW_RUNG_REPAIRED | PW_RUNG_POINTS),
+                "rungs must be a sum of 1 (exact), 2 (repaired) and 4 (from points), or 0 for all.");
         require(given.open_surfaces == 0 || given.open_surfaces == 1, "open_surfaces must be 0 or 1.");
         require(given.threads >= 0, "threads must be 0 or more.");
         require(given.mode == PW_MODE_REGROUPED || given.mode == PW_MODE_PAPER,
@@ -292,8 +292,9 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
         Progress& progress = context ? context->progress : unwatched;
         const Watch watch(progress);
         const LadderOptions ladder{given.quality, given.rungs, given.open_surfaces == 1,
-                                   [&](pw_rung rung) { if (context) context->rung = rung; }};
-        *hierarchy = new pw_hierarchy(build(mesh, ladder, static_cast<size_t>(given.threads), given.mode, progress));
+                                   [&](pw_rung rung) { if (context) context->rung = rung; },
+                                   static_cast<size_t>(given.threads)};
+        *hierarchy = new pw_hierarchy(build(mesh, ladder, given.mode, progress));
     });
 }
 

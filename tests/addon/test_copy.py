@@ -176,7 +176,7 @@ class Copy(SolidTest):
     def test_broken_sources_give_their_own_faces_closed(self):
         vertices, polygons = read_off("dragknob")
         for rungs, rung, broken in ((2, "repaired", polygons[5:]), (2, "repaired", polygons + polygons[:1]),
-                                    (4, "wrapped", [polygon for i, polygon in enumerate(polygons) if i % 7])):
+                                    (4, "points", [polygon for i, polygon in enumerate(polygons) if i % 7])):
             obj = self.add(vertices, broken)
             hierarchy = package().Hierarchy.build(*part("mesh.arrays").surface(obj.data), rungs=rungs)
             self.assertEqual(hierarchy.summary.rung, rung)
@@ -223,8 +223,8 @@ class Copy(SolidTest):
                         place = tuple(obj.data.vertices[obj.data.loops[loop].vertex_index].co)
                         self.assertEqual(uv[place], tuple(obj.data.uv_layers["uv"].data[loop].uv))
 
-    def test_of_a_wrapped_source_it_is_nearly_what_its_tetrahedra_fill(self):
-        """Of a scan with a dozen holes: the part's own polygons, and caps that follow the facets inside the wrap."""
+    def test_filled_from_points_it_is_nearly_what_its_tetrahedra_fill(self):
+        """Of a scan with a dozen holes: the part's own polygons, and caps that follow the facets inside."""
         vertices, polygons = read_off("hand")
         places = numpy.array(vertices)
         centers = places[numpy.array(polygons)].mean(axis=1)

@@ -64,7 +64,7 @@ def test_named_errors(meshes_directory, tmp_path):
 
 def test_rungs(meshes_directory):
     cube = meshes_directory / "open_cube.off"
-    for rungs, expected in ((), "repaired"), (("--rungs", "exact,wrapped"), "wrapped"):
+    for rungs, expected in ((), "repaired"), (("--rungs", "exact,points"), "points"):
         report = json.loads(run("build", cube, "--json", *rungs).stdout)
         assert report["error"] is None and report["rung"] == expected and report["account"].endswith(".")
         assert report["deviation"] == 0 if expected == "repaired" else 0 < report["deviation"] < 0.02
@@ -77,7 +77,7 @@ def test_open_surfaces(meshes_directory):
     refused = run("build", plane, "--json")
     assert refused.returncode == 1 and json.loads(refused.stdout)["error"]["name"] == "not solid"
     report = json.loads(run("build", plane, "--json", "--open-surfaces").stdout)
-    assert report["error"] is None and report["rung"] == "wrapped" and "thin" in report["account"]
+    assert report["error"] is None and report["rung"] == "points" and "thin" in report["account"]
 
 
 def test_a_file_that_is_no_mesh(tmp_path):

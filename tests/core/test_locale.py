@@ -9,7 +9,7 @@ def answers():
     """Saved bytes with points inside, and an account that has numbers."""
     shape = shapes.SHAPES["torus"]()
     saved = Hierarchy.build(*shape, quality=1.4).save()
-    return bytes(saved), Hierarchy.build(*shape, rungs=Rung.WRAPPED).account
+    return bytes(saved), Hierarchy.build(*shape, rungs=Rung.POINTS).account
 
 
 def test_numbers_do_not_depend_on_the_locale(request):

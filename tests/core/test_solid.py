@@ -180,7 +180,7 @@ def test_crossings_are_seen():
         assert (crossings(solid) > 0) == expected
 
 
-def test_wrapped_and_repaired_sources_give_closed_solids():
+def test_repaired_sources_and_points_give_closed_solids():
     box = shapes.cube()
     for keep, rungs in ((np.arange(len(box.triangles)) != 0, 2), (np.arange(len(box.triangles)) != 0, 4)):
         shape = shapes.Shape(box.vertices, box.triangles[keep], np.arange(keep.sum(), dtype=np.int32), int(keep.sum()))

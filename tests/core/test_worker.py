@@ -354,7 +354,7 @@ if LINUX and PLAIN:
 
     def test_a_rung_that_hangs_is_tried_once(harm, clock):
         harm("loop", 1, rung=4)
-        job = Job(*shapes.off("pig"), time_limit=3)  # neither closed nor to be repaired: one process gets to the wrap
+        job = Job(*shapes.off("pig"), time_limit=3)  # neither closed nor to be repaired: one process gets to the last rung
         with pytest.raises(WorkerError):
             job.result()
         assert [failure.name for failure in job.failures] == ["time limit"]

@@ -23,7 +23,7 @@ CASES = {  # name: file, options of the build
     "hand in mode paper": ("hand.off", {"mode": Mode.PAPER}),
     "rotor in mode paper": ("rotor.off", {"mode": Mode.PAPER}),
     "head, repaired": ("head.off", {}),
-    "pig, wrapped": ("pig.off", {}),
+    "pig, from points": ("pig.off", {}),
 }
 
 

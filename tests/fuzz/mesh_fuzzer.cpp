@@ -3,7 +3,7 @@
 //
 //   byte 0      rungs (0..7), then a bit each: open_surfaces, quality, polygons of two triangles, far away, tiny
 //   byte 1      a bit: mode "paper"; 2: threads; a bit: fine, with edges halved until there are parts to regroup and
-//               noise can be told, and not wrapped, which takes long; 3: noise, in 1/20 of the longest edge
+//               noise can be told, and not filled from points; 3: noise, in 1/20 of the longest edge
 //   byte 2      number of vertices
 //   3 a vertex, 3 a corner: see bytes.h
 #include "bytes.h"
@@ -106,7 +106,7 @@ Input read(const uint8_t* data, size_t size) {
 // For the test that seeds go the way they claim.
 void tell(const Input& input, pw_status status, const Handle& handle) {
     if (!std::getenv("PARTWHEEL_FUZZ_TELL")) return;
-    const char* rungs[] = {"", "exact", "repaired", "", "wrapped"};
+    const char* rungs[] = {"", "exact", "repaired", "", "points"};
     std::fprintf(stderr, "told: %s %s, %s, %s, %d threads, %s, %s\n", pw_status_name(status),
                  handle ? rungs[summary(handle).rung] : "not built",
                  input.options.mode == PW_MODE_PAPER ? "paper" : "regrouped",

@@ -406,13 +406,13 @@ TEST(Api, SecondsOfAFailedBuild) {
 
 TEST(Api, TheRungTriedLast) {
     const Context context = new_context();
-    pw_rung rung = PW_RUNG_WRAPPED;
+    pw_rung rung = PW_RUNG_POINTS;
     ASSERT_EQ(pw_context_rung(context.get(), &rung), PW_OK);
     EXPECT_EQ(rung, PW_RUNG_EXACT);
     TriMesh open = without_faces(cube());
     open.triangles.pop_back();
     open = without_faces(open);
-    for (const auto& [rungs, last] : {std::pair(7U, PW_RUNG_REPAIRED), std::pair(5U, PW_RUNG_WRAPPED),
+    for (const auto& [rungs, last] : {std::pair(7U, PW_RUNG_REPAIRED), std::pair(5U, PW_RUNG_POINTS),
                                       std::pair(1U, PW_RUNG_EXACT)}) {
         (void)try_build(open, 0, context.get(), rungs);
         ASSERT_EQ(pw_context_rung(context.get(), &rung), PW_OK);

@@ -32,14 +32,15 @@ TriMesh used(const Solid& solid) {
     return without_faces(mesh);
 }
 
-// What must hold on every rung: a surface that is closed, manifold, oriented and free of self-intersection, each source
-// face on it, source vertices where they were.
+// What must hold on every rung: a surface that is closed, manifold, oriented and free of self-intersection (from points
+// parts of it may touch), each source face on it, source vertices where they were.
 void expect_sound(const Solid& solid, const TriMesh& mesh, pw_rung rung) {
     SCOPED_TRACE(mesh.name);
     const Surface& surface = solid.surface;
     EXPECT_EQ(surface.rung, rung) << surface.account;
     EXPECT_EQ(surface.account.empty(), rung == PW_RUNG_EXACT);
-    EXPECT_EQ(expected_status(used(solid)), PW_OK);
+    const pw_status status = expected_status(used(solid));
+    EXPECT_TRUE(status == PW_OK || (rung == PW_RUNG_POINTS && status == PW_ERROR_NON_MANIFOLD)) << status;
     std::vector<double> area(mesh.face_count, 0), expected(mesh.face_count, 0);
     for (const Piece& piece : surface.pieces) {
         ASSERT_LT(static_cast<size_t>(piece.triangle), surface.triangles.size());
@@ -173,40 +174,17 @@ TEST(Ladder, SmoothingMovesNothingFar) {
     EXPECT_EQ(left, 1U);
 }
 
-TEST(Ladder, AWrapHoldsAllOfTheSource) {
-    std::vector<TriMesh> meshes{cube()};
-    if (!light()) meshes.push_back(together("apart", cube(), moved(cube(), {3, 0, 0})));
-    for (const TriMesh& mesh : meshes) {
-        const Solid solid = climbed(mesh, PW_RUNG_WRAPPED);
-        expect_sound(solid, mesh, PW_RUNG_WRAPPED);
-        const double volume = std::fabs(enclosed_volume(mesh));
-        EXPECT_GT(used_volume(solid), volume);
-        EXPECT_LT(used_volume(solid), 1.2 * volume);
-        EXPECT_LT(solid.surface.deviation, 0.02);
-        for (const int32_t s : solid.surface.source_vertex) EXPECT_EQ(s, -1);
-    }
-}
-
-TEST(Ladder, ASmallMeshGetsASmallWrap) {
+TEST(Ladder, OfASmallMeshPointsAreFew) {
     for (const TriMesh& mesh : {cube(), torus(9, 6, 2, 0.5)}) {
-        const Solid solid = climbed(mesh, PW_RUNG_WRAPPED);
-        expect_sound(solid, mesh, PW_RUNG_WRAPPED);
-        EXPECT_LT(solid.surface.triangles.size(), 6000U);
+        const Solid solid = climbed(mesh, PW_RUNG_POINTS);
+        expect_sound(solid, mesh, PW_RUNG_POINTS);
+        EXPECT_LT(solid.surface.triangles.size(), 8000U);
         EXPECT_LT(solid.surface.deviation, 0.02);
     }
 }
 
-TEST(Ladder, AWrapThatHidesMuchIsDoneFiner) {
-    // Two plates that a first wrap would make one.
-    const TriMesh mesh = surface_of(
-        "gap", block({0, 0, 0}, {1, 4, 1}) + block({2, 0, 0}, {3, 4, 1}) + block({1, 0, 0}, {2, 1, 1}), {0.1, 1, 1});
-    const Solid solid = climbed(mesh, PW_RUNG_WRAPPED);
-    EXPECT_LT(solid.surface.deviation, 0.02);
-    EXPECT_LT(used_volume(solid), 1.1 * enclosed_volume(mesh));
-}
-
-// Large triangles that cross hide some of their area in creases, however fine a wrap is; the fuzzer found these.
-TEST(Ladder, AFewTrianglesThatCrossGetASmallWrap) {
+// Large triangles that cross; the fuzzer found these.
+TEST(Ladder, AFewTrianglesThatCrossGetFewTetrahedra) {
     TriMesh mesh;
     mesh.name = "crossing";
     mesh.vertices = {{-120, -120, 119}, {119, 119, 119}, {119, 119, -120},
@@ -215,27 +193,27 @@ TEST(Ladder, AFewTrianglesThatCrossGetASmallWrap) {
                       {3, 0, 5}, {2, 5, 3}, {2, 3, 0}, {1, 0, 3}, {3, 4, 2}, {0, 4, 1}};
     mesh = without_faces(std::move(mesh));
     const Solid solid = climbed(mesh);
-    expect_sound(solid, mesh, PW_RUNG_WRAPPED);
-    EXPECT_LT(solid.surface.triangles.size(), 4000U);
+    expect_sound(solid, mesh, PW_RUNG_POINTS);
+    EXPECT_LT(solid.surface.triangles.size(), 8000U);
 }
 
-// Of few triangles, too, a wrap keeps what is thin, and what is between.
-TEST(Ladder, AWrapKeepsThinLimbs) {
+// Of few triangles, too, what is thin stays, and what is between.
+TEST(Ladder, FromPointsThinLimbsStay) {
     Cells cells = block({0, 0, 0}, {5, 2, 1});
     for (const int x : {0, 2, 4}) cells = cells + block({x, 0, 1}, {x + 1, 1, 2});
     const TriMesh fork = without_faces(surface_of("fork", cells, {1, 1, 40}));
     ASSERT_LT(fork.triangles.size(), 100U);
-    const Solid solid = climbed(fork, PW_RUNG_WRAPPED);
-    expect_sound(solid, fork, PW_RUNG_WRAPPED);
+    const Solid solid = climbed(fork, PW_RUNG_POINTS);
+    expect_sound(solid, fork, PW_RUNG_POINTS);
     EXPECT_LT(solid.surface.deviation, 0.02);
-    EXPECT_LT(used_volume(solid), 1.3 * enclosed_volume(fork));
+    EXPECT_NEAR(used_volume(solid), enclosed_volume(fork), 0.05 * enclosed_volume(fork));
 }
 
-TEST(Ladder, HolesAreFilledBeforeAWrap) {
-    TriMesh mesh = without(without_faces(cube()), 3);  // far larger than the wrap's resolution
-    const Solid solid = climbed(mesh, PW_RUNG_WRAPPED);
-    expect_sound(solid, mesh, PW_RUNG_WRAPPED);
-    EXPECT_GT(used_volume(solid), std::fabs(enclosed_volume(cube())));
+TEST(Ladder, HolesAreFilledBeforePointsAreSpread) {
+    TriMesh mesh = without(without_faces(cube()), 3);
+    const Solid solid = climbed(mesh, PW_RUNG_POINTS);
+    expect_sound(solid, mesh, PW_RUNG_POINTS);
+    EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(cube())), 1e-9);
 }
 
 TriMesh sheet() {
@@ -254,7 +232,7 @@ TEST(Ladder, ASheetIsRefusedOrThickened) {
         EXPECT_EQ(error.status(), PW_ERROR_NOT_SOLID);
     }
     const Solid solid = climbed(sheet(), 0, true);
-    expect_sound(solid, sheet(), PW_RUNG_WRAPPED);
+    expect_sound(solid, sheet(), PW_RUNG_POINTS);
     EXPECT_LT(used_volume(solid), 0.02);
 }
 
@@ -263,26 +241,26 @@ TEST(Ladder, OnlyTheRungsAllowedAreTried) {
     EXPECT_EQ(try_build(mesh, 0, nullptr, PW_RUNG_EXACT).status, PW_ERROR_OPEN);
     for (const uint32_t rungs : {2U, 3U, 6U, 7U, 0U})
         EXPECT_EQ(summary(try_build(mesh, 0, nullptr, rungs).handle).rung, PW_RUNG_REPAIRED);
-    EXPECT_EQ(summary(try_build(mesh, 0, nullptr, 5).handle).rung, PW_RUNG_WRAPPED);
+    EXPECT_EQ(summary(try_build(mesh, 0, nullptr, 5).handle).rung, PW_RUNG_POINTS);
 }
 
 TEST(Ladder, RungDeviationAndAccountAreSaved) {
-    const TriMesh mesh = without(without_faces(cube()), 3);
-    const Handle built = try_build(mesh, 0, nullptr, PW_RUNG_WRAPPED).handle;
+    const TriMesh mesh = together("crossing", without_faces(cube()), moved(without_faces(cube()), {0.3, 0.4, 0.2}));
+    const Handle built = try_build(mesh, 0, nullptr, PW_RUNG_POINTS).handle;
     const Handle loaded = try_load(save(built)).handle;
     ASSERT_NE(loaded, nullptr);
-    EXPECT_EQ(summary(loaded).rung, PW_RUNG_WRAPPED);
+    EXPECT_EQ(summary(loaded).rung, PW_RUNG_POINTS);
     EXPECT_EQ(summary(loaded).deviation, summary(built).deviation);
     EXPECT_GT(summary(loaded).deviation, 0);
     EXPECT_STREQ(pw_hierarchy_account(loaded.get()), pw_hierarchy_account(built.get()));
     EXPECT_STREQ(pw_hierarchy_account(nullptr), "");
 }
 
-TEST(Ladder, AWrapCanBeCancelled) {
+TEST(Ladder, FillingFromPointsCanBeCancelled) {
     pw_context* context = nullptr;
     ASSERT_EQ(pw_context_create(&context), PW_OK);
     (void)pw_context_cancel(context);
-    EXPECT_EQ(try_build(cube(), 0, context, PW_RUNG_WRAPPED).status, PW_ERROR_CANCELLED);
+    EXPECT_EQ(try_build(cube(), 0, context, PW_RUNG_POINTS).status, PW_ERROR_CANCELLED);
     pw_context_free(context);
 }
 

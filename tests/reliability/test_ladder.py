@@ -106,7 +106,7 @@ def test_what_is_clean_is_built_exactly(name, outcomes):
 def test_sheets_are_thin_solids_if_asked_for(name):
     mesh = models.read(name)
     h = Job(*mesh, open_surfaces=True).result()
-    assert h.summary.rung == "wrapped" and "thin solid" in h.account
+    assert h.summary.rung == "points" and "thin solid" in h.account
     assert h.summary.deviation < 0.02
     solids.check(h, *mesh)
 
@@ -126,12 +126,13 @@ def test_the_deviation_is_what_another_program_measures(name, outcomes):
 
 
 @pytest.mark.parametrize("name", ["hand.off", "elephant.off", "cow.off", "monkey.npz"])
-def test_a_wrap_keeps_what_there_is(name):
-    """Forced, also on clean models: all of the source is within the wrap."""
+def test_from_points_all_is_kept(name):
+    """Forced, also on clean models: all of the source is near the surface used."""
     mesh = models.read(name)
     h = Hierarchy.build(*mesh, rungs=4)
     solids.check(h, *mesh)
     used = trimesh.Trimesh(h.vertices, solids.boundary(h), process=False)
-    assert used.is_watertight and used.body_count == h.summary.components
+    assert used.volume == pytest.approx(h.summary.volume)
     some = mesh[0][np.unique(mesh[1])]
-    assert np.allclose(solids.winding_numbers(h.vertices, used.faces, some[:: max(1, len(some) // 50)]), 1, atol=1e-6)
+    _, distance, _ = trimesh.proximity.closest_point_naive(used, some[:: max(1, len(some) // 50)])
+    assert np.quantile(distance, 0.9) < 0.001 * np.linalg.norm(np.ptp(some, axis=0))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Caps for a part of a mesh that had to be wrapped: the facets that divide the wrap inside. They end on the wrap, near
+"""Caps for a part of a mesh that was filled from points: the facets that divide it inside. They end on its surface, near
 the borders of the mesh's own polygons, and strips of triangles join the two."""
 
 import bmesh
@@ -14,7 +14,7 @@ MOST = 0.5  # of the length of its borders that is to be joined, for a group of 
 def bridge(bm, facets):
     """Adds facets, (vertices (n,3), triangles (m,3) wound outwards), to a bmesh: each group of them of which most of the
     border has one of the bmesh's own to itself nearby. What its polygons there are a part of is turned as the facets
-    are. The new faces. Other borders stay open: those of holes that only the wrap closes are there, too."""
+    are. The new faces. Other borders stay open: those of holes that only the filling closes are there, too."""
     own = closing.borders(bm, {edge for edge in bm.edges if edge.is_boundary})
     places, triangles = facets
     if not own or not len(triangles):

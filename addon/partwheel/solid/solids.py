@@ -3,9 +3,9 @@
 
 On the exact rung the part is partwheel's Solid: the polygons that lie in it whole stay as they are, those that are cut
 become triangles with their attributes, and the caps close it. On the repaired rung too, where the repair has left all
-of its polygons as they are; what the repair added is a cap then. Else, and on the wrapped rung, it is the mesh's own
-polygons: doubles welded, wound alike, set apart where more than two meet at an edge, joined with the facets inside the
-wrap, every other border filled. Either way each edge has two faces.
+of its polygons as they are; what the repair added is a cap then. Else, and where the mesh was filled from points, it is
+the mesh's own polygons: doubles welded, wound alike, set apart where more than two meet at an edge, joined with the
+facets inside, every other border filled. Either way each edge has two faces.
 """
 
 from typing import NamedTuple

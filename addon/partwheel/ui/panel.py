@@ -19,7 +19,7 @@ STATES = {
 SHEET = ["A sheet, not a solid: thicken it,", "close it, or have it taken for", "a thin solid"]
 BUILD = {State.FITS: "Recompute", State.MOVED: "Recompute", State.CHANGED: "Recompute"}
 RUNGS = {
-    "exact": "From the mesh as it is", "repaired": "From a repaired copy", "wrapped": "From a wrap around it",
+    "exact": "From the mesh as it is", "repaired": "From a repaired copy", "points": "From points on it",
 }
 # Of Blender's interface font, on average, at a scale of 1; and what frames and tabs take of the sidebar's width.
 PIXELS_A_LETTER, PIXELS_BESIDE = 7, 40

@@ -35,11 +35,11 @@ def parse(arguments):
     build.add_argument("--quality", type=float, default=0.0, metavar="Q",
                        help="0: no points are added inside (default); 1.1 or more: bound on circumradius to shortest "
                             "edge of the tetrahedra, 1.4 is usual")
-    build.add_argument("--rungs", default="exact,repaired,wrapped", type=rungs, metavar="R,...",
+    build.add_argument("--rungs", default="exact,repaired,points", type=rungs, metavar="R,...",
                        help="the ways allowed to a surface that can be filled, the first that works is taken: exact, "
-                            "repaired, wrapped (default: all)")
+                            "repaired, points (default: all)")
     build.add_argument("--open-surfaces", action="store_true",
-                       help="wrap a sheet (plane, cloth, car door) as a thin solid instead of refusing it")
+                       help="take a sheet (plane, cloth, car door) as a thin solid instead of refusing it")
     build.add_argument("--threads", type=int, default=0, metavar="N", help="at most so many (default: what helps)")
     build.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default="regrouped",
                        help="whether parts are joined as people would (default), or all is as in the paper")
@@ -47,7 +47,7 @@ def parse(arguments):
 
 
 def rungs(text):
-    """"exact,wrapped" -> the sum of their Rung values. For argparse: raises ValueError for any other word."""
+    """"exact,points" -> the sum of their Rung values. For argparse: raises ValueError for any other word."""
     try:
         return sum({Rung[word.upper()] for word in text.split(",")})
     except KeyError as error:

@@ -19,7 +19,7 @@ POLL_SECONDS = 0.1
 class Summary(NamedTuple):
     """What a build found. components: parts of the solid without a common facet. cavities: enclosed regions that are
     not solid. added_vertices: points that the mesher added inside. volume, hull_volume: of the solid and of its convex
-    hull, in the unit of the coordinates cubed. rung: "exact", "repaired" or "wrapped", how the surface used came from
+    hull, in the unit of the coordinates cubed. rung: "exact", "repaired" or "points", how the surface used came from
     the caller's; deviation: the largest distance between them, relative to the diagonal of the bounding box."""
 
     components: int
@@ -202,14 +202,14 @@ class Hierarchy:
     @classmethod
     def build(cls, vertices, triangles, faces=None, face_count=None, *, quality=0.0, rungs=0, open_surfaces=False,
               threads=0, mode=Mode.REGROUPED, progress=None):
-        """Builds the hierarchy of a surface: as it is, or else repaired, or else wrapped.
+        """Builds the hierarchy of a surface: as it is, or else repaired, or else filled from points on it.
 
         vertices (V,3) coordinates; triangles (T,3) indices, counter-clockwise from outside; faces (T,) the source face
         of each triangle (None: every triangle is one); face_count how many there are (None: the largest + 1).
         quality: 0 adds no points inside; 1.1 or more (1.4 is usual) bounds the tetrahedra's circumradius to shortest
         edge (the paper's Figure 9); but for Mode.PAPER the parts stay those without such points.
         rungs: the ways allowed to a surface that can be filled, a sum of Rung (0: all); the first that works is taken.
-        open_surfaces: wrap a sheet (plane, cloth, car door) as a thin solid, instead of refusing it with NOT_SOLID.
+        open_surfaces: take a sheet (plane, cloth, car door) as a thin solid, instead of refusing it with NOT_SOLID.
         threads: 0 as many as help, else at most so many; the result is the same.
         mode: Mode.REGROUPED, joined by what people take for parts, or Mode.PAPER, the paper's in every step.
         progress(fraction, stage): called in this thread about ten times a second while the build runs in another;

@@ -53,7 +53,7 @@ class Rung(enum.IntEnum):
 
     EXACT = 1
     REPAIRED = 2
-    WRAPPED = 4
+    POINTS = 4
 
 
 class Mode(enum.IntEnum):

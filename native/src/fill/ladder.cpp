@@ -1,9 +1,9 @@
 // The ladder from the caller's mesh to a filled solid.
 #include "fill/ladder.h"
 
+#include "fill/points.h"
 #include "surface/prepare/displaced.h"
 #include "surface/prepare/repair.h"
-#include "surface/prepare/wrap.h"
 
 #include <CGAL/exceptions.h>
 
@@ -11,7 +11,7 @@ namespace partwheel {
 
 namespace {
 
-constexpr uint32_t all_rungs = PW_RUNG_EXACT | PW_RUNG_REPAIRED | PW_RUNG_WRAPPED;
+constexpr uint32_t all_rungs = PW_RUNG_EXACT | PW_RUNG_REPAIRED | PW_RUNG_POINTS;
 
 // Whether a lower rung may do better.
 bool may_go_on(const Error& error) {
@@ -27,39 +27,25 @@ bool may_go_on(const Error& error) {
     }
 }
 
-Solid step(const Surface& source, pw_rung rung, double coarseness, const LadderOptions& options, Progress& progress) {
+Solid step(const Surface& source, pw_rung rung, const LadderOptions& options, Progress& progress) {
+    if (options.trying) options.trying(rung);
     Solid solid;
     if (rung == PW_RUNG_EXACT) check_surface(source, progress);
     progress.enter(PW_STAGE_REPAIR);
     try {
+        if (rung == PW_RUNG_POINTS) return from_points(source, options.open_surfaces, options.threads, progress);
         if (rung == PW_RUNG_EXACT) solid.surface = source;
         if (rung == PW_RUNG_REPAIRED) {
             std::optional<Surface> moved = displaced(source, progress);
             solid.surface = moved ? std::move(*moved) : repair(source, progress);
         }
-        if (rung == PW_RUNG_WRAPPED) solid.surface = wrap(source, options.open_surfaces, coarseness, progress);
     } catch (const CGAL::Failure_exception&) {
-        throw Error(PW_ERROR_SELF_INTERSECTION,
-                    "The mesh is too broken to be repaired or wrapped. Remesh it and try again.");
+        throw Error(PW_ERROR_SELF_INTERSECTION, "The mesh is too broken to be repaired. Remesh it and try again.");
     }
     solid.surface.rung = rung;
     progress.enter(PW_STAGE_TETRAHEDRA);
     solid.mesh = tetrahedralize(solid.surface, options.quality, progress);
     return solid;
-}
-
-// Now and then TetGen refuses a wrap: a coarser one is another surface.
-Solid step(const Surface& source, pw_rung rung, const LadderOptions& options, Progress& progress) {
-    if (options.trying) options.trying(rung);
-    if (rung == PW_RUNG_WRAPPED)
-        for (const double coarseness : {1.0, 1.4}) {
-            try {
-                return step(source, rung, coarseness, options, progress);
-            } catch (const Error& error) {
-                if (error.status() != PW_ERROR_TETRAHEDRA) throw;
-            }
-        }
-    return step(source, rung, 2, options, progress);
 }
 
 }  // namespace
@@ -69,7 +55,7 @@ Solid climb(const MeshView& mesh, const LadderOptions& options, Progress& progre
     progress.enter(PW_STAGE_SURFACE);
     const Surface source = read_mesh(mesh);
     progress.advance(0.2);
-    for (const pw_rung rung : {PW_RUNG_EXACT, PW_RUNG_REPAIRED, PW_RUNG_WRAPPED}) {
+    for (const pw_rung rung : {PW_RUNG_EXACT, PW_RUNG_REPAIRED, PW_RUNG_POINTS}) {
         if (!(rungs & rung)) continue;
         try {
             return step(source, rung, options, progress);

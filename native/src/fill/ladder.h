@@ -1,4 +1,4 @@
-// The ladder from the caller's mesh to a filled solid: exact, repaired, wrapped; the first rung that holds.
+// The ladder from the caller's mesh to a filled solid: exact, repaired, from points; the first rung that holds.
 #pragma once
 
 #include "fill/tetrahedra.h"
@@ -13,11 +13,7 @@ struct LadderOptions {
     uint32_t rungs = 0;
     bool open_surfaces = false;
     std::function<void(pw_rung)> trying;  // told of each rung before it is tried; may be empty
-};
-
-struct Solid {
-    Surface surface;
-    TetMesh mesh;
+    size_t threads = 0;                   // as cluster() takes it
 };
 
 // Throws the Error of the last rung allowed if none holds. Works in the stages surface, repair and tetrahedra.

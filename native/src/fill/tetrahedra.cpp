@@ -186,10 +186,9 @@ constexpr size_t looks = 65536;  // tetrahedra between two looks at whether all 
 
 // All of TetGen's tetrahedra, those of cavities included, sorted by their corners, positively oriented.
 TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& out, Progress& progress) {
-    TetMesh mesh;
     const auto points = static_cast<size_t>(out.numberofpoints), tets = static_cast<size_t>(out.numberoftetrahedra);
     const size_t given = surface.vertices.size();
-    mesh.vertices = surface.vertices;
+    std::vector<Point> vertices = surface.vertices;
     bool kept = points >= given;
     for (size_t i = 0; i < points && kept; ++i) {
         const REAL* p = out.pointlist + 3 * i;
@@ -197,15 +196,12 @@ TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& ou
         if (i < given)
             kept = point == surface.vertices[static_cast<size_t>(order.vertices[i])];
         else
-            mesh.vertices.push_back(point);
+            vertices.push_back(point);
     }
     if (!kept)
         throw Error(PW_ERROR_TETRAHEDRA, "The mesher moved or merged vertices of the surface, for some are too close "
                                          "together. Merge vertices by distance.");
 
-    struct Corner {
-        int32_t vertex, beyond;  // the neighbour opposite
-    };
     std::vector<std::array<Corner, 4>> read(tets);
     for (size_t i = 0; i < tets; ++i) {
         if (i % looks == 0) progress.advance(0.9);
@@ -215,31 +211,8 @@ TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& ou
             const bool added = static_cast<size_t>(corners[k]) >= given;
             read[i][k] = {added ? corners[k] : order.vertices[static_cast<size_t>(corners[k])], beyond[k]};
         }
-        std::sort(read[i].begin(), read[i].end(),
-                  [](const Corner& a, const Corner& b) { return a.vertex < b.vertex; });
     }
-    Grouped<int32_t> by_lowest(points, [&](const auto& put) {
-        for (size_t i = 0; i < tets; ++i) put(static_cast<size_t>(read[i][0].vertex), static_cast<int32_t>(i));
-    });
-    const auto rest = [&](int32_t t) {
-        const auto& c = read[static_cast<size_t>(t)];
-        return std::array{c[1].vertex, c[2].vertex, c[3].vertex};
-    };
-    for (size_t v = 0; v < points; ++v) std::ranges::sort(by_lowest.with(v), {}, rest);
-    const std::span<const int32_t> sorted = by_lowest.items();
-    progress.advance(0.9);
-    std::vector<int32_t> number(tets);
-    for (size_t i = 0; i < tets; ++i) number[static_cast<size_t>(sorted[i])] = static_cast<int32_t>(i);
-    for (const int32_t i : sorted) {
-        if (mesh.tetrahedra.size() % looks == 0) progress.advance(0.9);
-        std::array<Corner, 4> c = read[static_cast<size_t>(i)];
-        const auto at = [&](size_t k) { return mesh.vertices[static_cast<size_t>(c[k].vertex)]; };
-        if (orientation(at(0), at(1), at(2), at(3)) < 0) std::swap(c[2], c[3]);
-        mesh.tetrahedra.push_back({c[0].vertex, c[1].vertex, c[2].vertex, c[3].vertex});
-        const auto across = [&](size_t k) { return c[k].beyond < 0 ? -1 : number[static_cast<size_t>(c[k].beyond)]; };
-        mesh.neighbours.push_back({across(0), across(1), across(2), across(3)});
-    }
-    return mesh;
+    return canonical(std::move(vertices), std::move(read), progress);
 }
 
 [[noreturn]] void throw_lost() {
@@ -386,6 +359,36 @@ void keep_solid(const Surface& surface, TetMesh& mesh, Progress& progress) {
 }
 
 }  // namespace
+
+TetMesh canonical(std::vector<Point> vertices, std::vector<std::array<Corner, 4>> corners, Progress& progress,
+                  std::vector<int32_t>* number) {
+    for (auto& c : corners) std::ranges::sort(c, {}, &Corner::vertex);
+    Grouped<int32_t> by_lowest(vertices.size(), [&](const auto& put) {
+        for (size_t i = 0; i < corners.size(); ++i) put(at(corners[i][0].vertex), static_cast<int32_t>(i));
+    });
+    const auto rest = [&](int32_t t) {
+        const auto& c = corners[at(t)];
+        return std::array{c[1].vertex, c[2].vertex, c[3].vertex};
+    };
+    for (size_t v = 0; v < vertices.size(); ++v) std::ranges::sort(by_lowest.with(v), {}, rest);
+    const std::span<const int32_t> sorted = by_lowest.items();
+    progress.advance(0.9);
+    std::vector<int32_t> place(corners.size());
+    for (size_t i = 0; i < corners.size(); ++i) place[at(sorted[i])] = static_cast<int32_t>(i);
+    TetMesh mesh;
+    mesh.vertices = std::move(vertices);
+    for (const int32_t i : sorted) {
+        if (mesh.tetrahedra.size() % looks == 0) progress.advance(0.9);
+        std::array<Corner, 4> c = corners[at(i)];
+        const auto point = [&](size_t k) { return mesh.vertices[at(c[k].vertex)]; };
+        if (orientation(point(0), point(1), point(2), point(3)) < 0) std::swap(c[2], c[3]);
+        mesh.tetrahedra.push_back({c[0].vertex, c[1].vertex, c[2].vertex, c[3].vertex});
+        const auto across = [&](size_t k) { return c[k].beyond < 0 ? -1 : place[at(c[k].beyond)]; };
+        mesh.neighbours.push_back({across(0), across(1), across(2), across(3)});
+    }
+    if (number) *number = std::move(place);
+    return mesh;
+}
 
 TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress) {
     // Now and then TetGen fails, or leaves a point that it had to add on the surface. That depends on the order of its

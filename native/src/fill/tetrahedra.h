@@ -13,6 +13,20 @@ struct TetMesh {
     size_t cavities = 0;
 };
 
+struct Solid {
+    Surface surface;
+    TetMesh mesh;
+};
+
+// A corner of a tetrahedron: its vertex, and the tetrahedron beyond the facet opposite; -1: none.
+struct Corner {
+    int32_t vertex, beyond;
+};
+
+// Tetrahedra in canonical order, each positively oriented. number, if given, receives the place of each.
+TetMesh canonical(std::vector<Point> vertices, std::vector<std::array<Corner, 4>> corners, Progress& progress,
+                  std::vector<int32_t>* number = nullptr);
+
 // quality: 0, or the largest ratio of circumradius to shortest edge (see pw_build_options).
 TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress);
 

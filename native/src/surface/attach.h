@@ -12,8 +12,8 @@ inline constexpr double sample_spacing = 1.0 / 100, most_samples = 1e6;
 // Less than this, relative to the diagonal, is not looked at more closely.
 inline constexpr double near_enough = 1.0 / 200;
 
-// What lies further from the surface used than this, relative to the diagonal, is hidden: in a gap that a wrap did not
-// enter, or inside the solid.
+// What lies further from the surface used than this, relative to the diagonal, is hidden: inside
+// the solid.
 inline constexpr double hidden_beyond = 1.0 / 100;
 
 // Vertices at one place, where parts only touch, are moved inwards by this share of their shortest edge.

@@ -410,7 +410,7 @@ Hierarchy Hierarchy::load(std::span<const uint8_t> bytes) {
     h.face_area_ = in.get_doubles(header.faces);
     h.outer_faces_ = in.get_integers(header.outer);
     h.scores_ = in.get_doubles(header.scores);
-    if (header.rung != PW_RUNG_EXACT && header.rung != PW_RUNG_REPAIRED && header.rung != PW_RUNG_WRAPPED)
+    if (header.rung != PW_RUNG_EXACT && header.rung != PW_RUNG_REPAIRED && header.rung != PW_RUNG_POINTS)
         refuse_saved("its rung is unknown");
     h.summary_.rung = static_cast<pw_rung>(header.rung);
     common(h.summary_) = common(header);
@@ -444,7 +444,7 @@ void Hierarchy::plant(std::span<const int32_t> borders, std::span<const double> 
     }
 }
 
-// Somewhat more than the caller's may have: a wrap lies round them.
+// Somewhat more than the caller's may have: a sheet is given a thickness.
 constexpr double largest_coordinate = 1e101;
 
 // A hash can be forged: what finish() and the questions rely on is checked as well.

@@ -20,7 +20,7 @@ namespace {
 constexpr double uncrossing_passes[] = {45, 70, 110};
 
 // No vertex is moved further than this, relative to the diagonal: enough for noise of a deviate of 1 %, and what would
-// need more is better wrapped.
+// need more is better filled from points.
 constexpr double farthest_moved = 1.0 / 20;
 
 // The vertices that are at the place of another.

@@ -1,0 +1,312 @@
+// Tetrahedra from points: the tetrahedralization, which tetrahedra are inside, and the surface of these.
+#include "fill/points.h"
+
+#include "base/groups.h"
+#include "base/numbered.h"
+#include "base/parallel.h"
+#include "fill/shell.h"
+#include "fill/winding.h"
+#include "surface/attach.h"
+
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Triangulation_cell_base_with_info_3.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+#include <CGAL/property_map.h>
+#include <CGAL/spatial_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <queue>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// So many points for each of the source's vertices, within these bounds, were they spread evenly: the vertices are among
+// them, and where they are denser more come together. Three times as many select no better.
+constexpr double points_for_each = 1, least_points = 2000, usual_points = 15000;
+
+// Of a sheet, relative to the diagonal.
+constexpr double sheet_thickness = 1.0 / 200;
+
+// A tetrahedron is asked whether it is inside if its volume is more than this times the sum of its facets' areas to the
+// power of 3/2, which is 0.10 for a regular one at least: flatter ones lie along the surface, on neither side of it, and
+// go with their neighbours.
+constexpr double flat = 0.04;
+
+// What a facet between inside and outside costs, its area to the power of 3/2, beside a volume on the wrong side.
+constexpr double smoothness = 0.05;
+constexpr int smoothing_passes = 6;
+
+// A piece that hangs on by an edge or a corner is left out if it is less than this share of what it hangs on.
+constexpr double loose_share = 0.05;
+
+constexpr size_t points_a_look = 512, tetrahedra_a_piece = 1024, tetrahedra_a_look = 65536;
+
+// The Delaunay tetrahedralization of points that are all different, in canonical order.
+TetMesh tetrahedralized(const std::vector<Point>& points, Progress& progress) {
+    using Cells = CGAL::Triangulation_data_structure_3<CGAL::Triangulation_vertex_base_with_info_3<int32_t, CgalKernel>,
+                                                       CGAL::Triangulation_cell_base_with_info_3<int32_t, CgalKernel>>;
+    using Delaunay = CGAL::Delaunay_triangulation_3<CgalKernel, Cells>;
+    std::vector<std::pair<CgalKernel::Point_3, int32_t>> order;
+    for (const Point& p : points) order.emplace_back(CgalKernel::Point_3(p[0], p[1], p[2]), numbered(order.size()));
+    using Places = CGAL::First_of_pair_property_map<std::pair<CgalKernel::Point_3, int32_t>>;
+    CGAL::spatial_sort(order.begin(), order.end(), CGAL::Spatial_sort_traits_adapter_3<CgalKernel, Places>());
+    Delaunay delaunay;
+    Delaunay::Vertex_handle near;
+    for (size_t i = 0; i < order.size(); ++i) {
+        if (i % points_a_look == 0) progress.advance(0.4 * static_cast<double>(i) / static_cast<double>(order.size()));
+        near = delaunay.insert(order[i].first, near == Delaunay::Vertex_handle() ? Delaunay::Cell_handle() : near->cell());
+        near->info() = order[i].second;
+    }
+    std::vector<std::array<Corner, 4>> corners;
+    if (delaunay.dimension() == 3) {
+        check_tetrahedra(delaunay.number_of_finite_cells());
+        int32_t count = 0;
+        for (const auto cell : delaunay.all_cell_handles()) cell->info() = delaunay.is_infinite(cell) ? -1 : count++;
+        for (const auto cell : delaunay.finite_cell_handles()) {
+            std::array<Corner, 4>& c = corners.emplace_back();
+            for (int k = 0; k < 4; ++k)
+                c[static_cast<size_t>(k)] = {cell->vertex(k)->info(), cell->neighbor(k)->info()};
+        }
+    }
+    return canonical(points, std::move(corners), progress);
+}
+
+// Which tetrahedra are inside.
+class Sides {
+public:
+    Sides(const TetMesh& mesh, const WindingNumber& winding, size_t threads, Progress& progress);
+
+    bool inside(int32_t tet) const { return tet >= 0 && side_[at(tet)] == in; }
+    bool any() const { return std::ranges::count(side_, in) > 0; }
+
+private:
+    enum Side : uint8_t { out, in, open };
+
+    double weight(size_t tet, size_t facet) const { return weights_[tet][facet]; }
+    void ask(const WindingNumber& winding, size_t threads, Progress& progress);
+    void grow(Progress& progress);
+    bool smooth();
+    void drop_loose();
+
+    const TetMesh& mesh_;
+    std::vector<Side> side_;
+    std::vector<double> volume_, around_;             // around_: the winding number, where it was asked
+    std::vector<std::array<double, 4>> weights_;  // of the facet opposite each corner: its area to the power of 3/2
+};
+
+Sides::Sides(const TetMesh& mesh, const WindingNumber& winding, size_t threads, Progress& progress)
+    : mesh_(mesh), side_(mesh.tetrahedra.size(), open), volume_(side_.size()), around_(side_.size(), 0.5),
+      weights_(side_.size()) {
+    ask(winding, threads, progress);
+    grow(progress);
+    for (int pass = 0; pass < smoothing_passes && smooth(); ++pass) progress.advance(0.7);
+    drop_loose();
+    progress.advance(0.7);
+}
+
+void Sides::ask(const WindingNumber& winding, size_t threads, Progress& progress) {
+    Threads pool(threads, side_.size() / tetrahedra_a_piece + 1);
+    const auto piece = [&](size_t first, size_t last) {
+        for (size_t t = first; t < last; ++t) {
+            const auto point = [&](int32_t v) -> const Point& { return mesh_.vertices[at(v)]; };
+            const Tetrahedron& tet = mesh_.tetrahedra[t];
+            const Point &a = point(tet[0]), &b = point(tet[1]), &c = point(tet[2]), &d = point(tet[3]);
+            volume_[t] = std::max(0.0, six_volumes(a, b, c, d) / 6);
+            double sum = 0;
+            for (size_t k = 0; k < 4; ++k) {
+                const Triangle f = facet(tet, k);
+                const double size = area(point(f[0]), point(f[1]), point(f[2]));
+                sum += weights_[t][k] = size * std::sqrt(size);
+            }
+            if (volume_[t] <= flat * sum) continue;
+            around_[t] = winding.at(0.25 * (a + b + c + d));
+            side_[t] = around_[t] > 0.5 ? in : out;
+        }
+    };
+    for (size_t first = 0; first < side_.size(); first += tetrahedra_a_look) {
+        const size_t count = std::min(tetrahedra_a_look, side_.size() - first);
+        pool.parallel_for(count, tetrahedra_a_piece, [&](size_t begin, size_t end) { piece(first + begin, first + end); });
+        progress.advance(0.4 + 0.3 * static_cast<double>(first) / static_cast<double>(side_.size()));
+    }
+}
+
+// Each open tetrahedron goes with the neighbour on the other side of its largest facet that has a side, the largest first:
+// so small facets are what is left between inside and outside.
+void Sides::grow(Progress& progress) {
+    struct Facet {
+        double weight;
+        int32_t tet;
+        Side side;
+        bool operator<(const Facet& other) const {
+            return std::tie(weight, tet, side) < std::tie(other.weight, other.tet, other.side);
+        }
+    };
+    std::priority_queue<Facet> front;
+    const auto pass_on = [&](size_t t) {
+        for (size_t k = 0; k < 4; ++k) {
+            const int32_t next = mesh_.neighbours[t][k];
+            if (next >= 0 && side_[at(next)] == open) front.push({weight(t, k), next, side_[t]});
+        }
+    };
+    for (size_t t = 0; t < side_.size(); ++t) {
+        if (side_[t] != open) pass_on(t);
+        for (size_t k = 0; k < 4 && side_[t] == open; ++k)
+            if (mesh_.neighbours[t][k] < 0) front.push({weight(t, k), static_cast<int32_t>(t), out});
+    }
+    for (size_t step = 0; !front.empty(); ++step) {
+        if (step % tetrahedra_a_look == 0) progress.advance(0.7);
+        const Facet f = front.top();
+        front.pop();
+        if (side_[at(f.tet)] != open) continue;
+        side_[at(f.tet)] = f.side;
+        pass_on(at(f.tet));
+    }
+}
+
+// Tetrahedra change sides, one after the other, where that makes the boundary smaller by more than it costs. Whether any
+// did.
+bool Sides::smooth() {
+    bool changed = false;
+    for (size_t t = 0; t < side_.size(); ++t) {
+        double gain = 0;
+        for (size_t k = 0; k < 4; ++k)
+            gain += inside(mesh_.neighbours[t][k]) == (side_[t] == in) ? -weight(t, k) : weight(t, k);
+        const double surely = 2 * std::clamp(around_[t], 0.0, 1.0) - 1;  // inside
+        if (smoothness * gain <= volume_[t] * (side_[t] == in ? surely : -surely)) continue;
+        side_[t] = side_[t] == in ? out : in;
+        changed = true;
+    }
+    return changed;
+}
+
+void Sides::drop_loose() {
+    Joined pieces(side_.size());
+    std::vector<double> size(side_.size(), 0), largest(mesh_.vertices.size(), 0);  // of the pieces at each vertex
+    for (size_t t = 0; t < side_.size(); ++t)
+        for (const int32_t next : mesh_.neighbours[t])
+            if (side_[t] == in && inside(next)) pieces.join(t, at(next));
+    for (size_t t = 0; t < side_.size(); ++t) size[pieces.find(t)] += volume_[t];
+    std::vector<bool> loose(side_.size(), false);
+    for (const bool told : {false, true})
+        for (size_t t = 0; t < side_.size(); ++t)
+            for (size_t k = 0; side_[t] == in && k < 4; ++k) {
+                double& there = largest[at(mesh_.tetrahedra[t][k])];
+                const size_t piece = pieces.find(t);
+                if (!told)
+                    there = std::max(there, size[piece]);
+                else if (size[piece] < loose_share * there)
+                    loose[piece] = true;
+            }
+    for (size_t t = 0; t < side_.size(); ++t)
+        if (side_[t] == in && loose[pieces.find(t)]) side_[t] = out;
+}
+
+// What is inside, and its surface.
+Solid kept(const Surface& source, const TetMesh& all, const Sides& sides, Progress& progress) {
+    std::vector<int32_t> number(all.vertices.size(), -1), given, behind, name(all.tetrahedra.size(), -1);
+    std::vector<Point> vertices;
+    std::vector<Triangle> triangles;
+    int32_t count = 0;
+    for (size_t t = 0; t < all.tetrahedra.size(); ++t) {
+        if (!sides.inside(static_cast<int32_t>(t))) continue;
+        name[t] = count++;
+        for (size_t k = 0; k < 4; ++k) {
+            if (sides.inside(all.neighbours[t][k])) continue;
+            Triangle f = facet(all.tetrahedra[t], k);
+            for (int32_t& v : f) {
+                int32_t& n = number[at(v)];
+                if (n < 0) {
+                    n = static_cast<int32_t>(vertices.size());
+                    vertices.push_back(all.vertices[at(v)]);
+                    given.push_back(v);
+                }
+                v = n;
+            }
+            triangles.push_back(f);
+            behind.push_back(name[t]);
+        }
+    }
+    Solid solid;
+    solid.surface = canonical(source.frame, vertices, given, triangles);
+
+    // Vertices as the surface has them, then those that are inside alone.
+    vertices = solid.surface.vertices;
+    for (size_t v = 0; v < vertices.size(); ++v) number[at(solid.surface.source_vertex[v])] = static_cast<int32_t>(v);
+    std::vector<std::array<Corner, 4>> corners;
+    for (size_t t = 0; t < all.tetrahedra.size(); ++t) {
+        if (name[t] < 0) continue;
+        std::array<Corner, 4>& c = corners.emplace_back();
+        for (size_t k = 0; k < 4; ++k) {
+            const int32_t v = all.tetrahedra[t][k], next = all.neighbours[t][k];
+            if (number[at(v)] < 0) {
+                number[at(v)] = static_cast<int32_t>(vertices.size());
+                vertices.push_back(all.vertices[at(v)]);
+            }
+            c[k] = {number[at(v)], next < 0 ? -1 : name[at(next)]};
+        }
+    }
+    std::vector<int32_t> place;
+    solid.mesh = canonical(std::move(vertices), std::move(corners), progress, &place);
+    for (const Piece& piece : solid.surface.pieces)
+        solid.mesh.tet_of_triangle.push_back(place[at(behind[at(piece.face)])]);
+
+    std::map<Point, int32_t> source_of;
+    for (size_t v = source.vertices.size(); v-- > 0;) source_of[source.vertices[v]] = source.source_vertex[v];
+    for (size_t v = 0; v < solid.surface.vertices.size(); ++v) {
+        const auto known = source_of.find(solid.surface.vertices[v]);
+        solid.surface.source_vertex[v] = known == source_of.end() ? -1 : known->second;
+    }
+    return solid;
+}
+
+// Regions outside that no way leads out of.
+size_t cavities(const TetMesh& all, const Sides& sides) {
+    Joined regions(all.tetrahedra.size() + 1);  // the last is all beyond
+    for (size_t t = 0; t < all.tetrahedra.size(); ++t)
+        for (const int32_t next : all.neighbours[t])
+            if (!sides.inside(static_cast<int32_t>(t)) && !sides.inside(next))
+                regions.join(t, next < 0 ? all.tetrahedra.size() : at(next));
+    size_t count = 0;
+    for (size_t t = 0; t < all.tetrahedra.size(); ++t)
+        count += !sides.inside(static_cast<int32_t>(t)) && regions.find(t) == t;
+    return count - (regions.find(all.tetrahedra.size()) < all.tetrahedra.size());
+}
+
+}  // namespace
+
+Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Progress& progress) {
+    const Mended mended = mend(source, progress);
+    if (mended.solids == 0 && !open_surfaces)
+        throw Error(PW_ERROR_NOT_SOLID,
+                    "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as "
+                    "there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then taken "
+                    "as thin solids.");
+    const Shell shell = shell_of(mended, sheet_thickness * diagonal(source));
+    const double whole = shell.area();
+    if (whole == 0) throw Error(PW_ERROR_NOT_SOLID, "The mesh has no area at all: only edges and points.");
+    const double wanted = std::clamp(points_for_each * static_cast<double>(source.vertices.size()), least_points, usual_points);
+    progress.enter(PW_STAGE_TETRAHEDRA);
+    const TetMesh all = tetrahedralized(shell.points(std::sqrt(whole / wanted)), progress);
+    const Sides sides(all, WindingNumber(shell.vertices, shell.triangles), threads, progress);
+    if (!sides.any()) throw Error(PW_ERROR_NO_VOLUME, "The surface encloses no volume. Give it some thickness.");
+    Solid solid = kept(source, all, sides, progress);
+    solid.mesh.cavities = cavities(all, sides);
+    attach(source, solid.surface, progress);
+
+    Account account;
+    mended.done.tell(account);
+    solid.surface.rung = PW_RUNG_POINTS;
+    solid.surface.account = std::string("Filled from points on the mesh") +
+                            (mended.solids == 0 ? ", a sheet, as a thin solid" : "") +
+                            (account.text().empty() ? "" : ", after this: " + account.text()) +
+                            ". " + at_most_away(solid.surface.deviation) + ".";
+    return solid;
+}
+
+}  // namespace partwheel

@@ -1,0 +1,115 @@
+// The mended mesh as a shell, and points over it.
+#include "fill/shell.h"
+
+#include "base/groups.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <unordered_set>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// Of a grid with one added point a cell, in spacings.
+constexpr double cell_size = 0.5;
+
+int32_t number(CgalMesh::Vertex_index v) { return static_cast<int32_t>(static_cast<size_t>(v)); }
+
+// Triangles beside those that are there: the other side of each sheet, and along its rims.
+void thicken(const CgalMesh& mesh, double thickness, Shell& shell) {
+    Joined parts(shell.vertices.size());
+    std::vector<Point> normal(shell.vertices.size(), Point{});
+    for (const Triangle& t : shell.triangles) {
+        const auto point = [&](size_t k) { return shell.vertices[at(t[k])]; };
+        const Point n = cross(point(1) - point(0), point(2) - point(0));
+        for (const int32_t v : t) {
+            parts.join(at(t[0]), at(v));
+            normal[at(v)] = normal[at(v)] + n;
+        }
+    }
+    std::vector<std::pair<int32_t, int32_t>> rims;  // as their triangles run along them
+    std::vector<bool> open(shell.vertices.size(), false);
+    for (const auto h : mesh.halfedges())
+        if (mesh.is_border(h)) {
+            rims.emplace_back(number(mesh.target(h)), number(mesh.source(h)));
+            open[parts.find(at(rims.back().first))] = true;
+        }
+    std::vector<int32_t> beyond(shell.vertices.size(), -1);  // of each vertex of a sheet, the one on the other side
+    for (size_t v = 0; v < beyond.size(); ++v) {
+        if (!open[parts.find(v)]) continue;
+        const double size = length(normal[v]);
+        const Point half = size > 0 ? thickness / 2 / size * normal[v] : Point{};
+        beyond[v] = static_cast<int32_t>(shell.vertices.size());
+        shell.vertices.push_back(shell.vertices[v] - half);
+        shell.vertices[v] = shell.vertices[v] + half;
+    }
+    for (size_t i = 0, given = shell.triangles.size(); i < given; ++i) {
+        const auto [a, b, c] = shell.triangles[i];
+        if (beyond[at(a)] >= 0) shell.triangles.push_back({beyond[at(a)], beyond[at(c)], beyond[at(b)]});
+    }
+    for (const auto& [from, to] : rims) {
+        shell.triangles.push_back({to, from, beyond[at(from)]});
+        shell.triangles.push_back({to, beyond[at(from)], beyond[at(to)]});
+    }
+}
+
+}  // namespace
+
+double Shell::area() const {
+    double sum = 0;
+    for (const auto& [a, b, c] : triangles) sum += partwheel::area(vertices[at(a)], vertices[at(b)], vertices[at(c)]);
+    return sum;
+}
+
+std::vector<Point> Shell::points(double spacing) const {
+    std::vector<Point> found = vertices;
+    // Where there are long and thin triangles side by side, one point does for all: a cell of a grid gets one.
+    std::unordered_set<uint64_t> taken;
+    const auto along = [&](const Point& from, const Point& to) {
+        const double parts = std::round(length(to - from) / spacing);
+        for (double i = 1; i < parts; ++i) {
+            const Point p = from + i / parts * (to - from);
+            uint64_t cell = 0;
+            for (const double x : p) cell = cell << 21 | static_cast<uint64_t>(x / spacing / cell_size + 1);
+            if (taken.insert(cell).second) found.push_back(p);
+        }
+    };
+    for (const Triangle& t : triangles) {
+        size_t longest = 0;
+        double size = 0;
+        for (size_t k = 0; k < 3; ++k) {
+            const int32_t v = t[k], w = t[(k + 1) % 3];
+            const double side = length(vertices[at(w)] - vertices[at(v)]);
+            if (v < w) along(vertices[at(v)], vertices[at(w)]);  // its other triangle runs the other way
+            if (side > size) size = side, longest = k;
+        }
+        const auto corner = [&](size_t k) { return vertices[at(t[(longest + k) % 3])]; };
+        const Point a = corner(0), b = corner(1), c = corner(2);
+        const double rows = size > 0 ? std::round(2 * partwheel::area(a, b, c) / size / spacing) : 0;
+        for (double row = 1; row < rows; ++row) along(a + row / rows * (c - a), b + row / rows * (c - b));
+    }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+}
+
+Shell shell_of(const Mended& mended, double thickness) {
+    const CgalMesh& mesh = mended.mesh;
+    Shell shell;
+    for (const auto v : mesh.vertices()) {
+        const auto& p = mesh.point(v);
+        shell.vertices.push_back({p.x(), p.y(), p.z()});
+    }
+    for (const auto f : mesh.faces()) {
+        Triangle& t = shell.triangles.emplace_back();
+        size_t k = 0;
+        for (const auto v : CGAL::vertices_around_face(mesh.halfedge(f), mesh)) t[k++] = number(v);
+    }
+    if (mended.sheets > 0) thicken(mesh, thickness, shell);
+    return shell;
+}
+
+}  // namespace partwheel

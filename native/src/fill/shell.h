@@ -1,0 +1,26 @@
+// What winds around the inside of a mesh, and points spread over it.
+#pragma once
+
+#include "base/geometry.h"
+#include "surface/prepare/mend.h"
+
+#include <vector>
+
+namespace partwheel {
+
+// Triangles that may cross each other; each part of them winds outwards and is closed but for what mending left open.
+struct Shell {
+    std::vector<Point> vertices;
+    std::vector<Triangle> triangles;
+
+    double area() const;
+
+    // The vertices; where triangles are larger, others about a spacing apart along their edges and within. Each place
+    // once, in rising order.
+    std::vector<Point> points(double spacing) const;
+};
+
+// The mended mesh, its sheets made thin solids by moving them half of a thickness to either side.
+Shell shell_of(const Mended& mended, double thickness);
+
+}  // namespace partwheel
