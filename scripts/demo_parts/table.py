@@ -48,8 +48,8 @@ def main():
     print(text)
     built = len(reports) - len(refusals)
     stops = sum(len(click["stops"]) for report in reports for click in report.get("clicks", ()))
-    print(f"{built} models built, {len(accounts)} of them repaired or filled from points, {len(refusals)} refused as a sheet, "
-          f"{stops} wheel stops selected and checked, {2 * built} pictures")
+    print(f"{built} models built, {len(accounts)} of them repaired or filled from points, {len(refusals)} refused as a "
+          f"sheet, {stops} wheel stops selected and checked, {2 * built} pictures")
 
 
 if __name__ == "__main__":

@@ -26,15 +26,15 @@ namespace partwheel {
 
 namespace {
 
-// So many points for each of the source's vertices, within these bounds, were they spread evenly: the vertices are among
-// them, and where they are denser more come together. Three times as many select no better.
+// So many points for each of the source's vertices, within these bounds, were they spread evenly: the vertices are
+// among them, and where they are denser more come together. Three times as many select no better.
 constexpr double points_for_each = 1, least_points = 2000, usual_points = 15000;
 
 // Of a sheet, relative to the diagonal.
 constexpr double sheet_thickness = 1.0 / 200;
 
 // A tetrahedron is asked whether it is inside if its volume is more than this times the sum of its facets' areas to the
-// power of 3/2, which is 0.10 for a regular one at least: flatter ones lie along the surface, on neither side of it, and
+// power of 3/2, which is 0.10 for a regular one: flatter ones mostly lie along the surface, on neither side of it, and
 // go with their neighbours.
 constexpr double flat = 0.04;
 
@@ -60,7 +60,8 @@ TetMesh tetrahedralized(const std::vector<Point>& points, Progress& progress) {
     Delaunay::Vertex_handle near;
     for (size_t i = 0; i < order.size(); ++i) {
         if (i % points_a_look == 0) progress.advance(0.4 * static_cast<double>(i) / static_cast<double>(order.size()));
-        near = delaunay.insert(order[i].first, near == Delaunay::Vertex_handle() ? Delaunay::Cell_handle() : near->cell());
+        const bool begun = near != Delaunay::Vertex_handle();
+        near = delaunay.insert(order[i].first, begun ? near->cell() : Delaunay::Cell_handle());
         near->info() = order[i].second;
     }
     std::vector<std::array<Corner, 4>> corners;
@@ -131,13 +132,14 @@ void Sides::ask(const WindingNumber& winding, size_t threads, Progress& progress
     };
     for (size_t first = 0; first < side_.size(); first += tetrahedra_a_look) {
         const size_t count = std::min(tetrahedra_a_look, side_.size() - first);
-        pool.parallel_for(count, tetrahedra_a_piece, [&](size_t begin, size_t end) { piece(first + begin, first + end); });
+        pool.parallel_for(count, tetrahedra_a_piece,
+                          [&](size_t begin, size_t end) { piece(first + begin, first + end); });
         progress.advance(0.4 + 0.3 * static_cast<double>(first) / static_cast<double>(side_.size()));
     }
 }
 
-// Each open tetrahedron goes with the neighbour on the other side of its largest facet that has a side, the largest first:
-// so small facets are what is left between inside and outside.
+// Each open tetrahedron goes with the neighbour on the other side of its largest facet that has a side, the largest
+// first: so small facets are what is left between inside and outside.
 void Sides::grow(Progress& progress) {
     struct Facet {
         double weight;
@@ -169,8 +171,8 @@ void Sides::grow(Progress& progress) {
     }
 }
 
-// Tetrahedra change sides, one after the other, where that makes the boundary smaller by more than it costs. Whether any
-// did.
+// Tetrahedra change sides, one after the other, where that makes the boundary smaller by more than it costs. Whether
+// any did.
 bool Sides::smooth() {
     bool changed = false;
     for (size_t t = 0; t < side_.size(); ++t) {
@@ -290,7 +292,8 @@ Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Pro
     const Shell shell = shell_of(mended, sheet_thickness * diagonal(source));
     const double whole = shell.area();
     if (whole == 0) throw Error(PW_ERROR_NOT_SOLID, "The mesh has no area at all: only edges and points.");
-    const double wanted = std::clamp(points_for_each * static_cast<double>(source.vertices.size()), least_points, usual_points);
+    const auto given = static_cast<double>(source.vertices.size());
+    const double wanted = std::clamp(points_for_each * given, least_points, usual_points);
     progress.enter(PW_STAGE_TETRAHEDRA);
     const TetMesh all = tetrahedralized(shell.points(std::sqrt(whole / wanted)), progress);
     const Sides sides(all, WindingNumber(shell.vertices, shell.triangles), threads, progress);

@@ -1,13 +1,13 @@
-// The third rung: tetrahedra from points on the mesh, inside where its triangles wind around them. Nothing need be closed.
+// The third rung: tetrahedra from points on the mesh, inside where its triangles wind around them. It may be open.
 #pragma once
 
 #include "fill/tetrahedra.h"
 
 namespace partwheel {
 
-// The Delaunay tetrahedralization of the mesh's vertices and of points spread over its triangles, of which those are kept
-// that the mended mesh winds around; their boundary, the surface used, is smooth where that leaves a choice. Works in the
-// stages repair and tetrahedra; the result is the same for any number of threads (as cluster() takes it).
+// The Delaunay tetrahedralization of the mesh's vertices and of points spread over its triangles, of which those are
+// kept that the mended mesh winds around; their boundary, the surface used, is smooth where that leaves a choice. Works
+// in the stages repair and tetrahedra; the result is the same for any number of threads (as cluster() takes it).
 // open_surfaces: take sheets as thin solids, else throw PW_ERROR_NOT_SOLID if there is nothing but sheets.
 Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Progress& progress);
 

@@ -16,7 +16,7 @@ constexpr size_t run = 4;
 // What is further away than so many radii is far: then a dipole is wrong by some thousandths of the node's share.
 constexpr double far = 2;
 
-// The angle of the point (x, y), y >= 0, from the x axis, to 2e-8: Abramowitz, Stegun 4.4.49. The standard library's are
+// The angle of the point (x, y), y >= 0, from the x axis, to 2e-8: Abramowitz, Stegun 4.4.49. The standard library's is
 // not the same everywhere.
 double angle(double x, double y) {
     const double wide = std::fabs(x), least = std::min(wide, y), most = std::max(wide, y);

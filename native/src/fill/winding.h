@@ -1,8 +1,8 @@
-// How often a surface winds around a point: about 1 inside and 0 outside, also where it has holes or passes through itself.
+// How often a surface winds around a point: about 1 inside and 0 outside, also if it has holes or crosses itself.
 //
-// The generalized winding number (Jacobson, Kavan, Sorkine-Hornung, "Robust Inside-Outside Segmentation using Generalized
-// Winding Numbers", 2013), with far triangles taken together as one dipole, as in Barill, Dickson, Schmidt, Levin,
-// Jacobson, "Fast Winding Numbers for Soups and Clouds" (2018).
+// The generalized winding number (Jacobson, Kavan, Sorkine-Hornung, "Robust Inside-Outside Segmentation using
+// Generalized Winding Numbers", 2013), with far triangles taken together as one dipole, as in Barill, Dickson, Schmidt,
+// Levin, Jacobson, "Fast Winding Numbers for Soups and Clouds" (2018).
 #pragma once
 
 #include "base/geometry.h"
