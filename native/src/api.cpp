@@ -17,6 +17,7 @@
 #include <cstring>
 #include <exception>
 #include <initializer_list>
+#include <limits>
 #include <memory>
 #include <new>
 #include <span>
@@ -52,6 +53,7 @@ namespace {
 
 constexpr double smallest_quality = 1.1;
 constexpr size_t most_parts = 4096;
+constexpr size_t usual_exact_triangles = 200000;
 constexpr size_t most_struct = 4096;  // bytes of a struct of any version: more is a struct_size that was never set
 
 thread_local std::string last_message;
@@ -138,7 +140,8 @@ private:
     Progress& progress_;
 };
 
-Hierarchy build(const MeshView& mesh, const LadderOptions& options, size_t threads, int32_t mode, Progress& progress) {
+Hierarchy build(const MeshView& mesh, const LadderOptions& options, int32_t mode, Progress& progress) {
+    const size_t threads = options.threads;
     const Solid solid = climb(mesh, options, progress);
     std::optional<TetMesh> plain;
     if (mode != PW_MODE_PAPER) plain = plain_filling(solid, options.quality > 0, progress);
@@ -188,7 +191,7 @@ MeshView as_mesh(const double* vertices, size_t vertex_count, const int32_t* tri
 
 // Structs of a program that may be older or newer than the library: see the header's habits. None ends with padding,
 // where a later version's member could lie.
-static_assert(offsetof(pw_build_options, mode) + sizeof(int32_t) == sizeof(pw_build_options));
+static_assert(offsetof(pw_build_options, exact_triangles) + sizeof(int64_t) == sizeof(pw_build_options));
 static_assert(offsetof(pw_arrays, score) + sizeof(double*) == sizeof(pw_arrays));
 static_assert(offsetof(pw_summary, deviation) + sizeof(double) == sizeof(pw_summary));
 
@@ -291,9 +294,15 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
         Progress unwatched;
         Progress& progress = context ? context->progress : unwatched;
         const Watch watch(progress);
+        const bool exactly =
+            given.exact_triangles < 0 || given.mode == PW_MODE_PAPER || given.rungs == PW_RUNG_EXACT;
         const LadderOptions ladder{given.quality, given.rungs, given.open_surfaces == 1,
+                                   exactly                      ? std::numeric_limits<size_t>::max()
+                                   : given.exact_triangles == 0 ? usual_exact_triangles
+                                                                : static_cast<size_t>(given.exact_triangles),
+                                   static_cast<size_t>(given.threads),
                                    [&](pw_rung rung) { if (context) context->rung = rung; }};
-        *hierarchy = new pw_hierarchy(build(mesh, ladder, static_cast<size_t>(given.threads), given.mode, progress));
+        *hierarchy = new pw_hierarchy(build(mesh, ladder, given.mode, progress));
     });
 }
 

@@ -1,6 +1,7 @@
 // The ladder from the caller's mesh to a filled solid.
 #include "fill/ladder.h"
 
+#include "surface/prepare/coarse.h"
 #include "surface/prepare/displaced.h"
 #include "surface/prepare/repair.h"
 #include "surface/prepare/wrap.h"
@@ -62,13 +63,11 @@ Solid step(const Surface& source, pw_rung rung, const LadderOptions& options, Pr
     return step(source, rung, 2, options, progress);
 }
 
-}  // namespace
+// The copy of a large surface has so many of the triangles that would be too many.
+constexpr double part_kept = 0.5;
 
-Solid climb(const MeshView& mesh, const LadderOptions& options, Progress& progress) {
+Solid climb(const Surface& source, const LadderOptions& options, Progress& progress) {
     const uint32_t rungs = options.rungs == 0 ? all_rungs : options.rungs;
-    progress.enter(PW_STAGE_SURFACE);
-    const Surface source = read_mesh(mesh);
-    progress.advance(0.2);
     for (const pw_rung rung : {PW_RUNG_EXACT, PW_RUNG_REPAIRED, PW_RUNG_WRAPPED}) {
         if (!(rungs & rung)) continue;
         try {
@@ -79,6 +78,20 @@ Solid climb(const MeshView& mesh, const LadderOptions& options, Progress& progre
         }
     }
     throw Error(PW_ERROR_INTERNAL, "No rung of the ladder was tried. Please report this.");
+}
+
+}  // namespace
+
+Solid climb(const MeshView& mesh, const LadderOptions& options, Progress& progress) {
+    progress.enter(PW_STAGE_SURFACE);
+    Surface source = read_mesh(mesh);
+    progress.advance(0.2);
+    if (source.triangles.size() <= options.exact_triangles) return climb(source, options, progress);
+    const auto target = static_cast<size_t>(part_kept * static_cast<double>(options.exact_triangles));
+    Coarse coarse = made_coarse(std::move(source), target, options.threads, progress);
+    Solid solid = climb(coarse.surface, options, progress);
+    carry_over(std::move(coarse), solid.surface);
+    return solid;
 }
 
 }  // namespace partwheel

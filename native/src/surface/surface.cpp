@@ -244,20 +244,10 @@ void check_self_intersection(const Surface& surface, Progress& progress) {
                     ". Unite overlapping parts with a Boolean or remesh, and separate parts that touch.");
 }
 
-// The vertices' order along Morton's space-filling curve through their bounding box, so that what is near in space is
-// mostly near in memory: by the cell of a grid, then by x, y, z, then as they were given. Moving and scaling a model
-// change that no more than they change the ratios of its coordinates' differences.
+// The vertices' order along the curve: by the cell of a grid, then by x, y, z, then as they were given.
 std::vector<int32_t> order_on_curve(std::span<const Point> vertices) {
-    const Frame frame = Frame::around(vertices);
     std::vector<std::pair<uint64_t, int32_t>> places;
-    for (const Point& p : vertices) {
-        std::array<uint64_t, 3> cell{};
-        for (size_t k = 0; k < 3 && frame.longest > 0; ++k) {
-            const double along = (p[k] - frame.origin[k]) / frame.longest * part_of_grid;
-            cell[k] = static_cast<uint64_t>(std::ldexp(along, curve_bits));
-        }
-        places.emplace_back(place_on_curve(cell), static_cast<int32_t>(places.size()));
-    }
+    for (const uint64_t cell : places_on_curve(vertices)) places.emplace_back(cell, static_cast<int32_t>(places.size()));
     const auto key = [&](const std::pair<uint64_t, int32_t>& place) {
         return std::tuple(place.first, vertices[static_cast<size_t>(place.second)], place.second);
     };
@@ -352,6 +342,21 @@ Surface read_mesh(const MeshView& mesh) {
         for (Piece& piece : surface.pieces) piece.face = mesh.faces[piece.face];
     surface.face_count = mesh.face_count;
     return surface;
+}
+
+std::vector<uint64_t> places_on_curve(std::span<const Point> vertices) {
+    const Frame frame = Frame::around(vertices);
+    std::vector<uint64_t> places;
+    places.reserve(vertices.size());
+    for (const Point& p : vertices) {
+        std::array<uint64_t, 3> cell{};
+        for (size_t k = 0; k < 3 && frame.longest > 0; ++k) {
+            const double along = (p[k] - frame.origin[k]) / frame.longest * part_of_grid;
+            cell[k] = static_cast<uint64_t>(std::ldexp(along, curve_bits));
+        }
+        places.push_back(place_on_curve(cell));
+    }
+    return places;
 }
 
 Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span<const int32_t> source_vertex,
