@@ -218,11 +218,17 @@ private:
         return around;
     }
 
+    static constexpr int32_t none = -1;
+    struct Choice {
+        double cost;
+        int32_t into, shared;  // triangles at the edge
+    };
+
     // Whether u may become v, as far as what is joined with what is concerned.
-    bool keeps_topology(size_t u, const Ring& around, const Ring::Spoke& spoke, bool plain) const {
-        const auto v = at(spoke.vertex);
+    bool keeps_topology(size_t u, const Ring& around, const Choice& choice, bool plain) const {
+        const auto v = at(choice.into);
         const size_t here = by_vertex_.with(u).size(), there = by_vertex_.with(v).size();
-        const auto shared = static_cast<size_t>(spoke.triangles);
+        const auto shared = at(choice.shared);
         if (there > most_triangles || here + there - 2 * shared > most_triangles) return false;
         if (here == shared && there == shared) return false;  // nothing would be left
         if (!plain) return true;
@@ -252,15 +258,10 @@ private:
         return true;
     }
 
-    struct Choice {
-        double cost = 0;
-        int32_t into = -1;  // none
-    };
-
     // The cheapest collapse of u that may be done.
     Choice choice(size_t u) const {
         const size_t triangles = by_vertex_.with(u).size();
-        if (triangles == 0 || triangles > most_triangles) return {};
+        if (triangles == 0 || triangles > most_triangles) return {0, none, 0};
         const Ring around = ring(u);
         size_t open = 0, crowded = 0;
         for (const Ring::Spoke& spoke : around.all()) {
@@ -268,24 +269,24 @@ private:
             crowded += spoke.triangles > 2;
         }
         const bool plain = crowded == 0 && (open == 0 || open == 2);
-        std::array<std::pair<double, size_t>, 2 * most_triangles> costs;
+        std::array<Choice, 2 * most_triangles> costs;
         size_t count = 0;
-        for (size_t i = 0; i < around.count; ++i) {
-            const Ring::Spoke& spoke = around.spokes[i];
+        for (const Ring::Spoke& spoke : around.all()) {
             if (plain && open > 0 && spoke.triangles != 1) continue;
             const Point& there = point(spoke.vertex);
             const Point way = there - vertices_[u];
             costs[count++] = {quadrics_[u].of(there) + quadrics_[at(spoke.vertex)].of(there) +
-                                  evenness * quadrics_[u].weight * dot(way, way), i};
+                                  evenness * quadrics_[u].weight * dot(way, way),
+                              spoke.vertex, spoke.triangles};
         }
-        const auto order = std::span(costs).first(count);
-        std::sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
-            return std::pair(a.first, around.spokes[a.second].vertex) < std::pair(b.first, around.spokes[b.second].vertex);
-        });
-        for (const auto& [cost, i] : order)
-            if (keeps_topology(u, around, around.spokes[i], plain) && keeps_shape(u, around.spokes[i].vertex))
-                return {cost, around.spokes[i].vertex};
-        return {};
+        const auto cheaper = [](const Choice& a, const Choice& b) {
+            return a.cost != b.cost ? a.cost < b.cost : a.into < b.into;
+        };
+        for (auto left = std::span(costs).first(count); !left.empty(); left = left.subspan(1)) {
+            std::swap(left[0], *std::min_element(left.begin(), left.end(), cheaper));
+            if (keeps_topology(u, around, left[0], plain) && keeps_shape(u, left[0].into)) return left[0];
+        }
+        return {0, none, 0};
     }
 
     // The cheapest collapses, none beside another, that take away at most so many triangles.
@@ -371,9 +372,9 @@ public:
     Place from_vertex(const Point& p, int32_t v) const {
         Place place;
         look_around(p, v, place);
-        return onwards(p, place);
+        return onwards(p, place, v);
     }
-    Place from_triangle(const Point& p, int32_t t) const { return onwards(p, {t, squared(p, t)}); }
+    Place from_triangle(const Point& p, int32_t t) const { return onwards(p, {t, squared(p, t)}, -1); }
 
 private:
     double squared(const Point& p, int32_t t) const {
@@ -387,12 +388,16 @@ private:
             if (d < place.squared || (d == place.squared && t < place.triangle)) place = {t, d};
         }
     }
-    Place onwards(const Point& p, Place place) const {
-        for (Place before; before.triangle != place.triangle;) {
-            before = place;
-            for (const int32_t v : surface_.triangles[at(before.triangle)]) look_around(p, v, place);
+    // around: a vertex around which all were looked at before, or -1.
+    Place onwards(const Point& p, Place place, int32_t around) const {
+        for (Triangle seen = {around, around, around};;) {
+            const int32_t from = place.triangle;
+            const Triangle& here = surface_.triangles[at(from)];
+            for (const int32_t v : here)
+                if (std::find(seen.begin(), seen.end(), v) == seen.end()) look_around(p, v, place);
+            if (place.triangle == from) return place;
+            seen = here;
         }
-        return place;
     }
 
     const Surface& surface_;
