@@ -354,12 +354,7 @@ double squared_distance(const Point& p, const Point& a, const Point& b, const Po
     return from(a + (vb / sum) * ab + (vc / sum) * ac);
 }
 
-// Where a point is on the coarse surface, found by steps from triangle to triangle.
-struct Place {
-    int32_t triangle = -1;
-    double squared = HUGE_VAL;
-};
-
+// Steps on the coarse surface from triangle to triangle, to where a point is on it.
 class Walk {
 public:
     explicit Walk(const Surface& surface)
@@ -368,34 +363,39 @@ public:
                   for (const int32_t v : surface.triangles[t]) put(at(v), static_cast<int32_t>(t));
           }) {}
 
-    // The nearest triangle, as far as steps to nearer ones lead to it: from those around a vertex.
-    Place from_vertex(const Point& p, int32_t v) const {
-        Place place;
-        look_around(p, v, place);
-        return onwards(p, place, v);
+    // The nearest triangle, as far as steps to nearer ones lead to it: from those around a vertex, if any are looked at.
+    Near from_vertex(const Point& p, int32_t v) const {
+        Near near;
+        look_around(p, v, near);
+        return near.triangle < 0 ? near : onwards(p, near, v);
     }
-    Place from_triangle(const Point& p, int32_t t) const { return onwards(p, {t, squared(p, t)}, -1); }
+    // The same from the nearest of some.
+    int32_t from_triangles(const Point& p, const std::array<int32_t, 3>& triangles) const {
+        Near near;
+        for (const int32_t t : triangles) look_at(p, t, near);
+        return onwards(p, near, -1).triangle;
+    }
 
 private:
-    double squared(const Point& p, int32_t t) const {
+    void look_at(const Point& p, int32_t t, Near& near) const {
         const Triangle& tri = surface_.triangles[at(t)];
         const auto corner = [&](size_t k) -> const Point& { return surface_.vertices[at(tri[k])]; };
-        return squared_distance(p, corner(0), corner(1), corner(2));
+        const double squared = squared_distance(p, corner(0), corner(1), corner(2));
+        if (squared < near.squared || (squared == near.squared && t < near.triangle)) near = {t, squared};
     }
-    void look_around(const Point& p, int32_t v, Place& place) const {
-        for (const int32_t t : by_vertex_.with(at(v))) {
-            const double d = squared(p, t);
-            if (d < place.squared || (d == place.squared && t < place.triangle)) place = {t, d};
-        }
+    void look_around(const Point& p, int32_t v, Near& near) const {
+        const std::span<const int32_t> around = by_vertex_.with(at(v));
+        if (around.size() > most_triangles) return;
+        for (const int32_t t : around) look_at(p, t, near);
     }
     // around: a vertex around which all were looked at before, or -1.
-    Place onwards(const Point& p, Place place, int32_t around) const {
+    Near onwards(const Point& p, Near near, int32_t around) const {
         for (Triangle seen = {around, around, around};;) {
-            const int32_t from = place.triangle;
+            const int32_t from = near.triangle;
             const Triangle& here = surface_.triangles[at(from)];
             for (const int32_t v : here)
-                if (std::find(seen.begin(), seen.end(), v) == seen.end()) look_around(p, v, place);
-            if (place.triangle == from) return place;
+                if (std::find(seen.begin(), seen.end(), v) == seen.end()) look_around(p, v, near);
+            if (near.triangle == from) return near;
             seen = here;
         }
     }
@@ -409,28 +409,36 @@ private:
 double find_pieces(const Surface& source, const Surface& coarse, std::span<const int32_t> coarse_vertex,
                    std::vector<Piece>& pieces, Threads& threads, Progress& progress) {
     const Walk walk(coarse);
-    std::vector<Place> places(source.vertices.size());
+    std::vector<Near> places(source.vertices.size());
     threads.parallel_for(places.size(), piece, [&](size_t first, size_t last) {
         progress.advance(0);
         for (size_t v = first; v < last; ++v)
             if (coarse_vertex[v] >= 0) places[v] = walk.from_vertex(source.vertices[v], coarse_vertex[v]);
     });
-    // What left nothing begins at what is near it on the curve.
-    int32_t near = 0;
+    // Where no steps lead near, all triangles are asked.
+    const double far = diagonal(source) * near_enough;
+    std::vector<size_t> lost;
+    std::vector<Point> where;
+    for (size_t v = 0; v < places.size(); ++v)
+        if (places[v].squared > far * far) {
+            lost.push_back(v);
+            where.push_back(source.vertices[v]);
+        }
+    const std::vector<Near> found = nearest(coarse, where, progress);
+    for (size_t i = 0; i < lost.size(); ++i) places[lost[i]] = found[i];
     double farthest = 0;
-    for (size_t v = 0; v < places.size(); ++v) {
-        if (places[v].triangle < 0) places[v] = walk.from_triangle(source.vertices[v], near);
-        near = places[v].triangle;
-        farthest = std::max(farthest, places[v].squared);
-    }
+    for (const Near& near : places) farthest = std::max(farthest, near.squared);
     threads.parallel_for(pieces.size(), piece, [&](size_t first, size_t last) {
         progress.advance(0);
         for (size_t t = first; t < last; ++t) {
-            const auto& [a, b, c] = source.triangles[t];
-            const int32_t of = places[at(a)].triangle;
-            const Point sum = source.vertices[at(a)] + source.vertices[at(b)] + source.vertices[at(c)];
-            const bool one = of == places[at(b)].triangle && of == places[at(c)].triangle;
-            pieces[t].triangle = one ? of : walk.from_triangle(1.0 / 3 * sum, of).triangle;
+            const Triangle& tri = source.triangles[t];
+            const auto of = [&](size_t k) { return places[at(tri[k])].triangle; };
+            if (of(0) == of(1) && of(1) == of(2)) {
+                pieces[t].triangle = of(0);
+                continue;
+            }
+            const auto corner = [&](size_t k) { return source.vertices[at(tri[k])]; };
+            pieces[t].triangle = walk.from_triangles(1.0 / 3 * (corner(0) + corner(1) + corner(2)), {of(0), of(1), of(2)});
         }
     });
     return farthest;
