@@ -123,9 +123,10 @@ typedef struct pw_build_options {
     int32_t threads;
     /* A pw_mode; the first, 0, is the default. */
     int32_t mode;
-    /* A mesh of more triangles than this is large: its parts are found on a copy with some half as many triangles, whose
+    /* A mesh of more triangles than this is large: its parts are found on a copy with a quarter of this number, whose
      * vertices are vertices of the mesh, and each face goes with the part that it is near (PW_RUNG_COARSE). Parts are
-     * features of the shape, so they are mostly the same; it takes a fraction of the time and memory. 0: 200,000.
+     * features of the shape and not of its millionth face, so people agree with them as well; it takes a fraction of the
+     * time and memory. 0: 200,000.
      * Negative: no mesh is large, all are used exactly; so it is with PW_MODE_PAPER, and with PW_RUNG_EXACT alone. */
     int64_t exact_triangles;
 } pw_build_options;

@@ -17,7 +17,6 @@
 #include <cstring>
 #include <exception>
 #include <initializer_list>
-#include <limits>
 #include <memory>
 #include <new>
 #include <span>
@@ -294,14 +293,12 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
         Progress unwatched;
         Progress& progress = context ? context->progress : unwatched;
         const Watch watch(progress);
-        const bool exactly =
-            given.exact_triangles < 0 || given.mode == PW_MODE_PAPER || given.rungs == PW_RUNG_EXACT;
-        const LadderOptions ladder{given.quality, given.rungs, given.open_surfaces == 1,
-                                   exactly                      ? std::numeric_limits<size_t>::max()
-                                   : given.exact_triangles == 0 ? usual_exact_triangles
-                                                                : static_cast<size_t>(given.exact_triangles),
-                                   static_cast<size_t>(given.threads),
-                                   [&](pw_rung rung) { if (context) context->rung = rung; }};
+        LadderOptions ladder{given.quality, given.rungs, given.open_surfaces == 1,
+                             [&](pw_rung rung) { if (context) context->rung = rung; }};
+        ladder.threads = static_cast<size_t>(given.threads);
+        if (given.exact_triangles >= 0 && given.mode != PW_MODE_PAPER && given.rungs != PW_RUNG_EXACT)
+            ladder.exact_triangles =
+                given.exact_triangles == 0 ? usual_exact_triangles : static_cast<size_t>(given.exact_triangles);
         *hierarchy = new pw_hierarchy(build(mesh, ladder, given.mode, progress));
     });
 }

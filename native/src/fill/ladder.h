@@ -4,6 +4,7 @@
 #include "fill/tetrahedra.h"
 
 #include <functional>
+#include <limits>
 
 namespace partwheel {
 
@@ -12,9 +13,9 @@ struct LadderOptions {
     double quality = 0;
     uint32_t rungs = 0;
     bool open_surfaces = false;
-    size_t exact_triangles = 0;  // of more than this the parts are found on a coarser copy
-    size_t threads = 0;
     std::function<void(pw_rung)> trying;  // told of each rung before it is tried; may be empty
+    size_t exact_triangles = std::numeric_limits<size_t>::max();  // of more than this a coarser copy is filled
+    size_t threads = 0;
 };
 
 struct Solid {

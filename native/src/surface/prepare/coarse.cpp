@@ -5,7 +5,6 @@
 #include "base/groups.h"
 #include "base/parallel.h"
 #include "surface/attach.h"
-#include "tree/claims.h"
 
 #include <algorithm>
 #include <cmath>
@@ -299,7 +298,8 @@ private:
         std::vector<std::pair<double, int32_t>> order;
         for (size_t v = 0; v < choices.size(); ++v)
             if (choices[v].into >= 0) order.emplace_back(choices[v].cost, static_cast<int32_t>(v));
-        const auto middle = order.begin() + static_cast<std::ptrdiff_t>(std::ceil(looked_at * static_cast<double>(order.size())));
+        const double cheap = std::ceil(looked_at * static_cast<double>(order.size()));
+        const auto middle = order.begin() + static_cast<std::ptrdiff_t>(cheap);
         if (middle != order.end()) std::nth_element(order.begin(), middle, order.end());
         std::sort(order.begin(), middle);
         std::vector<bool> changed(vertices_.size(), false);
@@ -438,7 +438,8 @@ double find_pieces(const Surface& source, const Surface& coarse, std::span<const
                 continue;
             }
             const auto corner = [&](size_t k) { return source.vertices[at(tri[k])]; };
-            pieces[t].triangle = walk.from_triangles(1.0 / 3 * (corner(0) + corner(1) + corner(2)), {of(0), of(1), of(2)});
+            pieces[t].triangle =
+                walk.from_triangles(1.0 / 3 * (corner(0) + corner(1) + corner(2)), {of(0), of(1), of(2)});
         }
     });
     return farthest;
@@ -500,11 +501,11 @@ Coarse made_coarse(Surface source, size_t target, size_t threads, Progress& prog
 }
 
 void carry_over(Coarse&& coarse, Surface& surface) {
-    std::vector<Claim> claims;
-    for (const Piece& p : surface.pieces) claims.push_back({p.face, p.triangle, p.area});
-    std::vector<int32_t> triangle(coarse.surface.triangles.size(), -1);
-    settle_claims(std::move(claims), [&](int32_t t, int32_t of) { triangle[at(t)] = of; });
-    for (Piece& p : coarse.pieces) p.triangle = triangle[at(p.triangle)];
+    // Of each of the copy's triangles the one that is behind most of it.
+    std::vector<Piece> most(coarse.surface.triangles.size(), Piece{0, 0, -1});
+    for (const Piece& p : surface.pieces)
+        if (p.area > most[at(p.face)].area) most[at(p.face)] = p;
+    for (Piece& p : coarse.pieces) p.triangle = most[at(p.triangle)].triangle;
     surface.pieces = std::move(coarse.pieces);
     surface.face_count = coarse.face_count;
     surface.deviation = coarse.deviation + surface.deviation * diagonal(coarse.surface) / coarse.diagonal;
