@@ -8,6 +8,9 @@
 
 #include <CGAL/exceptions.h>
 
+#include <algorithm>
+#include <utility>
+
 namespace partwheel {
 
 namespace {
@@ -63,9 +66,9 @@ Solid step(const Surface& source, pw_rung rung, const LadderOptions& options, Pr
     return step(source, rung, 2, options, progress);
 }
 
-// The copy of a large surface has so many triangles, as a share of those from which on it is large. The measures that
-// parts are joined by were fitted to models of some 25,000; with more of them parts are no better.
-constexpr double part_kept = 0.25;
+// The copy of a large surface has one triangle for so many that would be used exactly, and no fewer than the least. The
+// measures that parts are joined by were fitted to models of some 25,000: with more of them parts are no better.
+constexpr size_t exact_for_each = 4, least_triangles = 100;
 
 Solid climb(const Surface& source, const LadderOptions& options, Progress& progress) {
     const uint32_t rungs = options.rungs == 0 ? all_rungs : options.rungs;
@@ -88,7 +91,7 @@ Solid climb(const MeshView& mesh, const LadderOptions& options, Progress& progre
     Surface source = read_mesh(mesh);
     progress.advance(0.2);
     if (source.triangles.size() <= options.exact_triangles) return climb(source, options, progress);
-    const auto target = static_cast<size_t>(part_kept * static_cast<double>(options.exact_triangles));
+    const size_t target = std::max(options.exact_triangles / exact_for_each, least_triangles);
     Coarse coarse = made_coarse(std::move(source), target, options.threads, progress);
     Solid solid = climb(coarse.surface, options, progress);
     carry_over(std::move(coarse), solid.surface);

@@ -32,8 +32,8 @@ constexpr double least_turned = 0.25;
 // this share of the triangles is the last.
 constexpr double looked_at = 0.5, least_progress = 0.01;
 
-// More triangles than this for each that was wanted are too many.
-constexpr double too_many = 2;
+// A copy of more triangles than this for each that was wanted would take too long.
+constexpr size_t too_many = 4;
 
 constexpr size_t piece = 1024;  // of a parallel loop
 
@@ -113,8 +113,8 @@ public:
         }
     }
 
-    // The vertices in each cell of a grid become one, that which fits best: in the coarsest octree that leaves so many
-    // triangles. What is near along the curve is together in a cell.
+    // The vertices in each cell of a grid become one, that which fits best: in the coarsest grid that leaves so many
+    // triangles. Cells are pieces of the curve, along which the vertices are sorted.
     void unite_cells(size_t target) {
         const std::vector<uint64_t> places = places_on_curve(vertices_);
         const auto left = [&](int level) {
@@ -239,7 +239,7 @@ private:
         return common == shared;
     }
 
-    // Whether no triangle turns over, or becomes a needle.
+    // Whether no triangle turns over, or loses its area.
     bool keeps_shape(size_t u, int32_t v) const {
         for (const int32_t t : by_vertex_.with(u)) {
             Triangle tri = triangles_[at(t)];
@@ -457,10 +457,12 @@ Coarse made_coarse(Surface source, size_t target, size_t threads, Progress& prog
     Threads all(threads, source.triangles.size() / piece);
     Collapses collapses(source, all);
     collapses.collapse(target, progress);
-    if (static_cast<double>(collapses.triangles().size()) > too_many * static_cast<double>(target)) {
+    if (collapses.triangles().size() > too_many * target) {
         collapses.unite_cells(target);
         collapses.collapse(target, progress);
     }
+    if (collapses.triangles().empty())
+        throw Error(PW_ERROR_NOT_SOLID, "The mesh has no area at all: only edges and points.");
 
     Coarse coarse;
     std::vector<int32_t> number(source.vertices.size(), -1), source_vertex, used;
