@@ -81,21 +81,23 @@ class Build:
         return self._build.finish()
 
 
-def start_build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None):
+def start_build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None, exactly=None):
     """A Build of the object's mesh as it is now; returns at once. It changes nothing until its result() is asked for.
     The one under way is found again, if it is of the same mesh and options; else it is cancelled for this one.
 
     quality: 0 adds no points inside the mesh; from 1.1 on it bounds how stretched the tetrahedra may be. open_surfaces:
     take a sheet for a thin solid, instead of refusing it. mode: a partwheel.Mode, how parts are joined. time_limit:
-    seconds of processor time. memory_limit: bytes, kept on Linux only. None: as the add-on's preferences have it."""
+    seconds of processor time. memory_limit: bytes, kept on Linux only. exactly: find the parts of a large mesh on all of
+    its triangles, not on a coarser copy. None: as the add-on's preferences have it."""
     _mesh(obj)
     return Build(builds.build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode, time_limit=time_limit,
-                               memory_limit=memory_limit))
+                              memory_limit=memory_limit, exactly=exactly))
 
 
-def build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None, progress=None):
+def build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None, progress=None,
+          exactly=None):
     """Builds the hierarchy of the object's mesh, keeps it and returns it: start_build() and its result()."""
-    return start_build(obj, quality, open_surfaces, mode, time_limit, memory_limit).result(progress)
+    return start_build(obj, quality, open_surfaces, mode, time_limit, memory_limit, exactly).result(progress)
 
 
 def hierarchy(obj):

@@ -38,7 +38,7 @@ def run(arguments):
 
 
 def _build(obj, options):
-    built = api.build(obj, options.quality, options.open_surfaces)
+    built = api.build(obj, options.quality, options.open_surfaces, exactly=options.exactly or None)
     return f"{obj.name}: {len(built.order)} faces, {len(built.tetrahedra)} tets. {built.account}".rstrip()
 
 
@@ -65,6 +65,7 @@ def _parser():
         if name == "build":
             command.add_argument("--quality", type=float, default=0.0, help="0, or from 1.1 on: see the operator")
             command.add_argument("--open-surfaces", action="store_true", help="take sheets for thin solids")
+            command.add_argument("--exactly", action="store_true", help="find parts of large meshes on all triangles")
         else:
             size = command.add_mutually_exclusive_group(required=True)
             size.add_argument("--parts", type=int, help="into so many, the last merges undone")

@@ -20,6 +20,12 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
                 "smallest piece there is, and each notch of the wheel one more step of the tree")],
         default="REGROUPED",
     )
+    exactly: bpy.props.BoolProperty(
+        name="Large Meshes Exactly",
+        description="Find the parts of meshes of more than 200,000 triangles on all of these, not on a coarser copy: "
+                    "some ten times the time and memory for parts that are mostly the same",
+        default=False,
+    )
     memory_share: bpy.props.IntProperty(
         name="Memory", description="How much of the available memory a build may use (kept on Linux)",
         default=80, min=10, max=100, subtype="PERCENTAGE",
@@ -55,7 +61,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
     def draw(self, _context):
         column = self.layout.column()
         column.use_property_split = True
-        for name in ("parts", "save_with_file", "memory_share", "time_limit", "python"):
+        for name in ("parts", "exactly", "save_with_file", "memory_share", "time_limit", "python"):
             column.prop(self, name)
         draw_overlays(column)
 
@@ -77,7 +83,7 @@ def preferences():
 
 
 class Defaults:
-    parts, save_with_file, memory_share, time_limit, python = "REGROUPED", True, 80, 0, ""
+    parts, exactly, save_with_file, memory_share, time_limit, python = "REGROUPED", False, True, 80, 0, ""
     show_part, show_next, show_hull, show_cut = True, True, False, False
 
 

@@ -74,7 +74,7 @@ PW_API pw_status pw_context_create(pw_context **context);
 PW_API void pw_context_free(pw_context *context);
 
 /* Asks the running build (or, if none runs, the next one) to stop with PW_ERROR_CANCELLED. Honoured within 100 ms in
- * every stage; beyond some 200,000 faces that are used exactly within a time in proportion, as arrays are sorted whole. */
+ * every stage; beyond some 200,000 faces within a time in proportion, as arrays are sorted whole. */
 PW_API pw_status pw_context_cancel(pw_context *context);
 
 /* fraction: 0..1 of the whole build, never falling during a build. stage: where it is. Either may be null. */
@@ -123,6 +123,12 @@ typedef struct pw_build_options {
     int32_t threads;
     /* A pw_mode; the first, 0, is the default. */
     int32_t mode;
+    /* A mesh of more triangles than this is large: its parts are found on a copy with a quarter of this number, whose
+     * vertices are vertices of the mesh, and each face goes with the part that it is near (PW_RUNG_COARSE). Parts are
+     * features of the shape and not of its millionth face, so people agree with them as well; it takes a fraction of the
+     * time and memory. 0: 200,000.
+     * Negative: no mesh is large, all are used exactly; so it is with PW_MODE_PAPER, and with PW_RUNG_EXACT alone. */
+    int64_t exact_triangles;
 } pw_build_options;
 
 typedef struct pw_hierarchy pw_hierarchy;
@@ -209,10 +215,12 @@ typedef struct pw_summary {
     size_t added_vertices; /* points that the mesher added inside */
     double volume;         /* of the solid */
     double hull_volume;    /* of its convex hull */
-    pw_rung rung;          /* how the surface used came from the caller's */
+    pw_rung rung;          /* how the surface used came from the caller's; PW_RUNG_COARSE also where the copy was repaired
+                              or filled from points: see pw_hierarchy_account() */
     double deviation;      /* the largest distance from the caller's surface to the one used, relative to the diagonal
                               of the caller's bounding box: 0 on the exact rung, else measured at points of every triangle
-                              about 1/100 of the diagonal apart, further if there were millions of them. Parts of the
+                              about 1/100 of the diagonal apart, further if there were millions of them; of a large mesh
+                              at its vertices. Parts of the
                               caller's surface that lie inside the solid, such as the back of an eye, count as well */
 } pw_summary;
 

@@ -43,7 +43,8 @@ typedef enum pw_stage {
 typedef enum pw_rung {
     PW_RUNG_EXACT = 1,    /* the caller's surface as it is: closed, manifold, oriented, free of self-intersection */
     PW_RUNG_REPAIRED = 2, /* stitched, oriented, holes filled, overlaps united; most vertices are the caller's */
-    PW_RUNG_POINTS = 4    /* not at all: filled from points on it, inside where it winds around them */
+    PW_RUNG_POINTS = 4,   /* not at all: filled from points on it, inside where it winds around them */
+    PW_RUNG_COARSE = 8    /* a coarser copy of a large mesh: one of the above, see pw_build_options.exact_triangles */
 } pw_rung;
 
 #endif

@@ -52,6 +52,7 @@ namespace {
 
 constexpr double smallest_quality = 1.1;
 constexpr size_t most_parts = 4096;
+constexpr size_t usual_exact_triangles = 200000;
 constexpr size_t most_struct = 4096;  // bytes of a struct of any version: more is a struct_size that was never set
 
 thread_local std::string last_message;
@@ -141,7 +142,7 @@ private:
 Hierarchy build(const MeshView& mesh, const LadderOptions& options, int32_t mode, Progress& progress) {
     const Solid solid = climb(mesh, options, progress);
     std::optional<TetMesh> plain;
-    if (mode != PW_MODE_PAPER && solid.surface.rung != PW_RUNG_POINTS) plain = plain_filling(solid, options.quality > 0, progress);
+    if (mode != PW_MODE_PAPER && !solid.from_points) plain = plain_filling(solid, options.quality > 0, progress);
     const TetMesh& mesh_of_parts = plain ? *plain : solid.mesh;
     progress.enter(PW_STAGE_CLUSTER);
     Regrouped regrouped{cluster(mesh_of_parts, progress, options.threads), {}};
@@ -188,7 +189,7 @@ MeshView as_mesh(const double* vertices, size_t vertex_count, const int32_t* tri
 
 // Structs of a program that may be older or newer than the library: see the header's habits. None ends with padding,
 // where a later version's member could lie.
-static_assert(offsetof(pw_build_options, mode) + sizeof(int32_t) == sizeof(pw_build_options));
+static_assert(offsetof(pw_build_options, exact_triangles) + sizeof(int64_t) == sizeof(pw_build_options));
 static_assert(offsetof(pw_arrays, score) + sizeof(double*) == sizeof(pw_arrays));
 static_assert(offsetof(pw_summary, deviation) + sizeof(double) == sizeof(pw_summary));
 
@@ -291,9 +292,12 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
         Progress unwatched;
         Progress& progress = context ? context->progress : unwatched;
         const Watch watch(progress);
-        const LadderOptions ladder{given.quality, given.rungs, given.open_surfaces == 1,
-                                   [&](pw_rung rung) { if (context) context->rung = rung; },
-                                   static_cast<size_t>(given.threads)};
+        LadderOptions ladder{given.quality, given.rungs, given.open_surfaces == 1,
+                             [&](pw_rung rung) { if (context) context->rung = rung; },
+                             static_cast<size_t>(given.threads)};
+        if (given.exact_triangles >= 0 && given.mode != PW_MODE_PAPER && given.rungs != PW_RUNG_EXACT)
+            ladder.exact_triangles =
+                given.exact_triangles == 0 ? usual_exact_triangles : static_cast<size_t>(given.exact_triangles);
         *hierarchy = new pw_hierarchy(build(mesh, ladder, given.mode, progress));
     });
 }

@@ -186,12 +186,12 @@ TEST(Api, BuildChecksItsOptionsAndSizes) {
                         mesh.face_data(), mesh.face_count, &options, &made);
     };
     for (const double quality : {-1.0, 0.5, 1.0, 1.0999, std::nan(""), HUGE_VAL, -HUGE_VAL, 5e-324})
-        expect_argument_error(status({sizeof(pw_build_options), quality, 0, 0, 0, 0}));
+        expect_argument_error(status({sizeof(pw_build_options), quality, 0, 0, 0, 0, 0}));
     for (const uint32_t rungs : {8U, 15U, ~0U})
-        expect_argument_error(status({sizeof(pw_build_options), 0, rungs, 0, 0, 0}));
-    for (const int32_t open : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, open, 0, 0}));
-    expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, -1, 0}));
-    for (const int32_t mode : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, 0, mode}));
+        expect_argument_error(status({sizeof(pw_build_options), 0, rungs, 0, 0, 0, 0}));
+    for (const int32_t open : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, open, 0, 0, 0}));
+    expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, -1, 0, 0}));
+    for (const int32_t mode : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, 0, mode, 0}));
     const auto sized_build = [&](size_t vertices, size_t triangles, const int32_t* faces, size_t face_count) {
         return pw_build(nullptr, mesh.vertex_data(), vertices, mesh.triangle_data(), triangles, faces, face_count,
                         nullptr, &made);
@@ -207,7 +207,7 @@ TEST(Api, BuildChecksItsOptionsAndSizes) {
         expect_argument_error(sized_build(8, 12, mesh.face_data(), large));
     }
     EXPECT_EQ(made, nullptr);
-    ASSERT_EQ(status({sizeof(pw_build_options), 1.1, 0, 0, 0, 0}), PW_OK);
+    ASSERT_EQ(status({sizeof(pw_build_options), 1.1, 0, 0, 0, 0, 0}), PW_OK);
     pw_hierarchy_free(made);
 }
 
@@ -259,7 +259,7 @@ TEST(Api, NothingIsWrittenOnFailure) {
     mesh.faces.pop_back();
     auto* const mark = reinterpret_cast<pw_hierarchy*>(&mesh);
     pw_hierarchy* made = mark;
-    const pw_build_options exact{sizeof exact, 0, PW_RUNG_EXACT, 0, 0, 0};
+    const pw_build_options exact{sizeof exact, 0, PW_RUNG_EXACT, 0, 0, 0, 0};
     EXPECT_EQ(pw_build(nullptr, mesh.vertex_data(), 8, mesh.triangle_data(), 11, mesh.face_data(), 6, &exact, &made),
               PW_ERROR_OPEN);
     EXPECT_EQ(made, mark);
@@ -487,7 +487,7 @@ TEST(Api, BuildsInThreadsGiveTheSameBytes) {
 
 TEST(Api, BuildsAloneWhereTheSystemStartsNoOther) {
     const TriMesh mesh = real_mesh("hand.off");
-    const pw_build_options options{sizeof options, 0, PW_RUNG_EXACT, 0, 4, PW_MODE_REGROUPED};
+    const pw_build_options options{sizeof options, 0, PW_RUNG_EXACT, 0, 4, PW_MODE_REGROUPED, 0};
     const auto built = [&] {
         pw_hierarchy* made = nullptr;
         if (pw_build(nullptr, mesh.vertex_data(), mesh.vertices.size(), mesh.triangle_data(), mesh.triangles.size(),

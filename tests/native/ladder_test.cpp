@@ -6,13 +6,18 @@
 #include "support/reference_surface.h"
 #include "support/shapes.h"
 #include "support/sizes.h"
+#include "surface/attach.h"
+#include "surface/prepare/coarse.h"
 #include "surface/prepare/displaced.h"
 
+#include <CGAL/Simple_cartesian.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
+#include <utility>
 
 namespace partwheel::test {
 namespace {
@@ -262,6 +267,92 @@ TEST(Ladder, FillingFromPointsCanBeCancelled) {
     (void)pw_context_cancel(context);
     EXPECT_EQ(try_build(cube(), 0, context, PW_RUNG_POINTS).status, PW_ERROR_CANCELLED);
     pw_context_free(context);
+}
+
+// The nearest of the surface's triangles, by looking at all: the square of its distance.
+double squared_distance_of_all(const Surface& surface, const Point& p) {
+    using Kernel = CGAL::Simple_cartesian<double>;
+    const auto given = [](const Point& q) { return Kernel::Point_3(q[0], q[1], q[2]); };
+    double least = HUGE_VAL;
+    for (const Triangle& t : surface.triangles) {
+        const auto at = [&](size_t k) { return given(surface.vertices[static_cast<size_t>(t[k])]); };
+        least = std::min(least, CGAL::squared_distance(given(p), Kernel::Triangle_3(at(0), at(1), at(2))));
+    }
+    return least;
+}
+
+Solid climbed_coarse(const TriMesh& mesh, size_t exact_triangles, size_t threads = 0) {
+    LadderOptions options;
+    options.exact_triangles = exact_triangles;
+    options.threads = threads;
+    Progress progress;
+    progress.begin();
+    return climb(mesh.view(), options, progress);
+}
+
+TEST(Ladder, LargeSurfacesAreFilledAsACoarserCopyThatIsClosedAndNear) {
+    std::vector<TriMesh> meshes{torus(60, 40, 2, 0.5), real_mesh("joint.off")};
+    if (!light()) meshes.push_back(real_mesh("elephant.off"));
+    for (const TriMesh& mesh : meshes) {
+        const size_t large = mesh.triangles.size() - 1;
+        const Solid solid = climbed_coarse(mesh, large);
+        expect_sound(solid, mesh, PW_RUNG_COARSE);
+        EXPECT_LE(solid.surface.triangles.size(), std::max(large / 4, size_t{100}));
+        double farthest = 0;
+        for (const Point& p : mesh.vertices)
+            farthest = std::max(farthest, squared_distance_of_all(solid.surface, solid.surface.frame.to_working(p)));
+        const double deviation = std::sqrt(farthest) / diagonal(read_mesh(mesh.view()));
+        EXPECT_NEAR(solid.surface.deviation, deviation, 1e-3);  // steps may end where it is not nearest
+        EXPECT_GE(solid.surface.deviation, deviation * (1 - 1e-9));
+        EXPECT_LT(solid.surface.deviation, 0.05);
+        EXPECT_NEAR(used_volume(solid), std::fabs(enclosed_volume(mesh)), 0.1 * std::fabs(enclosed_volume(mesh)));
+        for (const int32_t s : solid.surface.source_vertex) EXPECT_GE(s, 0);
+        EXPECT_EQ(climbed_coarse(mesh, large + 1).surface.rung, PW_RUNG_EXACT);
+        const Solid alone = climbed_coarse(mesh, large, 1);
+        EXPECT_EQ(alone.surface.vertices, solid.surface.vertices);
+        EXPECT_EQ(alone.surface.triangles, solid.surface.triangles);
+        EXPECT_EQ(alone.surface.pieces, solid.surface.pieces);
+    }
+}
+
+TEST(Ladder, ACoarserCopyKeepsHolesComponentsAndHandles) {
+    const TriMesh torus_and_ball = together("torus and ball", torus(60, 40, 2, 0.5), sphere(30, 40));
+    const Solid solid = climbed_coarse(torus_and_ball, 1000);
+    const auto vertices = static_cast<int64_t>(solid.surface.vertices.size());
+    const auto triangles = static_cast<int64_t>(solid.surface.triangles.size());
+    EXPECT_EQ(vertices - triangles / 2, 2);  // Euler: 0 of the torus, 2 of the ball
+
+    // A disk stays one, and its border is open: of it Euler says V - E + F = 1, and edges have two sides but there.
+    TriMesh open = without_faces(sphere(30, 40));
+    std::erase_if(open.triangles, [&](const Triangle& t) {
+        return std::ranges::all_of(t, [&](int32_t v) { return open.vertices[static_cast<size_t>(v)][2] > 0.9; });
+    });
+    Progress progress;
+    progress.begin();
+    const Surface disk = made_coarse(read_mesh(without_faces(open).view()), 200, 0, progress).surface;
+    std::set<std::pair<int32_t, int32_t>> sides;
+    for (const Triangle& t : disk.triangles)
+        for (size_t k = 0; k < 3; ++k) EXPECT_TRUE(sides.insert({t[k], t[(k + 1) % 3]}).second);
+    const auto border = std::ranges::count_if(sides, [&](const auto& s) { return !sides.contains({s.second, s.first}); });
+    const auto faces = static_cast<int64_t>(disk.triangles.size());
+    EXPECT_LE(faces, 200);
+    EXPECT_GT(border, 2);
+    EXPECT_EQ(2 * static_cast<int64_t>(disk.vertices.size()) - (3 * faces + border) + 2 * faces, 2);
+}
+
+TEST(Ladder, AMeshOfNothingButEdgesAndPointsIsNoSolidHoweverLarge) {
+    TriMesh mesh = without_faces(cube());
+    for (Triangle& t : mesh.triangles) t[2] = t[1];
+    LadderOptions options;
+    options.exact_triangles = 4;
+    Progress progress;
+    progress.begin();
+    try {
+        (void)climb(mesh.view(), options, progress);
+        ADD_FAILURE() << "it was filled";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.status(), PW_ERROR_NOT_SOLID);
+    }
 }
 
 }  // namespace

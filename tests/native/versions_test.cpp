@@ -87,7 +87,7 @@ TEST(Versions, OlderOptionsHaveDefaultsForWhatTheyDoNotKnow) {
     } older;
     Handle by_older, by_own, by_default;
     ASSERT_EQ(build_with(mesh, &older.options, by_older), PW_OK) << pw_error_message();
-    const pw_build_options own{sizeof own, 1.4, PW_RUNG_EXACT, 0, 0, 0};
+    const pw_build_options own{sizeof own, 1.4, PW_RUNG_EXACT, 0, 0, 0, 0};
     ASSERT_EQ(build_with(mesh, &own, by_own), PW_OK);
     EXPECT_EQ(save(by_older), save(by_own));
     ASSERT_EQ(build_with(mesh, nullptr, by_default), PW_OK);
@@ -100,7 +100,7 @@ TEST(Versions, OlderOptionsHaveDefaultsForWhatTheyDoNotKnow) {
 TEST(Versions, NewerOptionsAreHeardOnlyAsFarAsTheyAreKnown) {
     const TriMesh mesh = cube();
     Handle handle;
-    NewerOptions newer{{sizeof newer, 0, 0, 0, 0, PW_MODE_PAPER}, 0, 0, 0};
+    NewerOptions newer{{sizeof newer, 0, 0, 0, 0, PW_MODE_PAPER, 0}, 0, 0, 0};
     EXPECT_EQ(build_with(mesh, &newer, handle), PW_OK) << pw_error_message();
     newer.wider = 1;  // the very last
     EXPECT_EQ(build_with(mesh, &newer, handle), PW_ERROR_ARGUMENT);
@@ -152,7 +152,7 @@ TEST(Versions, SizesThatNoStructHasAreRefused) {
                               sizeof(pw_build_options) + 1, size_t{1} << 20, std::numeric_limits<size_t>::max() - 7,
                               std::numeric_limits<size_t>::max()}) {
         Handle made;
-        const pw_build_options options{size, 0, 0, 0, 0, 0};
+        const pw_build_options options{size, 0, 0, 0, 0, 0, 0};
         EXPECT_EQ(build_with(mesh, &options, made), PW_ERROR_ARGUMENT) << size;
         EXPECT_NE(std::string(pw_error_message()).find("struct_size"), std::string::npos) << pw_error_message();
         pw_summary s{};

@@ -47,9 +47,10 @@ class Build:
     """A build of the object's mesh as it is now, in a process of its own, once those asked for earlier are over. The
     mesh is not changed, nor kept from changing. To be had from build(): there is one a mesh."""
 
-    def __init__(self, obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None):
-        """mode: a partwheel.Mode; limits: as Job has them; None: the preferences'. open_surfaces holds for later builds
-        of the mesh too."""
+    def __init__(self, obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None,
+                 exactly=None):
+        """mode: a partwheel.Mode; limits and exactly: as Job has them; None: the preferences'. open_surfaces holds for
+        later builds of the mesh too."""
         load()  # a missing library is better told here
         mesh = arrays.up_to_date(obj)
         self.name = mesh.name
@@ -57,8 +58,9 @@ class Build:
         former = registry.entry_of(mesh)
         self._open_surfaces = open_surfaces or (former is not None and former.open_surfaces)
         self._mode = Mode[preferences().parts] if mode is None else mode
-        self._options = {"quality": quality, "open_surfaces": open_surfaces, "mode": mode, "time_limit": time_limit,
-                         "memory_limit": memory_limit}
+        self._exactly = preferences().exactly if exactly is None else exactly
+        self._options = {"quality": quality, "open_surfaces": open_surfaces, "exactly": exactly, "mode": mode,
+                         "time_limit": time_limit, "memory_limit": memory_limit}
         self._surface = arrays.surface(mesh)
         self._hierarchy = self._error = None
         self._cancelled = False
@@ -76,7 +78,8 @@ class Build:
         share, options = preferences().memory_share / 100, self._options
         try:
             self.job = Job(*self._surface, quality=options["quality"], open_surfaces=self._open_surfaces,
-                           mode=self._mode, memory_limit=options["memory_limit"] or int(share * available_memory()),
+                           exactly=self._exactly, mode=self._mode,
+                           memory_limit=options["memory_limit"] or int(share * available_memory()),
                            time_limit=options["time_limit"] or 60 * preferences().time_limit or None,
                            python=bpy.path.abspath(preferences().python))
         except Exception as error:  # whatever it is, finish() raises it

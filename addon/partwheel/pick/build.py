@@ -153,6 +153,12 @@ class _Build(NeedsMesh, InView):
                     "refusing it",
         default=False,
     )
+    exactly: bpy.props.BoolProperty(
+        name="Exactly",
+        description="Find the parts of a mesh of more than 200,000 triangles on all of these, not on a coarser copy: "
+                    "some ten times the time and memory. The add-on's preferences can have it so for all",
+        default=False,
+    )
 
     def execute(self, context):
         building = self._start(context)
@@ -184,7 +190,8 @@ class _Build(NeedsMesh, InView):
             self.building.abandon(context)
 
     def _start(self, context):
-        return start(self, context.active_object, quality=self.quality, open_surfaces=self.open_surfaces)
+        return start(self, context.active_object, quality=self.quality, open_surfaces=self.open_surfaces,
+                     exactly=self.exactly or None)
 
 
 class MESH_OT_partwheel_build(_Build, bpy.types.Operator):

@@ -20,6 +20,7 @@ SHEET = ["A sheet, not a solid: thicken it,", "close it, or have it taken for", 
 BUILD = {State.FITS: "Recompute", State.MOVED: "Recompute", State.CHANGED: "Recompute"}
 RUNGS = {
     "exact": "From the mesh as it is", "repaired": "From a repaired copy", "points": "From points on it",
+    "coarse": "From a coarser copy",
 }
 # Of Blender's interface font, on average, at a scale of 1; and what frames and tabs take of the sidebar's width.
 PIXELS_A_LETTER, PIXELS_BESIDE = 7, 40
@@ -55,6 +56,8 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
             for line in SHEET:
                 column.label(text=line)
             column.operator("mesh.partwheel_build", text="Take as Thin Solid").open_surfaces = True
+        if entry and entry.hierarchy.summary.rung == "coarse":
+            column.operator("mesh.partwheel_build", text="Find Exactly").exactly = True
         row = layout.row(align=True)
         row.operator("mesh.partwheel_build", text=BUILD.get(state, "Build"))
         if state != State.NONE:

@@ -19,8 +19,8 @@ POLL_SECONDS = 0.1
 class Summary(NamedTuple):
     """What a build found. components: parts of the solid without a common facet. cavities: enclosed regions that are
     not solid. added_vertices: points that the mesher added inside. volume, hull_volume: of the solid and of its convex
-    hull, in the unit of the coordinates cubed. rung: "exact", "repaired" or "points", how the surface used came from
-    the caller's; deviation: the largest distance between them, relative to the diagonal of the bounding box."""
+    hull, in the unit of the coordinates cubed. rung: "exact", "repaired", "points" or "coarse", how the surface used came
+    from the caller's; deviation: the largest distance between them, relative to the diagonal of the bounding box."""
 
     components: int
     cavities: int
@@ -201,8 +201,9 @@ class Hierarchy:
 
     @classmethod
     def build(cls, vertices, triangles, faces=None, face_count=None, *, quality=0.0, rungs=0, open_surfaces=False,
-              threads=0, mode=Mode.REGROUPED, progress=None):
-        """Builds the hierarchy of a surface: as it is, or else repaired, or else filled from points on it.
+              threads=0, mode=Mode.REGROUPED, exactly=False, exact_triangles=0, progress=None):
+        """Builds the hierarchy of a surface: as it is, or else repaired, or else filled from points on it; that of
+        a large one on a coarser copy, unless exactly.
 
         vertices (V,3) coordinates; triangles (T,3) indices, counter-clockwise from outside; faces (T,) the source face
         of each triangle (None: every triangle is one); face_count how many there are (None: the largest + 1).
@@ -212,6 +213,8 @@ class Hierarchy:
         open_surfaces: take a sheet (plane, cloth, car door) as a thin solid, instead of refusing it with NOT_SOLID.
         threads: 0 as many as help, else at most so many; the result is the same.
         mode: Mode.REGROUPED, joined by what people take for parts, or Mode.PAPER, the paper's in every step.
+        exactly: the parts of a large mesh are not found on a coarser copy of it, but on all of its triangles, which
+        takes some ten times as long and as much memory. exact_triangles: meshes of more are large (0: 200,000).
         progress(fraction, stage): called in this thread about ten times a second while the build runs in another;
         returning True cancels the build. If it raises, the build is stopped and the exception goes on.
 
@@ -220,7 +223,8 @@ class Hierarchy:
         arrays, face_count = checked_surface(vertices, triangles, faces, face_count)
         context = _Context()
         options = BuildOptions(quality=quality, rungs=_number(rungs), open_surfaces=bool(open_surfaces),
-                               threads=_number(threads), mode=_number(mode))
+                               threads=_number(threads), mode=_number(mode),
+                               exact_triangles=-1 if exactly else _number(exact_triangles))
         build = _Build(context, arrays, face_count, options)
 
         def report():

@@ -6,7 +6,7 @@ import enum
 import functools
 import os
 import sys
-from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_size_t, c_uint32, c_void_p
+from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_int64, c_size_t, c_uint32, c_void_p
 from pathlib import Path
 
 VERSION = "0.1.0"  # of partwheel.h, as declared here
@@ -54,6 +54,10 @@ class Rung(enum.IntEnum):
     EXACT = 1
     REPAIRED = 2
     POINTS = 4
+    COARSE = 8  # no way to be asked for: what comes of a large mesh, by one of those above
+
+
+RUNGS = Rung.EXACT, Rung.REPAIRED, Rung.POINTS  # those that may be asked for
 
 
 class Mode(enum.IntEnum):
@@ -78,7 +82,7 @@ class BuildOptions(_Sized):
 
     _fields_ = [
         ("struct_size", c_size_t), ("quality", c_double), ("rungs", c_uint32), ("open_surfaces", c_int32),
-        ("threads", c_int32), ("mode", c_int32),
+        ("threads", c_int32), ("mode", c_int32), ("exact_triangles", c_int64),
     ]
 
 

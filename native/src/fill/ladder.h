@@ -4,6 +4,7 @@
 #include "fill/tetrahedra.h"
 
 #include <functional>
+#include <limits>
 
 namespace partwheel {
 
@@ -14,6 +15,7 @@ struct LadderOptions {
     bool open_surfaces = false;
     std::function<void(pw_rung)> trying;  // told of each rung before it is tried; may be empty
     size_t threads = 0;                   // as cluster() takes it
+    size_t exact_triangles = std::numeric_limits<size_t>::max();  // of more than this a coarser copy is filled
 };
 
 // Throws the Error of the last rung allowed if none holds. Works in the stages surface, repair and tetrahedra.

@@ -305,6 +305,7 @@ Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Pro
     Account account;
     mended.done.tell(account);
     solid.surface.rung = PW_RUNG_POINTS;
+    solid.from_points = true;
     solid.surface.account = std::string("Filled from points on the mesh") +
                             (mended.solids == 0 ? ", a sheet, as a thin solid" : "") +
                             (account.text().empty() ? "" : ", after this: " + account.text()) +

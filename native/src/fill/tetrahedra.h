@@ -16,6 +16,7 @@ struct TetMesh {
 struct Solid {
     Surface surface;
     TetMesh mesh;
+    bool from_points = false;  // not filled by TetGen: the surface was made from the tetrahedra
 };
 
 // A corner of a tetrahedron: its vertex, and the tetrahedron beyond the facet opposite; -1: none.

@@ -28,6 +28,15 @@ constexpr double rounding = 1e-12;
 
 Kernel::Point_3 to_cgal(const Point& p) { return {p[0], p[1], p[2]}; }
 
+Triangles to_cgal(const Surface& surface) {
+    Triangles triangles;
+    for (const Triangle& t : surface.triangles) {
+        const auto at = [&](size_t k) { return to_cgal(surface.vertices[static_cast<size_t>(t[k])]); };
+        triangles.emplace_back(at(0), at(1), at(2));
+    }
+    return triangles;
+}
+
 // By the parity of crossings along a ray in a direction that no model is likely to be built along. Not exact: it is
 // asked of many samples, and only of those far from the surface.
 bool is_outside(const Tree& tree, const Point& p) {
@@ -78,11 +87,7 @@ double least_spacing(double area, double lengths) {
 }  // namespace
 
 Attached attach(const Surface& source, Surface& surface, Progress& progress) {
-    Triangles triangles;
-    for (const Triangle& t : surface.triangles) {
-        const auto at = [&](size_t k) { return to_cgal(surface.vertices[static_cast<size_t>(t[k])]); };
-        triangles.emplace_back(at(0), at(1), at(2));
-    }
+    Triangles triangles = to_cgal(surface);
     Tree tree(triangles.begin(), triangles.end());
     tree.build();
 
@@ -117,6 +122,22 @@ Attached attach(const Surface& source, Surface& surface, Progress& progress) {
     surface.face_count = source.face_count;
     surface.deviation = farthest < rounding * size ? 0 : farthest / size;
     return {outside > near_enough * size ? outside / size : 0, area > 0 ? hidden / area : 0};
+}
+
+std::vector<Near> nearest(const Surface& surface, std::span<const Point> points, Progress& progress) {
+    if (points.empty()) return {};
+    Triangles triangles = to_cgal(surface);
+    Tree tree(triangles.begin(), triangles.end());
+    tree.build();
+    Tree::Point_and_primitive_id last(triangles[0].vertex(0), triangles.begin());
+    std::vector<Near> found;
+    for (const Point& p : points) {
+        if (found.size() % samples_between_polls == 0) progress.advance(0);
+        last = tree.closest_point_and_primitive(to_cgal(p), last);
+        found.push_back({static_cast<int32_t>(last.second - triangles.begin()),
+                         CGAL::squared_distance(last.first, to_cgal(p))});
+    }
+    return found;
 }
 
 double diagonal(const Surface& source) {

@@ -3,6 +3,10 @@
 
 #include "surface/surface.h"
 
+#include <cmath>
+#include <span>
+#include <vector>
+
 namespace partwheel {
 
 // A source triangle is sampled in the middle of pieces that are at most this part of the bounding box's diagonal long
@@ -26,6 +30,13 @@ struct Attached {
 
 // Gives `surface`, which was made from `source`, its pieces, its deviation and its number of source faces.
 Attached attach(const Surface& source, Surface& surface, Progress& progress);
+
+// The triangle of a surface that is nearest to a point, and the square of its distance.
+struct Near {
+    int32_t triangle = -1;
+    double squared = HUGE_VAL;
+};
+std::vector<Near> nearest(const Surface& surface, std::span<const Point> points, Progress& progress);
 
 // Of the bounding box of a surface in working coordinates, whose lower corner is the origin.
 double diagonal(const Surface& source);

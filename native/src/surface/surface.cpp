@@ -244,20 +244,10 @@ void check_self_intersection(const Surface& surface, Progress& progress) {
                     ". Unite overlapping parts with a Boolean or remesh, and separate parts that touch.");
 }
 
-// The vertices' order along Morton's space-filling curve through their bounding box, so that what is near in space is
-// mostly near in memory: by the cell of a grid, then by x, y, z, then as they were given. Moving and scaling a model
-// change that no more than they change the ratios of its coordinates' differences.
+// The vertices' order along the curve: by the cell of a grid, then by x, y, z, then as they were given.
 std::vector<int32_t> order_on_curve(std::span<const Point> vertices) {
-    const Frame frame = Frame::around(vertices);
     std::vector<std::pair<uint64_t, int32_t>> places;
-    for (const Point& p : vertices) {
-        std::array<uint64_t, 3> cell{};
-        for (size_t k = 0; k < 3 && frame.longest > 0; ++k) {
-            const double along = (p[k] - frame.origin[k]) / frame.longest * part_of_grid;
-            cell[k] = static_cast<uint64_t>(std::ldexp(along, curve_bits));
-        }
-        places.emplace_back(place_on_curve(cell), static_cast<int32_t>(places.size()));
-    }
+    for (const uint64_t cell : places_on_curve(vertices)) places.emplace_back(cell, static_cast<int32_t>(places.size()));
     const auto key = [&](const std::pair<uint64_t, int32_t>& place) {
         return std::tuple(place.first, vertices[static_cast<size_t>(place.second)], place.second);
     };
@@ -329,14 +319,15 @@ Surface read_mesh(const MeshView& mesh) {
         const double* p = mesh.vertices + 3 * static_cast<size_t>(v);
         return Point{p[0], p[1], p[2]};
     };
-    std::vector<int32_t> used(mesh.triangles, mesh.triangles + 3 * mesh.triangle_count);
-    std::sort(used.begin(), used.end());
-    used.erase(std::unique(used.begin(), used.end()), used.end());
+    std::vector<bool> in_use(mesh.vertex_count, false);
+    for (size_t i = 0; i < 3 * mesh.triangle_count; ++i) in_use[at(mesh.triangles[i])] = true;
+    std::vector<int32_t> used, number(mesh.vertex_count, -1);
     std::vector<Point> points;
-    std::vector<int32_t> number(mesh.vertex_count, -1);
-    for (int32_t v : used) {
-        number[static_cast<size_t>(v)] = static_cast<int32_t>(points.size());
-        points.push_back(point(v));
+    for (size_t v = 0; v < mesh.vertex_count; ++v) {
+        if (!in_use[v]) continue;
+        number[v] = static_cast<int32_t>(points.size());
+        used.push_back(static_cast<int32_t>(v));
+        points.push_back(point(static_cast<int32_t>(v)));
     }
     const Frame frame = Frame::around(points);
     if (frame.longest == 0)
@@ -354,6 +345,21 @@ Surface read_mesh(const MeshView& mesh) {
     return surface;
 }
 
+std::vector<uint64_t> places_on_curve(std::span<const Point> vertices) {
+    const Frame frame = Frame::around(vertices);
+    std::vector<uint64_t> places;
+    places.reserve(vertices.size());
+    for (const Point& p : vertices) {
+        std::array<uint64_t, 3> cell{};
+        for (size_t k = 0; k < 3 && frame.longest > 0; ++k) {
+            const double along = (p[k] - frame.origin[k]) / frame.longest * part_of_grid;
+            cell[k] = static_cast<uint64_t>(std::ldexp(along, curve_bits));
+        }
+        places.push_back(place_on_curve(cell));
+    }
+    return places;
+}
+
 Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span<const int32_t> source_vertex,
                   std::span<const Triangle> triangles) {
     Surface surface;
@@ -367,22 +373,33 @@ Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span
         surface.source_vertex.push_back(source_vertex[given]);
     }
     const auto at = [&](int32_t v) { return surface.vertices[static_cast<size_t>(v)]; };
-    std::vector<std::pair<Triangle, int32_t>> sorted;
     double six_enclosed = 0;
-    for (Triangle tri : triangles) {
+    const auto renumbered = [&](Triangle tri) {
         for (int32_t& v : tri) v = number[static_cast<size_t>(v)];
+        return tri;
+    };
+    for (const Triangle& given : triangles) {
+        const Triangle tri = renumbered(given);
         six_enclosed += dot(cross(at(tri[0]), at(tri[1])), at(tri[2]));
-        sorted.emplace_back(tri, static_cast<int32_t>(sorted.size()));
     }
-    for (auto& [tri, from] : sorted) {
-        if (six_enclosed < 0) std::swap(tri[1], tri[2]);  // inside out
-        std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
-    }
-    std::sort(sorted.begin(), sorted.end());
-    for (const auto& [tri, from] : sorted) {
-        const auto t = static_cast<int32_t>(surface.triangles.size());
-        surface.triangles.push_back(tri);
-        surface.pieces.push_back({from, t, area(at(tri[0]), at(tri[1]), at(tri[2]))});
+    using Numbered = std::pair<Triangle, int32_t>;
+    Grouped<Numbered> sorted(surface.vertices.size(), [&](const auto& put) {
+        for (size_t t = 0; t < triangles.size(); ++t) {
+            Triangle tri = renumbered(triangles[t]);
+            if (six_enclosed < 0) std::swap(tri[1], tri[2]);  // inside out
+            std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
+            put(static_cast<size_t>(tri[0]), Numbered(tri, static_cast<int32_t>(t)));
+        }
+    });
+    surface.triangles.reserve(triangles.size());
+    surface.pieces.reserve(triangles.size());
+    for (size_t v = 0; v < surface.vertices.size(); ++v) {
+        std::ranges::sort(sorted.with(v));
+        for (const auto& [tri, from] : sorted.with(v)) {
+            const auto t = static_cast<int32_t>(surface.triangles.size());
+            surface.triangles.push_back(tri);
+            surface.pieces.push_back({from, t, area(at(tri[0]), at(tri[1]), at(tri[2]))});
+        }
     }
     return surface;
 }

@@ -70,6 +70,11 @@ void check_arrays(const MeshView& mesh);
 // The caller's arrays in canonical order, good or bad. Throws an Error where they aren't a mesh with an extent.
 Surface read_mesh(const MeshView& mesh);
 
+// The place of each vertex on Morton's space-filling curve through their bounding box, so that what is near in space is
+// mostly near along it. Moving and scaling a model change that no more than they change the ratios of its coordinates'
+// differences.
+std::vector<uint64_t> places_on_curve(std::span<const Point> vertices);
+
 // A surface in canonical order from working coordinates of vertices, all in use, the caller's index of each (or -1) and
 // triangles of them. Triangle t of those given is the piece of face t.
 Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span<const int32_t> source_vertex,

@@ -6,6 +6,7 @@
 #include "tree/packed.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <string>
@@ -410,7 +411,7 @@ Hierarchy Hierarchy::load(std::span<const uint8_t> bytes) {
     h.face_area_ = in.get_doubles(header.faces);
     h.outer_faces_ = in.get_integers(header.outer);
     h.scores_ = in.get_doubles(header.scores);
-    if (header.rung != PW_RUNG_EXACT && header.rung != PW_RUNG_REPAIRED && header.rung != PW_RUNG_POINTS)
+    if (!std::has_single_bit(header.rung) || header.rung > PW_RUNG_COARSE)
         refuse_saved("its rung is unknown");
     h.summary_.rung = static_cast<pw_rung>(header.rung);
     common(h.summary_) = common(header);

@@ -33,7 +33,7 @@ std::vector<T> filled(Ask ask) {
 }  // namespace
 
 Built try_build(const TriMesh& mesh, double quality, pw_context* context, uint32_t rungs, int32_t mode) {
-    const pw_build_options options{sizeof(pw_build_options), quality, rungs, 0, 0, mode};
+    const pw_build_options options{sizeof(pw_build_options), quality, rungs, 0, 0, mode, 0};
     pw_hierarchy* made = nullptr;
     Built built;
     built.status = pw_build(context, mesh.vertex_data(), mesh.vertices.size(), mesh.triangle_data(),

@@ -15,7 +15,7 @@ from pathlib import Path
 from . import interpreter
 from .ending import ending
 from ..hierarchy import Hierarchy, checked_surface
-from ..library import Mode, PartwheelError, Rung, Status, load
+from ..library import RUNGS, Mode, PartwheelError, Rung, Status, load
 
 ENTRY = Path(__file__).with_name("process.py")
 MEMORY_SHARE = 0.8  # of the memory that is available when the build starts
@@ -57,12 +57,12 @@ class Job:
     """
 
     def __init__(self, vertices, triangles, faces=None, face_count=None, *, quality=0.0, rungs=0, open_surfaces=False,
-                 threads=0, mode=Mode.REGROUPED, memory_limit=None, time_limit=None, python=""):
+                 threads=0, mode=Mode.REGROUPED, exactly=False, exact_triangles=0, memory_limit=None, time_limit=None, python=""):
         load()  # a missing library is better told here
         self._arrays, self._face_count = checked_surface(vertices, triangles, faces, face_count)
         self._options = {"quality": float(quality), "open_surfaces": int(open_surfaces), "threads": threads,
-                         "mode": int(mode)}
-        self._rungs = rungs or sum(Rung)
+                         "mode": int(mode), "exact_triangles": -1 if exactly else exact_triangles}
+        self._rungs = rungs or sum(RUNGS)
         self._rung = Rung.EXACT  # that the worker tries, as far as it has told
         self._memory_limit = int(MEMORY_SHARE * available_memory()) if memory_limit is None else memory_limit
         self._time_limit = time_limit or SECONDS + SECONDS_PER_TRIANGLE * len(self._arrays[1])

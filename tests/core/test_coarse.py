@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Large meshes: parts found on a coarser copy. exact_triangles makes small ones large here."""
+
+import numpy as np
+import pytest
+import shapes
+from partwheel import Hierarchy, Mode
+from partwheel.worker import Job
+
+LARGE = 2000  # of more triangles: copies have some 500
+
+
+def two_balls(rings=60, segments=80):
+    """Two spheres grown together at z = 0, finely: 16,000 triangles."""
+    turn = np.linspace(0, np.pi, rings + 1)
+    z = np.concatenate([-0.9 - np.cos(turn[:-10]), 0.9 - np.cos(turn[10:])])
+    radius = np.concatenate([np.sin(turn[:-10]), np.sin(turn[10:])])
+    z, radius = z[radius > 1e-6], radius[radius > 1e-6]
+    around = np.linspace(0, 2 * np.pi, segments, endpoint=False)
+    vertices = np.vstack([np.column_stack([r * np.cos(around + 0.01 * i), r * np.sin(around + 0.01 * i),
+                                           np.full(segments, h)]) for i, (r, h) in enumerate(zip(radius, z))])
+    vertices = np.vstack([vertices, [0, 0, z[0] - 0.01], [0, 0, z[-1] + 0.01]])
+    k, n, last = np.arange(segments), (np.arange(segments) + 1) % segments, len(vertices) - 1
+    triangles = [np.column_stack([n, k, np.full(segments, last - 1)]),
+                 np.column_stack([k, n, np.full(segments, last)]) + [[last - 1 - segments] * 2 + [0]]]
+    for ring in range(0, last - 1 - segments, segments):
+        triangles += [np.column_stack([k, n, n + segments]) + ring, np.column_stack([k, n + segments, k + segments]) + ring]
+    return shapes.Shape(vertices, np.vstack(triangles).astype(np.int32), None, sum(map(len, triangles)))
+
+
+def off(name):
+    return shapes.Shape(*shapes.off(name)[:2], None, len(shapes.off(name)[1]))
+
+
+@pytest.fixture(scope="module")
+def elephant():
+    return off("elephant")
+
+
+def coarse(shape, **options):
+    return Hierarchy.build(shape.vertices, shape.triangles, exact_triangles=LARGE, **options)
+
+
+def overlap(areas, a, b):
+    return areas[a & b].sum() / areas[a | b].sum()
+
+
+def areas_of(shape):
+    a, b, c = (shape.vertices[shape.triangles[:, k]] for k in range(3))
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+
+
+def test_each_face_has_a_place_in_the_tree_of_the_copy(elephant):
+    built = coarse(elephant)
+    assert built.summary.rung == "coarse" and len(built.tetrahedra) < LARGE
+    assert f"500 of {len(elephant.triangles):,} triangles" in built.account
+    assert np.array_equal(np.sort(built.order), np.arange(len(elephant.triangles)))
+    assert built.area[-1] == pytest.approx(areas_of(elephant).sum())
+    inner = np.arange(len(built.tetrahedra), len(built.parent) - 1)
+    above = built.parent[inner]
+    assert (built.first[above] <= built.first[inner]).all() and (built.last[inner] <= built.last[above]).all()
+    known = built.source >= 0
+    assert known.all() and np.array_equal(built.vertices, elephant.vertices[built.source])
+    assert Hierarchy.load(built.save()).save() == built.save()
+
+
+def test_parts_are_those_of_the_shape():
+    shape = two_balls()
+    built, areas = coarse(shape), areas_of(shape)
+    lower = shape.vertices[shape.triangles].mean(axis=1)[:, 2] < 0
+    for face in (5, len(shape.triangles) // 4):
+        ball = lower if lower[face] else ~lower
+        stops, _ = built.wheel(face)
+        held = [np.isin(np.arange(len(areas)), built.faces(stop)) for stop in stops]
+        assert max(overlap(areas, ball, part) for part in held) > 0.95
+
+
+def test_neither_the_order_of_the_input_nor_threads_matter(elephant):
+    one = coarse(elephant, threads=1)
+    assert coarse(elephant, threads=3).save() == one.save()
+    random = np.random.default_rng(2)
+    vertex, triangle = random.permutation(len(elephant.vertices)), random.permutation(len(elephant.triangles))
+    new = np.argsort(vertex)
+    turned = np.roll(new[elephant.triangles[triangle]], 1, axis=1).astype(np.int32)
+    other = Hierarchy.build(elephant.vertices[vertex], turned, exact_triangles=LARGE)
+    assert np.array_equal(other.vertices, one.vertices) and np.array_equal(other.tetrahedra, one.tetrahedra)
+    assert np.array_equal(other.merges, one.merges) and np.array_equal(other.leaf, one.leaf[triangle])
+
+
+def test_what_is_asked_for_exactly_is_exact(elephant):
+    usual = Hierarchy.build(elephant.vertices, elephant.triangles).save()
+    assert coarse(elephant, exactly=True).save() == usual
+    assert coarse(elephant, rungs=1).save() == usual
+    count = len(elephant.triangles)
+    assert Hierarchy.build(elephant.vertices, elephant.triangles, exact_triangles=count).save() == usual
+    paper = Hierarchy.build(elephant.vertices, elephant.triangles, mode=Mode.PAPER)
+    assert coarse(elephant, mode=Mode.PAPER).save() == paper.save()
+
+
+def test_in_a_process_of_its_own_it_is_the_same(elephant):
+    job = Job(elephant.vertices, elephant.triangles, exact_triangles=LARGE)
+    assert job.result().save() == coarse(elephant).save()
+    job = Job(elephant.vertices, elephant.triangles, exactly=True, exact_triangles=LARGE)
+    assert job.result().summary.rung == "exact"
+
+
+def test_polygons_stay_whole(elephant):
+    faces = np.arange(len(elephant.triangles), dtype=np.int32) // 2
+    built = Hierarchy.build(elephant.vertices, elephant.triangles, faces, exact_triangles=LARGE)
+    assert np.array_equal(np.sort(built.order), np.arange(faces[-1] + 1))
+    assert built.area[-1] == pytest.approx(areas_of(elephant).sum())
+
+
+def test_seams_that_only_seem_open_are_none(elephant):
+    """Each triangle with vertices of its own: what the copy is of is the closed surface all the same."""
+    soup = elephant.vertices[elephant.triangles].reshape(-1, 3)
+    built = Hierarchy.build(soup, np.arange(len(soup), dtype=np.int32).reshape(-1, 3), exact_triangles=LARGE)
+    closed = coarse(elephant)
+    assert built.summary[:5] == closed.summary[:5] and np.array_equal(built.leaf, closed.leaf)
+
+
+@pytest.mark.parametrize("gap", [1e-5, 1e-4])
+def test_soups_of_triangles_come_to_few(elephant, gap):
+    """Triangles moved apart have nothing in common: their vertices are united by cells."""
+    size = np.ptp(elephant.vertices)
+    apart = np.random.default_rng(1).normal(size=(len(elephant.triangles), 1, 3)) * gap * size
+    soup = (elephant.vertices[elephant.triangles] + apart).reshape(-1, 3)
+    built = Hierarchy.build(soup, np.arange(len(soup), dtype=np.int32).reshape(-1, 3), exact_triangles=LARGE)
+    assert built.summary.rung == "coarse" and built.summary.deviation < 0.1
+    assert np.array_equal(np.sort(built.order), np.arange(len(elephant.triangles)))
+    assert built.summary.volume == pytest.approx(coarse(elephant).summary.volume, rel=0.3)
