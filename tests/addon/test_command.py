@@ -69,9 +69,9 @@ class Command(MeshTest):
         api, build = part("api"), part("api").build
         self.addCleanup(setattr, api, "build", build)
 
-        def noted(*arguments):
+        def noted(*arguments, **more):
             told.append([line[:2] for line in written.getvalue().decode().splitlines()])
-            return build(*arguments)
+            return build(*arguments, **more)
 
         api.build = noted
         with contextlib.redirect_stdout(io.TextIOWrapper(written, "utf-8")):

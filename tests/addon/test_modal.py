@@ -89,7 +89,7 @@ class Tool:
         self.reports = []
         self.operator = operator
         self.face_index, self.level, self.extend, self.deselect, self.tool, self.snap = 0, 0, False, False, False, False
-        self.quality, self.open_surfaces, self.begin = 0.0, False, -1
+        self.quality, self.open_surfaces, self.exactly, self.begin = 0.0, False, False, -1
         vars(self).update(properties)
 
     def __getattr__(self, name):

@@ -125,7 +125,7 @@ def test_soups_of_triangles_come_to_few(elephant, gap):
     size = np.ptp(elephant.vertices)
     apart = np.random.default_rng(1).normal(size=(len(elephant.triangles), 1, 3)) * gap * size
     soup = (elephant.vertices[elephant.triangles] + apart).reshape(-1, 3)
-    built = Hierarchy.build(soup, np.arange(len(soup), dtype=np.int32).reshape(-1, 3), exact_triangles=LARGE)
+    built = Hierarchy.build(soup, np.arange(len(soup), dtype=np.int32).reshape(-1, 3), exact_triangles=5000)
     assert built.summary.rung == "coarse" and built.summary.deviation < 0.1
     assert np.array_equal(np.sort(built.order), np.arange(len(elephant.triangles)))
     assert built.summary.volume == pytest.approx(coarse(elephant).summary.volume, rel=0.3)

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <queue>
 #include <string>
 #include <tuple>
@@ -29,6 +30,10 @@ namespace {
 // So many points for each of the source's vertices, within these bounds, were they spread evenly: the vertices are
 // among them, and where they are denser more come together. Three times as many select no better.
 constexpr double points_for_each = 1, least_points = 2000, usual_points = 15000;
+
+// Where sheets have more than this share of the area, the mesh may be a soup of triangles, or of patches, that wind
+// around something together as they are. So it is if it encloses more volume than a sheet, and is as sure of it.
+constexpr double much_open = 0.1, sure_enough = 0.33;
 
 // Of a sheet, relative to the diagonal.
 constexpr double sheet_thickness = 1.0 / 200;
@@ -78,13 +83,17 @@ TetMesh tetrahedralized(const std::vector<Point>& points, Progress& progress) {
     return canonical(points, std::move(corners), progress);
 }
 
-// Which tetrahedra are inside.
+// Tetrahedra, and which of them are inside.
 class Sides {
 public:
-    Sides(const TetMesh& mesh, const WindingNumber& winding, size_t threads, Progress& progress);
+    Sides(TetMesh&& mesh, const WindingNumber& winding, size_t threads, Progress& progress);
+
+    const TetMesh& mesh() const { return mesh_; }
 
     bool inside(int32_t tet) const { return tet >= 0 && side_[at(tet)] == in; }
-    bool any() const { return std::ranges::count(side_, in) > 0; }
+    double volume() const;  // inside
+    double unsure() const;  // how far the winding numbers inside are from 1, on average over the volume
+
 
 private:
     enum Side : uint8_t { out, in, open };
@@ -95,14 +104,14 @@ private:
     bool smooth();
     void drop_loose();
 
-    const TetMesh& mesh_;
+    TetMesh mesh_;
     std::vector<Side> side_;
     std::vector<double> volume_, around_;             // around_: the winding number, where it was asked
     std::vector<std::array<double, 4>> weights_;  // of the facet opposite each corner: its area to the power of 3/2
 };
 
-Sides::Sides(const TetMesh& mesh, const WindingNumber& winding, size_t threads, Progress& progress)
-    : mesh_(mesh), side_(mesh.tetrahedra.size(), open), volume_(side_.size()), around_(side_.size(), 0.5),
+Sides::Sides(TetMesh&& mesh, const WindingNumber& winding, size_t threads, Progress& progress)
+    : mesh_(std::move(mesh)), side_(mesh_.tetrahedra.size(), open), volume_(side_.size()), around_(side_.size(), 0.5),
       weights_(side_.size()) {
     ask(winding, threads, progress);
     grow(progress);
@@ -209,8 +218,22 @@ void Sides::drop_loose() {
         if (side_[t] == in && loose[pieces.find(t)]) side_[t] = out;
 }
 
+double Sides::volume() const {
+    double sum = 0;
+    for (size_t t = 0; t < side_.size(); ++t) sum += side_[t] == in ? volume_[t] : 0;
+    return sum;
+}
+
+double Sides::unsure() const {
+    double sum = 0;
+    for (size_t t = 0; t < side_.size(); ++t)
+        if (side_[t] == in) sum += volume_[t] * std::max(0.0, 1 - around_[t]);
+    return sum / volume();
+}
+
 // What is inside, and its surface.
-Solid kept(const Surface& source, const TetMesh& all, const Sides& sides, Progress& progress) {
+Solid kept(const Surface& source, const Sides& sides, Progress& progress) {
+    const TetMesh& all = sides.mesh();
     std::vector<int32_t> number(all.vertices.size(), -1), given, behind, name(all.tetrahedra.size(), -1);
     std::vector<Point> vertices;
     std::vector<Triangle> triangles;
@@ -268,7 +291,8 @@ Solid kept(const Surface& source, const TetMesh& all, const Sides& sides, Progre
 }
 
 // Regions outside that no way leads out of.
-size_t cavities(const TetMesh& all, const Sides& sides) {
+size_t cavities(const Sides& sides) {
+    const TetMesh& all = sides.mesh();
     Joined regions(all.tetrahedra.size() + 1);  // the last is all beyond
     for (size_t t = 0; t < all.tetrahedra.size(); ++t)
         for (const int32_t next : all.neighbours[t])
@@ -284,30 +308,45 @@ size_t cavities(const TetMesh& all, const Sides& sides) {
 
 Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Progress& progress) {
     const Mended mended = mend(source, progress);
-    if (mended.solids == 0 && !open_surfaces)
-        throw Error(PW_ERROR_NOT_SOLID,
-                    "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as "
-                    "there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then taken "
-                    "as thin solids.");
-    const Shell shell = shell_of(mended, sheet_thickness * diagonal(source));
-    const double whole = shell.area();
-    if (whole == 0) throw Error(PW_ERROR_NOT_SOLID, "The mesh has no area at all: only edges and points.");
-    const auto given = static_cast<double>(source.vertices.size());
-    const double wanted = std::clamp(points_for_each * given, least_points, usual_points);
-    progress.enter(PW_STAGE_TETRAHEDRA);
-    const TetMesh all = tetrahedralized(shell.points(std::sqrt(whole / wanted)), progress);
-    const Sides sides(all, WindingNumber(shell.vertices, shell.triangles), threads, progress);
-    if (!sides.any()) throw Error(PW_ERROR_NO_VOLUME, "The surface encloses no volume. Give it some thickness.");
-    Solid solid = kept(source, all, sides, progress);
-    solid.mesh.cavities = cavities(all, sides);
+    const auto filled = [&](const Shell& shell) {
+        const double whole = shell.area();
+        if (whole == 0) throw Error(PW_ERROR_NOT_SOLID, "The mesh has no area at all: only edges and points.");
+        const auto given = static_cast<double>(source.vertices.size());
+        const double wanted = std::clamp(points_for_each * given, least_points, usual_points);
+        progress.enter(PW_STAGE_TETRAHEDRA);
+        return Sides(tetrahedralized(shell.points(std::sqrt(whole / wanted)), progress),
+                     WindingNumber(shell.vertices, shell.triangles), threads, progress);
+    };
+    Account account;
+    bool thin = false;
+    std::optional<Sides> found;
+    if (mended.sheet_share > much_open) {
+        const Shell soup{source.vertices, source.triangles};
+        const double least = sheet_volume * std::pow(soup.area(), 1.5);
+        found = filled(soup);
+        if (found->volume() < least || found->unsure() > sure_enough) found.reset();
+    }
+    if (!found) {
+        if (mended.solids == 0 && !open_surfaces)
+            throw Error(PW_ERROR_NOT_SOLID,
+                        "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as "
+                        "there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then "
+                        "taken as thin solids.");
+        found = filled(shell_of(mended, sheet_thickness * diagonal(source)));
+        mended.done.tell(account);
+        thin = mended.solids == 0;
+    }
+    const Sides& sides = *found;
+    if (sides.volume() == 0)
+        throw Error(PW_ERROR_NO_VOLUME, "The surface encloses no volume. Give it some thickness.");
+    Solid solid = kept(source, sides, progress);
+    solid.mesh.cavities = cavities(sides);
     attach(source, solid.surface, progress);
 
-    Account account;
-    mended.done.tell(account);
     solid.surface.rung = PW_RUNG_POINTS;
     solid.from_points = true;
     solid.surface.account = std::string("Filled from points on the mesh") +
-                            (mended.solids == 0 ? ", a sheet, as a thin solid" : "") +
+                            (thin ? ", a sheet, as a thin solid" : "") +
                             (account.text().empty() ? "" : ", after this: " + account.text()) +
                             ". " + at_most_away(solid.surface.deviation) + ".";
     return solid;

@@ -136,15 +136,18 @@ void fill_holes(Mended& mended, Progress& progress) {
         patch[p].insert(patch[p].end(), faces.begin(), faces.end());
         ++holes[p];
     }
+    double open = 0, closed = 0;
     for (size_t p = 0; p < parts; ++p) {
         const double area = pmp::area(own[p], mesh), added = pmp::area(patch[p], mesh);
         const double volume = std::fabs(volume_of(mesh, own[p]) + volume_of(mesh, patch[p]));
         const bool sheet = added > sheet_area * area && volume < sheet_volume * std::pow(area + added, 1.5);
         ++(sheet ? mended.sheets : mended.solids);
+        (sheet ? open : closed) += area;
         if (!sheet) mended.done.holes += holes[p];
         if (sheet)
             for (const Face f : patch[p]) CGAL::Euler::remove_face(mesh.halfedge(f), mesh);
     }
+    if (open > 0) mended.sheet_share = open / (open + closed);
     mesh.remove_property_map(part);
 }
 

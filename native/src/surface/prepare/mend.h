@@ -54,6 +54,7 @@ struct Mended {
     Mending done;
     size_t solids = 0;   // closed parts
     size_t sheets = 0;   // open ones
+    double sheet_share = 0;  // of the area
 };
 
 Mended mend(const Surface& source, Progress& progress);
