@@ -53,6 +53,27 @@ class Build(MeshTest):
         bpy.ops.object.mode_set(mode="OBJECT")
         self.assertEqual(contents(obj.data), before)
 
+    def test_a_large_mesh_is_built_coarse_unless_exactly_is_asked_for(self):
+        rings, around = 280, 360
+        turn = np.linspace(0, np.pi, rings + 2)[1:-1]
+        angle = np.linspace(0, 2 * np.pi, around, endpoint=False)
+        bumps = 1 + 0.01 * np.sin(7 * turn)[:, None] * np.sin(5 * angle)
+        vertices = np.stack([bumps * np.sin(turn)[:, None] * np.cos(angle), bumps * np.sin(turn)[:, None] * np.sin(angle),
+                             bumps * np.cos(turn)[:, None]], axis=2).reshape(-1, 3)
+        ring, k = np.meshgrid(np.arange(rings - 1) * around, np.arange(around), indexing="ij")
+        n = (k + 1) % around
+        quads = np.stack([ring + k, ring + around + k, ring + around + n, ring + n], axis=2).reshape(-1, 4).tolist()
+        last = (rings - 1) * around
+        obj = self.add(vertices, [*quads, list(range(around)), list(range(last + around - 1, last - 1, -1))])
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+        h = self.kept(obj)
+        self.assertEqual((h.summary.rung, len(h.order)), ("coarse", len(obj.data.polygons)))
+        copy = part("api").copy_part(obj, h.wheel(7)[0][-2])
+        ends = np.bincount([index for polygon in copy.data.polygons for index in polygon.edge_keys and [
+            copy.data.loops[loop].edge_index for loop in polygon.loop_indices]])
+        self.assertEqual(set(ends.tolist()), {2})  # closed
+        self.assertEqual(part("api").build(obj, exactly=True).summary.rung, "exact")
+
     def test_quality(self):
         obj = self.add(*read_off("hand"))
         bpy.ops.mesh.partwheel_build()
