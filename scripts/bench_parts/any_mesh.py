@@ -17,6 +17,7 @@ LEAST, MOST = 1_000, 60_000  # faces of what is mutated
 TIME_LIMIT = 200
 ALIKE = 2  # a clean model with at most so many times as many or as few faces is one of as many faces
 SHEETS = {"not solid"}
+LARGE = 1_000_000  # faces of one more, subdivided
 NO_MESH = {"b9.ply"}  # a cloud of points
 
 
@@ -29,6 +30,8 @@ def measure(quick):
     sizes = sorted((models.face_count(path), path) for path in files if path.suffix == ".off")
     whole = models.spread([path for faces, path in sizes if LEAST <= faces <= MOST], MUTANTS // len(MUTATIONS) + 1)
     mutants = [(path, kind, str(seed)) for seed, path in enumerate(whole) for kind in MUTATIONS][:MUTANTS]
+    large = [] if quick else [models.write(f"natural-{LARGE}", models.subdivided(models.read(models.NATURAL), LARGE))]
+    files += large
     builds = [(path,) for path in [*files, *[HANGS] * HANGS.exists()]] + mutants
     rows = []
     for build in builds[::20] if quick else builds:
