@@ -212,10 +212,20 @@ TEST(Points, TheSameForAnyOrderAndNumberOfThreads) {
 
 // However long and thin, and however many: there are not many more points than usual.
 TEST(Points, AreBounded) {
-    TriMesh needles = lathe("needles", {{1, 0}, {1, 400}}, sized(4000, 1000));
+    TriMesh needles = lathe("needles", {{1, 0}, {1, 400}}, sized(1000, 300));
     needles.triangles.erase(needles.triangles.begin());
     const Solid solid = filled(without_faces(needles));
     EXPECT_LT(solid.mesh.vertices.size(), needles.vertices.size() + 60000);
+
+    TriMesh thin;  // a fan that has next to no area
+    thin.name = "thin";
+    for (int i = 0; i < 40; ++i) thin.vertices.push_back({1.0 * (i % 2), 1e-9 * i, 1e-9 * (i % 3)});
+    for (int32_t i = 2; i < 40; ++i) thin.triangles.push_back({0, i - 1, i});
+    try {
+        EXPECT_LT(filled(without_faces(thin)).mesh.vertices.size(), 100000U);
+    } catch (const Error& error) {
+        EXPECT_TRUE(error.status() == PW_ERROR_NOT_SOLID || error.status() == PW_ERROR_NO_VOLUME) << error.what();
+    }
 }
 
 }  // namespace

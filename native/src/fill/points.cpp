@@ -27,9 +27,9 @@ namespace partwheel {
 
 namespace {
 
-// So many points for each of the source's vertices, within these bounds, were they spread evenly: the vertices are
-// among them, and where they are denser more come together. Three times as many select no better.
-constexpr double points_for_each = 1, least_points = 2000, usual_points = 15000;
+// As many points as the source has vertices, within these bounds, were they spread evenly: the vertices are among them,
+// and where they are denser more come together. Three times as many select no better.
+constexpr size_t least_points = 2000, usual_points = 15000;
 
 // Where sheets have more than this share of the area, the mesh may be a soup of triangles, or of patches, that wind
 // around something together as they are. So it is if it encloses more volume than a sheet, and is as sure of it.
@@ -309,12 +309,11 @@ size_t cavities(const Sides& sides) {
 Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Progress& progress) {
     const Mended mended = mend(source, progress);
     const auto filled = [&](const Shell& shell) {
-        const double whole = shell.area();
-        if (whole == 0) throw Error(PW_ERROR_NOT_SOLID, "The mesh has no area at all: only edges and points.");
-        const auto given = static_cast<double>(source.vertices.size());
-        const double wanted = std::clamp(points_for_each * given, least_points, usual_points);
+        if (shell.area() == 0)
+            throw Error(PW_ERROR_NOT_SOLID, "The mesh has no area at all: only edges and points.");
+        const size_t wanted = std::clamp(source.vertices.size(), least_points, usual_points);
         progress.enter(PW_STAGE_TETRAHEDRA);
-        return Sides(tetrahedralized(shell.points(std::sqrt(whole / wanted)), progress),
+        return Sides(tetrahedralized(shell.points(wanted), progress),
                      WindingNumber(shell.vertices, shell.triangles), threads, progress);
     };
     Account account;

@@ -16,6 +16,9 @@ namespace {
 // Of a grid with one added point a cell, in spacings.
 constexpr double cell_size = 0.5;
 
+// So many places of points are looked at, whatever the area: of long and thin triangles there is hardly any.
+constexpr double most_tried = 2e6;
+
 int32_t number(CgalMesh::Vertex_index v) { return static_cast<int32_t>(static_cast<size_t>(v)); }
 
 // Triangles beside those that are there: the other side of each sheet, and along its rims.
@@ -64,7 +67,11 @@ double Shell::area() const {
     return sum;
 }
 
-std::vector<Point> Shell::points(double spacing) const {
+std::vector<Point> Shell::points(size_t wanted) const {
+    double sides = 0;
+    for (const Triangle& t : triangles)
+        for (size_t k = 0; k < 3; ++k) sides += length(vertices[at(t[(k + 1) % 3])] - vertices[at(t[k])]);
+    const double spacing = std::max(std::sqrt(area() / static_cast<double>(wanted)), sides / most_tried);
     std::vector<Point> found = vertices;
     // Where there are long and thin triangles side by side, one point does for all: a cell of a grid gets one.
     std::unordered_set<uint64_t> taken;
@@ -73,7 +80,8 @@ std::vector<Point> Shell::points(double spacing) const {
         for (double i = 1; i < parts; ++i) {
             const Point p = from + i / parts * (to - from);
             uint64_t cell = 0;
-            for (const double x : p) cell = cell << 21 | static_cast<uint64_t>(x / spacing / cell_size + 1);
+            for (const double x : p)
+                cell = cell << 21 | (static_cast<uint64_t>(std::llround(x / spacing / cell_size)) & 0x1fffff);
             if (taken.insert(cell).second) found.push_back(p);
         }
     };

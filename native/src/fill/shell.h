@@ -15,9 +15,9 @@ struct Shell {
 
     double area() const;
 
-    // The vertices; where triangles are larger, others about a spacing apart along their edges and within. Each place
-    // once, in rising order.
-    std::vector<Point> points(double spacing) const;
+    // The vertices; where triangles are larger, others along their edges and within, as far apart as so many would be that
+    // are spread evenly over all. Each place once, in rising order.
+    std::vector<Point> points(size_t wanted) const;
 };
 
 // The mended mesh, its sheets made thin solids by moving them half of a thickness to either side.
