@@ -11,6 +11,7 @@ MOST_VERTICES, MOST_TRIANGLES = 239, 160  # that the mesh fuzzer can say
 KINDS = {
     "exact": (1, 0), "repaired": (3, 1 << 1), "inside": (1 + 16, 2 << 1), "polygons": (1 + 32, 3 << 1),
     "paper": (1 + 32, 1), "fine": (1, 8), "rough": (1, 8 + (2 << 4)), "crossing": (3, 8 + (3 << 4)),
+    "coarse": (7, 128),
 }
 LARGE = {"fine", "rough", "crossing"}  # kinds that take long, of the cube alone
 # Kind of a saved hierarchy -> how it is built.

@@ -40,6 +40,8 @@ REACHED = {
     # Smoothing would round the cube's corners by more than it may, so it is repaired another way in the end.
     ("mesh", "crossing"): ("ok repaired, regrouped, triangles, 0 threads, no points inside, fine",
                            ["displaced(", "smoothed(", "attach("], []),
+    ("mesh", "coarse"): ("ok coarse, regrouped, triangles, 0 threads, no points inside, coarse",
+                         ["made_coarse(", "carry_over("], []),
     **{("saved", kind): ("loaded", ["Hierarchy::finish(", "Facets::solid(", "Facets::with_faces(",
                                     "Hierarchy::cut_automatic("], [])
        for kind in seeds.SAVED},
