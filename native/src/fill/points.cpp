@@ -32,8 +32,9 @@ namespace {
 constexpr size_t least_points = 2000, usual_points = 15000;
 
 // Where sheets have more than this share of the area, the mesh may be a soup of triangles, or of patches, that wind
-// around something together as they are. So it is if it encloses more volume than a sheet, and is as sure of it.
-constexpr double much_open = 0.1, sure_enough = 0.33;
+// around something together as they are. So it is if they enclose more volume than this times their area to the power of
+// 3/2, and wind around it so nearly once.
+constexpr double much_open = 0.1, least_volume = 0.003, sure_enough = 0.33;
 
 // Of a sheet, relative to the diagonal.
 constexpr double sheet_thickness = 1.0 / 200;
@@ -321,7 +322,7 @@ Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Pro
     std::optional<Sides> found;
     if (mended.sheet_share > much_open) {
         const Shell soup{source.vertices, source.triangles};
-        const double least = sheet_volume * std::pow(soup.area(), 1.5);
+        const double least = least_volume * std::pow(soup.area(), 1.5);
         found = filled(soup);
         if (found->volume() < least || found->unsure() > sure_enough) found.reset();
     }
