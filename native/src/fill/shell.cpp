@@ -75,17 +75,22 @@ std::vector<Point> Shell::points(size_t wanted) const {
     std::vector<Point> found = vertices;
     // Where there are long and thin triangles side by side, one point does for all: a cell of a grid gets one.
     std::unordered_set<uint64_t> taken;
+    uint64_t facing = 0;  // of the triangle, along an axis: the two sides of a thin plate are not one
     const auto along = [&](const Point& from, const Point& to) {
         const double parts = std::round(length(to - from) / spacing);
         for (double i = 1; i < parts; ++i) {
             const Point p = from + i / parts * (to - from);
-            uint64_t cell = 0;
+            uint64_t cell = facing;
             for (const double x : p)
-                cell = cell << 21 | (static_cast<uint64_t>(std::llround(x / spacing / cell_size)) & 0x1fffff);
+                cell = cell << 20 | (static_cast<uint64_t>(std::llround(x / spacing / cell_size)) & 0xfffff);
             if (taken.insert(cell).second) found.push_back(p);
         }
     };
     for (const Triangle& t : triangles) {
+        const Point &p = vertices[at(t[0])], n = cross(vertices[at(t[1])] - p, vertices[at(t[2])] - p);
+        size_t axis = 0;
+        for (size_t k = 1; k < 3; ++k) axis = std::fabs(n[k]) > std::fabs(n[axis]) ? k : axis;
+        facing = 2 * axis + (n[axis] < 0);
         size_t longest = 0;
         double size = 0;
         for (size_t k = 0; k < 3; ++k) {
