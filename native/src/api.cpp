@@ -147,7 +147,7 @@ Hierarchy build(const MeshView& mesh, const LadderOptions& options, int32_t mode
     progress.enter(PW_STAGE_CLUSTER);
     Regrouped regrouped{cluster(mesh_of_parts, progress, options.threads), {}};
     progress.enter(PW_STAGE_DENDROGRAM);
-    if (mode != PW_MODE_PAPER) regrouped = regroup(mesh_of_parts, regrouped.tree, progress);
+    if (mode != PW_MODE_PAPER) regrouped = regroup(mesh_of_parts, regrouped.tree, progress, {}, nullptr, options.threads);
     if (plain) regrouped = carried(*plain, regrouped, solid, progress, options.threads);
     progress.enter(PW_STAGE_HIERARCHY);
     Hierarchy hierarchy(solid.surface, solid.mesh, regrouped, mesh.vertices);

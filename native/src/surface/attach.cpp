@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 namespace partwheel {
@@ -28,13 +29,13 @@ constexpr double rounding = 1e-12;
 
 Kernel::Point_3 to_cgal(const Point& p) { return {p[0], p[1], p[2]}; }
 
-Triangles to_cgal(const Surface& surface) {
-    Triangles triangles;
-    for (const Triangle& t : surface.triangles) {
-        const auto at = [&](size_t k) { return to_cgal(surface.vertices[static_cast<size_t>(t[k])]); };
-        triangles.emplace_back(at(0), at(1), at(2));
+Triangles to_cgal(std::span<const Point> vertices, std::span<const Triangle> triangles) {
+    Triangles result;
+    for (const Triangle& t : triangles) {
+        const auto corner = [&](size_t k) { return to_cgal(vertices[at(t[k])]); };
+        result.emplace_back(corner(0), corner(1), corner(2));
     }
-    return triangles;
+    return result;
 }
 
 // By the parity of crossings along a ray in a direction that no model is likely to be built along. Not exact: it is
@@ -87,7 +88,7 @@ double least_spacing(double area, double lengths) {
 }  // namespace
 
 Attached attach(const Surface& source, Surface& surface, Progress& progress) {
-    Triangles triangles = to_cgal(surface);
+    Triangles triangles = to_cgal(surface.vertices, surface.triangles);
     Tree tree(triangles.begin(), triangles.end());
     tree.build();
 
@@ -124,18 +125,37 @@ Attached attach(const Surface& source, Surface& surface, Progress& progress) {
     return {outside > near_enough * size ? outside / size : 0, area > 0 ? hidden / area : 0};
 }
 
+struct NearestTriangle::Boxes {
+    Triangles triangles;
+    Tree tree;
+    Tree::Point_and_primitive_id last;
+
+    explicit Boxes(Triangles given)
+        : triangles(std::move(given)), tree(triangles.begin(), triangles.end()),
+          last(triangles[0].vertex(0), triangles.begin()) {
+        tree.build();
+    }
+};
+
+NearestTriangle::NearestTriangle(std::span<const Point> vertices, std::span<const Triangle> triangles)
+    : boxes_(std::make_unique<Boxes>(to_cgal(vertices, triangles))) {}
+
+NearestTriangle::~NearestTriangle() = default;
+
+Near NearestTriangle::operator()(const Point& p) {
+    boxes_->last = boxes_->tree.closest_point_and_primitive(to_cgal(p), boxes_->last);
+    const auto& [near, triangle] = boxes_->last;
+    return {static_cast<int32_t>(triangle - boxes_->triangles.begin()), CGAL::squared_distance(near, to_cgal(p)),
+            {near.x(), near.y(), near.z()}};
+}
+
 std::vector<Near> nearest(const Surface& surface, std::span<const Point> points, Progress& progress) {
     if (points.empty()) return {};
-    Triangles triangles = to_cgal(surface);
-    Tree tree(triangles.begin(), triangles.end());
-    tree.build();
-    Tree::Point_and_primitive_id last(triangles[0].vertex(0), triangles.begin());
+    NearestTriangle nearest_triangle(surface.vertices, surface.triangles);
     std::vector<Near> found;
     for (const Point& p : points) {
         if (found.size() % samples_between_polls == 0) progress.advance(0);
-        last = tree.closest_point_and_primitive(to_cgal(p), last);
-        found.push_back({static_cast<int32_t>(last.second - triangles.begin()),
-                         CGAL::squared_distance(last.first, to_cgal(p))});
+        found.push_back(nearest_triangle(p));
     }
     return found;
 }

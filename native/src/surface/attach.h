@@ -4,6 +4,7 @@
 #include "surface/surface.h"
 
 #include <cmath>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -31,11 +32,25 @@ struct Attached {
 // Gives `surface`, which was made from `source`, its pieces, its deviation and its number of source faces.
 Attached attach(const Surface& source, Surface& surface, Progress& progress);
 
-// The triangle of a surface that is nearest to a point, and the square of its distance.
+// The triangle of a surface that is nearest to a point, the square of its distance, and its point that is nearest.
 struct Near {
     int32_t triangle = -1;
     double squared = HUGE_VAL;
+    Point point{};
 };
+
+// Triangles, at least one, of which the nearest to a point can be asked for. What is asked for next is best near.
+class NearestTriangle {
+public:
+    NearestTriangle(std::span<const Point> vertices, std::span<const Triangle> triangles);
+    ~NearestTriangle();
+    Near operator()(const Point& p);
+
+private:
+    struct Boxes;
+    std::unique_ptr<Boxes> boxes_;
+};
+
 std::vector<Near> nearest(const Surface& surface, std::span<const Point> points, Progress& progress);
 
 // Of the bounding box of a surface in working coordinates, whose lower corner is the origin.

@@ -2,10 +2,9 @@
 #include "tree/carried.h"
 
 #include "base/error.h"
-#include "cluster/hull/hull.h"
+#include "cluster/within.h"
 #include "surface/prepare/rough.h"
-#include "tree/claims.h"
-#include "tree/dendrogram.h"
+#include "tree/regroup/spread.h"
 
 #include <algorithm>
 #include <numeric>
@@ -51,60 +50,6 @@ Numbers numbers(const Regrouped& parts, size_t leaves) {
     return result;
 }
 
-// The part of each tetrahedron: that of most of the surface that it lies behind; else, layer by layer, that of the
-// neighbours behind most of its facets' area.
-std::vector<int32_t> spread(const Solid& solid, const std::vector<int32_t>& part_of_triangle, Progress& progress) {
-    const TetMesh& mesh = solid.mesh;
-    const auto size = [&](const Triangle& t) {
-        const auto point = [&](int32_t v) -> const Point& { return mesh.vertices[at(v)]; };
-        return area(point(t[0]), point(t[1]), point(t[2]));
-    };
-    std::vector<Claim> claims;
-    for (size_t i = 0; i < part_of_triangle.size(); ++i) {
-        claims.push_back({mesh.tet_of_triangle[i], part_of_triangle[i], size(solid.surface.triangles[i])});
-    }
-    std::vector<int32_t> part(mesh.tetrahedra.size(), -1), layer;
-    while (!claims.empty()) {
-        layer.clear();
-        settle_claims(std::move(claims), [&](int32_t t, int32_t p) {
-            part[at(t)] = p;
-            layer.push_back(t);
-        });
-        claims.clear();
-        for (const int32_t t : layer)
-            for (size_t k = 0; k < 4; ++k) {
-                const int32_t next = mesh.neighbours[at(t)][k];
-                if (next < 0 || part[at(next)] >= 0) continue;
-                const Tetrahedron& tet = mesh.tetrahedra[at(t)];
-                claims.push_back({next, part[at(t)], size(facet(tet, k))});
-            }
-        progress.advance(0);
-    }
-    return part;
-}
-
-// A cluster of the tree as it grows.
-struct Grown {
-    int32_t cluster = -1;  // none yet
-    int32_t low = 0;       // its lowest tetrahedron
-    double volume = 0;
-    std::vector<int32_t> corners;  // of all its tetrahedra, while it has no hull
-    Hull hull;
-};
-
-// What is in both, or in the one that is any.
-Grown joined(Grown a, Grown b, HullKernel& kernel, size_t leaves, std::vector<Merge>& merges) {
-    if (a.cluster < 0) return b;
-    if (b.cluster < 0) return a;
-    if (b.low < a.low) std::swap(a, b);
-    const auto [small, large] = std::minmax(a.hull, b.hull, fewer_facets);
-    Grown both{static_cast<int32_t>(leaves + merges.size()), a.low, a.volume + b.volume, {},
-               kernel.unite(large, small.vertices())};
-    const double hull = both.hull.volume();
-    merges.push_back({a.cluster, b.cluster, ranked_concavity(hull, both.volume), hull});
-    return both;
-}
-
 }  // namespace
 
 std::optional<TetMesh> plain_filling(const Solid& solid, bool points_inside, Progress& progress) {
@@ -128,47 +73,23 @@ std::optional<TetMesh> plain_filling(const Solid& solid, bool points_inside, Pro
 Regrouped carried(const TetMesh& plain, const Regrouped& parts, const Solid& solid, Progress& progress, size_t threads) {
     const size_t leaves = solid.mesh.tetrahedra.size(), count = parts.scores.size() / 2 + 1;
     const Numbers number = numbers(parts, plain.tetrahedra.size());
-    std::vector<int32_t> part_of_triangle;
-    for (const int32_t t : plain.tet_of_triangle) part_of_triangle.push_back(number.of_tetrahedron[at(t)]);
-    const std::vector<int32_t> part = spread(solid, part_of_triangle, progress);
+    std::vector<Claim> claims;  // each tetrahedron goes with the part of most of the surface that it lies behind
+    for (size_t i = 0; i < plain.tet_of_triangle.size(); ++i) {
+        const auto [a, b, c] = solid.surface.triangles[i];
+        const auto point = [&](int32_t v) -> const Point& { return solid.mesh.vertices[at(v)]; };
+        claims.push_back({solid.mesh.tet_of_triangle[i], number.of_tetrahedron[at(plain.tet_of_triangle[i])],
+                          area(point(a), point(b), point(c))});
+    }
+    std::vector<int32_t> part(leaves, -1);
+    spread(solid.mesh, std::move(claims), part, progress);
 
-    // The paper's clusters within each part.
-    TetMesh apart = solid.mesh;
-    for (size_t t = 0; t < leaves; ++t)
-        for (int32_t& n : apart.neighbours[t])
-            if (n >= 0 && part[at(n)] != part[t]) n = -1;
-    Regrouped result;
-    result.tree = cluster(apart, progress, threads);
-    std::vector<Merge>& merges = result.tree.merges;
-    merges.resize(leaves - result.tree.components);
-    result.tree.components = parts.tree.components;
-
-    // A part's tetrahedra may be in several pieces.
-    std::vector<int32_t> piece(leaves + merges.size());
-    std::iota(piece.begin(), piece.end(), 0);
-    hand_down(merges, leaves, piece);
     HullKernel kernel(solid.mesh.vertices);  // outlives all hulls
-    std::vector<Grown> pieces(piece.size());
-    std::vector<int32_t> in_order;  // by their lowest tetrahedra
-    for (size_t t = 0; t < leaves; ++t) {
-        Grown& p = pieces[at(piece[t])];
-        if (p.cluster < 0) {
-            p.cluster = piece[t];
-            p.low = static_cast<int32_t>(t);
-            in_order.push_back(piece[t]);
-        }
-        const Tetrahedron& tet = solid.mesh.tetrahedra[t];
-        const auto corner = [&](size_t k) { return solid.mesh.vertices[at(tet[k])]; };
-        p.volume += std::max(0.0, six_volumes(corner(0), corner(1), corner(2), corner(3)) / 6);
-        p.corners.insert(p.corners.end(), tet.begin(), tet.end());
-    }
-    std::vector<Grown> grown(2 * count - 1);
-    for (const int32_t c : in_order) {
-        Grown &p = pieces[at(c)], &whole = grown[at(part[at(p.low)])];
-        p.hull = kernel.build(p.corners);
-        whole = joined(std::move(whole), std::move(p), kernel, leaves, merges);
-        progress.advance(1);
-    }
+    Within within = cluster_within(solid.mesh, part, count, kernel, progress, threads);
+    Regrouped result;
+    result.tree = {std::move(within.merges), parts.tree.components};
+    std::vector<Merge>& merges = result.tree.merges;
+    std::vector<Grown> grown = std::move(within.parts);
+    grown.resize(2 * count - 1);
 
     // The joins, and the scores of what isn't empty.
     const size_t top = leaves + merges.size();

@@ -9,16 +9,17 @@ namespace partwheel {
 
 namespace {
 
-// Listing 2 by these costs, of all but the last `top` merges.
+// Listing 2 by these costs, of all but the last merges, those with scores.
 template <class Cost>
-std::vector<uint8_t> pruned(std::span<const Merge> merges, size_t top, const std::vector<Cost>& costs) {
-    const size_t leaves = merges.size() + 1;
+std::vector<uint8_t> pruned(std::span<const Merge> merges, std::span<const double> scores,
+                            const std::vector<Cost>& costs) {
+    const size_t leaves = merges.size() + 1, own = merges.size() - scores.size();
     std::vector<uint8_t> kept(merges.size(), 0);
     // What each merge would hang from is known once its parent has been decided: from the root down. Null: nothing.
     std::vector<const Cost*> above(merges.size(), nullptr);
     for (size_t m = merges.size(); m-- > 0;) {
-        const bool regrouped = m + top >= merges.size();
-        kept[m] = regrouped || !above[m] || costs[m] < *above[m];
+        const bool regrouped = m >= own;
+        kept[m] = regrouped ? scores[m - own] > 0 : !above[m] || costs[m] < *above[m];
         const Cost* below = regrouped ? nullptr : kept[m] ? &costs[m] : above[m];
         for (int32_t child : {merges[m].left, merges[m].right})
             if (at(child) >= leaves) above[at(child) - leaves] = below;
@@ -44,12 +45,12 @@ std::vector<NodeCost> node_costs(std::span<const Merge> merges) {
     return costs;
 }
 
-std::vector<uint8_t> prune(std::span<const Merge> merges) { return pruned(merges, 0, node_costs(merges)); }
+std::vector<uint8_t> prune(std::span<const Merge> merges) { return pruned(merges, {}, node_costs(merges)); }
 
-std::vector<uint8_t> prune_regrouped(std::span<const Merge> merges, size_t top) {
+std::vector<uint8_t> prune_regrouped(std::span<const Merge> merges, std::span<const double> scores) {
     std::vector<double> concavities;
     for (const Merge& m : merges) concavities.push_back(m.concavity);
-    return pruned(merges, top, concavities);
+    return pruned(merges, scores, concavities);
 }
 
 std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t parts) {
@@ -92,17 +93,17 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
     return cut;
 }
 
-std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, std::span<const double> areas,
+std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
                                    std::span<const double> scores) {
     const size_t leaves = merges.size() + 1;
     std::vector<double> best(leaves + merges.size());
     std::vector<uint8_t> divided(merges.size(), 0);
     for (size_t c = 0; c < best.size(); ++c) {
         best[c] = areas[c] * scores[c];
-        if (c < leaves || scores[c] == 0) continue;
+        if (c + top < best.size()) continue;
         const size_t left = at(merges[c - leaves].left), right = at(merges[c - leaves].right);
         const double apart = best[left] + best[right];
-        if (scores[left] > 0 && scores[right] > 0 && apart > best[c]) {
+        if (scores[c] == 0 || apart > best[c]) {
             best[c] = apart;
             divided[c - leaves] = 1;
         }

@@ -23,17 +23,18 @@ std::vector<NodeCost> node_costs(std::span<const Merge> merges);
 std::vector<uint8_t> prune(std::span<const Merge> merges);
 
 // The same for a regrouped tree, by concavity alone: convex nodes within a convex node go as well, since where C2 has
-// them divided is no feature of the shape. The last `top` merges, those of regroup(), all stay, and what they join is
-// held against no ancestor.
-std::vector<uint8_t> prune_regrouped(std::span<const Merge> merges, size_t top);
+// them divided is no feature of the shape. The last merges, those of regroup(), stay unless their score is 0, and what
+// they join is held against no ancestor. scores: of each of these.
+std::vector<uint8_t> prune_regrouped(std::span<const Merge> merges, std::span<const double> scores);
 
 // The cut of the binary tree into `parts` subtrees with the least total concavity, by dynamic programming over the
 // tree: O(T parts) time at most. Returns the clusters' numbers (see Merge), in depth-first order. 1 <= parts <= T.
 std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t parts);
 
 // The cut whose clusters have the largest sum of area x score: the parts that people would most likely take. areas,
-// scores: of each cluster; those with a score of 0 are not divided. Numbers as above.
-std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, std::span<const double> areas,
+// scores: of each cluster. The last `top` merges, those of regroup(), may be divided, those of them with a score of 0
+// must be where what they are in is. Numbers as above.
+std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
                                    std::span<const double> scores);
 
 // A path's wheel stops, as indices into the path, and which of them a click alone takes (an index into stops).

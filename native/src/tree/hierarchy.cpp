@@ -2,7 +2,7 @@
 #include "tree/hierarchy.h"
 
 #include "cluster/hull/hull.h"
-#include "tree/claims.h"
+#include "base/claims.h"
 #include "tree/packed.h"
 
 #include <algorithm>
@@ -209,7 +209,7 @@ void Hierarchy::finish() {
 }
 
 std::vector<uint8_t> Hierarchy::kept_merges() const {
-    return scores_.empty() ? prune(merges_) : prune_regrouped(merges_, regrouped_merges());
+    return scores_.empty() ? prune(merges_) : prune_regrouped(merges_, std::span(scores_).last(regrouped_merges()));
 }
 
 pw_arrays Hierarchy::arrays() const {
@@ -292,7 +292,7 @@ std::vector<int32_t> Hierarchy::cut_automatic() const {
         areas[c] = area_[n];
         scores[c] = score_[n++];
     }
-    return bounds_of(likeliest_cut(merges_, areas, scores));
+    return bounds_of(likeliest_cut(merges_, regrouped_merges(), areas, scores));
 }
 
 std::vector<int32_t> Hierarchy::bounds_of(std::span<const int32_t> clusters) const {
@@ -480,8 +480,11 @@ void Hierarchy::check_stored() const {
     // One for each part and each merge that joins them; with no parts there is none.
     if (!scores_.empty() && (scores_.size() % 2 == 0 || scores_.size() > 2 * leaves - 1))
         refuse_saved("its scores are odd");
-    for (double s : scores_)  // 0 is for what is below the parts
-        if (!(s > 0 && s <= 1)) refuse_saved("a score is impossible");
+    for (size_t i = 0; i < scores_.size(); ++i) {
+        // 0 is for what is below the parts, and for steps to what is joined from more than two.
+        const bool may_be_step = i > scores_.size() / 2 && i + 1 < scores_.size();
+        if (!(may_be_step ? scores_[i] >= 0 : scores_[i] > 0) || scores_[i] > 1) refuse_saved("a score is impossible");
+    }
     if (summary_.components == 0 || summary_.components > leaves) refuse_saved("its counts are impossible");
 
     const auto strangers = static_cast<size_t>(std::count(source_.begin(), source_.end(), -1));

@@ -1,5 +1,8 @@
 // The parts joined bottom-up, the likeliest pair first, then the components; and what that makes of the tree.
+#include "base/groups.h"
+#include "cluster/within.h"
 #include "tree/regroup/fitted.h"
+#include "tree/regroup/mirror.h"
 #include "tree/regroup/parts.h"
 
 #include <algorithm>
@@ -13,21 +16,33 @@ namespace partwheel {
 
 namespace {
 
+std::vector<Triangle> outer_facets(const TetMesh& mesh) {
+    std::vector<Triangle> facets;
+    for (size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        for (size_t k = 0; k < 4; ++k)
+            if (mesh.neighbours[t][k] < 0) facets.push_back(facet(mesh.tetrahedra[t], k));
+    return facets;
+}
+
 class Regrouping {
 public:
     Regrouping(const TetMesh& mesh, const BinaryTree& tree, Progress& progress, std::span<const double> pair_numbers,
-               RegroupTrace* trace)
-        : mesh_(mesh), tree_(tree), progress_(progress), pair_numbers_(pair_numbers), trace_(trace),
+               RegroupTrace* trace, size_t threads)
+        : mesh_(mesh), tree_(tree), progress_(progress), pair_numbers_(pair_numbers), trace_(trace), threads_(threads),
           kernel_(mesh.vertices) {}
     Regrouped run();
 
 private:
     void take_parts();
+    std::vector<int32_t> keep_chosen(std::span<const int32_t> chosen, std::span<const int32_t> part_of);
     double hull_volume(const Pair& pair);
     double cost(const Pair& pair, double hull, bool exact);
     void enter(Pair& pair);
     void price(Pair& pair);
-    void join(int32_t a, int32_t b, double cost);
+    int32_t join(int32_t a, int32_t b, double cost);
+    std::vector<std::array<int32_t, 2>> images(int32_t a, int32_t b) const;
+    Pair* pair_of(int32_t a, int32_t b);
+    void join_with_images(const Pair& pair);
     void join_neighbours();
     void join_components();
     std::vector<double> scores() const;
@@ -37,25 +52,48 @@ private:
     Progress& progress_;
     std::span<const double> pair_numbers_;
     RegroupTrace* trace_;
+    const size_t threads_;
     HullKernel kernel_;
     Parts parts_;
+    std::vector<std::vector<int32_t>> image_;  // by plane: of each part its mirror image, or -1, see PartsOfTetrahedra
     // By cost, then number; those whose cost is not the pair's any more count no longer.
     std::priority_queue<std::pair<double, int32_t>, std::vector<std::pair<double, int32_t>>, std::greater<>> queue_;
     std::vector<int32_t> pair_with_;  // scratch of join()
     Regrouped result_;
 };
 
-// Chooses and measures the parts; what stays of the paper's tree, below them, gets new numbers.
+// Chooses and measures the parts, and makes the tree below them.
 void Regrouping::take_parts() {
-    const size_t leaves = mesh_.tetrahedra.size(), merges = tree_.merges.size();
+    const size_t leaves = mesh_.tetrahedra.size();
     const std::vector<int32_t> chosen = choose_parts(mesh_, tree_);
-    std::vector<int32_t> part_of(leaves + merges, -1), number(leaves + merges, -1);
+    std::vector<int32_t> part_of(leaves + tree_.merges.size(), -1);
     for (size_t p = 0; p < chosen.size(); ++p) part_of[at(chosen[p])] = static_cast<int32_t>(p);
     hand_down(tree_.merges, leaves, part_of);
-    parts_ = measure_parts(mesh_, part_of, chosen.size(), tree_.merges.back().hull_volume, kernel_, progress_);
-    if (trace_) trace_->part_of_tetrahedron.assign(part_of.data(), part_of.data() + leaves);
 
+    std::vector<int32_t> number;  // of each part's cluster
+    PartsOfTetrahedra parts{{part_of.begin(), part_of.begin() + static_cast<std::ptrdiff_t>(leaves)}, chosen.size(), {}};
+    if (const std::vector<Plane> planes = mirror_planes(mesh_.vertices, outer_facets(mesh_), progress_); planes.empty()) {
+        number = keep_chosen(chosen, part_of);
+    } else {
+        parts = mirrored(mesh_, planes, std::move(parts), progress_);
+        Within within = cluster_within(mesh_, parts.of, parts.count, kernel_, progress_, threads_);
+        result_.tree.merges = std::move(within.merges);
+        for (const Grown& part : within.parts) number.push_back(part.cluster);
+    }
     result_.tree.components = tree_.components;
+    parts_ = measure_parts(mesh_, parts.of, parts.count, tree_.merges.back().hull_volume, kernel_, progress_);
+    for (size_t p = 0; p < parts.count; ++p) parts_.all[p].number = number[p];
+    if (trace_) trace_->part_of_tetrahedron = parts.of;
+    image_ = std::move(parts.images);
+    for (std::vector<int32_t>& image : image_) image.resize(2 * parts_.fine - 1, -1);
+    parts_.all.reserve(2 * parts_.fine - 1);  // join() holds references
+    pair_with_.assign(2 * parts_.fine - 1, -1);
+}
+
+// What stays of the paper's tree, below the parts chosen, gets new numbers. Returns those of the parts.
+std::vector<int32_t> Regrouping::keep_chosen(std::span<const int32_t> chosen, std::span<const int32_t> part_of) {
+    const size_t leaves = mesh_.tetrahedra.size(), merges = tree_.merges.size();
+    std::vector<int32_t> number(leaves + merges, -1), of_chosen;
     std::iota(number.begin(), number.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
     for (size_t m = 0; m < merges; ++m) {
         if (part_of[leaves + m] < 0) continue;
@@ -65,9 +103,8 @@ void Regrouping::take_parts() {
         number[leaves + m] = static_cast<int32_t>(leaves + result_.tree.merges.size());
         result_.tree.merges.push_back(merge);
     }
-    for (size_t p = 0; p < chosen.size(); ++p) parts_.all[p].number = number[at(chosen[p])];
-    parts_.all.reserve(2 * parts_.fine - 1);  // join() holds references
-    pair_with_.assign(2 * parts_.fine - 1, -1);
+    for (const int32_t c : chosen) of_chosen.push_back(number[at(c)]);
+    return of_chosen;
 }
 
 // Of the hull of both parts.
@@ -104,7 +141,7 @@ void Regrouping::price(Pair& pair) {
     queue_.push({pair.cost, static_cast<int32_t>(&pair - parts_.pairs.data())});
 }
 
-void Regrouping::join(int32_t ia, int32_t ib, double cost) {
+int32_t Regrouping::join(int32_t ia, int32_t ib, double cost) {
     const auto number = static_cast<int32_t>(parts_.all.size());
     parts_.all.emplace_back();
     Part &a = parts_[ia], &b = parts_[ib], &u = parts_.all.back();
@@ -154,6 +191,72 @@ void Regrouping::join(int32_t ia, int32_t ib, double cost) {
     b.beside = ia;
     a.hull = Hull();
     b.hull = Hull();
+    return number;
+}
+
+// The two, and what lies so in any of the planes, and in more than one, as far as it has not become part of others.
+std::vector<std::array<int32_t, 2>> Regrouping::images(int32_t a, int32_t b) const {
+    std::vector<std::array<int32_t, 2>> all = {{a, b}};
+    const auto free = [&](int32_t p) { return p >= 0 && parts_[p].above < 0; };
+    for (const std::vector<int32_t>& image : image_)
+        for (size_t i = 0, n = all.size(); i < n; ++i) {
+            const std::array<int32_t, 2> there = {image[at(all[i][0])], image[at(all[i][1])]};
+            if (free(there[0]) && free(there[1]) && there[0] != there[1] && std::ranges::find(all, there) == all.end())
+                all.push_back(there);
+        }
+    return all;
+}
+
+Pair* Regrouping::pair_of(int32_t a, int32_t b) {
+    for (const int32_t p : parts_[a].pairs) {
+        Pair& pair = parts_.pairs[at(p)];
+        if (pair.alive && (pair.a == b || pair.b == b)) return &pair;
+    }
+    return nullptr;
+}
+
+// The pair and its images, all at once. What they join is one part each, which may be made of more than two: the steps to
+// it are no nodes.
+void Regrouping::join_with_images(const Pair& pair) {
+    const double cost = pair.cost;
+    std::vector<int32_t> members;
+    std::vector<std::array<int32_t, 2>> together = images(pair.a, pair.b);
+    for (const auto& [a, b] : together) members.insert(members.end(), {a, b});
+    std::sort(members.begin(), members.end());
+    members.erase(std::unique(members.begin(), members.end()), members.end());
+    const auto place = [&](int32_t part) {
+        return static_cast<size_t>(std::lower_bound(members.begin(), members.end(), part) - members.begin());
+    };
+    Joined sets(members.size());
+    for (const auto& [a, b] : together) sets.join(place(a), place(b));
+
+    std::vector<int32_t> made(members.size(), -1), larger(members.size(), -1);  // of each set, at its first
+    for (size_t i = 0; i < members.size(); ++i) {
+        const size_t s = sets.find(i);
+        int32_t& large = larger[s];
+        if (large < 0 || parts_[members[i]].area > parts_[large].area) large = members[i];
+        made[s] = made[s] < 0 ? members[i] : join(made[s], members[i], cost);
+    }
+    for (size_t i = 0; i < members.size(); ++i) {
+        if (sets.find(i) != i) continue;
+        // The steps stand for the whole.
+        std::vector<int32_t> steps;
+        for (size_t j = 0; j < members.size(); ++j)
+            if (sets.find(j) == i) steps.push_back(members[j]);
+        for (int32_t step = parts_[steps[0]].above; step != made[i]; step = parts_[step].above) parts_[step].step = true;
+        for (const int32_t member : steps) parts_[member].above = made[i];
+    }
+    // The image of what was made is what its larger member's has become.
+    for (std::vector<int32_t>& image : image_)
+        for (size_t i = 0; i < members.size(); ++i) {
+            if (sets.find(i) != i) continue;
+            const int32_t other = image[at(larger[i])];
+            const bool found = std::ranges::binary_search(members, other);
+            if (other < 0 || (!found && parts_[other].above >= 0)) continue;
+            const int32_t there = found ? made[sets.find(place(other))] : other;
+            image[at(made[i])] = there;
+            if (!found) image[at(other)] = made[i];
+        }
 }
 
 void Regrouping::join_neighbours() {
@@ -166,11 +269,25 @@ void Regrouping::join_neighbours() {
         queue_.pop();
         Pair& pair = parts_.pairs[at(number)];
         if (!pair.alive || pair.cost != cost) continue;
-        if (pair.guessed) {
-            price(pair);
-            continue;
+        // It and its images cost the same: what the dearest does.
+        bool waits = false;
+        double dearest = cost;
+        std::vector<Pair*> all;
+        for (const auto& [a, b] : images(pair.a, pair.b))
+            if (Pair* each = pair_of(a, b)) all.push_back(each);
+        for (Pair* each : all) {
+            waits |= each->guessed;
+            if (each->guessed) price(*each);
+            dearest = std::max(dearest, each->cost);
         }
-        join(pair.a, pair.b, pair.cost);
+        for (Pair* each : all) {
+            if (each->cost == dearest) continue;
+            each->cost = dearest;
+            queue_.push({dearest, static_cast<int32_t>(each - parts_.pairs.data())});
+            waits = true;
+        }
+        if (waits) continue;
+        join_with_images(pair);
         const size_t joined = parts_.all.size() - parts_.fine;
         progress_.advance(0.2 + 0.8 * static_cast<double>(joined) / static_cast<double>(parts_.fine));
     }
@@ -194,12 +311,24 @@ void Regrouping::join_components() {
 }
 
 std::vector<double> Regrouping::scores() const {
-    std::vector<double> of_cluster(mesh_.tetrahedra.size() + result_.tree.merges.size());
+    std::vector<double> of_part;
     for (size_t n = 0; n < parts_.all.size(); ++n) {
         const auto inputs = in_order(measures(parts_, n));
         if (trace_) trace_->nodes.push_back(inputs);
         const double logit = fitted(fitted_node_numbers, inputs);
-        of_cluster[at(parts_.all[n].number)] = (1 + logit / (1 + std::abs(logit))) / 2;
+        of_part.push_back(parts_.all[n].step ? 0 : (1 + logit / (1 + std::abs(logit))) / 2);
+    }
+    std::vector<double> of_cluster(mesh_.tetrahedra.size() + result_.tree.merges.size());
+    for (size_t n = 0; n < of_part.size(); ++n) {
+        std::vector<int32_t> all = {static_cast<int32_t>(n)};  // and its images, which score the same
+        for (const std::vector<int32_t>& image : image_)
+            for (size_t i = 0, before = all.size(); i < before; ++i)
+                if (const int32_t there = image[at(all[i])]; there >= 0 && std::ranges::find(all, there) == all.end())
+                    all.push_back(there);
+        std::ranges::sort(all);
+        double sum = 0;
+        for (const int32_t each : all) sum += of_part[at(each)];
+        of_cluster[at(parts_.all[n].number)] = sum / static_cast<double>(all.size());
     }
     std::vector<double> ordered;
     for (const int32_t c : cut_undoing_last(result_.tree.merges, parts_.fine)) ordered.push_back(of_cluster[at(c)]);
@@ -218,10 +347,10 @@ Regrouped Regrouping::run() {
 }  // namespace
 
 Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, Progress& progress,
-                  std::span<const double> pair_numbers, RegroupTrace* trace) {
+                  std::span<const double> pair_numbers, RegroupTrace* trace, size_t threads) {
     if (tree.merges.empty()) return {tree, {1.0}};
     const std::span<const double> numbers = pair_numbers.empty() ? fitted_pair_numbers : pair_numbers;
-    return Regrouping(mesh, tree, progress, numbers, trace).run();
+    return Regrouping(mesh, tree, progress, numbers, trace, threads).run();
 }
 
 }  // namespace partwheel

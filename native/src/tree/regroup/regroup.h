@@ -81,6 +81,6 @@ struct RegroupTrace {
 
 // tree: the paper's of this mesh. pair_numbers: null, or another cost to be tried; trace: null, or what to fill.
 Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, Progress& progress,
-                  std::span<const double> pair_numbers = {}, RegroupTrace* trace = nullptr);
+                  std::span<const double> pair_numbers = {}, RegroupTrace* trace = nullptr, size_t threads = 1);
 
 }  // namespace partwheel

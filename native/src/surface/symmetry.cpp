@@ -1,0 +1,189 @@
+// Mirror planes: candidates, how much of the surface has its mirror image, and where the two sides meet best.
+#include "surface/symmetry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+constexpr size_t few_samples = 256, many_samples = 1024;
+constexpr double promising = 0.4;  // of the few samples, where a plane is worth moving
+constexpr int moves = 6;
+constexpr double reach = 1.0 / 20;  // relative to the diagonal: how far off a counterpart is when a plane is moved
+constexpr double perpendicular = 0.1;  // less than this is the cosine between planes that are
+
+using Axes = std::array<Point, 3>;
+
+// Symmetric, and its axes, each of length 1, that of the largest value first: Jacobi's rotations, which need square
+// roots only.
+Axes principal_axes(std::array<Point, 3> m) {
+    Axes axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    for (int sweep = 0; sweep < 12; ++sweep)
+        for (const auto& [p, q] : {std::pair<size_t, size_t>{0, 1}, {0, 2}, {1, 2}}) {
+            if (m[p][q] == 0) continue;
+            const double theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
+            const double t = (theta < 0 ? -1 : 1) / (std::fabs(theta) + std::sqrt(theta * theta + 1));
+            const double c = 1 / std::sqrt(t * t + 1), s = t * c;
+            for (Point& row : m) {
+                const double x = row[p], y = row[q];
+                row[p] = c * x - s * y;
+                row[q] = s * x + c * y;
+            }
+            const Point x = m[p], y = m[q], a = axes[p], b = axes[q];
+            m[p] = c * x - s * y;
+            m[q] = s * x + c * y;
+            axes[p] = c * a - s * b;
+            axes[q] = s * a + c * b;
+        }
+    std::array<size_t, 3> order = {0, 1, 2};
+    std::stable_sort(order.begin(), order.end(), [&](size_t i, size_t j) { return m[i][i] > m[j][j]; });
+    return {axes[order[0]], axes[order[1]], axes[order[2]]};
+}
+
+void add_outer_product(std::array<Point, 3>& sum, const Point& p) {
+    for (size_t k = 0; k < 3; ++k) sum[k] = sum[k] + p[k] * p;
+}
+
+class Search {
+public:
+    Search(std::span<const Point> vertices, std::span<const Triangle> triangles, Progress& progress)
+        : vertices_(vertices), triangles_(triangles), progress_(progress), nearest_(vertices, triangles) {
+        Point low = vertices[0], high = low;
+        for (const Point& p : vertices)
+            for (size_t k = 0; k < 3; ++k) {
+                low[k] = std::min(low[k], p[k]);
+                high[k] = std::max(high[k], p[k]);
+            }
+        diagonal_ = length(high - low);
+        few_ = spread(few_samples);
+        many_ = spread(many_samples);
+    }
+
+    std::vector<Plane> planes() {
+        std::vector<Candidate> found;
+        for (const Plane& plane : candidates()) {
+            if (share(plane, few_) < promising) continue;
+            for (const Plane& each : {plane, moved(plane)}) found.push_back({each, share(each, many_)});
+        }
+        std::vector<Plane> taken;
+        while (taken.size() < 3) {
+            Candidate best{{}, 0};
+            for (const Candidate& c : found)
+                if (c.share > best.share) best = c;
+            if (best.share < least_mirrored) break;
+            taken.push_back(best.plane);
+            // What is left is made exactly perpendicular to it.
+            std::erase_if(found, [&](Candidate& c) {
+                const double along = dot(c.plane.normal, best.plane.normal);
+                if (std::fabs(along) > perpendicular) return true;
+                const Point middle = c.plane.mirrored(middle_) + middle_;  // twice a point of the plane
+                const Point normal = c.plane.normal - along * best.plane.normal;
+                c.plane.normal = 1 / length(normal) * normal;
+                c.plane.offset = dot(c.plane.normal, middle) / 2;
+                c.share = share(c.plane, many_);
+                return false;
+            });
+        }
+        return taken;
+    }
+
+private:
+    struct Candidate {
+        Plane plane;
+        double share;
+    };
+
+    // Points spread evenly over the area: as many along the order of the triangles from each to the next.
+    std::vector<Point> spread(size_t count) {
+        std::vector<double> until;
+        double sum = 0;
+        for (const Triangle& t : triangles_) until.push_back(sum += area(corner(t, 0), corner(t, 1), corner(t, 2)));
+        std::vector<Point> points;
+        for (size_t i = 0, t = 0; i < count; ++i) {
+            const double place = (static_cast<double>(i) + 0.5) / static_cast<double>(count) * sum;
+            while (t + 1 < until.size() && until[t] <= place) ++t;
+            // Within the triangle, by a sequence that fills the square evenly (Roberts 2018), folded.
+            double u = static_cast<double>(i) * 0.7548776662466927, v = static_cast<double>(i) * 0.5698402909980532;
+            u -= std::floor(u);
+            v -= std::floor(v);
+            if (u + v > 1) u = 1 - u, v = 1 - v;
+            const Triangle& chosen = triangles_[t];
+            const Point& a = corner(chosen, 0);
+            points.push_back(a + u * (corner(chosen, 1) - a) + v * (corner(chosen, 2) - a));
+        }
+        return points;
+    }
+
+    std::vector<Plane> candidates() {
+        std::array<Point, 3> spread_out{};
+        for (const Point& p : many_) middle_ = middle_ + 1.0 / many_samples * p;
+        for (const Point& p : many_) add_outer_product(spread_out, p - middle_);
+        std::vector<Plane> planes;
+        for (const Axes& axes : {principal_axes(spread_out), Axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}})
+            for (const Point& normal : axes) {
+                double least = HUGE_VAL, most = -HUGE_VAL;
+                for (const Point& p : vertices_) {
+                    least = std::min(least, dot(normal, p));
+                    most = std::max(most, dot(normal, p));
+                }
+                planes.push_back({normal, dot(normal, middle_)});
+                planes.push_back({normal, (least + most) / 2});
+            }
+        return planes;
+    }
+
+    // The share of the points whose mirror image lies on the surface.
+    double share(const Plane& plane, std::span<const Point> points) {
+        const double tolerance = mirror_tolerance * diagonal_;
+        size_t count = 0;
+        for (const Point& p : points) count += nearest_(plane.mirrored(p)).squared < tolerance * tolerance;
+        progress_.advance(0);
+        return static_cast<double>(count) / static_cast<double>(points.size());
+    }
+
+    // To where each side's points meet the other side: the plane that their midpoints lie in (iterated closest points).
+    Plane moved(Plane plane) {
+        for (int move = 0; move < moves; ++move) {
+            std::array<Point, 3> ways{};
+            Point sum{};
+            double count = 0;
+            for (const Point& p : few_) {
+                const Near near = nearest_(plane.mirrored(p));
+                if (near.squared > reach * reach * diagonal_ * diagonal_) continue;
+                add_outer_product(ways, p - near.point);
+                sum = sum + 0.5 * (p + near.point);
+                ++count;
+            }
+            if (count == 0) break;
+            Point normal = principal_axes(ways)[0];
+            if (dot(normal, plane.normal) < 0) normal = -1 * normal;
+            plane = {normal, dot(normal, 1 / count * sum)};
+            progress_.advance(0);
+        }
+        return plane;
+    }
+
+    const Point& corner(const Triangle& t, size_t k) const { return vertices_[at(t[k])]; }
+
+    std::span<const Point> vertices_;
+    std::span<const Triangle> triangles_;
+    Progress& progress_;
+    NearestTriangle nearest_;
+    Point middle_{};
+    double diagonal_ = 0;
+    std::vector<Point> few_, many_;
+};
+
+}  // namespace
+
+std::vector<Plane> mirror_planes(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                                 Progress& progress) {
+    if (triangles.empty()) return {};
+    return Search(vertices, triangles, progress).planes();
+}
+
+}  // namespace partwheel

@@ -1,0 +1,201 @@
+// Parts copied from one side of a plane to the other, on the surface first, then spread into the tetrahedra behind.
+#include "tree/regroup/mirror.h"
+
+#include "base/groups.h"
+#include "tree/regroup/spread.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+// A part with less of its volume on one side is of the other.
+constexpr double fair_share = 0.25;
+constexpr int32_t unsettled = -1, elsewhere = -2;  // as parts: to be spread into; not to be touched
+
+Point centre(const TetMesh& mesh, size_t t) {
+    Point sum{};
+    for (const int32_t v : mesh.tetrahedra[t]) sum = sum + 0.25 * mesh.vertices[at(v)];
+    return sum;
+}
+
+double volume(const TetMesh& mesh, size_t t) {
+    const auto corner = [&](size_t k) -> const Point& { return mesh.vertices[at(mesh.tetrahedra[t][k])]; };
+    return std::max(0.0, six_volumes(corner(0), corner(1), corner(2), corner(3)) / 6);
+}
+
+// Each part keeps its largest piece; what else is of it becomes unsettled.
+void keep_largest_pieces(const TetMesh& mesh, size_t count, std::vector<int32_t>& part) {
+    Joined pieces(part.size());
+    for (size_t t = 0; t < part.size(); ++t)
+        for (const int32_t n : mesh.neighbours[t])
+            if (n >= 0 && part[t] >= 0 && part[at(n)] == part[t]) pieces.join(t, at(n));
+    std::vector<double> size(part.size(), 0);
+    for (size_t t = 0; t < part.size(); ++t) size[pieces.find(t)] += volume(mesh, t);
+    std::vector<int32_t> largest(count, -1);
+    for (size_t t = 0; t < part.size(); ++t) {
+        if (part[t] < 0 || pieces.find(t) != t) continue;
+        int32_t& best = largest[at(part[t])];
+        if (best < 0 || size[t] > size[at(best)]) best = static_cast<int32_t>(t);
+    }
+    for (size_t t = 0; t < part.size(); ++t)
+        if (part[t] >= 0 && at(largest[at(part[t])]) != pieces.find(t)) part[t] = unsettled;
+}
+
+class Copy {
+public:
+    Copy(const TetMesh& mesh, Plane plane, PartsOfTetrahedra parts, Progress& progress)
+        : mesh_(mesh), plane_(plane), old_(std::move(parts)), progress_(progress) {}
+
+    PartsOfTetrahedra run() {
+        choose_side();
+        settle_near_side();
+        copy();
+        return numbered();
+    }
+
+private:
+    bool near(const Point& p) const { return plane_.height(p) >= 0; }
+
+    void choose_side() {
+        const size_t tetrahedra = mesh_.tetrahedra.size();
+        std::vector<double> here(old_.count, 0), all(old_.count, 0);
+        for (size_t t = 0; t < tetrahedra; ++t) {
+            const double v = volume(mesh_, t);
+            all[at(old_.of[t])] += v;
+            if (near(centre(mesh_, t))) here[at(old_.of[t])] += v;
+        }
+        // What holds of a part holds of its images in the planes before.
+        for (const std::vector<int32_t>& image : old_.images)
+            for (size_t p = 0; p < old_.count; ++p)
+                if (const int32_t q = image[p]; q > static_cast<int32_t>(p)) {
+                    here[p] = here[at(q)] = here[p] + here[at(q)];
+                    all[p] = all[at(q)] = all[p] + all[at(q)];
+                }
+        double balance = 0;
+        for (size_t p = 0; p < old_.count; ++p) balance += here[p] > 0.5 * all[p] ? 1 : -1;
+        if (balance < 0) {
+            plane_ = {-1 * plane_.normal, -plane_.offset};
+            for (size_t p = 0; p < old_.count; ++p) here[p] = all[p] - here[p];
+        }
+        lives_.assign(old_.count, 0);
+        own_image_.assign(old_.count, 0);
+        for (size_t p = 0; p < old_.count; ++p) {
+            lives_[p] = here[p] >= fair_share * all[p];
+            own_image_[p] = lives_[p] && all[p] - here[p] >= fair_share * all[p];
+        }
+        for (size_t t = 0; t < tetrahedra; ++t) near_.push_back(near(centre(mesh_, t)));
+    }
+
+    // The parts that live on the near side share all of it.
+    void settle_near_side() {
+        part_.assign(near_.size(), elsewhere);
+        for (size_t t = 0; t < near_.size(); ++t)
+            if (near_[t]) part_[t] = lives_[at(old_.of[t])] ? old_.of[t] : unsettled;
+        keep_largest_pieces(mesh_, old_.count, part_);
+        spread(mesh_, claims_of_neighbours(mesh_, part_), part_, progress_);
+    }
+
+    // Numbers: of a part on the near side its own, of its image that of p or count + p; of what has no counterpart
+    // 2 count + p.
+    int32_t image(int32_t p) const {
+        return own_image_[at(p)] ? p : static_cast<int32_t>(old_.count) + p;
+    }
+
+    void copy() {
+        const auto count = static_cast<int32_t>(old_.count);
+        std::vector<Triangle> facets;  // of the near side
+        std::vector<int32_t> part_behind;
+        struct Far {
+            size_t tetrahedron, opposite;
+            Point middle;
+        };
+        std::vector<Far> far;
+        for (size_t t = 0; t < near_.size(); ++t)
+            for (size_t k = 0; k < 4; ++k) {
+                if (mesh_.neighbours[t][k] >= 0) continue;
+                const Triangle f = facet(mesh_.tetrahedra[t], k);
+                if (!near_[t]) {
+                    Point middle{};
+                    for (const int32_t v : f) middle = middle + 1.0 / 3 * mesh_.vertices[at(v)];
+                    far.push_back({t, k, middle});
+                } else if (part_[t] >= 0) {
+                    facets.push_back(f);
+                    part_behind.push_back(part_[t]);
+                }
+            }
+        for (size_t t = 0; t < near_.size(); ++t)
+            if (!near_[t]) part_[t] = unsettled;
+        std::vector<Claim> claims;
+        if (!facets.empty()) {
+            Point low = mesh_.vertices[0], high = low;
+            for (const Point& p : mesh_.vertices)
+                for (size_t k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+            const double tolerance = 2 * mirror_tolerance * length(high - low);
+            NearestTriangle nearest(mesh_.vertices, facets);
+            for (const Far& f : far) {
+                const Near found = nearest(plane_.mirrored(f.middle));
+                const bool counterpart = found.squared < tolerance * tolerance;
+                claims.push_back({static_cast<int32_t>(f.tetrahedron),
+                                  counterpart ? image(part_behind[at(found.triangle)])
+                                              : 2 * count + old_.of[f.tetrahedron],
+                                  facet_area(mesh_, f.tetrahedron, f.opposite)});
+                if (claims.size() % 256 == 0) progress_.advance(0);
+            }
+        }
+        spread(mesh_, std::move(claims), part_, progress_);
+        keep_largest_pieces(mesh_, 3 * old_.count, part_);
+        spread(mesh_, claims_of_neighbours(mesh_, part_), part_, progress_);
+        for (size_t t = 0; t < near_.size(); ++t)  // a component that no triangle of is of
+            if (part_[t] < 0) part_[t] = 2 * count + old_.of[t];
+    }
+
+    PartsOfTetrahedra numbered() const {
+        std::vector<int32_t> number(3 * old_.count, -1);
+        for (const int32_t p : part_) number[at(p)] = 0;
+        PartsOfTetrahedra result;
+        for (int32_t& n : number)
+            if (n == 0) n = static_cast<int32_t>(result.count++);
+        for (const int32_t p : part_) result.of.push_back(number[at(p)]);
+        // A part, and its images in the planes before, which lie on the same side.
+        const auto count = static_cast<int32_t>(old_.count);
+        const auto all = [&](const auto& image_of) {
+            std::vector<int32_t> image(result.count, -1);
+            for (int32_t p = 0; p < count; ++p)
+                for (const auto& [from, to] : image_of(p)) {
+                    if (from < 0 || to < 0 || number[at(from)] < 0 || number[at(to)] < 0) continue;
+                    image[at(number[at(from)])] = number[at(to)];
+                }
+            return image;
+        };
+        using Ways = std::vector<std::pair<int32_t, int32_t>>;
+        for (const std::vector<int32_t>& before : old_.images)
+            result.images.push_back(all([&](int32_t p) -> Ways {
+                const int32_t q = before[at(p)];
+                if (q < 0) return {};
+                return {{p, q}, {image(p), image(q)}, {2 * count + p, 2 * count + q}};
+            }));
+        result.images.push_back(all([&](int32_t p) -> Ways { return {{p, image(p)}, {image(p), p}}; }));
+        return result;
+    }
+
+    const TetMesh& mesh_;
+    Plane plane_;
+    const PartsOfTetrahedra old_;
+    Progress& progress_;
+    std::vector<uint8_t> lives_, own_image_;  // of each old part
+    std::vector<uint8_t> near_;               // of each tetrahedron
+    std::vector<int32_t> part_;               // likewise
+};
+
+}  // namespace
+
+PartsOfTetrahedra mirrored(const TetMesh& mesh, std::span<const Plane> planes, PartsOfTetrahedra parts,
+                           Progress& progress) {
+    for (const Plane& plane : planes) parts = Copy(mesh, plane, std::move(parts), progress).run();
+    return parts;
+}
+
+}  // namespace partwheel

@@ -1,0 +1,25 @@
+// Parts that are their own mirror images: those of one side of a plane are copied to the other.
+#pragma once
+
+#include "fill/tetrahedra.h"
+#include "surface/symmetry.h"
+
+#include <span>
+#include <vector>
+
+namespace partwheel {
+
+struct PartsOfTetrahedra {
+    std::vector<int32_t> of;  // each tetrahedron
+    size_t count = 0;
+    // By plane: of each part its mirror image, which may be itself; -1: it has none.
+    std::vector<std::vector<int32_t>> images;
+};
+
+// Plane by plane, the side with more parts is copied to the other: what lies there goes with the mirror image of the part
+// that lies behind its own mirror image. A part with a fair share of its volume on either side becomes its own image.
+// What has no counterpart within the tolerance keeps the part it had, which then has no image.
+PartsOfTetrahedra mirrored(const TetMesh& mesh, std::span<const Plane> planes, PartsOfTetrahedra parts,
+                           Progress& progress);
+
+}  // namespace partwheel
