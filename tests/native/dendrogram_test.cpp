@@ -165,10 +165,10 @@ TEST_F(DendrogramTest, PruningKeepsWhatGrows) {
     for (const auto& [c, expected] : cases) {
         const std::vector<Merge> chain{merge_of(0, 1, c[0]), merge_of(4, 2, c[1]), merge_of(5, 3, c[2])};
         EXPECT_EQ(prune(chain), expected);
-        EXPECT_EQ(prune_regrouped(chain, 0), expected);
+        EXPECT_EQ(prune_regrouped(chain, {}), expected);
     }
     EXPECT_TRUE(prune(std::vector<Merge>{}).empty());
-    EXPECT_TRUE(prune_regrouped(std::vector<Merge>{}, 0).empty());
+    EXPECT_TRUE(prune_regrouped(std::vector<Merge>{}, {}).empty());
 }
 
 TEST_F(DendrogramTest, ConvexNodesInConvexNodesStayAsEq3HasIt) {
@@ -177,7 +177,7 @@ TEST_F(DendrogramTest, ConvexNodesInConvexNodesStayAsEq3HasIt) {
     EXPECT_EQ(node_costs(convex),
               (std::vector<NodeCost>{{false, 2.0 / 16}, {false, 5.0 / 16}, {false, 10.0 / 16}}));
     EXPECT_EQ(prune(convex), (std::vector<uint8_t>{1, 1, 1}));
-    EXPECT_EQ(prune_regrouped(convex, 0), (std::vector<uint8_t>{0, 0, 1}));
+    EXPECT_EQ(prune_regrouped(convex, {}), (std::vector<uint8_t>{0, 0, 1}));
     // What is concave costs more than anything convex, however little it is: it goes.
     const std::vector<Merge> dented{merge_of(0, 1, 0), merge_of(4, 2, 1e-300), merge_of(5, 3, 0)};
     EXPECT_EQ(prune(dented), (std::vector<uint8_t>{1, 0, 1}));
@@ -205,7 +205,7 @@ TEST_F(DendrogramTest, OfConvexShapesWhatIsConvexStays) {
         for (const Merge& m : merges) convex.push_back(m.concavity == 0);
         EXPECT_EQ(prune(merges), convex);
         // By concavity alone nothing is between the leaves and the root.
-        const auto kept = prune_regrouped(merges, 0);
+        const auto kept = prune_regrouped(merges, {});
         EXPECT_EQ(std::count(kept.begin(), kept.end(), 1), 1);
         EXPECT_EQ(kept.back(), 1);
     }
@@ -271,7 +271,11 @@ TEST_F(DendrogramTest, RegroupedMergesAllStayAndHoldNothingDown) {
         // Listing 2 for each part by itself, by concavity.
         std::vector<uint8_t> expected(merges.size(), 0);
         const Tree tree = tree_of(merges, false);
-        for (size_t m = merges.size() - top; m < merges.size(); ++m) expected[m] = 1;
+        std::vector<double> scores;  // some are steps to what is joined from more than two: no nodes
+        for (size_t m = merges.size() - top; m < merges.size(); ++m) {
+            scores.push_back(whole(0, 3) == 0 ? 0 : 0.5);
+            expected[m] = scores.back() > 0;
+        }
         std::vector<uint8_t> held(merges.size(), 0);
         for (size_t m = 0; m < merges.size(); ++m)
             for (const int32_t child : {merges[m].left, merges[m].right})
@@ -285,7 +289,7 @@ TEST_F(DendrogramTest, RegroupedMergesAllStayAndHoldNothingDown) {
             collect(part, inner);
             for (const int32_t n : inner) expected[static_cast<size_t>(n) - merges.size() - 1] = 1;
         }
-        ASSERT_EQ(prune_regrouped(merges, top), expected) << "round " << i;
+        ASSERT_EQ(prune_regrouped(merges, scores), expected) << "round " << i;
     }
 }
 
@@ -313,7 +317,10 @@ TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
         for (size_t c = 0; c < 2 * merges.size() + 1; ++c) {
             areas.push_back(whole(0, 4));
             scores.push_back(std::uniform_real_distribution<double>(0.01, 1)(random));
+            const bool inside = c > merges.size() && c < 2 * merges.size();
+            if (inside && whole(0, 3) == 0) scores.back() = 0;  // a step to what is joined from more than two
         }
+        const auto a_step = [&](int32_t n) { return scores[static_cast<size_t>(n)] == 0; };
         const auto worth = [&](const std::vector<int32_t>& cut) {
             double sum = 0;
             for (const int32_t n : cut) sum += areas[static_cast<size_t>(n)] * scores[static_cast<size_t>(n)];
@@ -321,17 +328,18 @@ TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
         };
         double best = 0;
         const auto cuts = all_cuts(tree.root());
-        for (const auto& cut : cuts) best = std::max(best, worth(cut));
-        const auto cut = likeliest_cut(merges, areas, scores);
+        for (const auto& cut : cuts)
+            if (std::ranges::none_of(cut, a_step)) best = std::max(best, worth(cut));
+        const auto cut = likeliest_cut(merges, merges.size(), areas, scores);
         ASSERT_EQ(std::count(cuts.begin(), cuts.end(), cut), 1);
+        ASSERT_TRUE(std::ranges::none_of(cut, a_step));
         ASSERT_NEAR(worth(cut), best, 1e-12);
     }
-    // What has no score is not divided.
+    // What is below the parts is not divided, whatever that would be worth.
     const std::vector<Merge> one(1, {0, 1, 0, 0});
-    EXPECT_EQ(likeliest_cut(one, std::vector<double>{1, 1, 2}, std::vector<double>{0, 0, 0.1}), std::vector<int32_t>{2});
-    // Nor what would leave something without one.
-    EXPECT_EQ(likeliest_cut(one, std::vector<double>{9, 1, 10}, std::vector<double>{1, 0, 0.1}), std::vector<int32_t>{2});
-    EXPECT_EQ(likeliest_cut(one, std::vector<double>{1, 9, 10}, std::vector<double>{0, 1, 0.1}), std::vector<int32_t>{2});
+    EXPECT_EQ(likeliest_cut(one, 0, std::vector<double>{1, 1, 2}, std::vector<double>{1, 1, 0.1}), std::vector<int32_t>{2});
+    EXPECT_EQ(likeliest_cut(one, 1, std::vector<double>{1, 1, 2}, std::vector<double>{1, 1, 0.1}),
+              (std::vector<int32_t>{0, 1}));
 }
 
 TEST_F(DendrogramTest, StopsDifferAndTheClickTakesTheBest) {

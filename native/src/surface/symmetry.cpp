@@ -10,15 +10,15 @@ namespace partwheel {
 
 namespace {
 
-constexpr size_t few_samples = 256, many_samples = 1024;
-constexpr double promising = 0.4;  // of the few samples, where a plane is worth moving
+constexpr size_t few_samples = 256, many_samples = 2048;
+constexpr double promising = 0.4, settled = 0.95;  // of the samples: where a plane is worth moving, where it needn't be
 constexpr int moves = 6;
 constexpr double reach = 1.0 / 20;  // relative to the diagonal: how far off a counterpart is when a plane is moved
 constexpr double perpendicular = 0.1;  // less than this is the cosine between planes that are
 
 using Axes = std::array<Point, 3>;
 
-// Symmetric, and its axes, each of length 1, that of the largest value first: Jacobi's rotations, which need square
+// Symmetric, and its axes, each of length 1, that of the least value first: Jacobi's rotations, which need square
 // roots only.
 Axes principal_axes(std::array<Point, 3> m) {
     Axes axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -40,7 +40,7 @@ Axes principal_axes(std::array<Point, 3> m) {
             axes[q] = s * a + c * b;
         }
     std::array<size_t, 3> order = {0, 1, 2};
-    std::stable_sort(order.begin(), order.end(), [&](size_t i, size_t j) { return m[i][i] > m[j][j]; });
+    std::stable_sort(order.begin(), order.end(), [&](size_t i, size_t j) { return m[i][i] < m[j][j]; });
     return {axes[order[0]], axes[order[1]], axes[order[2]]};
 }
 
@@ -67,7 +67,10 @@ public:
         std::vector<Candidate> found;
         for (const Plane& plane : candidates()) {
             if (share(plane, few_) < promising) continue;
-            for (const Plane& each : {plane, moved(plane)}) found.push_back({each, share(each, many_)});
+            found.push_back({plane, share(plane, many_)});
+            if (found.back().share >= settled) continue;
+            const Plane better = moved(plane);
+            found.push_back({better, share(better, many_)});
         }
         std::vector<Plane> taken;
         while (taken.size() < 3) {
@@ -159,7 +162,7 @@ private:
                 ++count;
             }
             if (count == 0) break;
-            Point normal = principal_axes(ways)[0];
+            Point normal = principal_axes(ways)[2];
             if (dot(normal, plane.normal) < 0) normal = -1 * normal;
             plane = {normal, dot(normal, 1 / count * sum)};
             progress_.advance(0);

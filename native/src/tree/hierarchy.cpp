@@ -125,6 +125,13 @@ void Hierarchy::finish() {
     const auto measures = {&volume_, &area_, &height_, &score_};
     for (std::vector<double>* values : measures) values->resize(clusters);
     for (std::vector<int32_t>* ends : {&tet_first_, &tet_last_}) ends->resize(clusters);
+    // The parts are the clusters that the regrouped merges join, and that are none of them.
+    if (!scores_.empty()) {
+        auto given = scores_.begin();
+        for (const int32_t c : cut_undoing_last(merges_, regrouped_merges() + 1)) score_[at(c)] = *given++;
+        std::copy(given, scores_.end(), score_.begin() + static_cast<std::ptrdiff_t>(top));
+    }
+
     for (size_t l = 0; l < leaves; ++l) {
         const auto corner = [&](size_t k) { return points[at(tetrahedra_[l][k])]; };
         // A sliver's volume may be rounded to less than nothing.
@@ -145,8 +152,9 @@ void Hierarchy::finish() {
         volume_[c] = volume_[left] + volume_[right];
         area_[c] = area_[left] + area_[right];
         merge.hull_volume = volume_[c] + merge.concavity;
-        height_[c] = merge.concavity;
-        // Joining may make a cluster less concave; a node is never lower than what it is made of.
+        // Joining may make a cluster less concave; a node is never lower than the nodes that it is made of.
+        const bool step = c >= top && score_[c] == 0;
+        height_[c] = step ? 0 : merge.concavity;
         if (c >= top) height_[c] = std::max({height_[c], height_[left], height_[right]});
     }
     merge_last_.assign(tet_last_.begin() + static_cast<std::ptrdiff_t>(leaves), tet_last_.end());
@@ -163,13 +171,6 @@ void Hierarchy::finish() {
     order_.resize(faces);
     std::vector<int32_t> next(face_begin.begin(), face_begin.end() - 1);
     for (size_t f = 0; f < faces; ++f) order_[at(next[at(leaf_[f])]++)] = static_cast<int32_t>(f);
-
-    // The parts are the clusters that the regrouped merges join, and that are none of them.
-    if (!scores_.empty()) {
-        auto given = scores_.begin();
-        for (const int32_t c : cut_undoing_last(merges_, regrouped_merges() + 1)) score_[at(c)] = *given++;
-        std::copy(given, scores_.end(), score_.begin() + static_cast<std::ptrdiff_t>(top));
-    }
 
     // Nodes: all leaves, then the merges that were kept; so arrays by cluster become arrays by node where they are.
     const std::vector<uint8_t> kept = kept_merges();

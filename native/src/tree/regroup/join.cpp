@@ -72,10 +72,10 @@ void Regrouping::take_parts() {
 
     std::vector<int32_t> number;  // of each part's cluster
     PartsOfTetrahedra parts{{part_of.begin(), part_of.begin() + static_cast<std::ptrdiff_t>(leaves)}, chosen.size(), {}};
-    if (const std::vector<Plane> planes = mirror_planes(mesh_.vertices, outer_facets(mesh_), progress_); planes.empty()) {
+    parts = mirrored(mesh_, mirror_planes(mesh_.vertices, outer_facets(mesh_), progress_), std::move(parts), progress_);
+    if (std::equal(parts.of.begin(), parts.of.end(), part_of.begin())) {
         number = keep_chosen(chosen, part_of);
     } else {
-        parts = mirrored(mesh_, planes, std::move(parts), progress_);
         Within within = cluster_within(mesh_, parts.of, parts.count, kernel_, progress_, threads_);
         result_.tree.merges = std::move(within.merges);
         for (const Grown& part : within.parts) number.push_back(part.cluster);

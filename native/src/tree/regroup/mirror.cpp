@@ -98,14 +98,18 @@ private:
         spread(mesh_, claims_of_neighbours(mesh_, part_), part_, progress_);
     }
 
-    // Numbers: of a part on the near side its own, of its image that of p or count + p; of what has no counterpart
-    // 2 count + p.
+    // Numbers: part p of the near side is still p; its image is p or count + p. What has no counterpart is of the part that
+    // it was of: p, or if that does not live on the near side 2 count + p.
     int32_t image(int32_t p) const {
         return own_image_[at(p)] ? p : static_cast<int32_t>(old_.count) + p;
     }
 
+    int32_t kept(size_t t) const {
+        const int32_t p = old_.of[t];
+        return lives_[at(p)] ? p : 2 * static_cast<int32_t>(old_.count) + p;
+    }
+
     void copy() {
-        const auto count = static_cast<int32_t>(old_.count);
         std::vector<Triangle> facets;  // of the near side
         std::vector<int32_t> part_behind;
         struct Far {
@@ -139,8 +143,7 @@ private:
                 const Near found = nearest(plane_.mirrored(f.middle));
                 const bool counterpart = found.squared < tolerance * tolerance;
                 claims.push_back({static_cast<int32_t>(f.tetrahedron),
-                                  counterpart ? image(part_behind[at(found.triangle)])
-                                              : 2 * count + old_.of[f.tetrahedron],
+                                  counterpart ? image(part_behind[at(found.triangle)]) : kept(f.tetrahedron),
                                   facet_area(mesh_, f.tetrahedron, f.opposite)});
                 if (claims.size() % 256 == 0) progress_.advance(0);
             }
@@ -149,7 +152,7 @@ private:
         keep_largest_pieces(mesh_, 3 * old_.count, part_);
         spread(mesh_, claims_of_neighbours(mesh_, part_), part_, progress_);
         for (size_t t = 0; t < near_.size(); ++t)  // a component that no triangle of is of
-            if (part_[t] < 0) part_[t] = 2 * count + old_.of[t];
+            if (part_[t] < 0) part_[t] = kept(t);
     }
 
     PartsOfTetrahedra numbered() const {
