@@ -147,7 +147,10 @@ Hierarchy build(const MeshView& mesh, const LadderOptions& options, int32_t mode
     progress.enter(PW_STAGE_CLUSTER);
     Regrouped regrouped{cluster(mesh_of_parts, progress, options.threads), {}};
     progress.enter(PW_STAGE_DENDROGRAM);
-    if (mode != PW_MODE_PAPER) regrouped = regroup(mesh_of_parts, regrouped.tree, progress, {}, nullptr, options.threads);
+    if (mode != PW_MODE_PAPER) {
+        const std::vector<Plane> planes = mirror_planes(mesh_of_parts.vertices, outer_facets(mesh_of_parts), progress);
+        regrouped = regroup(mesh_of_parts, regrouped.tree, planes, progress, options.threads);
+    }
     if (plain) regrouped = carried(*plain, regrouped, solid, progress, options.threads);
     progress.enter(PW_STAGE_HIERARCHY);
     Hierarchy hierarchy(solid.surface, solid.mesh, regrouped, mesh.vertices);

@@ -85,7 +85,7 @@ TEST(Carried, ARoughSurfaceHasThePartsOfTheSmoothOne) {
     ASSERT_TRUE(plain);
     EXPECT_EQ(roughness(plain->vertices, solid.surface.triangles), 0);
 
-    const Regrouped parts = regroup(*plain, cluster(*plain, progress), progress);
+    const Regrouped parts = regroup(*plain, cluster(*plain, progress), {}, progress);
     const Hierarchy smooth(solid.surface, *plain, parts, rough.vertex_data());
     const Handle handle = build(rough), paper = build(rough, 0, PW_MODE_PAPER);
     EXPECT_EQ(arrays(handle).tetrahedron_count, arrays(paper).tetrahedron_count);

@@ -97,7 +97,7 @@ Result regrouped(const Bar& bar, const std::vector<size_t>& order) {
     Progress progress;
     progress.begin();
     Result result;
-    result.regrouped = regroup(mesh, tree_of(mesh, order), progress, {}, &result.trace);
+    result.regrouped = regroup(mesh, tree_of(mesh, order), {}, progress, 1, {}, &result.trace);
     for (size_t piece = 0; piece < bar.pieces(); ++piece) {
         const auto at_piece = [&](const Tetrahedron& t) {
             return std::ranges::all_of(t, [&](int32_t v) {

@@ -13,6 +13,9 @@ struct TetMesh {
     size_t cavities = 0;
 };
 
+// The facets with nothing on their other side, by tetrahedron and then corner.
+std::vector<Triangle> outer_facets(const TetMesh& mesh);
+
 struct Solid {
     Surface surface;
     TetMesh mesh;

@@ -11,7 +11,7 @@ namespace partwheel {
 namespace {
 
 constexpr size_t few_samples = 256, many_samples = 2048;
-constexpr double promising = 0.4, settled = 0.95;  // of the samples: where a plane is worth moving, where it needn't be
+constexpr double promising = 0.4;  // of the samples: where a plane is worth moving
 constexpr int moves = 6;
 constexpr double reach = 1.0 / 20;  // relative to the diagonal: how far off a counterpart is when a plane is moved
 constexpr double perpendicular = 0.1;  // less than this is the cosine between planes that are
@@ -67,10 +67,7 @@ public:
         std::vector<Candidate> found;
         for (const Plane& plane : candidates()) {
             if (share(plane, few_) < promising) continue;
-            found.push_back({plane, share(plane, many_)});
-            if (found.back().share >= settled) continue;
-            const Plane better = moved(plane);
-            found.push_back({better, share(better, many_)});
+            for (const Plane& each : {plane, moved(plane)}) found.push_back({each, share(each, many_)});
         }
         std::vector<Plane> taken;
         while (taken.size() < 3) {

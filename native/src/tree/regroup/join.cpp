@@ -16,20 +16,12 @@ namespace partwheel {
 
 namespace {
 
-std::vector<Triangle> outer_facets(const TetMesh& mesh) {
-    std::vector<Triangle> facets;
-    for (size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-        for (size_t k = 0; k < 4; ++k)
-            if (mesh.neighbours[t][k] < 0) facets.push_back(facet(mesh.tetrahedra[t], k));
-    return facets;
-}
-
 class Regrouping {
 public:
-    Regrouping(const TetMesh& mesh, const BinaryTree& tree, Progress& progress, std::span<const double> pair_numbers,
-               RegroupTrace* trace, size_t threads)
-        : mesh_(mesh), tree_(tree), progress_(progress), pair_numbers_(pair_numbers), trace_(trace), threads_(threads),
-          kernel_(mesh.vertices) {}
+    Regrouping(const TetMesh& mesh, const BinaryTree& tree, std::span<const Plane> planes, Progress& progress,
+               size_t threads, std::span<const double> pair_numbers, RegroupTrace* trace)
+        : mesh_(mesh), tree_(tree), planes_(planes), progress_(progress), threads_(threads),
+          pair_numbers_(pair_numbers), trace_(trace), kernel_(mesh.vertices) {}
     Regrouped run();
 
 private:
@@ -38,6 +30,7 @@ private:
     double hull_volume(const Pair& pair);
     double cost(const Pair& pair, double hull, bool exact);
     void enter(Pair& pair);
+    void enter(Pair& pair, double due);
     void price(Pair& pair);
     int32_t join(int32_t a, int32_t b, double cost);
     std::vector<std::array<int32_t, 2>> images(int32_t a, int32_t b) const;
@@ -49,10 +42,11 @@ private:
 
     const TetMesh& mesh_;
     const BinaryTree& tree_;
+    const std::span<const Plane> planes_;
     Progress& progress_;
+    const size_t threads_;
     std::span<const double> pair_numbers_;
     RegroupTrace* trace_;
-    const size_t threads_;
     HullKernel kernel_;
     Parts parts_;
     std::vector<std::vector<int32_t>> image_;  // by plane: of each part its mirror image, or -1, see PartsOfTetrahedra
@@ -72,7 +66,7 @@ void Regrouping::take_parts() {
 
     std::vector<int32_t> number;  // of each part's cluster
     PartsOfTetrahedra parts{{part_of.begin(), part_of.begin() + static_cast<std::ptrdiff_t>(leaves)}, chosen.size(), {}};
-    parts = mirrored(mesh_, mirror_planes(mesh_.vertices, outer_facets(mesh_), progress_), std::move(parts), progress_);
+    parts = mirrored(mesh_, planes_, std::move(parts), progress_);
     if (std::equal(parts.of.begin(), parts.of.end(), part_of.begin())) {
         number = keep_chosen(chosen, part_of);
     } else {
@@ -130,7 +124,12 @@ void Regrouping::enter(Pair& pair) {
         pair.cost = std::max(pair.cost, cost(pair, std::max(pair.hull, a.hull_volume + b.hull_volume), false));
     else  // without any surface it is no part: it goes first, with the neighbour that it shares most with
         pair.cost = -1e6 - pair.border.interface / parts_.whole.area;
-    queue_.push({pair.cost, static_cast<int32_t>(&pair - parts_.pairs.data())});
+    enter(pair, pair.cost);
+}
+
+void Regrouping::enter(Pair& pair, double due) {
+    pair.due = due;
+    queue_.push({due, static_cast<int32_t>(&pair - parts_.pairs.data())});
 }
 
 // What it does cost.
@@ -138,7 +137,7 @@ void Regrouping::price(Pair& pair) {
     pair.hull = hull_volume(pair);
     pair.cost = cost(pair, pair.hull, true);
     pair.guessed = false;
-    queue_.push({pair.cost, static_cast<int32_t>(&pair - parts_.pairs.data())});
+    enter(pair, pair.cost);
 }
 
 int32_t Regrouping::join(int32_t ia, int32_t ib, double cost) {
@@ -218,7 +217,7 @@ Pair* Regrouping::pair_of(int32_t a, int32_t b) {
 // The pair and its images, all at once. What they join is one part each, which may be made of more than two: the steps to
 // it are no nodes.
 void Regrouping::join_with_images(const Pair& pair) {
-    const double cost = pair.cost;
+    const double cost = pair.due;
     std::vector<int32_t> members;
     std::vector<std::array<int32_t, 2>> together = images(pair.a, pair.b);
     for (const auto& [a, b] : together) members.insert(members.end(), {a, b});
@@ -268,25 +267,22 @@ void Regrouping::join_neighbours() {
         const auto [cost, number] = queue_.top();
         queue_.pop();
         Pair& pair = parts_.pairs[at(number)];
-        if (!pair.alive || pair.cost != cost) continue;
-        // It and its images cost the same: what the dearest does.
-        bool waits = false;
-        double dearest = cost;
+        if (!pair.alive || pair.due != cost) continue;
+        // It and its images are joined at once, at what they cost in the mean.
         std::vector<Pair*> all;
         for (const auto& [a, b] : images(pair.a, pair.b))
             if (Pair* each = pair_of(a, b)) all.push_back(each);
+        const bool waits = pair.guessed;
+        double sum = 0;
         for (Pair* each : all) {
-            waits |= each->guessed;
             if (each->guessed) price(*each);
-            dearest = std::max(dearest, each->cost);
+            sum += each->cost;
         }
-        for (Pair* each : all) {
-            if (each->cost == dearest) continue;
-            each->cost = dearest;
-            queue_.push({dearest, static_cast<int32_t>(each - parts_.pairs.data())});
-            waits = true;
+        const double mean = sum / static_cast<double>(all.size());
+        if (waits || mean > cost) {
+            if (!waits) enter(pair, mean);
+            continue;
         }
-        if (waits) continue;
         join_with_images(pair);
         const size_t joined = parts_.all.size() - parts_.fine;
         progress_.advance(0.2 + 0.8 * static_cast<double>(joined) / static_cast<double>(parts_.fine));
@@ -346,11 +342,11 @@ Regrouped Regrouping::run() {
 
 }  // namespace
 
-Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, Progress& progress,
-                  std::span<const double> pair_numbers, RegroupTrace* trace, size_t threads) {
+Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, std::span<const Plane> planes, Progress& progress,
+                  size_t threads, std::span<const double> pair_numbers, RegroupTrace* trace) {
     if (tree.merges.empty()) return {tree, {1.0}};
     const std::span<const double> numbers = pair_numbers.empty() ? fitted_pair_numbers : pair_numbers;
-    return Regrouping(mesh, tree, progress, numbers, trace, threads).run();
+    return Regrouping(mesh, tree, planes, progress, threads, numbers, trace).run();
 }
 
 }  // namespace partwheel

@@ -2,9 +2,11 @@
 #include "tree/regroup/mirror.h"
 
 #include "base/groups.h"
+#include "cluster/hull/hull.h"
 #include "tree/regroup/spread.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace partwheel {
@@ -13,6 +15,9 @@ namespace {
 
 // A part with less of its volume on one side is of the other.
 constexpr double fair_share = 0.25;
+// A part and its image are one if the hull of both is no more than this share larger than the two hulls: not two sides of
+// the model, but two halves of its middle.
+constexpr double little_excess = 0.05;
 constexpr int32_t unsettled = -1, elsewhere = -2;  // as parts: to be spread into; not to be touched
 
 Point centre(const TetMesh& mesh, size_t t) {
@@ -44,6 +49,13 @@ void keep_largest_pieces(const TetMesh& mesh, size_t count, std::vector<int32_t>
         if (part[t] >= 0 && at(largest[at(part[t])]) != pieces.find(t)) part[t] = unsettled;
 }
 
+double hull_volume(const std::vector<Point>& points) {
+    std::vector<int32_t> all(points.size());
+    std::iota(all.begin(), all.end(), 0);
+    HullKernel kernel(points);
+    return kernel.build(all).volume();
+}
+
 class Copy {
 public:
     Copy(const TetMesh& mesh, Plane plane, PartsOfTetrahedra parts, Progress& progress)
@@ -67,13 +79,8 @@ private:
             all[at(old_.of[t])] += v;
             if (near(centre(mesh_, t))) here[at(old_.of[t])] += v;
         }
-        // What holds of a part holds of its images in the planes before.
-        for (const std::vector<int32_t>& image : old_.images)
-            for (size_t p = 0; p < old_.count; ++p)
-                if (const int32_t q = image[p]; q > static_cast<int32_t>(p)) {
-                    here[p] = here[at(q)] = here[p] + here[at(q)];
-                    all[p] = all[at(q)] = all[p] + all[at(q)];
-                }
+        add_up_images(here);
+        add_up_images(all);
         double balance = 0;
         for (size_t p = 0; p < old_.count; ++p) balance += here[p] > 0.5 * all[p] ? 1 : -1;
         if (balance < 0) {
@@ -89,13 +96,42 @@ private:
         for (size_t t = 0; t < tetrahedra; ++t) near_.push_back(near(centre(mesh_, t)));
     }
 
+    // What holds of a part holds of its images in the planes before.
+    void add_up_images(std::vector<double>& sums) const {
+        for (const std::vector<int32_t>& image : old_.images)
+            for (size_t p = 0; p < old_.count; ++p)
+                if (const int32_t q = image[p]; q > static_cast<int32_t>(p)) sums[p] = sums[at(q)] = sums[p] + sums[at(q)];
+    }
+
     // The parts that live on the near side share all of it.
     void settle_near_side() {
-        part_.assign(near_.size(), elsewhere);
+        // What lies across the plane hangs together beyond it: of something thin the tetrahedra lie on either side in turns.
+        part_ = old_.of;
         for (size_t t = 0; t < near_.size(); ++t)
-            if (near_[t]) part_[t] = lives_[at(old_.of[t])] ? old_.of[t] : unsettled;
+            if (!lives_[at(part_[t])] || (!near_[t] && !own_image_[at(part_[t])])) part_[t] = unsettled;
         keep_largest_pieces(mesh_, old_.count, part_);
+        for (size_t t = 0; t < near_.size(); ++t)
+            if (!near_[t]) part_[t] = elsewhere;
         spread(mesh_, claims_of_neighbours(mesh_, part_), part_, progress_);
+
+        std::vector<std::vector<int32_t>> corners(old_.count);
+        for (size_t t = 0; t < near_.size(); ++t)
+            if (part_[t] >= 0)
+                for (const int32_t v : mesh_.tetrahedra[t]) corners[at(part_[t])].push_back(v);
+        std::vector<double> one(old_.count, 0), both(old_.count, 0);
+        for (size_t p = 0; p < old_.count; ++p) {
+            if (corners[p].empty()) continue;
+            std::sort(corners[p].begin(), corners[p].end());
+            corners[p].erase(std::unique(corners[p].begin(), corners[p].end()), corners[p].end());
+            std::vector<Point> points;
+            for (const int32_t v : corners[p]) points.push_back(mesh_.vertices[at(v)]);
+            one[p] = hull_volume(points);
+            for (const int32_t v : corners[p]) points.push_back(plane_.mirrored(mesh_.vertices[at(v)]));
+            both[p] = hull_volume(points);
+        }
+        add_up_images(one);
+        add_up_images(both);
+        for (size_t p = 0; p < old_.count; ++p) own_image_[p] |= both[p] - 2 * one[p] <= little_excess * both[p];
     }
 
     // Numbers: part p of the near side is still p; its image is p or count + p. What has no counterpart is of the part that

@@ -41,6 +41,7 @@
 #pragma once
 
 #include "cluster/cluster.h"
+#include "surface/symmetry.h"
 #include "tree/regroup/measures.h"
 
 #include <array>
@@ -79,8 +80,9 @@ struct RegroupTrace {
     std::vector<std::array<double, node_measures>> nodes;
 };
 
-// tree: the paper's of this mesh. pair_numbers: null, or another cost to be tried; trace: null, or what to fill.
-Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, Progress& progress,
-                  std::span<const double> pair_numbers = {}, RegroupTrace* trace = nullptr, size_t threads = 1);
+// tree: the paper's of this mesh; planes: in which it is its own mirror image, see mirror_planes(). threads: as cluster()
+// takes it. pair_numbers: null, or another cost to be tried; trace: null, or what to fill.
+Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, std::span<const Plane> planes, Progress& progress,
+                  size_t threads = 1, std::span<const double> pair_numbers = {}, RegroupTrace* trace = nullptr);
 
 }  // namespace partwheel
