@@ -86,8 +86,7 @@ void trace(const std::filesystem::path& path, const std::vector<double>& numbers
     Progress progress;
     progress.begin();
     RegroupTrace seen;
-    const std::vector<Plane> planes = mirror_planes(b.mesh.vertices, outer_facets(b.mesh), progress);
-    regroup(b.mesh, b.tree, planes, progress, 1, numbers, &seen);
+    regroup(b.mesh, b.tree, {}, progress, 1, numbers, &seen);
     const pw_arrays a = hierarchy.arrays();
     std::vector<int32_t> part_of_face;
     for (size_t f = 0; f < a.face_count; ++f)

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <numeric>
 #include <queue>
@@ -18,68 +19,77 @@ namespace {
 
 class Regrouping {
 public:
-    Regrouping(const TetMesh& mesh, const BinaryTree& tree, std::span<const Plane> planes, Progress& progress,
-               size_t threads, std::span<const double> pair_numbers, RegroupTrace* trace)
-        : mesh_(mesh), tree_(tree), planes_(planes), progress_(progress), threads_(threads),
-          pair_numbers_(pair_numbers), trace_(trace), kernel_(mesh.vertices) {}
-    Regrouped run();
+    Regrouping(const TetMesh& mesh, const BinaryTree& tree, Progress& progress, std::span<const double> pair_numbers,
+               RegroupTrace* trace)
+        : mesh_(mesh), tree_(tree), progress_(progress), pair_numbers_(pair_numbers), trace_(trace),
+          kernel_(mesh.vertices) {}
+
+    PartsOfTetrahedra choose();
+    void join_by_cost();
+    void take(PartsOfTetrahedra parts, size_t threads);
+    void join_as(const Regrouping& other, std::span<const int32_t> stands);
+    Regrouped result();
 
 private:
-    void take_parts();
+    void measure(const PartsOfTetrahedra& parts, std::span<const int32_t> numbers);
     std::vector<int32_t> keep_chosen(std::span<const int32_t> chosen, std::span<const int32_t> part_of);
     double hull_volume(const Pair& pair);
     double cost(const Pair& pair, double hull, bool exact);
     void enter(Pair& pair);
-    void enter(Pair& pair, double due);
     void price(Pair& pair);
     int32_t join(int32_t a, int32_t b, double cost);
-    std::vector<std::array<int32_t, 2>> images(int32_t a, int32_t b) const;
-    Pair* pair_of(int32_t a, int32_t b);
-    void join_with_images(const Pair& pair);
     void join_neighbours();
     void join_components();
+    std::vector<std::array<int32_t, 2>> images(int32_t a, int32_t b) const;
+    void join_with_images(int32_t a, int32_t b, double cost);
+    void join_rest();
     std::vector<double> scores() const;
 
     const TetMesh& mesh_;
     const BinaryTree& tree_;
-    const std::span<const Plane> planes_;
     Progress& progress_;
-    const size_t threads_;
     std::span<const double> pair_numbers_;
     RegroupTrace* trace_;
     HullKernel kernel_;
     Parts parts_;
-    std::vector<std::vector<int32_t>> image_;  // by plane: of each part its mirror image, or -1, see PartsOfTetrahedra
+    std::vector<std::array<int32_t, 2>> joined_;  // of which two each part that was not there at first was made
+    std::vector<std::vector<int32_t>> image_;     // by plane: of each part its mirror image, or -1
     // By cost, then number; those whose cost is not the pair's any more count no longer.
     std::priority_queue<std::pair<double, int32_t>, std::vector<std::pair<double, int32_t>>, std::greater<>> queue_;
     std::vector<int32_t> pair_with_;  // scratch of join()
     Regrouped result_;
 };
 
-// Chooses and measures the parts, and makes the tree below them.
-void Regrouping::take_parts() {
+// Clusters of the paper's tree become parts.
+PartsOfTetrahedra Regrouping::choose() {
     const size_t leaves = mesh_.tetrahedra.size();
     const std::vector<int32_t> chosen = choose_parts(mesh_, tree_);
     std::vector<int32_t> part_of(leaves + tree_.merges.size(), -1);
     for (size_t p = 0; p < chosen.size(); ++p) part_of[at(chosen[p])] = static_cast<int32_t>(p);
     hand_down(tree_.merges, leaves, part_of);
+    const std::vector<int32_t> numbers = keep_chosen(chosen, part_of);
+    part_of.resize(leaves);
+    PartsOfTetrahedra parts{std::move(part_of), chosen.size(), {}, {}};
+    measure(parts, numbers);
+    return parts;
+}
 
-    std::vector<int32_t> number;  // of each part's cluster
-    PartsOfTetrahedra parts{{part_of.begin(), part_of.begin() + static_cast<std::ptrdiff_t>(leaves)}, chosen.size(), {}};
-    parts = mirrored(mesh_, planes_, std::move(parts), progress_);
-    if (std::equal(parts.of.begin(), parts.of.end(), part_of.begin())) {
-        number = keep_chosen(chosen, part_of);
-    } else {
-        Within within = cluster_within(mesh_, parts.of, parts.count, kernel_, progress_, threads_);
-        result_.tree.merges = std::move(within.merges);
-        for (const Grown& part : within.parts) number.push_back(part.cluster);
-    }
-    result_.tree.components = tree_.components;
-    parts_ = measure_parts(mesh_, parts.of, parts.count, tree_.merges.back().hull_volume, kernel_, progress_);
-    for (size_t p = 0; p < parts.count; ++p) parts_.all[p].number = number[p];
-    if (trace_) trace_->part_of_tetrahedron = parts.of;
+// Parts that are none of the paper's clusters, of which the tree below them is made anew.
+void Regrouping::take(PartsOfTetrahedra parts, size_t threads) {
+    Within within = cluster_within(mesh_, parts.of, parts.count, kernel_, progress_, threads);
+    result_.tree.merges = std::move(within.merges);
+    std::vector<int32_t> numbers;
+    for (const Grown& part : within.parts) numbers.push_back(part.cluster);
+    measure(parts, numbers);
     image_ = std::move(parts.images);
-    for (std::vector<int32_t>& image : image_) image.resize(2 * parts_.fine - 1, -1);
+    for (std::vector<int32_t>& image : image_) image.resize(2 * parts.count - 1, -1);
+}
+
+void Regrouping::measure(const PartsOfTetrahedra& parts, std::span<const int32_t> numbers) {
+    parts_ = measure_parts(mesh_, parts.of, parts.count, tree_.merges.back().hull_volume, kernel_, progress_);
+    for (size_t p = 0; p < parts.count; ++p) parts_.all[p].number = numbers[p];
+    if (trace_) trace_->part_of_tetrahedron = parts.of;
+    result_.tree.components = tree_.components;
     parts_.all.reserve(2 * parts_.fine - 1);  // join() holds references
     pair_with_.assign(2 * parts_.fine - 1, -1);
 }
@@ -124,12 +134,7 @@ void Regrouping::enter(Pair& pair) {
         pair.cost = std::max(pair.cost, cost(pair, std::max(pair.hull, a.hull_volume + b.hull_volume), false));
     else  // without any surface it is no part: it goes first, with the neighbour that it shares most with
         pair.cost = -1e6 - pair.border.interface / parts_.whole.area;
-    enter(pair, pair.cost);
-}
-
-void Regrouping::enter(Pair& pair, double due) {
-    pair.due = due;
-    queue_.push({due, static_cast<int32_t>(&pair - parts_.pairs.data())});
+    queue_.push({pair.cost, static_cast<int32_t>(&pair - parts_.pairs.data())});
 }
 
 // What it does cost.
@@ -137,7 +142,7 @@ void Regrouping::price(Pair& pair) {
     pair.hull = hull_volume(pair);
     pair.cost = cost(pair, pair.hull, true);
     pair.guessed = false;
-    enter(pair, pair.cost);
+    queue_.push({pair.cost, static_cast<int32_t>(&pair - parts_.pairs.data())});
 }
 
 int32_t Regrouping::join(int32_t ia, int32_t ib, double cost) {
@@ -157,7 +162,7 @@ int32_t Regrouping::join(int32_t ia, int32_t ib, double cost) {
     const Part &first = a.low < b.low ? a : b, &second = a.low < b.low ? b : a;
     result_.tree.merges.push_back({first.number, second.number,
                                    ranked_concavity(u.hull.volume(), u.volume * parts_.volume_unit), u.hull.volume()});
-    if (trace_) trace_->merges.push_back({ia, ib});
+    joined_.push_back({ia, ib});
 
     for (const int32_t old : {ia, ib})
         for (const int32_t p : parts_[old].pairs) {
@@ -184,78 +189,12 @@ int32_t Regrouping::join(int32_t ia, int32_t ib, double cost) {
         pair_with_[at(parts_.pairs[at(p)].a)] = -1;
         u.rim += parts_.pairs[at(p)].border;
     }
-    for (const int32_t p : u.pairs) enter(parts_.pairs[at(p)]);
     a.above = b.above = number;
     a.beside = ib;
     b.beside = ia;
     a.hull = Hull();
     b.hull = Hull();
     return number;
-}
-
-// The two, and what lies so in any of the planes, and in more than one, as far as it has not become part of others.
-std::vector<std::array<int32_t, 2>> Regrouping::images(int32_t a, int32_t b) const {
-    std::vector<std::array<int32_t, 2>> all = {{a, b}};
-    const auto free = [&](int32_t p) { return p >= 0 && parts_[p].above < 0; };
-    for (const std::vector<int32_t>& image : image_)
-        for (size_t i = 0, n = all.size(); i < n; ++i) {
-            const std::array<int32_t, 2> there = {image[at(all[i][0])], image[at(all[i][1])]};
-            if (free(there[0]) && free(there[1]) && there[0] != there[1] && std::ranges::find(all, there) == all.end())
-                all.push_back(there);
-        }
-    return all;
-}
-
-Pair* Regrouping::pair_of(int32_t a, int32_t b) {
-    for (const int32_t p : parts_[a].pairs) {
-        Pair& pair = parts_.pairs[at(p)];
-        if (pair.alive && (pair.a == b || pair.b == b)) return &pair;
-    }
-    return nullptr;
-}
-
-// The pair and its images, all at once. What they join is one part each, which may be made of more than two: the steps to
-// it are no nodes.
-void Regrouping::join_with_images(const Pair& pair) {
-    const double cost = pair.due;
-    std::vector<int32_t> members;
-    std::vector<std::array<int32_t, 2>> together = images(pair.a, pair.b);
-    for (const auto& [a, b] : together) members.insert(members.end(), {a, b});
-    std::sort(members.begin(), members.end());
-    members.erase(std::unique(members.begin(), members.end()), members.end());
-    const auto place = [&](int32_t part) {
-        return static_cast<size_t>(std::lower_bound(members.begin(), members.end(), part) - members.begin());
-    };
-    Joined sets(members.size());
-    for (const auto& [a, b] : together) sets.join(place(a), place(b));
-
-    std::vector<int32_t> made(members.size(), -1), larger(members.size(), -1);  // of each set, at its first
-    for (size_t i = 0; i < members.size(); ++i) {
-        const size_t s = sets.find(i);
-        int32_t& large = larger[s];
-        if (large < 0 || parts_[members[i]].area > parts_[large].area) large = members[i];
-        made[s] = made[s] < 0 ? members[i] : join(made[s], members[i], cost);
-    }
-    for (size_t i = 0; i < members.size(); ++i) {
-        if (sets.find(i) != i) continue;
-        // The steps stand for the whole.
-        std::vector<int32_t> steps;
-        for (size_t j = 0; j < members.size(); ++j)
-            if (sets.find(j) == i) steps.push_back(members[j]);
-        for (int32_t step = parts_[steps[0]].above; step != made[i]; step = parts_[step].above) parts_[step].step = true;
-        for (const int32_t member : steps) parts_[member].above = made[i];
-    }
-    // The image of what was made is what its larger member's has become.
-    for (std::vector<int32_t>& image : image_)
-        for (size_t i = 0; i < members.size(); ++i) {
-            if (sets.find(i) != i) continue;
-            const int32_t other = image[at(larger[i])];
-            const bool found = std::ranges::binary_search(members, other);
-            if (other < 0 || (!found && parts_[other].above >= 0)) continue;
-            const int32_t there = found ? made[sets.find(place(other))] : other;
-            image[at(made[i])] = there;
-            if (!found) image[at(other)] = made[i];
-        }
 }
 
 void Regrouping::join_neighbours() {
@@ -267,23 +206,12 @@ void Regrouping::join_neighbours() {
         const auto [cost, number] = queue_.top();
         queue_.pop();
         Pair& pair = parts_.pairs[at(number)];
-        if (!pair.alive || pair.due != cost) continue;
-        // It and its images are joined at once, at what they cost in the mean.
-        std::vector<Pair*> all;
-        for (const auto& [a, b] : images(pair.a, pair.b))
-            if (Pair* each = pair_of(a, b)) all.push_back(each);
-        const bool waits = pair.guessed;
-        double sum = 0;
-        for (Pair* each : all) {
-            if (each->guessed) price(*each);
-            sum += each->cost;
-        }
-        const double mean = sum / static_cast<double>(all.size());
-        if (waits || mean > cost) {
-            if (!waits) enter(pair, mean);
+        if (!pair.alive || pair.cost != cost) continue;
+        if (pair.guessed) {
+            price(pair);
             continue;
         }
-        join_with_images(pair);
+        for (const int32_t p : parts_[join(pair.a, pair.b, pair.cost)].pairs) enter(parts_.pairs[at(p)]);
         const size_t joined = parts_.all.size() - parts_.fine;
         progress_.advance(0.2 + 0.8 * static_cast<double>(joined) / static_cast<double>(parts_.fine));
     }
@@ -303,6 +231,107 @@ void Regrouping::join_components() {
         if (m + joins < merges) continue;
         join(component[at(a)], component[at(b)], largest_cost);
         component[at(low.back())] = static_cast<int32_t>(parts_.all.size()) - 1;
+    }
+}
+
+void Regrouping::join_by_cost() {
+    join_neighbours();
+    join_components();
+}
+
+// The two, and what lies so in any of the planes, and in more than one, as far as it has not become part of others.
+std::vector<std::array<int32_t, 2>> Regrouping::images(int32_t a, int32_t b) const {
+    std::vector<std::array<int32_t, 2>> all = {{a, b}};
+    const auto free = [&](int32_t p) { return p >= 0 && parts_[p].above < 0; };
+    for (const std::vector<int32_t>& image : image_)
+        for (size_t i = 0, n = all.size(); i < n; ++i) {
+            const std::array<int32_t, 2> there = {image[at(all[i][0])], image[at(all[i][1])]};
+            if (free(there[0]) && free(there[1]) && (there[0] != there[1]) == (a != b) && std::ranges::find(all, there) == all.end())
+                all.push_back(there);
+        }
+    return all;
+}
+
+// The two and their images, all at once. What they join is one part each, which may be made of more than two: the steps
+// to it are no nodes.
+void Regrouping::join_with_images(int32_t a, int32_t b, double cost) {
+    const std::vector<std::array<int32_t, 2>> together = images(a, b);
+    std::vector<int32_t> members;
+    for (const auto& two : together) members.insert(members.end(), two.begin(), two.end());
+    std::sort(members.begin(), members.end());
+    members.erase(std::unique(members.begin(), members.end()), members.end());
+    const auto place = [&](int32_t part) {
+        return static_cast<size_t>(std::lower_bound(members.begin(), members.end(), part) - members.begin());
+    };
+    Joined sets(members.size());
+    for (const auto& [one, other] : together) sets.join(place(one), place(other));
+
+    struct Set {
+        std::vector<int32_t> members;
+        int32_t made = -1;
+    };
+    std::vector<Set> all(members.size());  // each at its first member's place
+    for (size_t i = 0; i < members.size(); ++i) {
+        Set& set = all[sets.find(i)];
+        set.members.push_back(members[i]);
+        if (set.made >= 0 && set.members.size() > 2) parts_[set.made].step = true;
+        set.made = set.made < 0 ? members[i] : join(set.made, members[i], cost);
+    }
+    for (const Set& set : all)
+        for (const int32_t member : set.members) parts_[member].above = set.made;
+    // The image of what was made is what that of its largest member that has one has become.
+    for (std::vector<int32_t>& image : image_)
+        for (const Set& set : all) {
+            double largest = -1;
+            for (const int32_t member : set.members) {
+                const int32_t other = image[at(member)];
+                const bool inside = std::ranges::binary_search(members, other);
+                if (other < 0 || (!inside && parts_[other].above >= 0) || parts_[member].area <= largest) continue;
+                largest = parts_[member].area;
+                image[at(set.made)] = inside ? all[sets.find(place(other))].made : other;
+            }
+            if (largest >= 0) image[at(image[at(set.made)])] = set.made;
+        }
+}
+
+// What still has neighbours: two sides that only meet in the plane.
+void Regrouping::join_rest() {
+    for (size_t p = 0; p < parts_.pairs.size(); ++p)
+        if (const Pair& pair = parts_.pairs[p]; pair.alive) fprintf(stderr,"rest %g %g\n",parts_[pair.a].area/parts_.whole.area,parts_[pair.b].area/parts_.whole.area), join_with_images(pair.a, pair.b, largest_cost);
+}
+
+// In the order in which other joined its parts; what stands for a part there is one here, or none (-1).
+void Regrouping::join_as(const Regrouping& other, std::span<const int32_t> stands) {
+    std::vector<int32_t> here(stands.begin(), stands.end());
+    const auto now = [&](int32_t part) {
+        while (part >= 0 && parts_[part].above >= 0) part = parts_[part].above;
+        return part;
+    };
+    // Scraps that neither stand for a part nor are an image of one that does go first, each with the neighbour that it
+    // shares most with.
+    std::vector<uint8_t> met(parts_.fine, 0);
+    for (const int32_t part : here) {
+        if (part < 0) continue;
+        met[at(part)] = 1;
+        for (const auto& [image, same] : images(part, part)) met[at(image)] = 1;
+    }
+    for (size_t p = 0; p < parts_.fine; ++p) {
+        if (met[p]) continue;
+        const Pair* most = nullptr;
+        for (const int32_t number : parts_.all[p].pairs)
+            if (const Pair& pair = parts_.pairs[at(number)];
+                pair.alive && (!most || pair.border.interface > most->border.interface))
+                most = &pair;
+        if (most && parts_.all[p].above < 0) join(most->a, most->b, -largest_cost);
+    }
+    const size_t within = other.joined_.size() - (tree_.components - 1);
+    for (size_t j = 0; j <= other.joined_.size(); ++j) {
+        if (j == within) join_rest();
+        if (j == other.joined_.size()) break;
+        const int32_t a = now(here[at(other.joined_[j][0])]), b = now(here[at(other.joined_[j][1])]);
+        if (a >= 0 && b >= 0 && a != b) join_with_images(a, b, other.parts_.all[other.parts_.fine + j].own_cost);
+        here.push_back(a >= 0 ? a : b);
+        progress_.advance(1);
     }
 }
 
@@ -332,11 +361,9 @@ std::vector<double> Regrouping::scores() const {
     return ordered;
 }
 
-Regrouped Regrouping::run() {
-    take_parts();
-    join_neighbours();
-    join_components();
+Regrouped Regrouping::result() {
     result_.scores = scores();
+    if (trace_) trace_->merges = joined_;
     return std::move(result_);
 }
 
@@ -346,7 +373,16 @@ Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, std::span<const P
                   size_t threads, std::span<const double> pair_numbers, RegroupTrace* trace) {
     if (tree.merges.empty()) return {tree, {1.0}};
     const std::span<const double> numbers = pair_numbers.empty() ? fitted_pair_numbers : pair_numbers;
-    return Regrouping(mesh, tree, planes, progress, threads, numbers, trace).run();
+    Regrouping by_cost(mesh, tree, progress, numbers, trace);
+    const PartsOfTetrahedra chosen = by_cost.choose();
+    by_cost.join_by_cost();
+    PartsOfTetrahedra copied = mirrored(mesh, planes, chosen, progress);
+    if (copied.of == chosen.of) return by_cost.result();
+    Regrouping alike(mesh, tree, progress, numbers, trace);
+    const std::vector<int32_t> stands = copied.stands;
+    alike.take(std::move(copied), threads);
+    alike.join_as(by_cost, stands);
+    return alike.result();
 }
 
 }  // namespace partwheel

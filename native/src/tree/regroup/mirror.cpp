@@ -217,6 +217,10 @@ private:
                 return {{p, q}, {image(p), image(q)}, {2 * count + p, 2 * count + q}};
             }));
         result.images.push_back(all([&](int32_t p) -> Ways { return {{p, image(p)}, {image(p), p}}; }));
+        for (const int32_t before : old_.stands) {
+            const int32_t p = before < 0 ? -1 : number[at(before)];
+            result.stands.push_back(before >= 0 && p < 0 ? number[at(2 * count + before)] : p);
+        }
         return result;
     }
 
@@ -233,6 +237,8 @@ private:
 
 PartsOfTetrahedra mirrored(const TetMesh& mesh, std::span<const Plane> planes, PartsOfTetrahedra parts,
                            Progress& progress) {
+    parts.stands.resize(parts.count);
+    std::iota(parts.stands.begin(), parts.stands.end(), 0);
     for (const Plane& plane : planes) parts = Copy(mesh, plane, std::move(parts), progress).run();
     return parts;
 }

@@ -14,6 +14,7 @@ struct PartsOfTetrahedra {
     size_t count = 0;
     // By plane: of each part its mirror image, which may be itself; -1: it has none.
     std::vector<std::vector<int32_t>> images;
+    std::vector<int32_t> stands;  // of mirrored(): for each part that was given one that it has become; -1: none
 };
 
 // Plane by plane, the side with more parts is copied to the other: what lies there goes with the mirror image of the part

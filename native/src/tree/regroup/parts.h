@@ -37,7 +37,6 @@ struct Pair {
     Border border;
     double hull = 0;  // volume of the hull of both, or of less than both have become
     double cost = -std::numeric_limits<double>::infinity();
-    double due = 0;  // at what cost its turn comes: the cost, or the mean of it and its images'
     bool alive = true;
     bool guessed = true;  // the cost; else it was worked out with the hull
 };

@@ -1,0 +1,112 @@
+// Mirror planes: of shapes whose planes are known, wherever they stand and however they are turned; and parts that are
+// copied across them.
+#include "support/shapes.h"
+#include "surface/symmetry.h"
+#include "tree/regroup/mirror.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace partwheel::test {
+namespace {
+
+using partwheel::operator+, partwheel::operator-, partwheel::operator*;
+
+std::vector<Plane> planes_of(const TriMesh& mesh) {
+    Progress progress;
+    progress.begin();
+    return mirror_planes(mesh.vertices, mesh.triangles, progress);
+}
+
+TriMesh sheared(TriMesh mesh) {
+    for (Point& p : mesh.vertices) p = {p[0] + 0.4 * p[1] + 0.3 * p[2], p[1] + 0.35 * p[2], p[2]};
+    return mesh;
+}
+
+// Squares of half a unit: a corner's tetrahedra are small beside the whole.
+TriMesh l_shape() {
+    return surface_of("L", block({0, 0, 0}, {12, 4, 2}) + block({0, 4, 0}, {4, 7, 2}), {0.5, 0.5, 0.5});
+}
+
+TEST(Symmetry, PlanesAreFoundWhereverTheModelStands) {
+    const TriMesh box = surface_of("box", block({0, 0, 0}, {8, 5, 3}));
+    const Point middle = {4, 2.5, 1.5};
+    for (const double angle : {0.0, 0.3, 1.1}) {
+        const TriMesh turned = rotated(box, angle, {1, 2, 3});
+        const TriMesh axes = rotated({"axes", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, middle}, {}, {}, 0}, angle, {1, 2, 3});
+        const std::vector<Plane> planes = planes_of(moved(turned, {5, -3, 2}));
+        ASSERT_EQ(planes.size(), 3U) << angle;
+        std::array<int, 3> met{};
+        for (const Plane& plane : planes) {
+            EXPECT_NEAR(length(plane.normal), 1, 1e-12);
+            EXPECT_NEAR(plane.height(axes.vertices[3] + Point{5, -3, 2}), 0, 0.02);
+            for (size_t k = 0; k < 3; ++k) met[k] += std::fabs(dot(plane.normal, axes.vertices[k])) > 0.999;
+        }
+        EXPECT_EQ(met, (std::array<int, 3>{1, 1, 1}));
+    }
+}
+
+TEST(Symmetry, WhatHasFewerPlanesHasThose) {
+    const std::vector<Plane> of_l = planes_of(l_shape());
+    ASSERT_EQ(of_l.size(), 1U);  // halfway up
+    EXPECT_NEAR(std::fabs(of_l[0].normal[2]), 1, 1e-6);
+    EXPECT_NEAR(std::fabs(of_l[0].offset), 0.5, 1e-3);
+    EXPECT_TRUE(planes_of(sheared(l_shape())).empty());
+    EXPECT_TRUE(planes_of(sheared(surface_of("box", block({0, 0, 0}, {8, 5, 3})))).empty());
+    EXPECT_TRUE(planes_of({}).empty());
+}
+
+TEST(Symmetry, MostOfTheSurfaceIsEnough) {
+    // A box with a knob on one side: the knob's face is a tenth of the area.
+    const TriMesh knobbed = surface_of("knob", block({0, 0, 0}, {12, 8, 8}) + block({12, 3, 3}, {14, 4, 4}));
+    EXPECT_EQ(planes_of(knobbed).size(), 3U);
+}
+
+// Of a bar of cubes along x, each cube a part numbered along it but for the last quarter, which has parts of its own
+// making: what is copied is the finer side's.
+TEST(Symmetry, PartsOfTheFinerSideAreCopied) {
+    const int length = 12;
+    const TetMesh mesh = tets_of(block({0, 0, 0}, {length, 2, 2}));
+    const auto cube = [&](size_t t) {
+        double x = 0;
+        for (const int32_t v : mesh.tetrahedra[t]) x += mesh.vertices[static_cast<size_t>(v)][0] / 4;
+        return static_cast<int>(x);
+    };
+    PartsOfTetrahedra parts;  // fine on the left, one part on the right from the middle on
+    for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) parts.of.push_back(std::min(cube(t), length / 2));
+    parts.count = static_cast<size_t>(length / 2 + 1);
+    Progress progress;
+    progress.begin();
+    const Plane middle{{1, 0, 0}, length / 2.0};
+    const PartsOfTetrahedra found = mirrored(mesh, std::vector<Plane>{middle}, parts, progress);
+    ASSERT_EQ(found.count, static_cast<size_t>(length));
+    ASSERT_EQ(found.images.size(), 1U);
+    std::map<int, int32_t> part;  // of each cube
+    for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+        const auto [place, is_new] = part.insert({cube(t), found.of[t]});
+        EXPECT_EQ(place->second, found.of[t]) << "cube " << cube(t);
+    }
+    for (int x = 0; x < length; ++x) EXPECT_EQ(found.images[0][static_cast<size_t>(part[x])], part[length - 1 - x]);
+}
+
+TEST(Symmetry, WhatLiesAcrossThePlaneIsItsOwnImage) {
+    const int length = 9;  // the middle cube lies across
+    const TetMesh mesh = tets_of(block({0, 0, 0}, {length, 2, 2}));
+    PartsOfTetrahedra parts{{}, 3, {}};
+    for (const Tetrahedron& tet : mesh.tetrahedra) {
+        double x = 0;
+        for (const int32_t v : tet) x += mesh.vertices[static_cast<size_t>(v)][0] / 4;
+        parts.of.push_back(x < 3 ? 0 : x < 6 ? 1 : 2);
+    }
+    Progress progress;
+    progress.begin();
+    const PartsOfTetrahedra found = mirrored(mesh, std::vector<Plane>{{{1, 0, 0}, length / 2.0}}, parts, progress);
+    EXPECT_EQ(found.of, parts.of);
+    EXPECT_EQ(found.images, (std::vector<std::vector<int32_t>>{{2, 1, 0}}));
+}
+
+}  // namespace
+}  // namespace partwheel::test
