@@ -1,13 +1,13 @@
 // The parts joined bottom-up, the likeliest pair first, then the components; and what that makes of the tree.
-#include "base/groups.h"
 #include "cluster/within.h"
+#include "tree/regroup/alike.h"
 #include "tree/regroup/fitted.h"
 #include "tree/regroup/mirror.h"
 #include "tree/regroup/parts.h"
+#include "tree/regroup/spread.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <numeric>
 #include <queue>
@@ -26,9 +26,10 @@ public:
 
     PartsOfTetrahedra choose();
     void join_by_cost();
-    void take(PartsOfTetrahedra parts, size_t threads);
-    void join_as(const Regrouping& other, std::span<const int32_t> stands);
-    Regrouped result();
+    std::vector<double> scores() const;
+    std::vector<double> worth(const std::vector<double>& scores) const;
+    Regrouped alike(PartsOfTetrahedra parts, size_t threads) const;
+    Regrouped result(const std::vector<double>& scores);
 
 private:
     void measure(const PartsOfTetrahedra& parts, std::span<const int32_t> numbers);
@@ -40,10 +41,7 @@ private:
     int32_t join(int32_t a, int32_t b, double cost);
     void join_neighbours();
     void join_components();
-    std::vector<std::array<int32_t, 2>> images(int32_t a, int32_t b) const;
-    void join_with_images(int32_t a, int32_t b, double cost);
-    void join_rest();
-    std::vector<double> scores() const;
+    void take(const PartsOfTetrahedra& parts, size_t threads);
 
     const TetMesh& mesh_;
     const BinaryTree& tree_;
@@ -53,7 +51,6 @@ private:
     HullKernel kernel_;
     Parts parts_;
     std::vector<std::array<int32_t, 2>> joined_;  // of which two each part that was not there at first was made
-    std::vector<std::vector<int32_t>> image_;     // by plane: of each part its mirror image, or -1
     // By cost, then number; those whose cost is not the pair's any more count no longer.
     std::priority_queue<std::pair<double, int32_t>, std::vector<std::pair<double, int32_t>>, std::greater<>> queue_;
     std::vector<int32_t> pair_with_;  // scratch of join()
@@ -72,17 +69,6 @@ PartsOfTetrahedra Regrouping::choose() {
     PartsOfTetrahedra parts{std::move(part_of), chosen.size(), {}, {}};
     measure(parts, numbers);
     return parts;
-}
-
-// Parts that are none of the paper's clusters, of which the tree below them is made anew.
-void Regrouping::take(PartsOfTetrahedra parts, size_t threads) {
-    Within within = cluster_within(mesh_, parts.of, parts.count, kernel_, progress_, threads);
-    result_.tree.merges = std::move(within.merges);
-    std::vector<int32_t> numbers;
-    for (const Grown& part : within.parts) numbers.push_back(part.cluster);
-    measure(parts, numbers);
-    image_ = std::move(parts.images);
-    for (std::vector<int32_t>& image : image_) image.resize(2 * parts.count - 1, -1);
 }
 
 void Regrouping::measure(const PartsOfTetrahedra& parts, std::span<const int32_t> numbers) {
@@ -239,130 +225,101 @@ void Regrouping::join_by_cost() {
     join_components();
 }
 
-// The two, and what lies so in any of the planes, and in more than one, as far as it has not become part of others.
-std::vector<std::array<int32_t, 2>> Regrouping::images(int32_t a, int32_t b) const {
-    std::vector<std::array<int32_t, 2>> all = {{a, b}};
-    const auto free = [&](int32_t p) { return p >= 0 && parts_[p].above < 0; };
-    for (const std::vector<int32_t>& image : image_)
-        for (size_t i = 0, n = all.size(); i < n; ++i) {
-            const std::array<int32_t, 2> there = {image[at(all[i][0])], image[at(all[i][1])]};
-            if (free(there[0]) && free(there[1]) && (there[0] != there[1]) == (a != b) && std::ranges::find(all, there) == all.end())
-                all.push_back(there);
-        }
-    return all;
-}
-
-// The two and their images, all at once. What they join is one part each, which may be made of more than two: the steps
-// to it are no nodes.
-void Regrouping::join_with_images(int32_t a, int32_t b, double cost) {
-    const std::vector<std::array<int32_t, 2>> together = images(a, b);
-    std::vector<int32_t> members;
-    for (const auto& two : together) members.insert(members.end(), two.begin(), two.end());
-    std::sort(members.begin(), members.end());
-    members.erase(std::unique(members.begin(), members.end()), members.end());
-    const auto place = [&](int32_t part) {
-        return static_cast<size_t>(std::lower_bound(members.begin(), members.end(), part) - members.begin());
-    };
-    Joined sets(members.size());
-    for (const auto& [one, other] : together) sets.join(place(one), place(other));
-
-    struct Set {
-        std::vector<int32_t> members;
-        int32_t made = -1;
-    };
-    std::vector<Set> all(members.size());  // each at its first member's place
-    for (size_t i = 0; i < members.size(); ++i) {
-        Set& set = all[sets.find(i)];
-        set.members.push_back(members[i]);
-        if (set.made >= 0 && set.members.size() > 2) parts_[set.made].step = true;
-        set.made = set.made < 0 ? members[i] : join(set.made, members[i], cost);
-    }
-    for (const Set& set : all)
-        for (const int32_t member : set.members) parts_[member].above = set.made;
-    // The image of what was made is what that of its largest member that has one has become.
-    for (std::vector<int32_t>& image : image_)
-        for (const Set& set : all) {
-            double largest = -1;
-            for (const int32_t member : set.members) {
-                const int32_t other = image[at(member)];
-                const bool inside = std::ranges::binary_search(members, other);
-                if (other < 0 || (!inside && parts_[other].above >= 0) || parts_[member].area <= largest) continue;
-                largest = parts_[member].area;
-                image[at(set.made)] = inside ? all[sets.find(place(other))].made : other;
-            }
-            if (largest >= 0) image[at(image[at(set.made)])] = set.made;
-        }
-}
-
-// What still has neighbours: two sides that only meet in the plane.
-void Regrouping::join_rest() {
-    for (size_t p = 0; p < parts_.pairs.size(); ++p)
-        if (const Pair& pair = parts_.pairs[p]; pair.alive) fprintf(stderr,"rest %g %g\n",parts_[pair.a].area/parts_.whole.area,parts_[pair.b].area/parts_.whole.area), join_with_images(pair.a, pair.b, largest_cost);
-}
-
-// In the order in which other joined its parts; what stands for a part there is one here, or none (-1).
-void Regrouping::join_as(const Regrouping& other, std::span<const int32_t> stands) {
-    std::vector<int32_t> here(stands.begin(), stands.end());
-    const auto now = [&](int32_t part) {
-        while (part >= 0 && parts_[part].above >= 0) part = parts_[part].above;
-        return part;
-    };
-    // Scraps that neither stand for a part nor are an image of one that does go first, each with the neighbour that it
-    // shares most with.
-    std::vector<uint8_t> met(parts_.fine, 0);
-    for (const int32_t part : here) {
-        if (part < 0) continue;
-        met[at(part)] = 1;
-        for (const auto& [image, same] : images(part, part)) met[at(image)] = 1;
-    }
-    for (size_t p = 0; p < parts_.fine; ++p) {
-        if (met[p]) continue;
-        const Pair* most = nullptr;
-        for (const int32_t number : parts_.all[p].pairs)
-            if (const Pair& pair = parts_.pairs[at(number)];
-                pair.alive && (!most || pair.border.interface > most->border.interface))
-                most = &pair;
-        if (most && parts_.all[p].above < 0) join(most->a, most->b, -largest_cost);
-    }
-    const size_t within = other.joined_.size() - (tree_.components - 1);
-    for (size_t j = 0; j <= other.joined_.size(); ++j) {
-        if (j == within) join_rest();
-        if (j == other.joined_.size()) break;
-        const int32_t a = now(here[at(other.joined_[j][0])]), b = now(here[at(other.joined_[j][1])]);
-        if (a >= 0 && b >= 0 && a != b) join_with_images(a, b, other.parts_.all[other.parts_.fine + j].own_cost);
-        here.push_back(a >= 0 ? a : b);
-        progress_.advance(1);
-    }
-}
-
+// The score of each part, also of those that were joined.
 std::vector<double> Regrouping::scores() const {
-    std::vector<double> of_part;
+    std::vector<double> all;
     for (size_t n = 0; n < parts_.all.size(); ++n) {
         const auto inputs = in_order(measures(parts_, n));
         if (trace_) trace_->nodes.push_back(inputs);
         const double logit = fitted(fitted_node_numbers, inputs);
-        of_part.push_back(parts_.all[n].step ? 0 : (1 + logit / (1 + std::abs(logit))) / 2);
+        all.push_back((1 + logit / (1 + std::abs(logit))) / 2);
     }
-    std::vector<double> of_cluster(mesh_.tetrahedra.size() + result_.tree.merges.size());
-    for (size_t n = 0; n < of_part.size(); ++n) {
-        std::vector<int32_t> all = {static_cast<int32_t>(n)};  // and its images, which score the same
-        for (const std::vector<int32_t>& image : image_)
+    return all;
+}
+
+// What each part at first is worth: the score of what it lies in, where the surface is cut so that scores are best.
+std::vector<double> Regrouping::worth(const std::vector<double>& scores) const {
+    std::vector<double> best, value(scores);
+    for (size_t n = 0; n < parts_.all.size(); ++n) best.push_back(parts_.all[n].area * scores[n]);
+    for (size_t j = 0; j < joined_.size(); ++j) {
+        const double apart = best[at(joined_[j][0])] + best[at(joined_[j][1])];
+        double& whole = best[parts_.fine + j];
+        if (apart > whole) {
+            whole = apart;
+            value[parts_.fine + j] = -1;  // divided
+        }
+    }
+    for (size_t j = joined_.size(); j-- > 0;)
+        if (const double of_both = value[parts_.fine + j]; of_both >= 0)
+            for (const int32_t half : joined_[j]) value[at(half)] = of_both;
+    value.resize(parts_.fine);
+    return value;
+}
+
+// Parts that are none of the paper's clusters, of which the tree below them is made anew.
+void Regrouping::take(const PartsOfTetrahedra& parts, size_t threads) {
+    Within within = cluster_within(mesh_, parts.of, parts.count, kernel_, progress_, threads);
+    result_.tree.merges = std::move(within.merges);
+    std::vector<int32_t> numbers;
+    for (const Grown& part : within.parts) numbers.push_back(part.cluster);
+    measure(parts, numbers);
+}
+
+// The same joins for parts that were copied from one side to the other, each with those of its images at once. The steps
+// to what is made of more than two are no nodes; images score the same.
+Regrouped Regrouping::alike(PartsOfTetrahedra parts, size_t threads) const {
+    std::vector<double> costs;
+    for (size_t j = 0; j < joined_.size(); ++j) costs.push_back(parts_.all[parts_.fine + j].own_cost);
+    Alike plan;
+    for (double scrap = 0.02;;) {
+        std::vector<double> areas(parts.count, 0);
+        for (size_t t = 0; t < parts.of.size(); ++t)
+            for (size_t k = 0; k < 4; ++k)
+                if (mesh_.neighbours[t][k] < 0) areas[at(parts.of[t])] += facet_area(mesh_, t, k);
+        plan = joined_alike(parts, areas, joined_, costs, scrap);
+        if (plan.scraps.empty()) break;
+        const size_t before = parts.count;
+        parts = dissolved(mesh_, std::move(parts), plan.scraps, progress_);
+        if (parts.count == before) scrap = 0;  // they have no neighbours
+    }
+    Regrouping copy(mesh_, tree_, progress_, pair_numbers_, trace_);
+    copy.take(parts, threads);
+    std::vector<int32_t> number(parts.count), steps;  // of what each number of the plan is
+    std::iota(number.begin(), number.end(), 0);
+    for (const JoinedAlike& join : plan.joins) {
+        int32_t made = number[at(join.members[0])];
+        for (size_t i = 1; i < join.members.size(); ++i) {
+            if (i > 1) steps.push_back(made);
+            made = copy.join(made, number[at(join.members[i])], join.cost);
+        }
+        for (const int32_t member : join.members) copy.parts_[number[at(member)]].above = made;
+        number.push_back(made);
+        progress_.advance(1);
+    }
+    std::vector<double> scores = copy.scores(), of_plan;
+    for (const int32_t n : number) of_plan.push_back(scores[at(n)]);
+    for (size_t n = 0; n < number.size(); ++n) {
+        std::vector<int32_t> all = {static_cast<int32_t>(n)};
+        for (const std::vector<int32_t>& image : plan.images)
             for (size_t i = 0, before = all.size(); i < before; ++i)
                 if (const int32_t there = image[at(all[i])]; there >= 0 && std::ranges::find(all, there) == all.end())
                     all.push_back(there);
         std::ranges::sort(all);
         double sum = 0;
-        for (const int32_t each : all) sum += of_part[at(each)];
-        of_cluster[at(parts_.all[n].number)] = sum / static_cast<double>(all.size());
+        for (const int32_t each : all) sum += of_plan[at(each)];
+        scores[at(number[n])] = sum / static_cast<double>(all.size());
     }
-    std::vector<double> ordered;
-    for (const int32_t c : cut_undoing_last(result_.tree.merges, parts_.fine)) ordered.push_back(of_cluster[at(c)]);
-    ordered.insert(ordered.end(), of_cluster.end() - static_cast<std::ptrdiff_t>(parts_.fine - 1), of_cluster.end());
-    return ordered;
+    for (const int32_t step : steps) scores[at(step)] = 0;
+    return copy.result(scores);
 }
 
-Regrouped Regrouping::result() {
-    result_.scores = scores();
+Regrouped Regrouping::result(const std::vector<double>& scores) {
+    std::vector<double> of_cluster(mesh_.tetrahedra.size() + result_.tree.merges.size());
+    for (size_t n = 0; n < scores.size(); ++n) of_cluster[at(parts_.all[n].number)] = scores[n];
+    for (const int32_t c : cut_undoing_last(result_.tree.merges, parts_.fine))
+        result_.scores.push_back(of_cluster[at(c)]);
+    result_.scores.insert(result_.scores.end(), of_cluster.end() - static_cast<std::ptrdiff_t>(parts_.fine - 1),
+                          of_cluster.end());
     if (trace_) trace_->merges = joined_;
     return std::move(result_);
 }
@@ -376,13 +333,11 @@ Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, std::span<const P
     Regrouping by_cost(mesh, tree, progress, numbers, trace);
     const PartsOfTetrahedra chosen = by_cost.choose();
     by_cost.join_by_cost();
-    PartsOfTetrahedra copied = mirrored(mesh, planes, chosen, progress);
-    if (copied.of == chosen.of) return by_cost.result();
-    Regrouping alike(mesh, tree, progress, numbers, trace);
-    const std::vector<int32_t> stands = copied.stands;
-    alike.take(std::move(copied), threads);
-    alike.join_as(by_cost, stands);
-    return alike.result();
+    const std::vector<double> scores = by_cost.scores();
+    if (planes.empty()) return by_cost.result(scores);
+    PartsOfTetrahedra copied = mirrored(mesh, planes, chosen, by_cost.worth(scores), progress);
+    if (copied.of == chosen.of) return by_cost.result(scores);
+    return by_cost.alike(std::move(copied), threads);
 }
 
 }  // namespace partwheel

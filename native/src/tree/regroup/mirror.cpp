@@ -58,8 +58,8 @@ double hull_volume(const std::vector<Point>& points) {
 
 class Copy {
 public:
-    Copy(const TetMesh& mesh, Plane plane, PartsOfTetrahedra parts, Progress& progress)
-        : mesh_(mesh), plane_(plane), old_(std::move(parts)), progress_(progress) {}
+    Copy(const TetMesh& mesh, Plane plane, PartsOfTetrahedra parts, std::span<const double> worth, Progress& progress)
+        : mesh_(mesh), plane_(plane), old_(std::move(parts)), worth_(worth), progress_(progress) {}
 
     PartsOfTetrahedra run() {
         choose_side();
@@ -81,9 +81,19 @@ private:
         }
         add_up_images(here);
         add_up_images(all);
-        double balance = 0;
-        for (size_t p = 0; p < old_.count; ++p) balance += here[p] > 0.5 * all[p] ? 1 : -1;
-        if (balance < 0) {
+        // What each tetrahedron's outside is worth, by the parts that were given first.
+        double worth_here = 0, area_here = 0, worth_all = 0, area_all = 0;
+        for (size_t t = 0; t < tetrahedra; ++t)
+            for (size_t k = 0; k < 4; ++k) {
+                if (mesh_.neighbours[t][k] >= 0) continue;
+                const double size = facet_area(mesh_, t, k), worth = size * worth_[t];
+                area_all += size;
+                worth_all += worth;
+                if (!near(centre(mesh_, t))) continue;
+                area_here += size;
+                worth_here += worth;
+            }
+        if (worth_here * area_all < worth_all * area_here) {
             plane_ = {-1 * plane_.normal, -plane_.offset};
             for (size_t p = 0; p < old_.count; ++p) here[p] = all[p] - here[p];
         }
@@ -227,6 +237,7 @@ private:
     const TetMesh& mesh_;
     Plane plane_;
     const PartsOfTetrahedra old_;
+    const std::span<const double> worth_;  // of each tetrahedron
     Progress& progress_;
     std::vector<uint8_t> lives_, own_image_;  // of each old part
     std::vector<uint8_t> near_;               // of each tetrahedron
@@ -236,10 +247,33 @@ private:
 }  // namespace
 
 PartsOfTetrahedra mirrored(const TetMesh& mesh, std::span<const Plane> planes, PartsOfTetrahedra parts,
-                           Progress& progress) {
+                           std::span<const double> worth, Progress& progress) {
+    std::vector<double> of_tetrahedra;
+    for (const int32_t p : parts.of) of_tetrahedra.push_back(worth[at(p)]);
     parts.stands.resize(parts.count);
     std::iota(parts.stands.begin(), parts.stands.end(), 0);
-    for (const Plane& plane : planes) parts = Copy(mesh, plane, std::move(parts), progress).run();
+    for (const Plane& plane : planes) parts = Copy(mesh, plane, std::move(parts), of_tetrahedra, progress).run();
+    return parts;
+}
+
+PartsOfTetrahedra dissolved(const TetMesh& mesh, PartsOfTetrahedra parts, std::span<const int32_t> scraps,
+                            Progress& progress) {
+    std::vector<int32_t> number(parts.count, 0);
+    for (const int32_t p : scraps) number[at(p)] = unsettled;
+    for (int32_t& p : parts.of)
+        if (number[at(p)] < 0) p = unsettled;
+    spread(mesh, claims_of_neighbours(mesh, parts.of), parts.of, progress);
+    parts.count = 0;
+    for (int32_t& n : number)
+        if (n == 0) n = static_cast<int32_t>(parts.count++);
+    for (int32_t& p : parts.of) p = number[at(p)];
+    for (int32_t& p : parts.stands) p = p < 0 ? -1 : number[at(p)];
+    for (std::vector<int32_t>& image : parts.images) {
+        std::vector<int32_t> there(parts.count, -1);
+        for (size_t p = 0; p < image.size(); ++p)
+            if (number[p] >= 0 && image[p] >= 0) there[at(number[p])] = number[at(image[p])];
+        image = std::move(there);
+    }
     return parts;
 }
 

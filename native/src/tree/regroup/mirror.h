@@ -17,10 +17,14 @@ struct PartsOfTetrahedra {
     std::vector<int32_t> stands;  // of mirrored(): for each part that was given one that it has become; -1: none
 };
 
-// Plane by plane, the side with more parts is copied to the other: what lies there goes with the mirror image of the part
+// Plane by plane, the side whose area is worth more (worth: of each part, by area) is copied to the other: what lies there goes with the mirror image of the part
 // that lies behind its own mirror image. A part with a fair share of its volume on either side becomes its own image.
 // What has no counterpart within the tolerance keeps the part it had, which then has no image.
 PartsOfTetrahedra mirrored(const TetMesh& mesh, std::span<const Plane> planes, PartsOfTetrahedra parts,
-                           Progress& progress);
+                           std::span<const double> worth, Progress& progress);
+
+// Some of the parts given to their neighbours.
+PartsOfTetrahedra dissolved(const TetMesh& mesh, PartsOfTetrahedra parts, std::span<const int32_t> scraps,
+                            Progress& progress);
 
 }  // namespace partwheel

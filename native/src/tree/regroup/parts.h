@@ -52,7 +52,6 @@ struct Part {
     std::vector<int32_t> pairs;
     double own_cost = -largest_cost, worst_cost = -largest_cost;  // of the merge that made it; of any below
     int32_t above = -1, beside = -1;  // what it became a part of, and with which other
-    bool step = false;                // on the way to one of more than two; no node
 
     void take_logs() {
         log_volume = log2_of(volume);
