@@ -67,11 +67,12 @@ double Shell::area() const {
     return sum;
 }
 
-std::vector<Point> Shell::points(size_t wanted) const {
+std::vector<Point> Shell::points(size_t wanted, double least_spacing) const {
     double sides = 0;
     for (const Triangle& t : triangles)
         for (size_t k = 0; k < 3; ++k) sides += length(vertices[at(t[(k + 1) % 3])] - vertices[at(t[k])]);
-    const double spacing = std::max(std::sqrt(area() / static_cast<double>(wanted)), sides / most_tried);
+    const double spread = std::sqrt(area() / static_cast<double>(wanted));
+    const double spacing = std::max({spread, sides / most_tried, least_spacing});
     std::vector<Point> found = vertices;
     // Where there are long and thin triangles side by side, one point does for all: a cell of a grid gets one.
     std::unordered_set<uint64_t> taken;
