@@ -186,6 +186,21 @@ TEST(Points, BrokenModelsAreFilledAsWhatTheyWere) {
     EXPECT_EQ(pieces(crossing.mesh), 1U);
 }
 
+// Parts that are inside out beside others, as mirrored copies are, and hollows, which are within others.
+TEST(Points, PartsInsideOutAreFilledAndHollowsAreNot) {
+    const TriMesh ball = without_faces(snowman(24, 32));
+    TriMesh turned = ball;
+    for (Triangle& t : turned.triangles) std::swap(t[1], t[2]);
+    const double one = std::fabs(enclosed_volume(ball));
+    const TriMesh hollow = stretched(turned, {0.5, 0.5, 0.5});
+    for (const auto& [mesh, volumes] : {std::pair(together("turned", moved(ball, {9, 0, 0}), turned), 2.0),
+                                        {together("hollow", ball, hollow), 1 - 0.125},
+                                        {together("within another", stretched(ball, {3, 3, 3}), turned), 26.0},
+                                        {together("both", moved(turned, {9, 0, 0}), together("hollow", ball, hollow)),
+                                         2 - 0.125}})
+        EXPECT_NEAR(volume(filled(without_faces(mesh))), volumes * one, 0.03 * volumes * one) << mesh.name;
+}
+
 // What is near stays apart, and what is thin stays.
 TEST(Points, GapsAndThinPlatesStay) {
     for (const auto& [thickness, off] : {std::pair(0.3, 0.001), {0.1, 0.02}, {0.03, 0.15}}) {

@@ -20,7 +20,8 @@ struct Shell {
     std::vector<Point> points(size_t wanted, double least_spacing) const;
 };
 
-// The mended mesh, its sheets made thin solids by moving them half of a thickness to either side.
+// The mended mesh, its sheets made thin solids by moving them half of a thickness to either side, and parts that are
+// inside out turned.
 Shell shell_of(const Mended& mended, double thickness);
 
 }  // namespace partwheel
