@@ -3,6 +3,8 @@
 
 import bpy
 
+from . import trouble
+
 
 class PartwheelPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
@@ -58,7 +60,8 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         default=False,
     )
 
-    def draw(self, _context):
+    def draw(self, context):
+        trouble.draw(context, self.layout)
         column = self.layout.column()
         column.use_property_split = True
         for name in ("parts", "exactly", "save_with_file", "memory_share", "time_limit", "python"):

@@ -8,6 +8,7 @@ from ..mesh.kept import PerMesh, key
 from . import stored
 
 unopened = PerMesh()  # packed
+newer = PerMesh()  # True: those that came with it are of a version after this one, which the user hasn't been told
 
 
 def waits(mesh):
@@ -38,6 +39,11 @@ class Opening:
             return self.unpacking.result(
                 now, arrays.read(self.mesh.vertices, "co", np.float32, 3),
                 arrays.polygon_sizes(self.mesh)[0], arrays.read(self.mesh.loops, "vertex_index", np.int32))
+        except stored.Older:
+            return None  # they are found anew, as any that aren't there
+        except stored.Newer:
+            newer[key(self.mesh)] = True
+            return None
         except stored.Refused as reason:
             print(f"Partwheel: the parts saved with {self.mesh.name} are left aside, for {reason}.")
             return None

@@ -15,7 +15,7 @@ from partwheel import Hierarchy, PartwheelError
 from ..mesh.arrays import Fingerprint
 
 PROPERTY = "partwheel"
-MAGIC, VERSION = b"PWPARTS\0", 2
+MAGIC, VERSION = b"PWPARTS\0", 2  # grows with this form, and with the hierarchy's (format_version in hierarchy.cpp)
 # Magic, version, fingerprint, hash of these. The saved hierarchy that follows has a hash of its own, and is compact as it
 # is: zlib would make it a sixth smaller, and opening it would take twice as long.
 HEADER = struct.Struct("<8sI16s16s")
@@ -25,6 +25,14 @@ SPACING = 0.01  # of the points that a hierarchy's deviation was measured at, as
 
 class Refused(Exception):
     """Bytes that are not a hierarchy of this mesh. str() says why, as the end of a sentence."""
+
+
+class Older(Refused):
+    """Bytes of a version before this one, that it can't read any more."""
+
+
+class Newer(Refused):
+    """Bytes of a version after this one."""
 
 
 def pack(fingerprint, hierarchy):
@@ -94,13 +102,13 @@ def unpack(data):
     _, version, *fingerprint = HEADER.unpack_from(data)
     fingerprint = Fingerprint(*fingerprint)
     if version != VERSION:
-        raise Refused("it is of another version")
+        raise (Newer if version > VERSION else Older)("it is of another version")
     if _hash(data[:HEADER.size]) != data[HEADER.size:start]:
         raise Refused("it is damaged")
     try:
         hierarchy = Hierarchy.load(memoryview(data)[start:])
     except PartwheelError as error:
-        raise Refused("it is damaged, or of another version") from error
+        raise Refused("it is damaged") from error
     return fingerprint, hierarchy
 
 

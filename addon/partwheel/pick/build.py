@@ -9,8 +9,10 @@ import time
 
 import bpy
 
-from ..parts import builds, picks, registry
+from .. import trouble
+from ..parts import builds, opening, picks, registry
 from partwheel import LibraryError, PartwheelError, Status
+from ..mesh.kept import key
 from ..view import status
 from ..view.in_view import InView
 from .polls import NeedsMesh
@@ -28,6 +30,9 @@ class Building:
         self.operator, self.hierarchy = operator, None
         self.began = time.perf_counter()
         self.build = builds.build(obj, **options)
+        if opening.newer.pop(key(obj.data), False):
+            operator.report({"WARNING"}, f"The parts saved with {obj.data.name} are of a newer Partwheel than this one, "
+                                         "so they are found anew. Update Partwheel to have those of the file.")
         self.timer, self.line = None, status.Line()
         self.printed = 0
 
@@ -132,10 +137,11 @@ def start(operator, obj, **options):
     """A Building, or None and a report."""
     try:
         return Building(operator, obj, **options)
-    except (PartwheelError, LibraryError) as error:
-        name = getattr(error, "name", "library")
-        operator.report({"ERROR"}, f"No parts for {obj.data.name} ({name}): {error}")
-        return None
+    except LibraryError as error:
+        operator.report({"ERROR"}, f"No parts for {obj.data.name}: {trouble.logged(error)}")
+    except PartwheelError as error:
+        operator.report({"ERROR"}, f"No parts for {obj.data.name} ({error.name}): {error}")
+    return None
 
 
 class _Build(NeedsMesh, InView):

@@ -7,6 +7,7 @@ draws it in every 3D view, for as long as the tool is active and no longer. It n
 
 import bpy
 
+from .. import trouble
 from ..mesh import objects
 from ..view import overlay, picking
 from . import borders, states
@@ -77,7 +78,7 @@ class VIEW3D_GGT_partwheel_hover(bpy.types.GizmoGroup):
 
     @classmethod
     def poll(cls, context):
-        return context.mode == "EDIT_MESH"
+        return context.mode == "EDIT_MESH" and not trouble.of_library()
 
     def setup(self, _context):
         self.gizmos.new(VIEW3D_GT_partwheel_hover.bl_idname)

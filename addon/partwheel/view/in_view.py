@@ -7,8 +7,10 @@ import traceback
 
 import bpy
 
+from .. import trouble
 from . import overlay
 from . import status
+from partwheel import LibraryError
 
 
 class InView:
@@ -77,6 +79,8 @@ class InView:
             if answer & {"CANCELLED", "FINISHED"}:
                 self._end(context)
             return answer
+        except LibraryError as error:
+            self.report({"ERROR"}, trouble.logged(error))
         except self.refusals as error:
             self.report({"ERROR"}, str(error))
         except Exception as error:  # any: a tool that dies in the middle leaves Blender with its keys and its changes

@@ -5,13 +5,16 @@ import ctypes
 import enum
 import functools
 import os
-import sys
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_int64, c_size_t, c_uint32, c_void_p
 from pathlib import Path
 
+if __package__:
+    from .loading import FILE_NAMES, SYSTEM, open_library
+else:  # the worker's bare Python
+    from loading import FILE_NAMES, SYSTEM, open_library
+
 VERSION = "0.1.0"  # of partwheel.h, as declared here
-FILE_NAME = {"win32": "partwheel.dll", "darwin": "libpartwheel.dylib"}.get(sys.platform, "libpartwheel.so")
-LIBRARY = Path(__file__).resolve().with_name(FILE_NAME)
+LIBRARY = Path(__file__).resolve().with_name(FILE_NAMES[SYSTEM])
 SOURCES = LIBRARY.parent / "../../src"
 
 
@@ -190,12 +193,9 @@ def load():
     other = SOURCES.is_dir() and os.environ.get("PARTWHEEL_LIBRARY")
     path = other or str(LIBRARY)
     try:
-        library = ctypes.CDLL(path)
+        library = open_library(path)
     except OSError as error:
-        raise LibraryError(
-            f"Partwheel's native library can't be loaded: {error}. Install the add-on from the zip for this platform, "
-            "or build the library first (scripts/build)."
-        ) from error
+        raise LibraryError(str(error)) from error.__cause__  # the loader's own words
     for name, (result, arguments) in FUNCTIONS.items():
         try:
             function = getattr(library, name)
