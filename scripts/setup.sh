@@ -181,6 +181,7 @@ setup_bpy() {
     start_setup && packages python3 python3-venv ca-certificates libgl1 libgomp1 libsm6 libx11-6 libxext6 libxfixes3 \
         libxi6 libxkbcommon0 libxrender1 libxxf86vm1 || return
     local version python=/usr/bin/python3.11
+    # shellcheck disable=SC2086 # they are several
     [ $# = 0 ] && set -- $bpy_versions
     [ -x $python ] || fail "bpy $bpy_versions need Python 3.11 at $python. Debian 12 has it; on Ubuntu install" \
         "python3.11 and python3.11-venv from the archive ppa:deadsnakes/ppa." || return

@@ -3,7 +3,7 @@
     zips.py build/package/partwheel-VERSION-py3-none-TAG.whl
 
 Beside the wheel come partwheel-VERSION-PLATFORM.zip, an extension for Blender 4.2 and later, which installs the wheel;
-and -legacy.zip for 3.4 to 4.1, in which it is unpacked.
+and -legacy.zip for 3.4 to 4.1, in which it is unpacked. zips.py --version prints the version that all files agree on.
 """
 
 import ast
@@ -92,4 +92,7 @@ def agreed_version():
 
 
 if __name__ == "__main__":
-    main(pathlib.Path(sys.argv[1]))
+    if sys.argv[1] == "--version":
+        print(agreed_version())
+    else:
+        main(pathlib.Path(sys.argv[1]))
