@@ -35,7 +35,7 @@ def distribution(target, builds):
             (place / "build/deps" / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(DEPS / name, place / "build/deps" / name)
         subprocess.run(["pyproject-build", "--sdist", "--no-isolation", "--outdir", target, place], check=True,
-                       stdout=subprocess.DEVNULL)
+                       capture_output=True)
 
 
 def _included(build):

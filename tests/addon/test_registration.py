@@ -84,7 +84,7 @@ def add_updated(old, new):
             with zipfile.ZipFile(io.BytesIO(data)) as old_wheel, zipfile.ZipFile(wheel, "w") as new_wheel:
                 add_updated(old_wheel, new_wheel)
             data = wheel.getvalue()
-        elif name.endswith(("/parts/registry.py", "partwheel/hierarchy.py", "/pick/build.py")):
+        elif name.endswith(("parts/registry.py", "partwheel/hierarchy.py", "pick/build.py")):
             data += b"\nUPDATED = True\n"
         elif ".dist-info/" in name:
             data = data.replace(b"0.1.0", b"0.1.1")
