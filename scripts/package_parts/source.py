@@ -1,5 +1,5 @@
-"""The source distribution: what `pip install` needs beside g++ and CMake, so also the headers of CGAL, Boost and Eigen that
-the library includes, and TetGen's source."""
+"""The source distribution: what `pip install` needs beside g++ and CMake, so also the headers of CGAL, Boost and Eigen
+that the library includes, and TetGen's source."""
 
 import pathlib
 import re
@@ -10,8 +10,8 @@ import tempfile
 from platforms import ROOT
 
 DEPS = ROOT / "build" / "deps"
-OURS = ("CMakeLists.txt", "CMakePresets.json", "cmake", "native/include", "native/src", "native/python", "native/partwheel.map",
-        "pyproject.toml", "LICENSE", "README.md", "CHANGELOG.md")
+OURS = ("CMakeLists.txt", "CMakePresets.json", "cmake", "native/include", "native/src", "native/python",
+        "native/partwheel.map", "pyproject.toml", "LICENSE", "README.md", "CHANGELOG.md")
 # What other compilers may include: each has headers of its own there.
 WHOLE = ("root/usr/include/boost/config", "root/usr/include/boost/predef")
 
@@ -26,7 +26,7 @@ def distribution(target, builds):
             else:
                 place.joinpath(name).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(ROOT / name, place / name)
-        names = {name for build in builds for name in _included(build)}
+        names = {name for build in builds for name in _included(build)} | _included_by_gcc()
         names |= {path.relative_to(DEPS) for name in WHOLE for path in (DEPS / name).rglob("*") if path.is_file()}
         names |= {path.relative_to(DEPS) for path in (DEPS / "root/usr/share/doc").glob("*/copyright") if path.is_file()}
         names |= {path.relative_to(DEPS) for path in (DEPS / "tetgen-0.8.0").rglob("*")
@@ -43,3 +43,14 @@ def _included(build):
     said = subprocess.run(["ninja", "-C", build, "-t", "deps"], check=True, capture_output=True, text=True).stdout
     for name in set(re.findall(rf"^\s+(?:\S*/)?build/deps/(\S+)$", said, re.M)):
         yield pathlib.Path(name)
+
+
+def _included_by_gcc():
+    """Those that g++ includes: Boost's headers differ by compiler."""
+    sources = [*(ROOT / "native/src").rglob("*.cpp"), *(DEPS / "tetgen-0.8.0/src").glob("*.cxx")]
+    places = [option for place in ("root/usr/include", "root/usr/include/eigen3", "tetgen-0.8.0/src")
+              for option in ("-isystem", DEPS / place)]
+    said = subprocess.run(["g++", "-std=c++20", "-M", "-fno-canonical-system-headers", "-DNDEBUG", "-DTETLIBRARY",
+                           "-DCGAL_DISABLE_GMP=1", "-DCGAL_DISABLE_MPFR=1", "-I", ROOT / "native/include",
+                           "-I", ROOT / "native/src", *places, *sources], check=True, capture_output=True, text=True).stdout
+    return {pathlib.Path(name) for name in re.findall(rf"{re.escape(str(DEPS))}/(\S+)", said)}

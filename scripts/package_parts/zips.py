@@ -1,4 +1,4 @@
-"""Writes the add-on with a wheel of the Python package inside: the same bytes for the same files. Called by scripts/package.
+"""Writes the add-on with a wheel of the Python package inside: the same bytes for the same files.
 
     zips.py build/package/partwheel-VERSION-py3-none-TAG.whl
 
@@ -23,7 +23,8 @@ EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can hold
 def main(wheel):
     here = platform_of(wheel)
     write(wheel.with_name(f"partwheel-{agreed_version()}-{here}.zip"), "partwheel",
-          {**addon_files(), MANIFEST.name: manifest_for([here], [wheel.name]), f"wheels/{wheel.name}": wheel.read_bytes()})
+          {**addon_files(), MANIFEST.name: manifest_for([here], [wheel.name]),
+           f"wheels/{wheel.name}": wheel.read_bytes()})
     legacy(wheel)
 
 

@@ -106,8 +106,8 @@ def why(path, words, code=None):
         others = [name for name in FILE_NAMES.values() if path.with_name(name).is_file()]
         if others:
             return _of_other_platform(made_for(path.with_name(others[0])), anew)
-        return (f"Partwheel's native library is missing: there is no {path}. Its installation was cut short, or a virus "
-                f"scanner has taken it away. {anew} again, and allow the file if you are asked. From the sources, "
+        return (f"Partwheel's native library is missing: there is no {path}. Its installation was cut short, or a "
+                f"virus scanner has taken it away. {anew} again, and allow the file if you are asked. From the sources, "
                 "scripts/build makes it.")
     found = made_for(path)
     if found and found != here():
@@ -115,14 +115,14 @@ def why(path, words, code=None):
     if not found or code == 193 or "too short" in words or "cut short" in words:
         return f"Partwheel's native library is damaged: {path}. {anew} again."
     if "GLIBC" in words:
-        return ("This Linux is too old for Partwheel's native library: it needs glibc 2.28 or newer, as Blender 4.2 does. "
-                "Update the system, or build the library on it (scripts/build).")
+        return ("This Linux is too old for Partwheel's native library: it needs glibc 2.28 or newer, as Blender 4.2 "
+                "does. Update the system, or build the library on it (scripts/build).")
     if SYSTEM == "macos" and any(word in words for word in ("signature", "policy", "quarantine", "verif", "permitted")):
-        return (f"macOS does not let Partwheel's native library be loaded: {path}. Allow it in System Settings > Privacy & "
-                f"Security, or in Terminal: xattr -d com.apple.quarantine '{path}'. Then restart Blender.")
+        return (f"macOS does not let Partwheel's native library be loaded: {path}. Allow it in System Settings > "
+                f"Privacy & Security, or in Terminal: xattr -d com.apple.quarantine '{path}'. Then restart Blender.")
     if code in (5, 225, 1260, 4551):  # access denied, a virus suspected, blocked by a policy, by application control
-        return (f"Windows, or a virus scanner, does not let Partwheel's native library be loaded: {path}. Allow this file "
-                "there, or ask whoever looks after this computer. Then restart Blender.")
+        return (f"Windows, or a virus scanner, does not let Partwheel's native library be loaded: {path}. Allow this "
+                "file there, or ask whoever looks after this computer. Then restart Blender.")
     if code == 126 or "Could not find module" in words:
         return ("A part of Windows that Partwheel's native library needs is missing: the Universal C Runtime. Windows "
                 "Update installs it. Then restart Blender.")
