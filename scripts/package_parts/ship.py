@@ -11,6 +11,7 @@ import pathlib
 import shutil
 import subprocess
 import sys
+import tempfile
 import zipfile
 
 import blender
@@ -62,10 +63,13 @@ def main():
 
 
 def linked_twice(platform):
-    """The library, linked anew from objects that may be there already, twice: both must be the same."""
+    """The library, linked anew from objects that may be there already, twice: both must be the same. zig remembers what it
+    has linked, so each time it gets an empty memory; what it has of the systems' libraries is elsewhere."""
     made = []
     logged("cmake", "--preset", platform)
     for _ in range(2):
+        memory = tempfile.TemporaryDirectory()
+        os.environ["ZIG_LOCAL_CACHE_DIR"] = memory.name
         for old in (ROOT / "build" / platform).glob("*partwheel.*"):
             if old.suffix in {".so", ".dll", ".dylib"} or ".so." in old.name or old.name.endswith(".dylib"):
                 old.unlink()
@@ -73,6 +77,8 @@ def linked_twice(platform):
         stage = ROOT / "build" / platform / "stage"
         logged("cmake", "--install", ROOT / "build" / platform, "--component", "python", "--prefix", stage)
         made.append((stage / library_of(platform)).read_bytes())
+        memory.cleanup()
+    del os.environ["ZIG_LOCAL_CACHE_DIR"]
     if made[0] != made[1]:
         raise SystemExit(f"The library for {platform} is another one each time that it is linked.")
     return stage / library_of(platform)
