@@ -5,6 +5,7 @@ import shutil
 import struct
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import partwheel
@@ -97,7 +98,7 @@ def test_what_the_loaders_say_is_told_in_words(system, words, code, said, tmp_pa
 
 def test_a_loaded_copy_lets_the_file_go(tmp_path, monkeypatch):
     """What is loaded on Windows is a copy: the installed file is not mapped, earlier copies go, the same one stays."""
-    monkeypatch.setattr(loading.tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
     installed = tmp_path / "installed" / library.LIBRARY.name
     installed.parent.mkdir()
     shutil.copy(library.load()._name, installed)
@@ -115,7 +116,7 @@ def test_a_loaded_copy_lets_the_file_go(tmp_path, monkeypatch):
 
 def test_where_no_copy_can_be_made_the_file_itself_is_loaded(tmp_path, monkeypatch):
     (tmp_path / "file").write_bytes(b"")
-    monkeypatch.setattr(loading.tempfile, "gettempdir", lambda: str(tmp_path / "file"))
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path / "file"))
     installed = Path(library.load()._name)
     assert loading.replaceable(installed) == installed
 

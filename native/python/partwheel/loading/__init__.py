@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The native library's file: loaded so that it can be replaced meanwhile, or in words why it can't be loaded.
 
-Also imported by the worker's bare Python: the standard library alone.
+Also imported by the worker's bare Python, which is to start fast: the standard library alone, and most of it where it is
+needed.
 """
 
 import ctypes
-import hashlib
 import os
-import platform
 import struct
 import sys
-import sysconfig
-import tempfile
 from pathlib import Path
 
 FILE_NAMES = {"linux": "libpartwheel.so", "windows": "partwheel.dll", "macos": "libpartwheel.dylib"}
@@ -35,6 +32,9 @@ def open_library(path):
 def replaceable(path):
     """A copy of the file in the system's directory for such. On Windows a library that is in use can be neither
     replaced nor removed, so Blender could not update or remove the add-on, and would leave half of it."""
+    import hashlib
+    import tempfile
+
     path, directory = Path(path), Path(tempfile.gettempdir()) / "partwheel"
     try:
         data = path.read_bytes()
@@ -61,6 +61,9 @@ def _removed(path):
 
 def here():
     """The platform of this process, as packages are named after: linux-x64."""
+    import platform
+    import sysconfig
+
     # On Windows platform.machine() may tell the computer's, not that of a program which is translated for it.
     machine = sysconfig.get_platform().rpartition("-")[2] if SYSTEM == "windows" else platform.machine()
     return f"{SYSTEM}-{MACHINES.get(machine.lower(), machine.lower())}"
