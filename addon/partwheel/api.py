@@ -33,52 +33,18 @@ import partwheel
 from .compose import placement, swapping, union
 from .deform import deforming
 from .mesh import arrays, selection
-from .mesh.linked import read_only
+from .mesh.refusing import read_only
 from .parts import builds, picks, registry
 from .pick import borders, states
 from .solid import composition, solids
 from partwheel import PartwheelError, Status
 from partwheel.deform import MOST_ITERATIONS
 from partwheel.joint import REACH
-from partwheel.worker import WAIT_SECONDS
 
-State = registry.State
+Build, State = builds.Build, registry.State
 
 
 # ---- Hierarchies
-
-
-class Build:
-    """A build under way, in a process of its own, that start_build() began or found. Ask it from the main thread."""
-
-    def __init__(self, build):
-        self._build = build
-
-    def poll(self):
-        """(fraction 0..1 that never falls, what is done or waited for); None once result() won't block."""
-        return self._build.poll()
-
-    def wait(self, seconds):
-        """Waits so long at most; whether result() won't block."""
-        return self._build.wait(seconds)
-
-    def cancel(self):
-        """Ends it at once. result() then raises PartwheelError, status CANCELLED, and no hierarchy is kept."""
-        self._build.cancel()
-
-    def result(self, progress=None):
-        """Waits for the end and keeps the Hierarchy, which is returned; without this call it is not kept.
-        progress(fraction, what): called ten times a second; returning True cancels. Raises PartwheelError: why the mesh
-        has no parts, or a limit was met; partwheel.Error: the mesh was edited or deleted meanwhile."""
-        try:
-            while progress and (told := self.poll()):
-                if progress(*told):
-                    self.cancel()
-                self.wait(WAIT_SECONDS)
-        except BaseException:  # what progress() raised, or Ctrl-C
-            self.cancel()
-            raise
-        return self._build.finish()
 
 
 def start_build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None, exactly=None):
@@ -90,8 +56,8 @@ def start_build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=Non
     seconds of processor time. memory_limit: bytes, kept on Linux only. exactly: find the parts of a large mesh on all of
     its triangles, not on a coarser copy. None: as the add-on's preferences have it."""
     _mesh(obj)
-    return Build(builds.build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode, time_limit=time_limit,
-                              memory_limit=memory_limit, exactly=exactly))
+    return builds.build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode, time_limit=time_limit,
+                        memory_limit=memory_limit, exactly=exactly)
 
 
 def build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None, progress=None,
@@ -103,7 +69,7 @@ def build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, mem
 def hierarchy(obj):
     """The Hierarchy of the object's mesh as it is now, built if there is none."""
     _mesh(obj)
-    return registry.hierarchy(obj) or builds.build(obj).finish()
+    return registry.hierarchy(obj) or builds.build(obj).result()
 
 
 def state(obj):

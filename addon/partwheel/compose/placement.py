@@ -11,6 +11,7 @@ from ..mesh import arrays
 from ..solid.composition import home, update_matrices
 from partwheel import compatible
 from ..mesh.arrays import read
+from ..mesh.refusing import Refused
 from ..solid.solids import CAP
 
 _CHANNELS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
@@ -84,12 +85,12 @@ class Pose(NamedTuple):
 
 
 def put(part, start, own, target, pose):
-    """Moves the part, at whose matrix start its Border was own. Raises ValueError where there is no border to fit."""
+    """Moves the part, at whose matrix start its Border was own. Raises Refused where there is no border to fit."""
     location, normal, scale = pose.location, pose.normal, pose.scale
     if pose.fit:
         found = border(target, location)
         if not found:
-            raise ValueError(f"{target.name} has no border to fit: no part was removed from it.")
+            raise Refused(f"{target.name} has no border to fit: no part was removed from it.")
         location, normal, scale = found.middle, found.normal, scale * found.radius / own.radius
     part.matrix_world = matrix(start, own, location, normal, scale, pose.angle, pose.depth)
 

@@ -15,6 +15,7 @@ import numpy as np
 from mathutils.kdtree import KDTree
 
 from ..mesh import arrays
+from ..mesh.refusing import Refused
 from partwheel.deform import (
     FIXED, FREE, SETTLED, STEP_ANGLE, Deformation, part_of_the_way, rigid_motion, rotation_angle, surface_distances,
     vertex_normals,
@@ -28,10 +29,6 @@ TURN = np.radians(30)  # a handle that turns by more at once, as by a typed numb
 BESIDE = 16  # at least so many vertices of the surface say where a loose piece near them goes
 WAYS = 32  # matrices between rest and the handle's that a proportional deformation mixes
 MIRROR, ACROSS = np.diag([-1.0, 1, 1, 1]), np.float32([-1, 1, 1])
-
-
-class Refused(ValueError):
-    """This part, or this handle, can't be deformed. str() is a sentence for the user."""
 
 
 # ---- The way into the mesh

@@ -10,14 +10,15 @@ from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_
 from mathutils import Matrix, Vector
 
 from ..mesh import objects
+from ..mesh.refusing import Refused, can
 from ..parts import picks, registry
 from ..pick import borders
 from ..view import keys
 from . import handle_gizmo, handle_points
 from ..view.background import Background
-from partwheel import PartwheelError
+from partwheel import Error, PartwheelError
 from partwheel.joint import REACH
-from .deforming import METHODS, Pen, Refused, Region
+from .deforming import METHODS, Pen, Region
 from .movement import DIGITS, Movement
 from ..view.picking import FaceTree, view_of, view_under
 from ..view.in_view import InView, waiting
@@ -25,7 +26,6 @@ from ..view.in_view import InView, waiting
 TICK = 0.03  # seconds
 NOTCH = 1.25  # what a notch of the wheel makes of the handle's size
 PATIENCE = 0.05  # seconds that Blender waits for what is done in the background, before it goes on meanwhile
-NO_PART = "Pick a part with Select Part by Wheel first"
 
 
 class PARTWHEEL_PG_handle(bpy.types.PropertyGroup):
@@ -50,7 +50,6 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     bl_idname = "mesh.partwheel_deform"
     bl_label = "Deform Part"
     bl_options = {"REGISTER", "UNDO"}
-    refusals = Refused, PartwheelError  # faces too thin, for instance
     task, changed = None, False  # what goes on in the background; whether anything was moved
 
     node: bpy.props.IntProperty(
@@ -87,13 +86,8 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         obj = context.edit_object
-        if context.mode != "EDIT_MESH" or obj is None:
-            cls.poll_message_set("Parts are deformed in Edit Mode of a mesh")
-            return False
-        if registry.state(obj.data)[0] not in {registry.State.FITS, registry.State.MOVED}:
-            cls.poll_message_set(NO_PART)
-            return False
-        return True
+        return (can(cls, context.mode == "EDIT_MESH" and obj, "Parts are deformed in Edit Mode of a mesh")
+                and can(cls, registry.state(obj.data)[0] in registry.USABLE, picks.NO_PICK))
 
     def draw(self, _context):
         self.layout.prop(self, "method")
@@ -118,7 +112,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
                 shape = METHODS[self.method](regions[-1], self._patches(regions[-1], handles))
                 shape.jump([np.array(each.matrix).reshape(4, 4) for each in handles])
                 Pen(obj, regions[-1]).write(obj, shape.points())
-        except self.refusals as error:
+        except Error as error:  # faces too thin, for instance
             _restored(obj, regions)
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -137,16 +131,10 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
 
     def _faces(self, obj):
         """The part's faces. Raises Refused."""
-        if self.node < 0:
-            picked = picks.picked(obj)
-            if not picked:
-                raise Refused(f"{NO_PART}.")
-            self.node = picked.node
-            if not self.properties.is_property_set("snap"):
-                self.snap = picked.snap
-        hierarchy = registry.hierarchy(obj)
-        if not hierarchy or self.node >= len(hierarchy.parent):
-            raise Refused(f"There is no part {self.node}. {NO_PART}.")
+        hierarchy, node = picks.chosen(obj, self.node)
+        if self.node < 0 and not self.properties.is_property_set("snap"):
+            self.snap = picks.picked(obj).snap
+        self.node = node
         return borders.faces(obj, hierarchy, self.node, self.snap)
 
     # ---- With the mouse --------------------------------------------------------------------------------------------

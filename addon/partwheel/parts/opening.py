@@ -5,6 +5,7 @@ import numpy as np
 
 from ..mesh import arrays
 from ..mesh.kept import PerMesh, key
+from ..view.background import Background
 from . import stored
 
 unopened = PerMesh()  # packed
@@ -29,16 +30,26 @@ class Opening:
 
     def __init__(self, mesh):
         self.mesh, self.packed = mesh, unopened.pop(key(mesh), None) or carried(mesh)
-        self.unpacking = None if self.packed is None else stored.Unpacking(self.packed)
+        self._opened = None
+        self._task = None if self.packed is None else Background(self._unpack)
+
+    def _unpack(self, _stop):
+        self._opened = stored.unpack(self.packed)
 
     def result(self, now):
         """(Fingerprint when it was built, Hierarchy), or None. now: the Fingerprint of the mesh."""
-        if not self.unpacking:
+        if not self._task:
             return None
         try:
-            return self.unpacking.result(
-                now, arrays.read(self.mesh.vertices, "co", np.float32, 3),
-                arrays.polygon_sizes(self.mesh)[0], arrays.read(self.mesh.loops, "vertex_index", np.int32))
+            self._task.finish()
+            built, hierarchy = self._opened
+            if built.topology != now.topology:
+                raise stored.Refused("the mesh has changed since")
+            corners = arrays.read(self.mesh.loops, "vertex_index", np.int32)
+            if not stored.fits(hierarchy, arrays.read(self.mesh.vertices, "co", np.float32, 3),
+                               arrays.polygon_sizes(self.mesh)[0], corners, built.positions != now.positions):
+                raise stored.Refused("it is of another mesh")
+            return self._opened
         except stored.Older:
             return None  # they are found anew, as any that aren't there
         except stored.Newer:

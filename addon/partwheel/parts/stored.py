@@ -7,7 +7,6 @@ undo step and every copy of the mesh that Blender makes for drawing would drag t
 
 import hashlib
 import struct
-import threading
 
 import numpy as np
 
@@ -38,34 +37,6 @@ class Newer(Refused):
 def pack(fingerprint, hierarchy):
     header = HEADER.pack(MAGIC, VERSION, *fingerprint)
     return b"".join([header, _hash(header), hierarchy.save()])
-
-
-class Unpacking:
-    """Bytes that are being unpacked in a thread, while the caller finds out which mesh they must fit."""
-
-    def __init__(self, data):
-        self._opened = self._error = None
-        self._thread = threading.Thread(target=self._run, args=[data], name="partwheel-unpack")
-        self._thread.start()
-
-    def _run(self, data):
-        try:
-            self._opened = unpack(data)
-        except Exception as error:  # whatever it is, result() raises it
-            self._error = error
-
-    def result(self, now, positions, begin, corners):
-        """(Fingerprint when it was built, Hierarchy). now: the Fingerprint of the mesh; the rest as for fits(). Raises
-        Refused, also when they are of another mesh."""
-        self._thread.join()
-        if self._error:
-            raise self._error
-        fingerprint, hierarchy = self._opened
-        if fingerprint.topology != now.topology:
-            raise Refused("the mesh has changed since")
-        if not fits(hierarchy, positions, begin, corners, fingerprint.positions != now.positions):
-            raise Refused("it is of another mesh")
-        return fingerprint, hierarchy
 
 
 def fits(hierarchy, positions, begin, corners, moved):

@@ -15,7 +15,7 @@ from partwheel import LibraryError, PartwheelError, Status
 from ..mesh.kept import key
 from ..view import status
 from ..view.in_view import InView
-from .polls import NeedsMesh
+from ..mesh.refusing import NeedsMesh, can
 
 TICK = 0.1  # seconds between two looks at the worker
 
@@ -116,7 +116,7 @@ class Building:
         """Takes the result over, if there is one, and reports."""
         name, report = self.build.name, self.operator.report
         try:
-            self.hierarchy = self.build.finish()
+            self.hierarchy = self.build.result()
         except PartwheelError as error:
             cancelled = error.name == "cancelled"
             where = " The panel Partwheel in the sidebar does that." if error.status == Status.NOT_SOLID else ""
@@ -226,10 +226,8 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         obj = context.active_object
-        if obj is None or obj.type != "MESH" or registry.state(obj.data)[0] == registry.State.NONE:
-            cls.poll_message_set("The active object has no parts")
-            return False
-        return True
+        return can(cls, obj is not None and obj.type == "MESH" and registry.state(obj.data)[0] != registry.State.NONE,
+                   "The active object has no parts")
 
     def execute(self, context):
         picks.forget(context.active_object)

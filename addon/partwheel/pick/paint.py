@@ -8,7 +8,7 @@ import numpy as np
 
 from ..mesh import arrays, objects
 from ..view import picking
-from ..mesh.linked import changeable, read_only
+from ..mesh.refusing import Refused, can, changeable, read_only
 from .prepared import prepared
 from ..view.seen import NO_FACE
 from ..mesh.selection import select_outside_edit_mode
@@ -32,24 +32,20 @@ class OBJECT_OT_partwheel_select(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        if context.mode != "OBJECT":
-            cls.poll_message_set("This is for Object Mode")
-            return False
-        return True
+        return can(cls, context.mode == "OBJECT", "This is for Object Mode")
 
     def invoke(self, context, event):
-        view = context.window and picking.view_under(context.window, event.mouse_x, event.mouse_y)
+        view = picking.under_mouse(context, event)
         if not view:
             self.report({"ERROR"}, "Parts are picked in a 3D view: start this with the mouse over one")
             return {"CANCELLED"}
-        area, region, region_view = view
-        point = event.mouse_x - region.x, event.mouse_y - region.y
-        hit = picking.surface_under(context, *view, point)
+        area, *pixel = view
+        hit = picking.surface_under(context, *view)
         obj = self._target(context, area.spaces.active, hit)
         if not obj:
             return {"CANCELLED"}
         # Edit Mode may show the mesh elsewhere, without its modifiers; meant is the face that is seen now.
-        found = hit and prepared(obj).tree.under(hit.matrix, region, region_view, point)
+        found = hit and prepared(obj).tree.under(hit.matrix, *pixel)
         if not obj.select_get():
             for other in context.selected_objects:
                 other.select_set(False)
@@ -73,10 +69,6 @@ class OBJECT_OT_partwheel_select(bpy.types.Operator):
         if reason:
             self.report({"WARNING"}, reason)
         return None if reason else obj
-
-
-class NotWritten(Exception):
-    """The part can't become what is wanted. str() says why, as a sentence."""
 
 
 class Preview:
@@ -116,15 +108,11 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         obj = context.active_object
-        if context.mode not in WAYS or obj is None or obj.type != "MESH":
-            cls.poll_message_set("This is for Sculpt Mode and the paint modes of a mesh")
-            return False
-        if not changeable(cls, obj):
-            return False
-        if obj.use_dynamic_topology_sculpting:
-            cls.poll_message_set("Dynamic topology changes the faces all the time: switch it off first")
-            return False
-        return True
+        return (can(cls, context.mode in WAYS and obj is not None and obj.type == "MESH",
+                    "This is for Sculpt Mode and the paint modes of a mesh")
+                and changeable(cls, obj)
+                and can(cls, not obj.use_dynamic_topology_sculpting,
+                        "Dynamic topology changes the faces all the time: switch it off first"))
 
     def _apply(self, context, obj, faces, picked):
         return self._write(context, obj, faces, picked.node)
@@ -150,7 +138,7 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
             bpy.ops.object.mode_set(mode="OBJECT")
         try:
             said = WRITERS[way](obj, faces, node, self.extend, self.deselect)
-        except NotWritten as reason:
+        except Refused as reason:
             self.report({"ERROR"}, str(reason))
             return {"CANCELLED"}
         finally:
@@ -211,11 +199,11 @@ def _write_vertex_group(obj, faces, node, extend, deselect):
     part = np.flatnonzero(_part_vertices(obj.data, faces)).tolist()
     group = obj.vertex_groups.active if extend or deselect else None
     if group and group.lock_weight:
-        raise NotWritten(f"The vertex group {group.name} is locked. Unlock it, or pick the part alone: it gets a group "
+        raise Refused(f"The vertex group {group.name} is locked. Unlock it, or pick the part alone: it gets a group "
                          "of its own")
     if deselect:
         if not group:
-            raise NotWritten(f"{obj.name} has no vertex group that the part could be taken out of")
+            raise Refused(f"{obj.name} has no vertex group that the part could be taken out of")
         group.remove(part)
         return f"The part was taken out of the vertex group {group.name}"
     if group:

@@ -115,13 +115,12 @@ class PartPicker(InView):
 
     def _under(self, context, event):
         """(object, face index) under the mouse, or (None, None)."""
-        view = picking.view_under(context.window, event.mouse_x, event.mouse_y)
+        view = picking.under_mouse(context, event)
         if not view:
             return None, None
-        area, region, region_view = view
-        point = event.mouse_x - region.x, event.mouse_y - region.y
+        area, *pixel = view
         shown = [each for each in self._objects(context) if each.visible_get(viewport=area.spaces.active)]
-        obj, face = picking.nearest(shown, lambda each: prepared(each).tree, region, region_view, point)
+        obj, face = picking.nearest(shown, lambda each: prepared(each).tree, *pixel)
         if face == NO_FACE:
             self.report({"INFO"}, f"What is seen there was made by the modifiers of {obj.name} and belongs to no face "
                                   "of its mesh")
@@ -193,7 +192,7 @@ class PartPicker(InView):
         holding = isinstance(self.state, states.Picked)
         if event.type in keys.MOVES:
             return self._dragged(context, event)
-        over = picking.view_under(context.window, event.mouse_x, event.mouse_y) is not None
+        over = picking.under_mouse(context, event) is not None
         plain = not (event.alt or event.oskey or event.ctrl and not (self.deselect or event.type == "LEFTMOUSE"))
         if event.type == "TRACKPADPAN" and holding and over and plain and not event.shift:
             notches = self.scroll.notches(event.mouse_y - event.mouse_prev_y)

@@ -4,6 +4,7 @@
 import bpy
 
 from ..view import keys
+from ..mesh.refusing import can
 from ..mesh.selection import Selections
 from .pick import PartPicker
 
@@ -18,10 +19,8 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        if context.mode != "EDIT_MESH" or context.edit_object is None:
-            cls.poll_message_set("Parts are selected in Edit Mode of a mesh")
-            return False
-        return True
+        return can(cls, context.mode == "EDIT_MESH" and context.edit_object,
+                   "Parts are selected in Edit Mode of a mesh")
 
     def _apply(self, context, obj, faces, picked):
         self._aim(context, obj).select(obj, faces, picked.face, self.extend, self.deselect)

@@ -15,7 +15,7 @@ def bridge(bm, facets):
     """Adds facets, (vertices (n,3), triangles (m,3) wound outwards), to a bmesh: each group of them of which most of the
     border has one of the bmesh's own to itself nearby. What its polygons there are a part of is turned as the facets
     are. The new faces. Other borders stay open: those of holes that only the filling closes are there, too."""
-    own = closing.borders(bm, {edge for edge in bm.edges if edge.is_boundary})
+    own = closing.borders({edge for edge in bm.edges if edge.is_boundary})
     places, triangles = facets
     if not own or not len(triangles):
         return []
@@ -28,7 +28,7 @@ def bridge(bm, facets):
         if border is not None:
             joints[group].append((ring, own[border]))
     used = lengths[:, 1] > MOST * lengths[:, 0]
-    _turn_pieces([joint for each, use in zip(joints, used) if use for joint in each])
+    _turn_pieces(bm, [joint for each, use in zip(joints, used) if use for joint in each])
     caps = []
     for (faces, _), each, use in zip(groups, joints, used):
         if not use or any(_run_alike(*joint) for joint in each):
@@ -40,14 +40,14 @@ def bridge(bm, facets):
     return caps
 
 
-def _turn_pieces(joints):
+def _turn_pieces(bm, joints):
     """Turns those pieces of the mesh of which most borders run as the facets' do: two that a strip can join never do.
     The borders, lists of vertices, are turned too."""
     pieces = {}  # the number of the first border of each piece -> (its faces, borders, votes)
-    of = {}
+    of, left = {}, set(bm.faces)
     for number, (ring, border) in enumerate(joints):
         if border[0] not in of:
-            faces = _piece(border[0])
+            faces = closing.reached(border[0].link_faces[0], left, _around)
             pieces[number] = faces, [], []
             of.update((vert, number) for face in faces for vert in face.verts)
         _, borders, votes = pieces[of[border[0]]]
@@ -67,24 +67,13 @@ def _groups(bm, places, triangles):
     verts = [closing.new_vert(bm, place) for place in places[used].tolist()]
     new = {bm.faces.new([verts[k] for k in triangle]) for triangle in triangles.reshape(-1, 3).tolist()}
     closing.set_apart(bm)
-    groups = []
-    while new:
-        faces = _piece(next(iter(new)).verts[0])
-        new.difference_update(faces)
-        edges = {edge for face in faces for edge in face.edges if edge.is_boundary}
-        groups.append((faces, closing.borders(bm, edges)))
-    return groups
+    return [(faces, closing.borders({edge for face in faces for edge in face.edges if edge.is_boundary}))
+            for faces in closing.groups(new, _around)]
 
 
-def _piece(vert):
-    """The faces that are joined with a vertex, by steps across edges and vertices."""
-    seen, todo = set(vert.link_faces), list(vert.link_faces)
-    while todo:
-        for corner in todo.pop().verts:
-            beyond = [face for face in corner.link_faces if face not in seen]
-            seen.update(beyond)
-            todo += beyond
-    return list(seen)
+def _around(face):
+    """Those that it has a vertex in common with."""
+    return (other for corner in face.verts for other in corner.link_faces)
 
 
 def _places(ring):

@@ -22,31 +22,39 @@ def set_apart(bm):
 
 def _fans(vert):
     """The edges about a vertex in groups that are joined by faces."""
-    fans, left = [], {edge for edge in vert.link_edges if edge.link_faces}
+    return groups((edge for edge in vert.link_edges if edge.link_faces),
+                  lambda edge: (other for face in edge.link_faces for other in face.edges))
+
+
+def groups(items, beside):
+    """The items in lists of those that are joined by steps to one that is beside(item)."""
+    found, left = [], set(items)
     while left:
-        fan, todo = set(), [left.pop()]
-        while todo:
-            edge = todo.pop()
-            fan.add(edge)
-            for face in edge.link_faces:
-                for other in face.edges:
-                    if other in left and vert in other.verts:
-                        left.remove(other)
-                        todo.append(other)
-        fans.append(fan)
-    return fans
+        found.append(reached(next(iter(left)), left, beside))
+    return found
+
+
+def reached(first, left, beside):
+    """The list of those of a set that are joined so with the first, which it then has no more."""
+    left.remove(first)
+    group = [first]
+    for each in group:
+        new = [other for other in dict.fromkeys(beside(each)) if other in left]
+        left.difference_update(new)
+        group += new
+    return group
 
 
 def fill(bm, smooth, open_before):
     """Closes every other border by rings of faces around a new vertex in its middle; smooth: relaxed so that they go on
     as the surface about them does. The new faces."""
     caps = []
-    for border in borders(bm, {edge for edge in bm.edges if edge.is_boundary} - open_before):
+    for border in borders({edge for edge in bm.edges if edge.is_boundary} - open_before):
         caps += _fill_border(bm, border, RINGS if smooth else 0)
     return caps
 
 
-def borders(bm, edges):
+def borders(edges):
     """The borders that these edges make, each as its vertices in the order that new faces run along it."""
     found, left = [], set(edges)
     while left:

@@ -6,13 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..mesh import arrays
-from partwheel import Error, PartwheelError, Solid, Status
+from partwheel import PartwheelError, Solid, Status
 from ..mesh.arrays import read
 from ..mesh.pieces import Origins, Plan
-
-
-class NotClosed(Error):
-    """A part that can't be made a solid. str() is a sentence for the user."""
+from ..mesh.refusing import Refused
 
 
 class Fitted(NamedTuple):
@@ -228,7 +225,7 @@ def of_faces(mesh, hierarchy, tet_first, tet_last, faces, alone):
     """The pieces.Plan of the slice's polygons alone, or of those that it is to have in their place."""
     inside = np.flatnonzero(_inside(hierarchy, tet_first, tet_last, faces))
     if not len(inside):
-        raise NotClosed("This part has no face of the mesh. Take a larger one.")
+        raise Refused("This part has no face of the mesh. Take a larger one.")
     begin, totals = arrays.polygon_sizes(mesh)
     loops = _loops_of(begin, totals, inside)
     vertex, keep, wires = _kept(mesh, loops, alone)

@@ -8,15 +8,14 @@ import traceback
 import bpy
 
 from .. import trouble
+from partwheel import Error, LibraryError
 from . import overlay
 from . import status
-from partwheel import LibraryError
 
 
 class InView:
     """Mixed into an operator. Its steps answer as invoke() and modal() do; "CANCELLED" takes back what they did."""
 
-    refusals = ()  # exceptions whose text is for the user
     lost = "the mesh is no longer being edited as it was"
 
     # ---- What operators differ in
@@ -81,7 +80,7 @@ class InView:
             return answer
         except LibraryError as error:
             self.report({"ERROR"}, trouble.logged(error))
-        except self.refusals as error:
+        except Error as error:  # its text is for the user
             self.report({"ERROR"}, str(error))
         except Exception as error:  # any: a tool that dies in the middle leaves Blender with its keys and its changes
             traceback.print_exception(error)
