@@ -10,7 +10,6 @@ from mathutils import Matrix, Quaternion, Vector
 from ..mesh import arrays
 from ..solid.composition import home, update_matrices
 from partwheel import compatible
-from ..mesh.arrays import read
 from ..mesh.refusing import Refused
 from ..solid.solids import CAP
 
@@ -32,7 +31,7 @@ def caps(mesh):
     layer = mesh.attributes.get(CAP)
     if not layer or (layer.domain, layer.data_type) != ("FACE", "BOOLEAN"):
         return None
-    return read(layer.data, "value", bool)
+    return arrays.read(layer.data, "value", bool)
 
 
 def border(obj, near=None):
@@ -41,7 +40,7 @@ def border(obj, near=None):
     if marks is None or not marks.any():
         return None
     triangles, polygons = arrays.triangles(obj.data)
-    places = read(obj.data.vertices, "co", np.float32, 3).astype(float)
+    places = arrays.read(obj.data.vertices, "co", np.float32, 3).astype(float)
     found = [Border(Vector(each.middle), Vector(each.normal), each.radius)
              for each in compatible.borders(places, triangles[marks[polygons]], np.array(obj.matrix_world))]
     if not found:

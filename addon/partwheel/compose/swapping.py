@@ -14,7 +14,6 @@ from ..parts import registry
 from ..solid import composition
 from . import placement, union
 from partwheel import compatible
-from ..mesh.arrays import read
 from ..mesh.objects import named
 from ..mesh.refusing import Refused
 
@@ -197,7 +196,7 @@ def _shapes(obj, hierarchy, nodes, snap=False):
     snap: with their borders in creases."""
     positions = np.array(hierarchy.vertices)
     known = hierarchy.source >= 0
-    positions[known] = read(arrays.up_to_date(obj).vertices, "co", np.float32, 3)[hierarchy.source[known]]
+    positions[known] = arrays.read(arrays.up_to_date(obj).vertices, "co", np.float32, 3)[hierarchy.source[known]]
     matrix = np.array(obj.matrix_world)
     size = _size(positions, matrix)
     shapes = [(node, compatible.shape(hierarchy, node, positions, matrix, size,
@@ -212,7 +211,7 @@ def _whole(obj):
     if obj.mode == "EDIT" or caps is None or not caps.any() or union.problem(mesh):
         return None
     triangles, polygons = arrays.triangles(mesh)
-    positions, matrix = read(mesh.vertices, "co", np.float32, 3).astype(float), np.array(obj.matrix_world)
+    positions, matrix = arrays.read(mesh.vertices, "co", np.float32, 3).astype(float), np.array(obj.matrix_world)
     shape = compatible.Shape(positions, triangles, caps[polygons], matrix, _size(positions, matrix))
     return shape if shape.usable else None
 

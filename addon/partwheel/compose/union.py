@@ -10,7 +10,6 @@ from mathutils.bvhtree import BVHTree
 from ..mesh import arrays, pieces
 from . import pinches, seams
 from partwheel import polygon_faults
-from ..mesh.arrays import read
 from ..mesh.refusing import Refused
 
 # (solver, whether it also unites what overlaps within one mesh), in the order tried. Blenders before 4.5 have no
@@ -63,7 +62,7 @@ def problem(mesh):
     if not len(mesh.polygons):
         return "it has no faces"
     begin, _ = arrays.polygon_sizes(mesh)
-    faults = polygon_faults(read(mesh.loops, "vertex_index", np.int32), begin, len(mesh.vertices))
+    faults = polygon_faults(arrays.read(mesh.loops, "vertex_index", np.int32), begin, len(mesh.vertices))
     open_edges = faults.open or abs(len(mesh.edges) - len(mesh.loops) // 2)  # or edges that no face has
     if open_edges:
         return f"{open_edges} edges have not just two faces"
@@ -76,7 +75,7 @@ def problem(mesh):
 
 def volume(mesh):
     """That the mesh encloses, in its own unit cubed."""
-    corners = read(mesh.vertices, "co", np.float32, 3).astype(float)
+    corners = arrays.read(mesh.vertices, "co", np.float32, 3).astype(float)
     if not len(corners):
         return 0.0
     corners -= corners.mean(axis=0)

@@ -7,7 +7,6 @@ import numpy as np
 
 from ..mesh import arrays
 from partwheel import PartwheelError, Solid, Status
-from ..mesh.arrays import read
 from ..mesh.pieces import Origins, Plan
 from ..mesh.refusing import Refused
 
@@ -257,14 +256,15 @@ class _Corners(NamedTuple):
 def _kept(mesh, loops, alone, alias=None):
     """((L,) the vertex of each loop, by alias if there is one, (V,) whether it is of one of the loops that stay, or has
     no face and stays, edges without a face that stay). What has no face goes if alone."""
-    vertex = own = read(mesh.loops, "vertex_index", np.int32)
+    vertex = own = arrays.read(mesh.loops, "vertex_index", np.int32)
     if alias is not None:
         vertex = alias[own]
     keep = np.zeros(len(mesh.vertices), bool)
     keep[vertex[loops]] = True
     wires = np.empty(0, np.int64)
     if not alone:
-        wires = np.flatnonzero(np.bincount(read(mesh.loops, "edge_index", np.int32), minlength=len(mesh.edges)) == 0)
+        edges = arrays.read(mesh.loops, "edge_index", np.int32)
+        wires = np.flatnonzero(np.bincount(edges, minlength=len(mesh.edges)) == 0)
         ends = arrays.edge_vertices(mesh)
         loose = np.ones(len(keep), bool)
         loose[own] = loose[ends] = False
@@ -279,7 +279,7 @@ def _plan(mesh, parts, whole, origins, places, wires, numbers, alias=None):
     loops = Origins(*(np.concatenate(each) for each in zip(*(
         (part.loops.first, start + part.loops.at, part.loops.other) for part, start in zip(parts, starts)))))
     corners, totals, polygons = (np.concatenate(each) for each in list(zip(*parts))[1:])
-    own = read(mesh.vertices, "co", np.float32, 3)
+    own = arrays.read(mesh.vertices, "co", np.float32, 3)
     kept = origins.first[:len(origins.first) - len(places)]
     places = np.concatenate([own[kept], places])
     return Plan(places, origins, loops, corners, np.cumsum(totals) - totals, polygons, whole, wires, numbers, alias)

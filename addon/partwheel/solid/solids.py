@@ -16,7 +16,6 @@ import numpy as np
 
 from ..mesh import arrays, pieces
 from . import bridging, closing, fitting
-from ..mesh.arrays import read
 from ..mesh.refusing import Refused
 
 CAP = "partwheel_cap"  # the attribute of faces that closes what was cut
@@ -152,7 +151,7 @@ def _mended(bm, loops, mesh, alone):
     """Wound alike and doubles welded, if alone; else it is the edges that stay open, since they were before: what is
     left of a broken mesh is as broken as before, and only the new hole is closed."""
     if not alone:
-        edge = read(mesh.loops, "edge_index", np.int32)
+        edge = arrays.read(mesh.loops, "edge_index", np.int32)
         was_open = np.bincount(edge, minlength=len(mesh.edges))[edge[loops]] == 1
         return {loop.edge for loop, was in zip((loop for face in bm.faces for loop in face.loops), was_open.tolist())
                 if was}
@@ -181,6 +180,6 @@ def _mark(mesh, caps):
     if known and (known.domain, known.data_type) != ("FACE", "BOOLEAN"):
         mesh.attributes.remove(known)
         known = None
-    marks = read(known.data, "value", bool) if known else np.zeros(len(mesh.polygons), bool)
+    marks = arrays.read(known.data, "value", bool) if known else np.zeros(len(mesh.polygons), bool)
     marks[caps] = True
     (known or mesh.attributes.new(CAP, "BOOLEAN", "FACE")).data.foreach_set("value", marks)

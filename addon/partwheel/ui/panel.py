@@ -5,7 +5,6 @@ import bpy
 
 from .. import trouble
 from ..parts import builds, registry
-from .menu import draw_handoffs
 
 State = registry.State
 STATES = {
@@ -42,7 +41,8 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
             column = layout.column()
             column.operator_context = "INVOKE_REGION_WIN"
             column.operator("mesh.partwheel_select")
-            draw_handoffs(column)
+            column.operator("mesh.partwheel_move")
+            column.operator("mesh.duplicate_move", text="Duplicate Part")
             column.operator("mesh.partwheel_path")
             layout.separator()
         state, entry = registry.state(context.active_object.data)
