@@ -31,7 +31,9 @@ from mathutils import Vector
 
 import partwheel
 from .compose import placement, swapping, union
-from .deform import deforming
+from .deform import methods
+from .deform.pen import Pen
+from .deform.region import Region
 from .mesh import arrays, selection
 from .mesh.refusing import read_only
 from .parts import builds, picks, registry
@@ -267,14 +269,14 @@ def deform(obj, node, handle, matrix, rings=0, snap=False, progress=None, time_l
     (4,4) times their place; the part's border and all beyond stay. rings: so many rings of faces around the part take
     part. ValueError: there is nothing to deform, or nothing to hold it, or the handle is not inside."""
     _mesh(obj, changes=True)
-    region = deforming.Region(obj, faces(obj, node, snap), rings, obj.data.use_mirror_x)
+    region = Region(obj, faces(obj, node, snap), rings, obj.data.use_mirror_x)
     inside = numpy.searchsorted(region.vertices, handle)
     known = inside < len(region.vertices)
     if not (known.all() and (region.vertices[inside] == handle).all() and region.free[inside].all()):
         raise ValueError("The handle has vertices that are not inside the part: on its border, beyond it, or hidden.")
     if not len(inside):
         raise ValueError("The handle has no vertices.")
-    _deform(obj, region, deforming.AsRigidAsPossible(region, [inside]), matrix, progress, time_limit)
+    _deform(obj, region, methods.AsRigidAsPossible(region, [inside]), matrix, progress, time_limit)
 
 
 def bend(obj, node, rotation, reach=REACH, snap=False, progress=None, time_limit=None):
@@ -282,11 +284,11 @@ def bend(obj, node, rotation, reach=REACH, snap=False, progress=None, time_limit
     part keeps its shape, but what is within reach of its border, in radii of that, bends, on either side; all beyond
     stays. ValueError: there is no such joint."""
     _mesh(obj, changes=True)
-    region = deforming.Region(obj, faces(obj, node, snap), mirror=obj.data.use_mirror_x, reach=reach)
+    region = Region(obj, faces(obj, node, snap), mirror=obj.data.use_mirror_x, reach=reach)
     matrix = numpy.eye(4)
     matrix[:3, :3] = rotation
     matrix[:3, 3] = region.center - matrix[:3, :3] @ region.center
-    _deform(obj, region, deforming.AtJoint(region), matrix, progress, time_limit)
+    _deform(obj, region, methods.AtJoint(region), matrix, progress, time_limit)
 
 
 def _deform(obj, region, shape, matrix, progress, time_limit):
@@ -294,7 +296,7 @@ def _deform(obj, region, shape, matrix, progress, time_limit):
     shape.jump([numpy.asarray(matrix, float)], watch)
     if watch.reason:
         raise PartwheelError(Status.CANCELLED, f"{watch.reason} The mesh is as it was.")
-    deforming.Pen(obj, region).write(obj, shape.points())
+    Pen(obj, region).write(obj, shape.points())
 
 
 class _Watch:

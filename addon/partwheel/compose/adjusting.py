@@ -13,7 +13,9 @@ SIZE_STEP, TURN_STEP, DEPTH_STEP = 1.05, math.radians(5), 0.05
 
 
 class Adjusting(InView):
-    """Mixed into an operator that has a scale and whether to mirror as well."""
+    """Mixed into an operator that has a scale and whether to mirror as well; _show(context), all as it is now; what
+    _confirmed(context) answers; and _changed(event, sign): whether a key that is none of those below changes something,
+    which it then does, sign as in keys.TURNS."""
 
     angle: bpy.props.FloatProperty(
         name="Turn", description="About the border's normal", subtype="ANGLE", default=0, options={"SKIP_SAVE"})
@@ -22,24 +24,8 @@ class Adjusting(InView):
         options={"SKIP_SAVE"})
     taken = frozenset()  # events that change the size with Ctrl alone
 
-    # ---- What operators differ in
-
     def _moved(self, context, event):
         """The mouse has."""
-
-    def _changed(self, event, sign):
-        """Whether a key that is none of those below changes something, which it then does; sign: see keys.TURNS."""
-        raise NotImplementedError
-
-    def _confirmed(self, context):
-        """The answer of the operator."""
-        raise NotImplementedError
-
-    def _show(self, context):
-        """As all is now."""
-        raise NotImplementedError
-
-    # ---- What they share
 
     def _handle(self, context, event):
         if event.type in keys.NAVIGATE.events | keys.SYSTEM:
@@ -68,5 +54,5 @@ class Adjusting(InView):
             return self._changed(event, sign)
         return True
 
-    def _told(self):
+    def _adjustments(self):
         return f"size {self.scale:.2f}, turn {math.degrees(self.angle):.0f}°, depth {self.depth:.2f}"

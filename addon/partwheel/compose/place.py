@@ -121,7 +121,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
             placement.put(context.active_object, self.start, self.own, target, self._pose())
             self._tell(context, str(error), keys.PLACING)
             return
-        state = [f"Onto {target.name}", self._told()]
+        state = [f"Onto {target.name}", self._adjustments()]
         self._tell(context, ", ".join(state + ["fitted"] * self.fit + ["with mirror copy"] * self.mirror), keys.PLACING)
 
 

@@ -109,7 +109,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
         offer = self.offers[self.index]
         self.preview.show(offer, self._adjustment())
         state = [f"{offer.name}, part {self.index + 1} of {len(self.offers)}", f"{offer.score:.0%} alike",
-                 self._told()]
+                 self._adjustments()]
         self._tell(context, problem or ", ".join(state + ["mirrored"] * self.mirror), keys.SWAPPING)
 
     def _confirmed(self, context):

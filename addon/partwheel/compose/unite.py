@@ -8,7 +8,7 @@ from . import union
 from partwheel import Error
 from ..mesh.refusing import can, changeable
 
-NO_OTHERS = "Select the parts, and then the mesh object that they are to become part of."
+NO_OTHERS = "In Object Mode, select the parts, and then the mesh object that they are to become part of."
 
 
 def find_parts(operator):
@@ -40,7 +40,7 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
         # Not that others are selected: afterwards they are gone, and Blender polls before it repeats an operator.
         target = context.active_object
         return can(cls, context.mode == "OBJECT" and target is not None and target.type == "MESH",
-                   f"In Object Mode: {NO_OTHERS}") and changeable(cls, target)
+                   NO_OTHERS) and changeable(cls, target)
 
     @staticmethod
     def others(context):

@@ -9,9 +9,9 @@ class Refused(Error, ValueError):
 
 
 def can(cls, holds, reason):
-    """For an operator's poll(): whether it can start; if not, the reason is shown."""
+    """For an operator's poll(): whether it can start; if not, the reason is shown, as Blender does without a period."""
     if not holds:
-        cls.poll_message_set(reason)
+        cls.poll_message_set(reason.rstrip("."))
     return bool(holds)
 
 
