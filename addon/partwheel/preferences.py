@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The add-on's preferences."""
 
+from types import SimpleNamespace
+
 import bpy
 
 from . import trouble
@@ -85,9 +87,8 @@ def preferences():
     return addon.preferences if addon else Defaults
 
 
-class Defaults:
-    parts, exactly, save_with_file, memory_share, time_limit, python = "REGROUPED", False, True, 80, 0, ""
-    show_part, show_next, show_hull, show_cut = True, True, False, False
+Defaults = SimpleNamespace(**{name: each.keywords["default"] 
+                              for name, each in PartwheelPreferences.__annotations__.items()})
 
 
 CLASSES = (PartwheelPreferences,)

@@ -51,8 +51,8 @@ class Place:
         self.name, self.hierarchy, self.node, self.snap = obj.name_full, hierarchy, node, snap
         self._fits = {}  # (name, node, mirrored) -> matrix, of what was offered
         self._cut = {}  # (name, node) -> Shape, of what was put here
-        self.shape = dict(_shapes(obj, hierarchy, [node], snap)).get(node)
-        if self.shape is None or not self.shape.usable:
+        self.shape = _shape(obj, hierarchy, node, snap)
+        if not self.shape:
             raise Refused("The part has no border with the rest of the model, so there is nothing to fit another "
                              "part to. Pick one that was grown from the model, not a piece of its own.")
 
@@ -88,10 +88,10 @@ class Place:
         if node is None:
             shape = _whole(other)
         elif hierarchy and 0 <= node < len(hierarchy.parent):
-            shape = dict(_shapes(other, hierarchy, [node])).get(node)
+            shape = _shape(other, hierarchy, node)
         else:
             raise Refused(f"{other.name} has no part {node}.")
-        if shape is None or not shape.usable:
+        if not shape:
             raise Refused(f"That part of {other.name} has no border that could be fitted to this one's.")
         match = compatible.ranked(self.shape, [(node, shape)])[0]
         if not self.snap:
@@ -137,9 +137,7 @@ class Place:
             return offer.shape
         known = offer.name, offer.node
         if known not in self._cut:
-            moved = dict(_shapes(named(offer.name), _hierarchy_of(offer), [offer.node], snap=True))
-            shape = moved.get(offer.node)
-            self._cut[known] = shape if shape and shape.usable else offer.shape
+            self._cut[known] = _shape(named(offer.name), _hierarchy_of(offer), offer.node, snap=True) or offer.shape
         return self._cut[known]
 
     def swap(self, offer, adjustment=Adjustment(), blend=0.0):
@@ -202,6 +200,11 @@ def _shapes(obj, hierarchy, nodes, snap=False):
     shapes = [(node, compatible.shape(hierarchy, node, positions, matrix, size,
                                       composition.moved_faces(obj, hierarchy, node, snap))) for node in nodes]
     return [(node, shape) for node, shape in shapes if shape]
+
+
+def _shape(obj, hierarchy, node, snap=False):
+    """The Shape of one node, or None if it can't be compared."""
+    return next((shape for _, shape in _shapes(obj, hierarchy, [node], snap) if shape.usable), None)
 
 
 def _whole(obj):

@@ -8,7 +8,7 @@ from . import union
 from partwheel import Error
 from ..mesh.refusing import can, changeable
 
-NO_OTHERS = "In Object Mode, select the parts, and then the mesh object that they are to become part of."
+NO_OTHERS = "Select the parts, and then the mesh object that they are to become part of, in Object Mode."
 
 
 def find_parts(operator):

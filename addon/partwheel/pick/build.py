@@ -11,7 +11,7 @@ import bpy
 
 from .. import trouble
 from ..parts import builds, opening, picks, registry
-from partwheel import LibraryError, PartwheelError, Status
+from partwheel import Error, LibraryError, PartwheelError, Status
 from ..mesh.kept import key
 from ..view import status
 from ..view.in_view import InView
@@ -26,7 +26,7 @@ class Building:
     hierarchy: None until it is done, and if it fails."""
 
     def __init__(self, operator, obj, **options):
-        """options: of builds.build(). Raises LibraryError or PartwheelError when it can't even begin."""
+        """options: of builds.build(). Raises an Error when it can't even begin."""
         self.operator, self.hierarchy = operator, None
         self.began = time.perf_counter()
         self.build = builds.build(obj, **options)
@@ -41,14 +41,9 @@ class Building:
     def wait(self, context):
         """For scripts: blocks, and shows progress at the cursor, or in the terminal when there are no windows."""
         try:
-            while not self.build.wait(TICK):
-                self._show(context, *(self.build.poll() or (1.0, "")))
-        except BaseException:  # Ctrl-C
-            self.build.cancel()
-            raise
+            self._conclude(lambda *told: self._show(context, *told))
         finally:
             self._end_progress(context)
-            self._conclude()
         return self.hierarchy
 
     # ---- Beside Blender's own work
@@ -112,11 +107,11 @@ class Building:
             print(f"Partwheel: {percent:3d} % {stage}", flush=True)
             self.printed = percent
 
-    def _conclude(self):
+    def _conclude(self, progress=None):
         """Takes the result over, if there is one, and reports."""
         name, report = self.build.name, self.operator.report
         try:
-            self.hierarchy = self.build.result()
+            self.hierarchy = self.build.result(progress)
         except PartwheelError as error:
             cancelled = error.name == "cancelled"
             where = " The panel Partwheel in the sidebar does that." if error.status == Status.NOT_SOLID else ""
@@ -139,7 +134,7 @@ def start(operator, obj, **options):
         return Building(operator, obj, **options)
     except LibraryError as error:
         operator.report({"ERROR"}, f"No parts for {obj.data.name}: {trouble.logged(error)}")
-    except PartwheelError as error:
+    except Error as error:
         operator.report({"ERROR"}, f"No parts for {obj.data.name} ({error.name}): {error}")
     return None
 
