@@ -5,11 +5,10 @@ solver is tried."""
 import bpy
 import numpy as np
 from mathutils import Vector
-from mathutils.bvhtree import BVHTree
 
 from ..mesh import arrays, pieces
 from . import pinches, seams
-from partwheel import polygon_faults
+from partwheel import RayTarget, polygon_faults
 from ..mesh.refusing import Refused
 
 # (solver, whether it also unites what overlaps within one mesh), in the order tried. Blenders before 4.5 have no
@@ -138,17 +137,16 @@ def _united(base, operand, base_name, operand_name, slots):
 
 def _inside(inner, outer):
     """Whether the vertices of one mesh lie in the other, by the parity of crossings along a ray."""
-    with pieces.edited(outer) as bm:
-        tree = BVHTree.FromBMesh(bm)
+    target = RayTarget(arrays.read(outer.vertices, "co", np.float32, 3), arrays.triangles(outer)[0])
     step = max(len(inner.vertices) // SAMPLES, 1)
-    return all(_crossings(tree, inner.vertices[i].co) % 2 for i in range(0, len(inner.vertices), step))
+    return all(_crossings(target, inner.vertices[i].co) % 2 for i in range(0, len(inner.vertices), step))
 
 
-def _crossings(tree, place):
-    count, (found, _, _, _) = 0, tree.ray_cast(place, RAY)
-    while found:
+def _crossings(target, place):
+    count, hit = 0, target.first(place, RAY)
+    while hit:
         count += 1
-        found, _, _, _ = tree.ray_cast(found + RAY * (1e-6 * max(found.length, 1e-6)), RAY)
+        hit = target.first(place, RAY, hit[1] * (1 + 1e-6))
     return count
 
 

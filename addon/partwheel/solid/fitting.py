@@ -44,7 +44,7 @@ def facets(hierarchy, tet_first, tet_last, faces=None):
 def exactly(mesh, hierarchy, solid, alone):
     """The Fitted of a Solid of the exact rung."""
     between = hierarchy.source[solid.ends]
-    plain = _of_each(between[:, 0] == between[:, 1], solid.triangles, np.logical_and) & (solid.faces >= 0)
+    plain = (between[:, 0] == between[:, 1])[solid.triangles].all(axis=1) & (solid.faces >= 0)
     turned = False
     if plain.any():  # all are wound alike
         example = int(plain.argmax())
@@ -138,9 +138,9 @@ def of_solid(mesh, fitted, alone, facets):
     begin, totals = arrays.polygon_sizes(mesh)
     triangles = np.bincount(faces, minlength=len(totals))
     strange = np.zeros(len(totals), bool)  # with a corner that is not the polygon's own
-    strange[faces[_of_each(source < 0, corners, np.logical_or)]] = True
+    strange[faces[(source < 0)[corners].any(axis=1)]] = True
     parted = np.zeros(len(totals), bool)  # with a corner at which the surface is cut apart
-    parted[faces[_of_each(~is_first, corners, np.logical_or)]] = True
+    parted[faces[~is_first[corners].all(axis=1)]] = True
     whole = (triangles == totals - 2) & ~strange
     large = whole[faces] & (totals[faces] > 3)
     of, _ = _corners_of(faces[large], corners[large], len(source))
@@ -197,12 +197,6 @@ def of_solid(mesh, fitted, alone, facets):
     parts.append(_Corners(Origins(np.full(caps.size, -1)), number[caps.ravel()], np.full(len(caps), 3),
                           np.full(len(caps), -1)))
     return _plan(mesh, parts, 0 if against.any() else len(stays), origins, places, wires, numbers, alias)
-
-
-def _of_each(marked, triangles, joined):
-    """(T,) of what each triangle's corners are marked by, (V,) bool, all or any: np.logical_and, np.logical_or."""
-    a, b, c = (marked[triangles[:, k]] for k in range(3))
-    return joined(joined(a, b), c)
 
 
 def _loops_of(begin, totals, polygons):

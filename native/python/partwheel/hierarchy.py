@@ -257,10 +257,12 @@ class Hierarchy:
         without faces that has no tetrahedron left then."""
         return self.solid_of_slice(*self._slice(node))
 
-    def solid_of_slice(self, tet_first, tet_last):
+    def solid_of_slice(self, tet_first, tet_last, middles=()):
         """The same around tetrahedra[tet_first:tet_last], for a part of a cut. With the two exchanged, around the rest:
-        tetrahedra[tet_first:] and tetrahedra[:tet_last]."""
-        return self._solid(tet_first, tet_last, np.empty((0, 2), np.int32))
+        tetrahedra[tet_first:] and tetrahedra[:tet_last]. middles (m,2): edges, as their vertices, that get a vertex in
+        their middle wherever they are on it."""
+        middles = np.array(middles, np.int32).reshape(-1, 2)
+        return self._solid(load().pw_hierarchy_solid, tet_first, tet_last, middles, len(middles))
 
     def solid_of_faces(self, tet_first, tet_last, inside):
         """The same for a part whose faces are others than its own: those where inside, (F,) bool, is True; also where
@@ -268,33 +270,28 @@ class Hierarchy:
         inside = np.ascontiguousarray(inside, bool)
         if inside.shape != self.leaf.shape:
             raise ValueError(f"inside must have the shape {self.leaf.shape}, not {inside.shape}.")
-        return self._as_solid(*self._mesh(load().pw_hierarchy_solid_of_faces, tet_first, tet_last, inside, len(inside)))
+        return self._solid(load().pw_hierarchy_solid_of_faces, tet_first, tet_last, inside, len(inside))
 
     def solids(self, slices):
         """The Solids around slices (tet_first, tet_last) that have nothing in common, None for one that has no
         tetrahedron left. A cap between two of them is the same triangle in both: where one has a vertex in the middle
         of an edge, all have."""
-        none = np.empty((0, 2), np.int32)
-        made = [self._solid_or_none(*each, none) for each in slices]
-        wanted = [solid.ends[solid.ends[:, 0] != solid.ends[:, 1]] for solid in made if solid]
-        middles = np.unique(np.sort(np.vstack([none, *wanted]), axis=1), axis=0)
-        if not len(middles):
+        made = []
+        for each in slices:
+            try:
+                made.append(self.solid_of_slice(*each))
+            except PartwheelError as error:
+                if error.status != Status.EMPTY:
+                    raise
+                made.append(None)
+        middles = [solid.ends[solid.ends[:, 0] != solid.ends[:, 1]] for solid in made if solid]
+        if not any(map(len, middles)):
             return made
-        return [solid and self._solid(*each, middles) for each, solid in zip(slices, made)]
+        middles = np.unique(np.sort(np.vstack(middles), axis=1), axis=0)
+        return [solid and self.solid_of_slice(*each, middles) for each, solid in zip(slices, made)]
 
-    def _solid_or_none(self, tet_first, tet_last, middles):
-        try:
-            return self._solid(tet_first, tet_last, middles)
-        except PartwheelError as error:
-            if error.status != Status.EMPTY:
-                raise
-            return None
-
-    def _solid(self, tet_first, tet_last, middles):
-        middles = np.ascontiguousarray(middles, np.int32)
-        return self._as_solid(*self._mesh(load().pw_hierarchy_solid, tet_first, tet_last, middles, len(middles)))
-
-    def _as_solid(self, mesh, vertices, triangles):
+    def _solid(self, function, tet_first, tet_last, *arguments):
+        mesh, vertices, triangles = self._mesh(function, tet_first, tet_last, *arguments)
         ends, faces, beyond = c_void_p(), c_void_p(), c_void_p()
         check(load().pw_mesh_origins(mesh, byref(ends), byref(faces), byref(beyond)))
         return Solid(vertices, triangles, _view(mesh, ends.value, (len(vertices), 2), np.int32),
