@@ -41,8 +41,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
 
     node: bpy.props.IntProperty(
         name="Part", description="Node of the hierarchy; -1: the part that was picked last", default=-1, min=-1,
-        options={"SKIP_SAVE"},
-    )
+        options={"SKIP_SAVE"})
     method: bpy.props.EnumProperty(
         name="Method",
         items=[("RIGID", "As Rigid as Possible", "The part follows the handle and keeps its details"),
@@ -52,17 +51,14 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         default="RIGID", options={"SKIP_SAVE"},
     )
     rings: bpy.props.IntProperty(
-        name="Rings", description="So many rings of faces around the part deform with it, for a softer join",
-        default=0, min=0, soft_max=10, options={"SKIP_SAVE"},
-    )
+        name="Rings", description="So many rings of faces around the part deform with it, for a softer join", default=0,
+        min=0, soft_max=10, options={"SKIP_SAVE"})
     reach: bpy.props.FloatProperty(
-        name="Joint", description="How far from the part's border it bends, in radii of the border",
-        default=REACH, min=0.1, soft_max=10, options={"SKIP_SAVE"},
-    )
+        name="Joint", description="How far from the part's border it bends, in radii of the border", default=REACH,
+        min=0.1, soft_max=10, options={"SKIP_SAVE"})
     snap: bpy.props.BoolProperty(
         name="Snap Border", description="Deform the part as far as the creases near its border, not as far as its own "
-        "border; a part that was picked so is", default=False, options={"SKIP_SAVE"},
-    )
+        "border; a part that was picked so is", default=False, options={"SKIP_SAVE"})
     handles: bpy.props.CollectionProperty(type=PARTWHEEL_PG_handle, options={"HIDDEN", "SKIP_SAVE"})
     start: bpy.props.EnumProperty(
         name="Start", description="The movement to start with",

@@ -143,23 +143,15 @@ class _Build(NeedsMesh, InView):
     """What building and finding have in common."""
 
     quality: bpy.props.FloatProperty(
-        name="Quality",
-        description="0 adds no points inside the mesh; from 1.1 on, bounds how stretched the tetrahedra may be "
-                    "(1.4 is usual, smaller is slower)",
-        default=0.0, min=0.0, soft_max=3.0,
-    )
+        name="Quality", description="0 adds no points inside the mesh; from 1.1 on, bounds how stretched the "
+        "tetrahedra may be (1.4 is usual, smaller is slower)", default=0.0, min=0.0, soft_max=3.0)
     open_surfaces: bpy.props.BoolProperty(
-        name="Open Surfaces",
-        description="Take a surface that encloses nothing, such as cloth or a car's door, for a thin solid, instead of "
-                    "refusing it",
-        default=False,
-    )
+        name="Open Surfaces", description="Take a surface that encloses nothing, such as cloth or a car's door, for a "
+        "thin solid, instead of refusing it", default=False)
     exactly: bpy.props.BoolProperty(
-        name="Exactly",
-        description="Find the parts of a mesh of more than 200,000 triangles on all of these, not on a coarser copy: "
-                    "some ten times the time and memory. The add-on's preferences can have it so for all",
-        default=False,
-    )
+        name="Exactly", description="Find the parts of a mesh of more than 200,000 triangles on all of these, not on a "
+        "coarser copy: some ten times the time and memory. The add-on's preferences can have it so for all",
+        default=False)
 
     def execute(self, context):
         building = self._start(context)

@@ -23,28 +23,21 @@ class PartPicker(InView):
     face_index: bpy.props.IntProperty(name="Face", description="The face that was clicked", default=0, min=0)
     level: bpy.props.IntProperty(
         name="Level", description="Notches of the wheel from the part that the click alone takes: up is positive",
-        default=0,
-    )
+        default=0)
     extend: bpy.props.BoolProperty(
-        name="Extend", description="Add the part to what is selected, instead of replacing it",
-        default=False, options={"SKIP_SAVE"},
-    )
+        name="Extend", description="Add the part to what is selected, instead of replacing it", default=False,
+        options={"SKIP_SAVE"})
     deselect: bpy.props.BoolProperty(
-        name="Deselect", description="Take the part away from what is selected",
-        default=False, options={"SKIP_SAVE"},
-    )
+        name="Deselect", description="Take the part away from what is selected", default=False, options={"SKIP_SAVE"})
     snap: bpy.props.BoolProperty(
-        name="Snap Border", description="Move the border of the part to the creases nearby",
-        default=False, options={"SKIP_SAVE"},
-    )
+        name="Snap Border", description="Move the border of the part to the creases nearby", default=False,
+        options={"SKIP_SAVE"})
     begin: bpy.props.IntProperty(
         name="Begin At", description="The face of the active object that is picked first; -1: the one under the mouse",
-        default=NO_FACE, min=NO_FACE, options={"SKIP_SAVE", "HIDDEN"},
-    )
+        default=NO_FACE, min=NO_FACE, options={"SKIP_SAVE", "HIDDEN"})
     tool: bpy.props.BoolProperty(
         name="From the Toolbar", description="The next click starts with the next part, and other keys go to Blender",
-        default=False, options={"SKIP_SAVE", "HIDDEN"},
-    )
+        default=False, options={"SKIP_SAVE", "HIDDEN"})
 
     # ---- What operators differ in
 

@@ -44,12 +44,10 @@ class OnPart(OnParts):
 
     snap: bpy.props.BoolProperty(
         name="Snap Border", description="Move the border of the part to the creases nearby, as far as the tetrahedra "
-        "about it let it be there", default=True,
-    )
+        "about it let it be there", default=True)
     node: bpy.props.IntProperty(
         name="Node", description="The part, as a number of the hierarchy; -1: the part that was picked last",
-        default=-1, min=-1, options={"SKIP_SAVE"},
-    )
+        default=-1, min=-1, options={"SKIP_SAVE"})
 
     def hierarchy(self, obj):
         found, self.node = picks.chosen(obj, self.node)
@@ -61,11 +59,9 @@ class _Caps:
 
     smooth: bpy.props.BoolProperty(
         name="Smooth Caps", description="Close the part with a smooth surface, instead of the flat facets inside the "
-        "solid that divide it from the rest", default=False,
-    )
+        "solid that divide it from the rest", default=False)
     material: bpy.props.BoolProperty(
-        name="Cap Material", description="Give the caps a material of their own", default=False,
-    )
+        name="Cap Material", description="Give the caps a material of their own", default=False)
 
     def caps(self):
         return solids.Options(self.smooth, self.material)
@@ -111,12 +107,10 @@ class MESH_OT_partwheel_split(OnParts, _Caps, bpy.types.Operator):
     parts: bpy.props.IntProperty(name="Parts", description="How many parts", default=6, min=1, soft_max=64, max=4096)
     height: bpy.props.FloatProperty(
         name="Height", description="Largest concavity of a part: the volume between it and its convex hull", default=0,
-        min=0,
-    )
+        min=0)
     explode: bpy.props.FloatProperty(
         name="Explode", description="How far the parts are moved apart, by their distance from the middle", default=0,
-        min=0, soft_max=2,
-    )
+        min=0, soft_max=2)
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was split", default=True)
 
     def draw(self, _context):
