@@ -140,4 +140,4 @@ class OtherVersions(MeshTest):
 
     def test_it_is_said_once(self):
         self.opened(part("parts.stored").VERSION + 1)
-        self.assertEqual(dict(part("parts.opening").newer), {})
+        self.assertEqual(dict(part("parts.stored").newer), {})

@@ -4,7 +4,7 @@
 import bpy
 from mathutils import Vector
 
-from ..mesh import objects
+from ..mesh import kept
 from ..mesh.refusing import Refused, can
 from ..solid import composition
 from ..view import keys
@@ -42,7 +42,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
 
     def execute(self, context):
         part = context.active_object
-        target = objects.wanted(self.target)
+        target = kept.wanted(self.target)
         if (self.fit or self.mirror) and (target is None or target.type != "MESH"):
             self.report({"ERROR"}, "Say which mesh object the part is placed on.")
             return {"CANCELLED"}
@@ -92,14 +92,14 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
             return {"RUNNING_MODAL"}
         if self.mirror:
             composition.update_matrices()
-            placement.mirrored(context.active_object, objects.named(self.target)).select_set(True)
+            placement.mirrored(context.active_object, kept.named(self.target)).select_set(True)
         return {"FINISHED"}
 
     def _take_back(self, _context):
         self._put_back()
 
     def _put_back(self):
-        part = self.transform and objects.named(self.part_name)
+        part = self.transform and kept.named(self.part_name)
         if part:
             placement.put_back(part, self.transform)
 
@@ -113,7 +113,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
     def _show(self, context):
         if not self.target:
             return
-        target = objects.named(self.target)
+        target = kept.named(self.target)
         try:
             placement.put(context.active_object, self.start, self.own, target, self._pose())
         except Refused as error:

@@ -4,7 +4,7 @@ is offered; meanwhile one sees what would be left of the object, and the part of
 
 import bpy
 
-from ..mesh import objects
+from ..mesh import kept
 from ..solid import composition
 from ..view import keys, previews
 from . import swapping
@@ -54,7 +54,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
 
     def _chosen(self, context, place, obj):
         """The Offer that the options name."""
-        other = objects.wanted(self.other) if self.other else None
+        other = kept.wanted(self.other) if self.other else None
         if self.other and (other is None or other.type != "MESH"):
             raise Refused(f"There is no mesh object {self.other}.")
         if other and (self.whole or self.other_node >= 0):
@@ -77,7 +77,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
         obj = context.active_object
         with waiting(context):
             hierarchy = self.hierarchy(obj)
-            other = objects.wanted(self.other)
+            other = kept.wanted(self.other)
             others = [other] if other else swapping.sources(context, obj)
             self.was_edited = obj.mode == "EDIT"
             if self.was_edited:
@@ -91,7 +91,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
 
     def _still_there(self, context):
         active = context.view_layer.objects.active  # none while it is hidden, in some versions
-        obj = objects.named(self.place.name)
+        obj = kept.named(self.place.name)
         return (obj is not None and context.view_layer.objects.get(obj.name) == obj and active in (None, obj)
                 and context.mode == "OBJECT")
 
@@ -153,7 +153,7 @@ class Preview:
             self.shown[wanted] = previews.show(self.place.stand_in(offer, adjustment)).name
 
     def _begin(self):
-        obj = objects.named(self.place.name)
+        obj = kept.named(self.place.name)
         mesh = self.place.rest()
         rest = obj.copy()  # with its modifiers and materials
         rest.data = mesh

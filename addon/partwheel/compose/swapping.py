@@ -14,7 +14,7 @@ from ..parts import registry
 from ..solid import composition
 from . import placement, union
 from partwheel import compatible
-from ..mesh.objects import named
+from ..mesh.kept import named
 from ..mesh.refusing import Refused
 
 

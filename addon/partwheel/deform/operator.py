@@ -6,7 +6,7 @@ import numpy as np
 
 from partwheel import Error
 from partwheel.joint import REACH
-from ..mesh import objects
+from ..mesh import kept
 from ..mesh.refusing import Refused, can
 from ..parts import picks, registry
 from ..pick import borders
@@ -234,7 +234,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     # ---- What is seen
 
     def _draw(self):
-        obj = objects.named(self.held.name)
+        obj = kept.named(self.held.name)
         if obj is None:
             return
         self.held.draw(obj)

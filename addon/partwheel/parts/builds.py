@@ -7,7 +7,7 @@ from ..mesh import arrays
 from ..mesh.kept import PerMesh, counts, key
 from ..preferences import preferences
 from . import registry
-from .opening import unopened
+from .stored import unopened
 from partwheel import Error, Mode, PartwheelError, Status
 from partwheel.library import load
 from partwheel.worker import WAIT_SECONDS, Job, available_memory

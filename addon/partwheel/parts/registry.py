@@ -13,7 +13,7 @@ from ..mesh.arrays import Fingerprint
 from ..mesh.kept import PerMesh, counts, key
 from ..mesh.refusing import Refused
 from . import changes
-from .opening import Opening, carried, unopened, waits
+from .stored import Opening, carried, unopened, waits
 from partwheel import Hierarchy
 
 

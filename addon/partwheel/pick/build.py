@@ -10,7 +10,7 @@ import time
 import bpy
 
 from .. import trouble
-from ..parts import builds, opening, picks, registry
+from ..parts import builds, picks, registry, stored
 from partwheel import Error, LibraryError, PartwheelError, Status
 from ..mesh.kept import key
 from ..view import status
@@ -30,7 +30,7 @@ class Building:
         self.operator, self.hierarchy = operator, None
         self.began = time.perf_counter()
         self.build = builds.build(obj, **options)
-        if opening.newer.pop(key(obj.data), False):
+        if stored.newer.pop(key(obj.data), False):
             operator.report({"WARNING"}, f"The parts saved with {obj.data.name} are of a newer Partwheel than this one, "
                                          "so they are found anew. Update Partwheel to have those of the file.")
         self.timer, self.line = None, status.Line()

@@ -8,7 +8,7 @@ draws it in every 3D view, for as long as the tool is active and no longer. It n
 import bpy
 
 from .. import trouble
-from ..mesh import objects
+from ..mesh import kept
 from ..view import overlay, picking
 from . import borders, states
 from .prepared import current, prepared
@@ -44,7 +44,7 @@ class Hover:
         if not self.what or overlay.shown.on:
             return
         name, parts, node, snapped = self.what
-        obj = objects.named(name)
+        obj = kept.named(name)
         if obj and obj.mode == "EDIT" and overlay.visible(context, obj) and current(obj, parts):
             overlay.draw_hover(context, obj, parts, node, snapped)
 

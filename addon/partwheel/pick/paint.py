@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..mesh import objects
+from ..mesh import kept
 from ..mesh.refusing import Refused, can, changeable
 from .pick import PartPicker
 from .writers import WRITERS
@@ -28,7 +28,7 @@ class Preview:
         """Nothing was changed."""
 
     def fits(self):
-        obj = objects.named(self.name)
+        obj = kept.named(self.name)
         return obj is not None and obj.mode == self.mode and len(obj.data.polygons) == self.faces
 
 

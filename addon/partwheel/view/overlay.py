@@ -11,7 +11,7 @@ import gpu
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ..mesh import objects
+from ..mesh import kept
 from ..preferences import preferences
 from .seen import NO_FACE
 
@@ -255,7 +255,7 @@ class Shown:
 
     def _draw(self):
         context, (name, *what) = bpy.context, self._what
-        obj = objects.named(name)
+        obj = kept.named(name)
         if obj and visible(context, obj):
             draw_held(context, obj, *what)
 
