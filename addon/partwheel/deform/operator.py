@@ -134,7 +134,8 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
                 answer = step(context, event)
         except Refused as reason:
             self.report({"WARNING"}, str(reason))
-        self._tell_state(context)
+        if not answer or "RUNNING_MODAL" in answer:
+            self._tell_state(context)
         return answer or {"PASS_THROUGH" if event.type == "TIMER" else "RUNNING_MODAL"}
 
     # Steps: each gives an answer, or None to go on.

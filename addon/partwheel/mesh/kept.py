@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is remembered of meshes and objects. No pointer into Blender's data is: undo and file loading would make it
-dangle. So it is under a key; tables of it are emptied when another file is opened, and when the add-on ends. Objects are
-held by name, the one in full, for a linked and a local one may have the same."""
+dangle. So it is under a key; tables of it are emptied when another file is opened, and when the add-on ends. Objects
+are held by name, the one in full, for a linked and a local one may have the same."""
 
 import bmesh
 import bpy
