@@ -19,8 +19,8 @@ from ..mesh.refusing import Refused
 
 
 class Offer(NamedTuple):
-    """A part that can stand in. name: its object's, in full; node: of that one's hierarchy, or None for the object as it
-    is, one that was cut out as a part before; score: from 1, the same shape, down to 0; shape: a compatible.Shape."""
+    """A part that can stand in. name: its object's, in full; node: of that one's hierarchy, or None for the object as
+    it is, one that was cut out as a part before; score: from 1, the same shape, down to 0; shape: a compatible.Shape."""
 
     name: str
     node: int

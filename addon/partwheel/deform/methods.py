@@ -19,8 +19,8 @@ MIRROR = np.diag([-1.0, 1, 1, 1])
 
 
 class AsRigidAsPossible:
-    """The region follows its handles, patches of its vertices, like a soft body: partwheel.deform.Deformation. Loose pieces in
-    it (eyes, buttons) go with the surface next to them, each as a whole."""
+    """The region follows its handles, patches of its vertices, like a soft body: partwheel.deform.Deformation. Loose
+    pieces in it (eyes, buttons) go with the surface next to them, each as a whole."""
 
     def __init__(self, region, patches):
         """patches: the region's vertices of each handle. Raises Refused or PartwheelError."""

@@ -26,8 +26,8 @@ class Region:
     rings: so many rings of faces around the part deform with it. mirror: the same happens across the x axis. center
     (3,) and size: of the part.
 
-    With reach the part is one that turns at its joint (partwheel.joint): what lies within so many radii of its border, on
-    either side, is free as well; limb are the region's vertices of the rest of it; center is the joint's.
+    With reach the part is one that turns at its joint (partwheel.joint): what lies within so many radii of its border,
+    on either side, is free as well; limb are the region's vertices of the rest of it; center is the joint's.
 
     moving (m,): the vertices of the mesh that may move, mirrored ones included, before (m,3) where they are. Of the
     polygons that have such a vertex: flat_faces, those shaded flat; smooth (n,) bool, vertices of the others; polygons,
