@@ -135,10 +135,12 @@ def _closed(made, loops, mesh, facets, smooth, exact, alone):
             open_before = _mended(bm, loops, mesh, alone)
         if exact or alone:
             closing.set_apart(bm)
-        caps = bridging.bridge(bm, facets) if facets else []
-        caps += closing.fill(bm, smooth, open_before)
+        bridged = bridging.bridge(bm, facets) if facets else []
+        caps = bridged + closing.fill(bm, smooth, open_before)
         if (exact or alone) and any(len(edge.link_faces) != 2 for edge in bm.edges if edge.link_faces):
             raise Refused("This part can't be closed: its border crosses itself. Take a larger or smaller one.")
+        if alone and not exact:
+            closing.turn_outwards(bm, bridged)
         bm.faces.index_update()
         caps = np.array([face.index for face in caps], np.int32)
         number = bm.loops.layers.int[_LOOP]
