@@ -5,9 +5,8 @@ only asked what it holds: its order is that of memory, another on every run."""
 import bmesh
 import numpy as np
 
-from partwheel import faired
-
 RINGS = 4  # of faces in a smooth cap, between its border and its middle
+STEPS = 200  # of fairing
 
 
 def set_apart(bm):
@@ -92,7 +91,7 @@ def _fill_border(bm, border, rings):
     for face in caps:
         face.smooth = rings > 0
     if rings:
-        _fair([*(vert for row in rows[1:] for vert in row), top])
+        _fair(rows, top)
     return caps
 
 
@@ -128,14 +127,40 @@ def new_vert(bm, place):
     return vert
 
 
-def _fair(new):
-    """Moves new vertices so that the cap leaves the border as the surface arrives there."""
-    near = dict.fromkeys(new)
-    for _ in range(2):  # what the border lies among counts too
-        near |= dict.fromkeys(edge.other_vert(vert) for vert in list(near) for edge in vert.link_edges)
-    number = {vert: index for index, vert in enumerate(near)}
-    edges = {edge for vert in near for edge in vert.link_edges if edge.other_vert(vert) in number}
-    places = faired([vert.co[:] for vert in near], [[number[vert] for vert in edge.verts] for edge in edges],
-                    np.arange(len(near)) < len(new))
-    for vert, place in zip(new, places):
-        vert.co = place
+def _fair(rows, top):
+    """Moves the new vertices until the discrete bi-Laplacian vanishes (Kobbelt et al. 1998), so that the cap leaves the
+    border as the surface arrives there. Rows of vertices from the border inwards; the border and what lies outside it
+    stay."""
+    border = rows[0]
+    count = len(border)
+    inside = np.array([[vert.co[:] for vert in row] for row in rows[1:]])
+    fixed = np.array([vert.co[:] for vert in border])
+    # One row outside the border: where the surface comes from.
+    new = {vert for row in rows[1:] for vert in row} | {top}
+    beside = []
+    for vert in border:
+        around = [edge.other_vert(vert).co for edge in vert.link_edges
+                  if edge.other_vert(vert) not in new and edge.other_vert(vert) not in border]
+        beside.append(sum(around[1:], around[0].copy()) / len(around) if around else vert.co)
+    beside = np.array([co[:] for co in beside])
+    size = np.linalg.norm(inside[0] - fixed, axis=1).mean()
+    away = beside - fixed
+    length = np.linalg.norm(away, axis=1, keepdims=True)
+    beside = fixed + away * (size / np.maximum(length, 1e-30))
+    grid = np.concatenate([beside[None], fixed[None], inside])
+    peak = np.array(top.co[:])
+    for _ in range(STEPS):
+        full = np.concatenate([grid, np.broadcast_to(peak, (1, count, 3))])
+        umbrella = np.zeros_like(full)
+        umbrella[1:-1] = (full[:-2] + full[2:] + np.roll(full[1:-1], 1, axis=1) + np.roll(full[1:-1], -1, axis=1)
+                          ) / 4 - full[1:-1]
+        umbrella[-1] = grid[-1].mean(axis=0) - peak
+        second = np.zeros_like(full)
+        second[2:-1] = (umbrella[1:-2] + umbrella[3:] + np.roll(umbrella[2:-1], 1, axis=1)
+                        + np.roll(umbrella[2:-1], -1, axis=1)) / 4 - umbrella[2:-1]
+        grid[2:] -= 0.4 * second[2:-1]
+        peak = peak - 0.4 * (umbrella[-2].mean(axis=0) - umbrella[-1][0])
+    for row, places in zip(rows[1:], grid[2:]):
+        for vert, place in zip(row, places):
+            vert.co = place
+    top.co = peak
