@@ -12,7 +12,13 @@ find_package(Threads REQUIRED)
 
 # No fused multiply-adds: they break exact predicates, and results are to be the same on every machine.
 add_compile_options(-ffp-contract=off -ffunction-sections -fdata-sections)
-add_link_options(LINKER:--gc-sections)
+if(APPLE)
+  add_link_options(LINKER:-dead_strip)
+else()
+  add_link_options(LINKER:--gc-sections)
+endif()
+# Messages name sources by where they are in the project, so that the library is the same wherever it is built.
+add_compile_options("-ffile-prefix-map=${PROJECT_SOURCE_DIR}/=" "-ffile-prefix-map=${PARTWHEEL_DEPS}/=")
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # CGAL's interval arithmetic changes the rounding mode.
   add_compile_options(-frounding-math)

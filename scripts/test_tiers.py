@@ -177,15 +177,24 @@ def in_suite(suite, package):
     return own_runner(log, command, clean, room / "result.json")
 
 
+def ship():
+    """The packages for all platforms, made, run where they can be, and installed as strangers do. An hour of compiling:
+    only when it is named."""
+    require("ship-package", "scripts/package", "all")
+    print((OUTPUT / "ship-package.log").read_text().split("distribution\n")[-1], end="")
+    setup("ship", "setup_bpy")
+    return pytest("ship", "tests/ship")
+
+
 TIERS = {function.__name__: function
          for function in (native, sanitizers, threads, determinism, fuzz, core, reliability, addon, gui,
-                          newest)}
+                          newest, ship)}
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="scripts/test", description="Runs the test tiers, or only those named.")
+    parser = argparse.ArgumentParser(prog="scripts/test", description="Runs the test tiers but ship, or only those named.")
     parser.add_argument("tier", nargs="*", help=" ".join(TIERS))
-    names = parser.parse_args().tier or list(TIERS)
+    names = parser.parse_args().tier or [name for name in TIERS if name != "ship"]
     for name in names:
         if name not in TIERS:
             parser.error(f"there is no tier {name}: {', '.join(TIERS)}")

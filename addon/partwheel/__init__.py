@@ -32,10 +32,10 @@ if PACKAGES.is_dir() and str(PACKAGES) not in sys.path:
 
 # What Blender is told of, in this order: a module's CLASSES, its HANDLERS (by name), then its register().
 MODULES = (
-    "preferences", "parts.changes", "parts.files", "pick.prepared", "view.previews", "view.overlay",
+    "preferences", "parts.changes", "parts.files", "view.previews", "view.overlay",
     "pick.build", "pick.select", "pick.paint", "solid.copy_part", "compose.place", "compose.unite", "compose.swap",
     "deform.operator", "deform.proportional",
-    "ui.panel", "ui.path", "ui.copy_panel", "ui.deform_panel", "ui.menu", "ui.keymap", "pick.hover", "pick.tool", "api",
+    "ui.panel", "ui.path", "ui.modelling", "ui.menu", "ui.keymap", "pick.hover", "pick.tool", "api",
     "command",
 )
 

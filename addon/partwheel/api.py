@@ -31,54 +31,22 @@ from mathutils import Vector
 
 import partwheel
 from .compose import placement, swapping, union
-from .deform import deforming
+from .deform import methods
+from .deform.pen import Pen
+from .deform.region import Region
 from .mesh import arrays, selection
-from .mesh.linked import read_only
+from .mesh.refusing import read_only
 from .parts import builds, picks, registry
 from .pick import borders, states
 from .solid import composition, solids
 from partwheel import PartwheelError, Status
 from partwheel.deform import MOST_ITERATIONS
 from partwheel.joint import REACH
-from partwheel.worker import WAIT_SECONDS
 
-State = registry.State
+Build, State = builds.Build, registry.State
 
 
 # ---- Hierarchies
-
-
-class Build:
-    """A build under way, in a process of its own, that start_build() began or found. Ask it from the main thread."""
-
-    def __init__(self, build):
-        self._build = build
-
-    def poll(self):
-        """(fraction 0..1 that never falls, what is done or waited for); None once result() won't block."""
-        return self._build.poll()
-
-    def wait(self, seconds):
-        """Waits so long at most; whether result() won't block."""
-        return self._build.wait(seconds)
-
-    def cancel(self):
-        """Ends it at once. result() then raises PartwheelError, status CANCELLED, and no hierarchy is kept."""
-        self._build.cancel()
-
-    def result(self, progress=None):
-        """Waits for the end and keeps the Hierarchy, which is returned; without this call it is not kept.
-        progress(fraction, what): called ten times a second; returning True cancels. Raises PartwheelError: why the mesh
-        has no parts, or a limit was met; partwheel.Error: the mesh was edited or deleted meanwhile."""
-        try:
-            while progress and (told := self.poll()):
-                if progress(*told):
-                    self.cancel()
-                self.wait(WAIT_SECONDS)
-        except BaseException:  # what progress() raised, or Ctrl-C
-            self.cancel()
-            raise
-        return self._build.finish()
 
 
 def start_build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None, exactly=None):
@@ -90,8 +58,8 @@ def start_build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=Non
     seconds of processor time. memory_limit: bytes, kept on Linux only. exactly: find the parts of a large mesh on all of
     its triangles, not on a coarser copy. None: as the add-on's preferences have it."""
     _mesh(obj)
-    return Build(builds.build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode, time_limit=time_limit,
-                              memory_limit=memory_limit, exactly=exactly))
+    return builds.build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode, time_limit=time_limit,
+                        memory_limit=memory_limit, exactly=exactly)
 
 
 def build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None, progress=None,
@@ -103,7 +71,7 @@ def build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, mem
 def hierarchy(obj):
     """The Hierarchy of the object's mesh as it is now, built if there is none."""
     _mesh(obj)
-    return registry.hierarchy(obj) or builds.build(obj).finish()
+    return registry.hierarchy(obj) or builds.build(obj).result()
 
 
 def state(obj):
@@ -301,14 +269,14 @@ def deform(obj, node, handle, matrix, rings=0, snap=False, progress=None, time_l
     (4,4) times their place; the part's border and all beyond stay. rings: so many rings of faces around the part take
     part. ValueError: there is nothing to deform, or nothing to hold it, or the handle is not inside."""
     _mesh(obj, changes=True)
-    region = deforming.Region(obj, faces(obj, node, snap), rings, obj.data.use_mirror_x)
+    region = Region(obj, faces(obj, node, snap), rings, obj.data.use_mirror_x)
     inside = numpy.searchsorted(region.vertices, handle)
     known = inside < len(region.vertices)
     if not (known.all() and (region.vertices[inside] == handle).all() and region.free[inside].all()):
         raise ValueError("The handle has vertices that are not inside the part: on its border, beyond it, or hidden.")
     if not len(inside):
         raise ValueError("The handle has no vertices.")
-    _deform(obj, region, deforming.AsRigidAsPossible(region, [inside]), matrix, progress, time_limit)
+    _deform(obj, region, methods.AsRigidAsPossible(region, [inside]), matrix, progress, time_limit)
 
 
 def bend(obj, node, rotation, reach=REACH, snap=False, progress=None, time_limit=None):
@@ -316,11 +284,11 @@ def bend(obj, node, rotation, reach=REACH, snap=False, progress=None, time_limit
     part keeps its shape, but what is within reach of its border, in radii of that, bends, on either side; all beyond
     stays. ValueError: there is no such joint."""
     _mesh(obj, changes=True)
-    region = deforming.Region(obj, faces(obj, node, snap), mirror=obj.data.use_mirror_x, reach=reach)
+    region = Region(obj, faces(obj, node, snap), mirror=obj.data.use_mirror_x, reach=reach)
     matrix = numpy.eye(4)
     matrix[:3, :3] = rotation
     matrix[:3, 3] = region.center - matrix[:3, :3] @ region.center
-    _deform(obj, region, deforming.AtJoint(region), matrix, progress, time_limit)
+    _deform(obj, region, methods.AtJoint(region), matrix, progress, time_limit)
 
 
 def _deform(obj, region, shape, matrix, progress, time_limit):
@@ -328,7 +296,7 @@ def _deform(obj, region, shape, matrix, progress, time_limit):
     shape.jump([numpy.asarray(matrix, float)], watch)
     if watch.reason:
         raise PartwheelError(Status.CANCELLED, f"{watch.reason} The mesh is as it was.")
-    deforming.Pen(obj, region).write(obj, shape.points())
+    Pen(obj, region).write(obj, shape.points())
 
 
 class _Watch:

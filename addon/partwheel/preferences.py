@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The add-on's preferences."""
 
+from types import SimpleNamespace
+
 import bpy
+
+from . import trouble
 
 
 class PartwheelPreferences(bpy.types.AddonPreferences):
@@ -10,8 +14,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
     save_with_file: bpy.props.BoolProperty(
         name="Save Parts in .blend Files",
         description="Parts that were built are there again when the file is opened. It grows by about 40 bytes a face",
-        default=True,
-    )
+        default=True)
     parts: bpy.props.EnumProperty(
         name="Parts", description="How small parts are joined to larger ones in builds from now on",
         items=[("REGROUPED", "As People See Them", "By what people took for parts on some hundred models: a click alone "
@@ -21,44 +24,29 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         default="REGROUPED",
     )
     exactly: bpy.props.BoolProperty(
-        name="Large Meshes Exactly",
-        description="Find the parts of meshes of more than 200,000 triangles on all of these, not on a coarser copy: "
-                    "some ten times the time and memory for parts that are mostly the same",
-        default=False,
-    )
+        name="Large Meshes Exactly", description="Find the parts of meshes of more than 200,000 triangles on all of "
+        "these, not on a coarser copy: some ten times the time and memory for parts that are mostly the same",
+        default=False)
     memory_share: bpy.props.IntProperty(
-        name="Memory", description="How much of the available memory a build may use (kept on Linux)",
-        default=80, min=10, max=100, subtype="PERCENTAGE",
-    )
+        name="Memory", description="How much of the available memory a build may use (kept on Linux)", default=80,
+        min=10, max=100, subtype="PERCENTAGE")
     time_limit: bpy.props.IntProperty(
         name="Time Limit", description="Minutes of processor time after which a build is stopped; 0: two, and two more "
-                                       "for each 60,000 triangles, far more than builds take",
-        default=0, min=0, soft_max=60,
-    )
+        "for each 60,000 triangles, far more than builds take", default=0, min=0, soft_max=60)
     python: bpy.props.StringProperty(
         name="Python", description="The program that parts are found with, a Python 3, in a process of its own; empty: "
-                                   "the one that Blender brings, or else one that is installed",
-        default="", subtype="FILE_PATH",
-    )
-    show_part: bpy.props.BoolProperty(
-        name="Part", description="Tint the part that is held",
-        default=True,
-    )
+        "the one that Blender brings, or else one that is installed", default="", subtype="FILE_PATH")
+    show_part: bpy.props.BoolProperty(name="Part", description="Tint the part that is held", default=True)
     show_next: bpy.props.BoolProperty(
-        name="Next Part", description="Tint faintly what the next notch of the wheel adds",
-        default=True,
-    )
+        name="Next Part", description="Tint faintly what the next notch of the wheel adds", default=True)
     show_hull: bpy.props.BoolProperty(
-        name="Convex Hull", description="Show the convex hull of the part that is held as glass",
-        default=False,
-    )
+        name="Convex Hull", description="Show the convex hull of the part that is held as glass", default=False)
     show_cut: bpy.props.BoolProperty(
-        name="All Parts",
-        description="Show the parts of the whole mesh at the size of the part that is held, each in a colour of its own",
-        default=False,
-    )
+        name="All Parts", description="Show the parts of the whole mesh at the size of the part that is held, each in "
+        "a colour of its own", default=False)
 
-    def draw(self, _context):
+    def draw(self, context):
+        trouble.draw(context, self.layout)
         column = self.layout.column()
         column.use_property_split = True
         for name in ("parts", "exactly", "save_with_file", "memory_share", "time_limit", "python"):
@@ -82,9 +70,8 @@ def preferences():
     return addon.preferences if addon else Defaults
 
 
-class Defaults:
-    parts, exactly, save_with_file, memory_share, time_limit, python = "REGROUPED", False, True, 80, 0, ""
-    show_part, show_next, show_hull, show_cut = True, True, False, False
+Defaults = SimpleNamespace(**{name: each.keywords["default"] 
+                              for name, each in PartwheelPreferences.__annotations__.items()})
 
 
 CLASSES = (PartwheelPreferences,)

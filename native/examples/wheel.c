@@ -1,7 +1,7 @@
-/* The stops of the mouse wheel after a click on a face: ./wheel MODEL.off FACE
+/* The stops of the mouse wheel after a click on a face: ./wheel MODEL.off FACE [SAVED]
  *
  * MODEL.off holds triangles. Prints a line for each stop, its node and how many faces it has; the one that a click alone
- * takes has a star. */
+ * takes has a star. Writes the hierarchy to the file SAVED, the same bytes on every machine. */
 #include <partwheel.h>
 
 #include <stdio.h>
@@ -34,6 +34,22 @@ static int read_off(const char *path, double **vertices, size_t *vertex_count, i
     return whole;
 }
 
+/* Whether the hierarchy was written to a file. */
+static int save(const pw_hierarchy *hierarchy, const char *path)
+{
+    size_t size = 0;
+    uint8_t *bytes = NULL;
+    FILE *file = fopen(path, "wb");
+    int whole = file && pw_hierarchy_save(hierarchy, NULL, 0, &size) == PW_OK && (bytes = malloc(size)) != NULL &&
+                pw_hierarchy_save(hierarchy, bytes, size, &size) == PW_OK && fwrite(bytes, 1, size, file) == size;
+    if (file && fclose(file))
+        whole = 0;
+    free(bytes);
+    if (!whole)
+        fprintf(stderr, "%s: can't be written. %s\n", path, pw_error_message());
+    return whole;
+}
+
 int main(int count, char **arguments)
 {
     double *vertices = NULL;
@@ -42,8 +58,8 @@ int main(int count, char **arguments)
     pw_hierarchy *hierarchy = NULL;
     int result = EXIT_FAILURE;
 
-    if (count != 3) {
-        fprintf(stderr, "usage: %s MODEL.off FACE\n", arguments[0]);
+    if (count != 3 && count != 4) {
+        fprintf(stderr, "usage: %s MODEL.off FACE [SAVED]\n", arguments[0]);
         return 2;
     }
     const size_t face = strtoul(arguments[2], NULL, 10);
@@ -66,6 +82,8 @@ int main(int count, char **arguments)
             printf("node %d: %zu faces%s\n", stops[i], face_count, i == start ? " *" : "");
         }
         result = i == stop_count ? EXIT_SUCCESS : refused("a stop");
+        if (count == 4 && !save(hierarchy, arguments[3]))
+            result = EXIT_FAILURE;
     }
     pw_hierarchy_free(hierarchy);
     free(stops);

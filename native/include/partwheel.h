@@ -348,7 +348,7 @@ PW_API pw_status pw_mesh_origins(const pw_mesh *mesh, const int32_t **ends, cons
 PW_API pw_status pw_hierarchy_save(const pw_hierarchy *hierarchy, uint8_t *bytes, size_t capacity, size_t *count);
 
 /* A hierarchy from such bytes. Nothing in them is trusted: whatever is damaged, cut short or foreign gives
- * PW_ERROR_DATA. */
+ * PW_ERROR_DATA; so do bytes of a newer or much older version, and the message says which: they are to be built again. */
 PW_API pw_status pw_hierarchy_load(const uint8_t *bytes, size_t count, pw_hierarchy **hierarchy);
 
 #ifdef __cplusplus

@@ -24,7 +24,8 @@ sys.path.insert(0, str(ROOT / "native" / "python"))
 # The add-on from the checkout, under the name that it has where it is installed.
 spec = importlib.util.spec_from_file_location("partwheel_addon", ROOT / "addon" / "partwheel" / "__init__.py")
 sys.modules[spec.name] = importlib.util.module_from_spec(spec)
-deforming = importlib.import_module("partwheel_addon.deform.deforming")
+methods, pens, regions = (importlib.import_module(f"partwheel_addon.deform.{name}")
+                          for name in ("methods", "pen", "region"))
 
 
 def edited(vertices, triangles):
@@ -54,10 +55,10 @@ def main():
     inside = np.zeros(len(vertices), bool)
     inside[part] = True
     began = time.perf_counter()
-    region = deforming.Region(obj, np.flatnonzero(inside[triangles].any(axis=1)))
+    region = regions.Region(obj, np.flatnonzero(inside[triangles].any(axis=1)))
     handle = np.intersect1d(region.vertices, part[:len(part) // 10], return_indices=True)[1]
-    shape = deforming.AsRigidAsPossible(region, [handle])
-    pen = deforming.Pen(obj, region)
+    shape = methods.AsRigidAsPossible(region, [handle])
+    pen = pens.Pen(obj, region)
     begin = time.perf_counter() - began
     shape.jump([np.eye(4)])
     prepare = time.perf_counter() - began - begin

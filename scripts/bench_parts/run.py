@@ -10,6 +10,7 @@ import sys
 
 import any_mesh
 import deform
+import large
 import peers
 import plot
 import queries
@@ -19,7 +20,7 @@ import table
 import worst
 from programs import BUILD, ROOT, Failure, machine
 
-SECTIONS = {"any": any_mesh, **{module.__name__: module for module in (ratio, scale, worst, queries, deform, peers)}}
+SECTIONS = {"any": any_mesh, **{module.__name__: module for module in (ratio, scale, worst, queries, deform, large, peers)}}
 
 
 def main():

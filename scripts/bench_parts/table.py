@@ -12,7 +12,7 @@ PLOT = "docs/images/scale.png"
 def text(reports):
     """The table of all sections that there are reports of."""
     makers = {"ratio": ratio, "scale": scale, "worst": worst, "queries": queries, "deform": deform,
-              "any": any_mesh}
+              "any": any_mesh, "large": large}
     rows = [("", "measured", "goal", "holds")]
     for name, rows_of in makers.items():
         if name in reports:
@@ -90,6 +90,29 @@ def any_mesh(report):
             report["broken_over_clean"], 3, "{:.2f}"),
         row("refused and no sheet, or lost", report["refused"], 0, "{}"),
     ]
+
+
+# Processor seconds and bytes that so many faces may take.
+LARGE_GOALS = {1_000_000: (5, 1e9), 4_000_000: (20, None), 10_000_000: (None, 8e9)}
+
+
+def large(report):
+    rows = []
+    for size in report["sizes"]:
+        seconds, most = LARGE_GOALS[size["faces"]]
+        name = f"{size['faces']:,} faces on a coarser copy, all stages"
+        if seconds:
+            rows.append(row(f"{name}, processor s", size["seconds"], seconds, "{:.1f}"))
+        if most:
+            rows.append(row(f"{name}, peak memory, GB", size["peak"] / 1e9, most / 1e9, "{:.2f}"))
+        if "exactly" in size:
+            rows.append(("the same mesh exactly, processor s", f"{size['exactly']['seconds']:.1f}", "", ""))
+            median = size["overlap"]["median"]
+            rows.append((f"overlap of a wheel stop with an exact one, median of {size['overlap']['stops']:,}",
+                         f"{median:.2f}", "≥ 0.95", "yes" if median >= 0.95 else "**no**"))
+    shaken = report["shaken"]
+    return [*rows, (f"the same of two exact trees of {shaken['faces']:,} faces, vertices moved by 1e-6 of the size",
+                    f"{shaken['overlap']['median']:.2f}", "", "")]
 
 
 def row(what, value, goal, form):

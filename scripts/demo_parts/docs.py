@@ -1,4 +1,5 @@
-"""Makes the README's pictures, docs/images, of what the demo left: a few wheel stops by name, and a few cuts.
+"""Makes the README's pictures, docs/images, of what the demo left: a few wheel stops by name, a few cuts, and the ways of
+building.
 
 Run as: python docs.py FOLDER IMAGES
 """
@@ -8,7 +9,7 @@ import math
 import sys
 from pathlib import Path
 
-from paint import parts_cells, percent, sheet, wheel_cells
+from paint import parts_cells, percent, sheet, ways_cells, wheel_cells
 
 # Picture -> model, click, and what to call the wheel stop of about this share of the model's area.
 STORIES = {
@@ -18,6 +19,7 @@ STORIES = {
         ("finger tip", 0.0014), ("finger", 0.003), ("hand", 0.027), ("arm", 0.1), ("body", 1.0))),
 }
 CUTS = {"parts": ("armadillo", "dino")}
+WAYS = {"ways": "armadillo"}
 SLACK = 1.5  # a stop whose area is this many times another than the named one is not the part that is named
 
 
@@ -46,6 +48,7 @@ def main():
     pictures = {name: story(folder, *what) for name, what in STORIES.items()}
     for name, models in CUTS.items():
         pictures[name] = sheet([("", "", parts_cells(*load(folder, model))) for model in models])
+    pictures |= {name: sheet([("", "", ways_cells(*load(folder, model)))]) for name, model in WAYS.items()}
     for name, picture in pictures.items():
         picture.save(images / f"{name}.jpg", quality=88, optimize=True)
 

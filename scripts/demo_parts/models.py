@@ -17,7 +17,8 @@ class Model(NamedTuple):
     """source: MONKEY or a file in build/deps/meshes.  voxel: the size for Blender's voxel remesh, which makes a closed
     surface of any, in the file's unit; 0 leaves the surface as it is.  up: the axis that points up in the file.
     azimuth, elevation: where the camera stands, degrees; 0, 0 is Blender's front view.  parts: the numbers of convex
-    parts to cut the dendrogram into, growing.  A model without clicks is a sheet, there to be refused."""
+    parts to cut the dendrogram into, growing.  ways: the number of parts to compare the ways of building by; 0 does not.
+    A model without clicks is a sheet, there to be refused."""
 
     name: str
     source: str
@@ -27,6 +28,7 @@ class Model(NamedTuple):
     elevation: float
     clicks: tuple
     parts: tuple = (8, 24, 96)
+    ways: int = 0
 
 
 MODELS = (
@@ -35,7 +37,7 @@ MODELS = (
     Model("man-remeshed", "man.off", 0.004, "Z", 20, 6,
           (Click("finger tip", (0.05, 0.554)), Click("toe", (0.929, 0.982)))),
     Model("armadillo", "armadillo.off", 0, "Y", 165, 6,
-          (Click("finger tip", (0.125, 0.071)), Click("claw", (0.715, 0.929)))),
+          (Click("finger tip", (0.125, 0.071)), Click("claw", (0.715, 0.929))), ways=12),
     Model("hand", "hand.off", 0, "Z", -20, 8,
           (Click("thumb", (0.798, 0.321)), Click("finger", (0.381, 0.143)))),
     Model("dino", "dino.off", 0, "Z", 55, 6,

@@ -1,7 +1,7 @@
 """Makes the demo's pictures of the layers that perform.py left: paints them, puts them in a row, labels them.
 
 Run as: python paint.py FOLDER MODEL...   For each model that was built it writes FOLDER/MODEL.png, a row for each click
-with every wheel stop, and FOLDER/MODEL-parts.png, the dendrogram cut into convex polyhedra.
+with every wheel stop, and FOLDER/MODEL-parts.png, the dendrogram cut into convex polyhedra; and FOLDER/MODEL-ways.png of the ways of building.
 """
 
 import json
@@ -68,9 +68,10 @@ def paint_stop(picture, entered, stop):
     return paint(picture, colors)
 
 
-def paint_parts(picture, palette):
-    colors = palette[picture.shown]
-    return paint(picture, numpy.where(edges(picture.shown, picture.shown >= 0)[..., None], colors * 0.45, colors))
+def paint_parts(picture, parts, palette):
+    """parts: (h, w) the part that each pixel shows; of no matter on the backdrop."""
+    colors = palette[parts]
+    return paint(picture, numpy.where(edges(parts, picture.shown >= 0)[..., None], colors * 0.45, colors))
 
 
 def palettes(cuts):
@@ -160,11 +161,23 @@ def parts_cells(report, folder):
     """The cells of the model and its cuts, from fine to coarse."""
     cells = []
     for cut, palette in zip(report["cuts"], palettes(report["cuts"])):
-        image = paint_parts(layers.load(folder / f"hulls-{cut['parts']}.npz"), palette)
-        cells.append((image, f"{cut['parts']} convex parts", f"{cut['polygons']:,} faces"))
+        picture = layers.load(folder / f"hulls-{cut['parts']}.npz")
+        cells.append((paint_parts(picture, picture.shown, palette), f"{cut['parts']} convex parts", f"{cut['polygons']:,} faces"))
     body = layers.load(folder / "whole.npz")
     cells.append((paint(body, linear(BODY)), "the model", f"{report['faces']:,} faces"))
     return cells[::-1]
+
+
+def ways_cells(report, folder):
+    """The cells of the model's parts, found exactly, from points and on a coarser copy."""
+    body = layers.load(folder / "whole.npz")
+    names = {"exact": "exactly", "points": "from points", "coarse": "on a coarser copy"}
+    palette, cells = numpy.array([linear(color) for color in PALETTE]), []
+    for each in report["ways"]:
+        parts = numpy.load(folder / f"way-{each['way']}.npy") % len(PALETTE)
+        cells.append((paint_parts(body, parts[body.shown], palette), names[each["way"]],
+                      f"{each['parts']} parts, of {each['tetrahedra']:,} tetrahedra"))
+    return cells
 
 
 def main():
@@ -178,6 +191,8 @@ def main():
             parts = [(name, "the dendrogram, cut into convex polyhedra", parts_cells(report, own))]
             sheet(wheel).save(folder / f"{name}.png", optimize=True)
             sheet(parts).save(folder / f"{name}-parts.png", optimize=True)
+            if report["ways"]:
+                sheet([("", "", ways_cells(report, own))]).save(folder / f"{name}-ways.png", optimize=True)
 
 
 if __name__ == "__main__":

@@ -17,7 +17,8 @@ import bmesh
 import bpy
 import numpy
 from mathutils import Matrix
-from partwheel import meshes as mesh_files
+from partwheel import Hierarchy, Rung, meshes as mesh_files
+from partwheel_addon.mesh import arrays
 from partwheel_addon.parts import registry
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -218,6 +219,27 @@ def play_cut(count, studio, whole, hierarchy, folder, report):
     report["cuts"].append({"parts": count, "bounds": bounds.tolist(), "polygons": len(parts)})
 
 
+def play_ways(count, thing, hierarchy, folder, report):
+    """The faces' parts as the exact way cuts them into so many, and from points, and on a copy with a tenth of the
+    triangles: parts that are most of another way's have its number."""
+    surface = arrays.surface(thing.data)
+    built = {"exact": hierarchy, "points": Hierarchy.build(*surface, rungs=Rung.POINTS),
+             "coarse": Hierarchy.build(*surface, exact_triangles=4 * len(surface.triangles) // 10)}
+    areas, first = numpy.array([polygon.area for polygon in thing.data.polygons]), None
+    for way, each in built.items():
+        labels = each.face_labels(each.cut_parts(count))
+        first = labels if first is None else first
+        shared = numpy.bincount(labels * count + first, areas, count * count).reshape(count, count)
+        number, free = numpy.full(count, -1), set(range(count))
+        for part, other in zip(*numpy.unravel_index(numpy.argsort(-shared, axis=None), shared.shape)):
+            if number[part] < 0 and other in free:
+                number[part] = other
+                free.remove(other)
+        numpy.save(os.path.join(folder, f"way-{way}.npy"), number[labels])
+        report["ways"].append({"way": way, "rung": each.summary.rung, "tetrahedra": len(each.tetrahedra),
+                               "parts": count})
+
+
 def perform(model, meshes, folder):
     """Plays the whole job with one model and returns the report."""
     layers = os.path.join(folder, "layers", model.name)
@@ -240,11 +262,13 @@ def perform(model, meshes, folder):
     box = studio.box(points)
     whole = studio.view(points, round(HEIGHT * min(max(box.width / box.height, 0.55), 1.5)), HEIGHT)
     studio.photograph(thing, range(report["faces"]), whole).save(os.path.join(layers, "whole.npz"))
-    report["clicks"], report["cuts"] = [], []
+    report["clicks"], report["cuts"], report["ways"] = [], [], []
     for spot in model.clicks:
         part = play_click(spot, thing, studio, whole, hierarchy, layers, report)
     for count in model.parts:
         play_cut(count, studio, whole, hierarchy, layers, report)
+    if model.ways:
+        play_ways(model.ways, thing, hierarchy, layers, report)
     show_ready(thing, studio, part)
     studio.close()
     bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, f"{model.name}.blend"), compress=True)

@@ -221,12 +221,11 @@ class Deform(MeshTest):
         obj.data.use_mirror_x = True
         top = [polygon.index for polygon in obj.data.polygons if polygon.center.z > 0.01]
         co = stored(obj.data.vertices)
-        deforming = part("deform.deforming")
-        region = deforming.Region(obj, top, 0, True)
+        region = part("deform.region").Region(obj, top, 0, True)
         patch = region.patch(region.nearest_free(int(numpy.abs(co - (0.5, 0, 1)).sum(axis=1).argmin())), 0.3)
-        shape = deforming.AsRigidAsPossible(region, [patch])
+        shape = part("deform.methods").AsRigidAsPossible(region, [patch])
         shape.jump([shift(0.2, 0, 0.5)])
-        deforming.Pen(obj, region).write(obj, shape.points())
+        part("deform.pen").Pen(obj, region).write(obj, shape.points())
         after = stored(obj.data.vertices)
         self.assertGreater(after[:, 2].max(), 1.4)
         image = after * (-1, 1, 1)
@@ -244,25 +243,23 @@ class Deform(MeshTest):
         faces = [polygon.index for polygon in obj.data.polygons if polygon.center.z > 0]
         self.assertTrue(any(len(polygon.vertices) > 4 for polygon in obj.data.polygons))
         top = [vertex.index for vertex in obj.data.vertices if vertex.co.z > 2.9]
-        deforming = part("deform.deforming")
-        region = deforming.Region(obj, faces)
-        shape = deforming.AsRigidAsPossible(region, [numpy.searchsorted(region.vertices, top)])
+        region = part("deform.region").Region(obj, faces)
+        shape = part("deform.methods").AsRigidAsPossible(region, [numpy.searchsorted(region.vertices, top)])
         shape.jump([shift(1, 0, 0)])
-        deforming.Pen(obj, region).write(obj, shape.points())
+        part("deform.pen").Pen(obj, region).write(obj, shape.points())
         self.assertAlmostEqual(max(vertex.co.x for vertex in obj.data.vertices), 2, places=4)
         self.assertEqual(uvs, [tuple(each.uv) for each in obj.data.uv_layers.active.data])
 
     def test_restoring_is_exact(self):
         obj, node, faces, free, tip = self.hand()
         before = edited(obj)
-        deforming = part("deform.deforming")
-        region = deforming.Region(obj, faces)
-        shape = deforming.AsRigidAsPossible(region, [[region.nearest_free(tip)]])
+        region = part("deform.region").Region(obj, faces)
+        shape = part("deform.methods").AsRigidAsPossible(region, [[region.nearest_free(tip)]])
         for step in range(5):
             shape.follow([shift(0.02 * step, 0, 0)])
-            deforming.Pen(obj, region).write(obj, shape.points())
+            part("deform.pen").Pen(obj, region).write(obj, shape.points())
         self.assertTrue((edited(obj) != before).any())
-        deforming.Pen(obj, region).restore(obj)
+        part("deform.pen").Pen(obj, region).restore(obj)
         self.assertTrue((edited(obj) == before).all())
 
     def test_turns_one_after_the_other(self):
@@ -309,8 +306,8 @@ class Deform(MeshTest):
         for point in obj.data.vertices:
             point.co = (1, 2, 3)
         obj.data.update()
-        with self.assertRaises(part("deform.deforming").Refused) as refused:
-            part("deform.deforming").Region(obj, [0, 2, 4])
+        with self.assertRaises(part("mesh.refusing").Refused) as refused:
+            part("deform.region").Region(obj, [0, 2, 4])
         self.assertIn("area", str(refused.exception))
 
     def test_a_loose_piece_has_no_border(self):
@@ -318,8 +315,8 @@ class Deform(MeshTest):
         count = len(vertices)
         obj = self.add(vertices + [(x + 3, y, z) for x, y, z in vertices],
                        polygons + [tuple(count + v for v in polygon) for polygon in polygons])
-        with self.assertRaises(part("deform.deforming").Refused) as refused:
-            part("deform.deforming").Region(obj, list(range(len(polygons))))
+        with self.assertRaises(part("mesh.refusing").Refused) as refused:
+            part("deform.region").Region(obj, list(range(len(polygons))))
         self.assertIn("loose piece", str(refused.exception))
 
     def test_some_faces_without_area(self):
@@ -332,10 +329,9 @@ class Deform(MeshTest):
             vertex.co = bm.verts[free[0]].co
         around[2].co = (around[2].co + 99 * bm.verts[free[0]].co) / 100
         before = edited(obj)
-        deforming = part("deform.deforming")
-        region = deforming.Region(obj, faces)
-        shape = deforming.AsRigidAsPossible(region, [[region.nearest_free(tip)]])
-        pen = deforming.Pen(obj, region)
+        region = part("deform.region").Region(obj, faces)
+        shape = part("deform.methods").AsRigidAsPossible(region, [[region.nearest_free(tip)]])
+        pen = part("deform.pen").Pen(obj, region)
         shape.follow([shift(0.05, 0, 0)])
         pen.draft(obj, shape.points())
         after = edited(obj)
@@ -352,11 +348,10 @@ class Deform(MeshTest):
             bm = bmesh.from_edit_mesh(obj.data)
             for face in bm.faces:
                 face.smooth = smooth
-            deforming = part("deform.deforming")
-            region = deforming.Region(obj, faces)
+            region = part("deform.region").Region(obj, faces)
             middle = region.nearest_free(tip)  # of a handle as large as users have it: no thorn
             patch = region.patch(middle, region.usual_radius(middle))
-            shape, pen = deforming.AsRigidAsPossible(region, [patch]), deforming.Pen(obj, region)
+            shape, pen = part("deform.methods").AsRigidAsPossible(region, [patch]), part("deform.pen").Pen(obj, region)
             shape.follow([shift(0.05, 0.02, 0)])
 
             def normals(elements):
@@ -380,9 +375,8 @@ class Deform(MeshTest):
     def test_a_part_turned_at_its_joint(self):
         """The finger keeps its shape, and bends at its root on either side; operator, api and redo are one."""
         obj, node, faces, free, tip = self.hand()
-        deforming = part("deform.deforming")
         before = edited(obj)
-        region = deforming.Region(obj, faces, reach=2.0)
+        region = part("deform.region").Region(obj, faces, reach=2.0)
         limb = region.vertices[region.limb]
         self.assertTrue(set(limb) < set(free) and tip in limb)
         self.assertTrue(set(region.vertices[region.free]) - set(free))  # the bend has two sides
@@ -402,8 +396,7 @@ class Deform(MeshTest):
 
     def test_a_smaller_joint_and_none(self):
         obj, node, faces, free, tip = self.hand()
-        deforming = part("deform.deforming")
-        wide, narrow = (deforming.Region(obj, faces, reach=reach) for reach in (2.0, 0.5))
+        wide, narrow = (part("deform.region").Region(obj, faces, reach=reach) for reach in (2.0, 0.5))
         self.assertGreater(len(narrow.limb), len(wide.limb))
         self.assertLess(len(narrow.moving), len(wide.moving))
         before = edited(obj)
@@ -416,13 +409,13 @@ class Deform(MeshTest):
     def test_a_great_turn_at_once_is_as_one_little_by_little(self):
         """A typed number takes the handle far in one go: the part must not collapse on the way."""
         obj, node, faces, free, tip = self.hand()
-        deforming, deform = part("deform.deforming"), package("deform")
-        region = deforming.Region(obj, faces, reach=2.0)
+        deform = package("deform")
+        region = part("deform.region").Region(obj, faces, reach=2.0)
         turn = numpy.eye(4)
         turn[:3, :3] = [[1, 0, 0], [0, -1, 0], [0, 0, -1]]
         turn[:3, 3] = region.center - turn[:3, :3] @ region.center
         turn = deform.part_of_the_way(turn, 120 / 180)
-        far, slowly = (deforming.AtJoint(region) for _ in range(2))
+        far, slowly = (part("deform.methods").AtJoint(region) for _ in range(2))
         far.follow([turn])
         for step in range(1, 31):
             slowly.follow([deform.part_of_the_way(turn, step / 30)])
@@ -447,13 +440,12 @@ class Deform(MeshTest):
         obj = self.add(vertices, polygons)
         before = stored(obj.data.vertices)
         faces = faces + list(range(len(polygons) - 18, len(polygons) - 6))
-        deforming = part("deform.deforming")
-        region = deforming.Region(obj, faces)
-        shape = deforming.AsRigidAsPossible(region, [region.patch(region.nearest_free(tip), 4 * size)])
+        region = part("deform.region").Region(obj, faces)
+        shape = part("deform.methods").AsRigidAsPossible(region, [region.patch(region.nearest_free(tip), 4 * size)])
         turn = package("deform").part_of_the_way(numpy.diag([1.0, -1, -1, 1]), 40 / 180)
         turn[:3, 3] = middle - turn[:3, :3] @ middle
         shape.jump([turn])
-        deforming.Pen(obj, region).write(obj, shape.points())
+        part("deform.pen").Pen(obj, region).write(obj, shape.points())
         after = stored(obj.data.vertices)
         beads, moved = after[count:].reshape(3, 8, 3), numpy.linalg.norm(after - before, axis=1)
         for each in range(3):

@@ -26,4 +26,4 @@ class Gizmo(MeshTest):
         for _ in range(200):
             point, a, b = (Vector((rng.uniform(-3, 3), rng.uniform(-3, 3))) for _ in range(3))
             least = min((point - a.lerp(b, step / 2000)).length for step in range(2001))
-            self.assertTrue(math.isclose(part("deform.handle_gizmo")._distance(point, a, b), least, abs_tol=5e-3))
+            self.assertTrue(math.isclose(part("deform.gizmo")._distance(point, a, b), least, abs_tol=5e-3))

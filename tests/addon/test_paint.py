@@ -122,7 +122,7 @@ class Paint(MeshTest):
         """In Object Mode: a paint mask that is on, in a paint mode, crashes Blender 5.0.1 without a window at the next
         update of anything."""
         self.begin("OBJECT")
-        write = part("pick.paint").WRITERS["PAINT_MASK"]
+        write = part("pick.writers").WRITERS["PAINT_MASK"]
         first, second = (sorted(faces) for faces in self.faces)
         for faces, how, expected in ((first, (False, False), self.faces[0]),
                                      (second, (True, False), self.faces[0] | self.faces[1]),

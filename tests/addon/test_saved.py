@@ -177,17 +177,21 @@ class Saved(MeshTest):
     # ---- Bytes that are not sound
 
     def after_tampering(self, change):
-        """The hierarchy after opening a file whose bytes were changed, which must be said on the console."""
+        """The hierarchy after opening a file whose bytes were changed, which must be said on the console; for
+        other versions see test_trouble.py."""
         obj = self.built("cross_quad")
         stored = part("parts.stored")
         packed = stored.pack(part("mesh.arrays").fingerprint(obj.data), self.kept(obj))
         self.assertEqual(len(stored.unpack(packed)[1].order), len(obj.data.polygons))
         part("parts.registry")._entries.clear()
-        obj.data[stored.PROPERTY] = change(packed)
+        changed = change(packed)
+        obj.data[stored.PROPERTY] = changed
+        ours = isinstance(changed, bytes) and changed.startswith(stored.MAGIC)
+        other_version = ours and changed[8:12] != packed[8:12]
         output = io.StringIO()
         with contextlib.redirect_stdout(output):
             found = self.kept(obj)
-        self.assertEqual(found is None, "left aside" in output.getvalue())
+        self.assertEqual(found is None and not other_version, "left aside" in output.getvalue())
         if found is None:
             self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
             self.assertEqual(len(self.kept(obj).order), len(obj.data.polygons))

@@ -409,7 +409,7 @@ class Views(MeshTest):
         np.testing.assert_allclose(placed.matrix_world, start, atol=1e-6)
 
     def test_edit_mode_begins_on_what_is_shown(self):
-        operator = part("pick.paint").OBJECT_OT_partwheel_select
+        operator = part("pick.select").OBJECT_OT_partwheel_select
         reports = []
         fake = type("Fake", (), {"report": lambda self, *what: reports.append(what), "_target": operator._target})()
         self.alone(self.far)

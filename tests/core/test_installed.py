@@ -45,10 +45,11 @@ def test_nothing_else_is_installed(prefix):
     assert "no symbols" in run("objdump", "-t", prefix / "lib" / "libpartwheel.so")
 
 
-def test_through_cmake(prefix, expected, tmp_path):
+def test_through_cmake(prefix, expected, build_shape, tmp_path):
     run("cmake", "-S", EXAMPLE, "-B", tmp_path, f"-DCMAKE_PREFIX_PATH={prefix}")
     run("cmake", "--build", tmp_path)
-    assert run(tmp_path / "wheel", MODEL, FACE) == expected
+    assert run(tmp_path / "wheel", MODEL, FACE, tmp_path / "saved") == expected
+    assert (tmp_path / "saved").read_bytes() == build_shape("hand.off")[1].save()
 
 
 def test_through_pkg_config(prefix, expected, tmp_path):

@@ -4,16 +4,19 @@
 import numpy as np
 import pytest
 import shapes
-from partwheel import Hierarchy, Mode
+from partwheel import Hierarchy
 from scipy.spatial import cKDTree
+
+FINER = 3  # cells along the side of one of the figure's
 
 
 def figure():
-    """A body with two arms, two legs and a head, seven cells wide, bent so that nothing is flat: its own mirror
-    image in x = 3.5, but not cut into triangles and tetrahedra so."""
+    """A body with two arms, two legs and a head, bent so that nothing is flat: its own mirror image in x = 3.5, but not
+    cut into triangles and tetrahedra so."""
     cells = {(x, 1, z) for x in (2, 3, 4) for z in range(3, 8)}
     cells |= {(x, 1, 7) for x in (0, 1, 5, 6)} | {(x, 1, z) for x in (2, 4) for z in range(3)} | {(3, 1, 8), (3, 1, 9)}
-    shape = shapes.polycube(cells)
+    finer = {tuple(FINER * c + np.array(corner)) for c in map(np.array, cells) for corner in np.ndindex(3 * (FINER,))}
+    shape = shapes.moved(shapes.polycube(finer), scale=1 / FINER)
     x, y, z = shape.vertices.T
     bent = np.column_stack([x + 0.05 * (x - 3.5) * np.sin(z), y + 0.3 * np.sin(z / 2) + 0.05 * (x - 3.5) ** 2, z])
     return shape._replace(vertices=bent)
@@ -35,31 +38,39 @@ def both():
     return Hierarchy.build(*shape), mirror_faces(shape, 3.5)
 
 
+def overlap(faces, others):
+    return len(faces & others) / len(faces | others)
+
+
+def faces_of(hierarchy, node):
+    return set(hierarchy.faces(node).tolist())
+
+
 def test_a_click_takes_the_mirror_image_on_the_other_side(both):
     hierarchy, mirror = both
-    for face in range(len(mirror)):
+    for face in range(0, len(mirror), 5):
         (stops, at), (others, there) = hierarchy.wheel(face), hierarchy.wheel(int(mirror[face]))
-        here, beyond = (set(hierarchy.faces(n).tolist()) for n in (stops[at], others[there]))
-        assert {int(mirror[f]) for f in here} == beyond
+        reflected = {int(mirror[f]) for f in faces_of(hierarchy, stops[at])}
+        assert overlap(reflected, faces_of(hierarchy, others[there])) > 0.9
 
 
-def test_every_node_of_some_size_has_its_mirror_image(both):
-    hierarchy, mirror = both
-    sets = {frozenset(hierarchy.faces(n).tolist()) for n in np.flatnonzero(hierarchy.score)}
-    sets = {faces for faces in sets if len(faces) >= 8}
-    assert len(sets) > 6
-    assert sets == {frozenset(int(mirror[f]) for f in faces) for faces in sets}
+def nodes_with_an_image(hierarchy, mirror):
+    """(share of the scored nodes of 3 to 80 % of the faces that overlap the mirror image of one by 0.9, their number)"""
+    sets = [faces_of(hierarchy, n) for n in np.flatnonzero(hierarchy.score)]
+    sets = [faces for faces in sets if 0.03 < len(faces) / len(mirror) < 0.8]
+    best = [max(overlap({int(mirror[f]) for f in faces}, other) for other in sets) for faces in sets]
+    return np.mean(np.array(best) > 0.9), len(sets)
+
+
+def test_nodes_have_their_mirror_image(both):
+    share, count = nodes_with_an_image(*both)
+    assert count > 10 and share > 0.9
 
 
 def test_the_automatic_cut_is_its_own_mirror_image(both):
     hierarchy, mirror = both
     labels = hierarchy.face_labels(hierarchy.cut_automatic())
-    pairs = set(zip(labels.tolist(), labels[mirror].tolist()))
-    assert len(pairs) == len(set(labels.tolist())) > 1
-
-
-def test_the_papers_mode_knows_of_no_symmetry(both):
-    shape = figure()
-    hierarchy, mirror = Hierarchy.build(*shape, mode=Mode.PAPER), both[1]
-    sets = {frozenset(hierarchy.faces(n).tolist()) for n in range(len(hierarchy.parent))}
-    assert sets != {frozenset(int(mirror[f]) for f in faces) for faces in sets}
+    parts = [set(np.flatnonzero(labels == label).tolist()) for label in np.unique(labels)]
+    assert len(parts) > 3
+    for part in parts:
+        assert max(overlap({int(mirror[f]) for f in part}, other) for other in parts) > 0.9

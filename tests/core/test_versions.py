@@ -2,9 +2,8 @@
 """What is written in several places says the same in all: header, binding, library, bl_info, manifest."""
 
 import ast
-import platform
+import json
 import re
-import runpy
 import sys
 import tomllib
 import zipfile
@@ -13,7 +12,11 @@ import faults
 import partwheel
 import pytest
 from conftest import ROOT
-from partwheel import library
+from partwheel import library, loading
+
+sys.path.append(str(ROOT / "scripts" / "package_parts"))
+import platforms  # noqa: E402
+import zips  # noqa: E402
 
 HEADER = "".join((ROOT / "native" / "include" / name).read_text() for name in
                  ("partwheel_types.h", "partwheel.h", "partwheel_edit.h"))
@@ -53,18 +56,19 @@ def test_manifest_is_complete():
     assert manifest["schema_version"] == "1.0.0" and manifest["type"] == "add-on"
     assert manifest["id"] == "partwheel" and manifest["name"] == BL_INFO["name"]
     assert len(manifest["tagline"]) <= 64 and manifest["tagline"][-1].isalnum()
-    assert manifest["platforms"] == ["linux-x64"] and "SPDX:GPL-3.0-or-later" in manifest["license"]
+    assert "SPDX:GPL-3.0-or-later" in manifest["license"]
+    assert all(len(reason) <= 64 and reason[-1].isalnum() for reason in manifest["permissions"].values())
     assert manifest["blender_version_min"] == "4.2.0" and BL_INFO["blender"] == (3, 4, 0)
 
 
-@pytest.mark.parametrize(("machine", "named"), [("x86_64", "linux-x64"), ("aarch64", "linux-arm64")])
-def test_a_package_says_the_platform_that_it_was_made_on(machine, named, monkeypatch, tmp_path):
-    monkeypatch.setattr(platform, "machine", lambda: machine)
-    wheel = tmp_path / f"partwheel-{library.VERSION}-py3-none-any.whl"
+@pytest.mark.parametrize(("tag", "named"), [*((tag, name) for name, tag in platforms.TAGS.items()),
+                                            ("manylinux_2_34_x86_64", "linux-x64"), ("linux_aarch64", "linux-arm64")])
+def test_a_package_says_the_platform_of_its_wheel(tag, named, tmp_path):
+    wheel = tmp_path / f"partwheel-{library.VERSION}-py3-none-{tag}.whl"
     with zipfile.ZipFile(wheel, "w") as archive:
         archive.writestr("partwheel/here.py", "a file")
         archive.writestr("partwheel-0.dist-info/METADATA", "no file of the package")
-    runpy.run_path(str(ROOT / "scripts" / "package_zip.py"))["main"](wheel)
+    zips.main(wheel)
     written = tomllib.loads((ROOT / "addon" / "partwheel" / "blender_manifest.toml").read_text())
     for end, folder, inside in (("", "partwheel", ["blender_manifest.toml", f"wheels/{wheel.name}"]),
                                 ("-legacy", "partwheel_addon", ["packages/partwheel/here.py"])):
@@ -74,6 +78,17 @@ def test_a_package_says_the_platform_that_it_was_made_on(machine, named, monkeyp
             if not end:
                 manifest = tomllib.loads(archive.read(f"{folder}/blender_manifest.toml").decode())
                 assert manifest == {**written, "platforms": [named], "wheels": [f"./wheels/{wheel.name}"]}
+
+
+def test_the_platforms_are_the_same_everywhere():
+    """In the manifest, the packages, CMake's presets and its toolchain, and in what the package tells of libraries."""
+    manifest = tomllib.loads((ROOT / "addon" / "partwheel" / "blender_manifest.toml").read_text())
+    presets = json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]
+    toolchain = (ROOT / "cmake" / "cross" / "zig.cmake").read_text()
+    assert manifest["platforms"] == list(platforms.TAGS)
+    assert [preset["name"] for preset in presets if preset.get("inherits") == "cross"] == list(platforms.TAGS)
+    assert re.findall(r'PARTWHEEL_PLATFORM STREQUAL "(.*)"', toolchain) == list(platforms.TAGS)
+    assert platforms.LIBRARIES == loading.FILE_NAMES
 
 
 def test_every_function_is_bound_with_as_many_arguments():

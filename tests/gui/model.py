@@ -34,8 +34,9 @@ class Wheels:
     def __init__(self, path):
         with numpy.load(path) as data:
             self.vertices, self.triangles = data["vertices"], data["triangles"]
-            self._order, self._first, self._last = data["order"], data["first"], data["last"]
-            self._stops, self._offset, self._start = data["stops"], data["offset"], data["start"]
+            if "stops" in data:
+                self._order, self._first, self._last = data["order"], data["first"], data["last"]
+                self._stops, self._offset, self._start = data["stops"], data["offset"], data["start"]
 
     def stops(self, face):
         """The parts that the wheel reaches from a face, growing (frozensets of faces), and the index of the first."""

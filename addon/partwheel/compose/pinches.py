@@ -5,6 +5,8 @@ same. What partwheel's solids do, for a mesh of Blender's own making."""
 import bmesh
 import numpy as np
 
+from ..solid.closing import groups
+
 
 def set_apart(bm):
     """Changes the bmesh where it must; whether its edges have now two faces each, wound alike. Several vertices then
@@ -79,21 +81,12 @@ def _pairs(edge):
 
 def _umbrellas(vert, across):
     """The loops at a vertex in groups that are joined by steps across edges."""
-    groups, left = [], set(vert.link_loops)
-    while left:
-        group, todo = [], [left.pop()]
-        while todo:
-            loop = todo.pop()
-            group.append(loop)
-            for edge_loop in (loop, loop.link_loop_prev):  # its two edges at the vertex
-                other = across.get(edge_loop) or edge_loop.link_loop_radial_next
-                # Of the face beyond, the loop at this vertex.
-                beyond = other if other.vert == vert else other.link_loop_next
-                if beyond in left:
-                    left.remove(beyond)
-                    todo.append(beyond)
-        groups.append(group)
-    return groups
+    def beside(loop):
+        for edge_loop in (loop, loop.link_loop_prev):  # its two edges at the vertex
+            other = across.get(edge_loop) or edge_loop.link_loop_radial_next
+            yield other if other.vert == vert else other.link_loop_next  # of the face beyond, the loop at this vertex
+
+    return groups(vert.link_loops, beside)
 
 
 def _copy_face(bm, old, corners):

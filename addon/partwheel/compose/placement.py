@@ -10,7 +10,7 @@ from mathutils import Matrix, Quaternion, Vector
 from ..mesh import arrays
 from ..solid.composition import home, update_matrices
 from partwheel import compatible
-from ..mesh.arrays import read
+from ..mesh.refusing import Refused
 from ..solid.solids import CAP
 
 _CHANNELS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
@@ -31,7 +31,7 @@ def caps(mesh):
     layer = mesh.attributes.get(CAP)
     if not layer or (layer.domain, layer.data_type) != ("FACE", "BOOLEAN"):
         return None
-    return read(layer.data, "value", bool)
+    return arrays.read(layer.data, "value", bool)
 
 
 def border(obj, near=None):
@@ -40,7 +40,7 @@ def border(obj, near=None):
     if marks is None or not marks.any():
         return None
     triangles, polygons = arrays.triangles(obj.data)
-    places = read(obj.data.vertices, "co", np.float32, 3).astype(float)
+    places = arrays.read(obj.data.vertices, "co", np.float32, 3).astype(float)
     found = [Border(Vector(each.middle), Vector(each.normal), each.radius)
              for each in compatible.borders(places, triangles[marks[polygons]], np.array(obj.matrix_world))]
     if not found:
@@ -84,12 +84,12 @@ class Pose(NamedTuple):
 
 
 def put(part, start, own, target, pose):
-    """Moves the part, at whose matrix start its Border was own. Raises ValueError where there is no border to fit."""
+    """Moves the part, at whose matrix start its Border was own. Raises Refused where there is no border to fit."""
     location, normal, scale = pose.location, pose.normal, pose.scale
     if pose.fit:
         found = border(target, location)
         if not found:
-            raise ValueError(f"{target.name} has no border to fit: no part was removed from it.")
+            raise Refused(f"{target.name} has no border to fit: no part was removed from it.")
         location, normal, scale = found.middle, found.normal, scale * found.radius / own.radius
     part.matrix_world = matrix(start, own, location, normal, scale, pose.angle, pose.depth)
 

@@ -9,7 +9,6 @@ import numpy as np
 from ..mesh import arrays
 from partwheel import faired, surface_distances
 from partwheel.joint import groups
-from ..mesh.arrays import read
 
 SIDE = "partwheel_side"  # while a union is made: the number of the solid that each face came from
 
@@ -34,11 +33,11 @@ def blend(mesh, width):
     if not free.any():
         return False
     normals = arrays.custom_normals(mesh)
-    vertices = read(mesh.vertices, "co", np.float32, 3)
+    vertices = arrays.read(mesh.vertices, "co", np.float32, 3)
     places = faired(vertices, arrays.edge_vertices(mesh), free)
     arrays.write(mesh.vertices, "co", np.where(free[:, None], places, vertices).astype(np.float32))
     if normals is not None:
-        normals[free[read(mesh.loops, "vertex_index", np.int32)]] = 0
+        normals[free[arrays.read(mesh.loops, "vertex_index", np.int32)]] = 0
         arrays.set_custom_normals(mesh, normals)
     mesh.update()
     return True
@@ -46,12 +45,12 @@ def blend(mesh, width):
 
 def band(mesh, width):
     """(V,) bool: the vertices that blend() moves."""
-    vertices = read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
+    vertices = arrays.read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
     triangles, _ = arrays.triangles(mesh)
-    sides = read(mesh.attributes[SIDE].data, "value", np.int32)
+    sides = arrays.read(mesh.attributes[SIDE].data, "value", np.int32)
     of_corner = np.repeat(sides, arrays.polygon_sizes(mesh)[1])
     of_vertex = np.zeros(len(vertices), np.int32)
-    of_vertex[read(mesh.loops, "vertex_index", np.int32)] = of_corner
+    of_vertex[arrays.read(mesh.loops, "vertex_index", np.int32)] = of_corner
     free = np.zeros(len(vertices), bool)
     for seam in _seams(mesh, of_corner):
         middle = vertices[seam].mean(axis=0)
@@ -74,7 +73,7 @@ def _seams(mesh, of_corner):
     """The vertices of each seam: arrays of indices, one for each connected group of edges between faces of different
     solids."""
     edges = arrays.edge_vertices(mesh)
-    edge = read(mesh.loops, "edge_index", np.int32)
+    edge = arrays.read(mesh.loops, "edge_index", np.int32)
     low = np.full(len(edges), np.iinfo(np.int32).max, np.int32)
     high = np.full(len(edges), -1, np.int32)
     np.minimum.at(low, edge, of_corner)

@@ -2,32 +2,27 @@
 """mesh.partwheel_swap: the picked part is exchanged for a compatible one of another object. The wheel goes through what
 is offered; meanwhile one sees what would be left of the object, and the part offered stands in its place."""
 
-import math
-
 import bpy
 
-from ..mesh import objects
-from ..solid import composition, solids
+from ..mesh import kept
+from ..solid import composition
 from ..view import keys, previews
-from . import swapping, union
-from partwheel import PartwheelError
-from ..mesh.linked import changeable
-from ..solid.copy_part import OnPart, OnParts, Snaps
-from ..view.in_view import InView, waiting
-from .place import DEPTH_STEP, PASS, SIZE_STEP, TURN_STEP
+from . import swapping
+from partwheel import Error
+from ..mesh.refusing import Refused, changeable
+from ..solid.copy_part import OnPart
+from ..view.in_view import waiting
+from .adjusting import Adjusting
 from .unite import find_parts
 
-CONFIRM, CANCEL = keys.CLICK.events | keys.CONFIRM.events, keys.CANCEL.events
 
-
-class MESH_OT_partwheel_swap(InView, Snaps, OnPart, OnParts, bpy.types.Operator):
+class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
     """Exchange the picked part for one of another object that fits its border; the wheel goes through what there is"""
 
     bl_idname = "mesh.partwheel_swap"
     bl_label = "Swap with Compatible Part"
-    refusals = PartwheelError, solids.NotClosed, swapping.NotSwapped, union.NotUnited
     lost = "the object is no longer the active one"
-    was_edited, preview = False, None
+    was_edited, preview, taken = False, None, keys.OFFER.events
 
     other: bpy.props.StringProperty(
         name="From", description="The object that the new part comes from; none: those selected, or else all others",
@@ -40,11 +35,6 @@ class MESH_OT_partwheel_swap(InView, Snaps, OnPart, OnParts, bpy.types.Operator)
         options={"SKIP_SAVE", "HIDDEN"})
     scale: bpy.props.FloatProperty(
         name="Size", description="Times the size at which the borders fit", default=1, min=1e-4, options={"SKIP_SAVE"})
-    angle: bpy.props.FloatProperty(
-        name="Turn", description="About the border's normal", subtype="ANGLE", default=0, options={"SKIP_SAVE"})
-    depth: bpy.props.FloatProperty(
-        name="Depth", description="How far it is sunk in, times the radius of the border", default=0,
-        options={"SKIP_SAVE"})
     mirror: bpy.props.BoolProperty(
         name="Mirror", description="Take the part's mirror image", default=False, options={"SKIP_SAVE"})
 
@@ -64,9 +54,9 @@ class MESH_OT_partwheel_swap(InView, Snaps, OnPart, OnParts, bpy.types.Operator)
 
     def _chosen(self, context, place, obj):
         """The Offer that the options name."""
-        other = objects.wanted(self.other) if self.other else None
+        other = kept.wanted(self.other) if self.other else None
         if self.other and (other is None or other.type != "MESH"):
-            raise swapping.NotSwapped(f"There is no mesh object {self.other}.")
+            raise Refused(f"There is no mesh object {self.other}.")
         if other and (self.whole or self.other_node >= 0):
             return place.offer(other, None if self.whole else self.other_node)
         return place.offers([other] if other else swapping.sources(context, obj))[0]
@@ -86,8 +76,8 @@ class MESH_OT_partwheel_swap(InView, Snaps, OnPart, OnParts, bpy.types.Operator)
     def _begin(self, context, _event):
         obj = context.active_object
         with waiting(context):
-            hierarchy = self.hierarchy(context, obj)
-            other = objects.wanted(self.other)
+            hierarchy = self.hierarchy(obj)
+            other = kept.wanted(self.other)
             others = [other] if other else swapping.sources(context, obj)
             self.was_edited = obj.mode == "EDIT"
             if self.was_edited:
@@ -101,42 +91,25 @@ class MESH_OT_partwheel_swap(InView, Snaps, OnPart, OnParts, bpy.types.Operator)
 
     def _still_there(self, context):
         active = context.view_layer.objects.active  # none while it is hidden, in some versions
-        obj = objects.named(self.place.name)
+        obj = kept.named(self.place.name)
         return (obj is not None and context.view_layer.objects.get(obj.name) == obj and active in (None, obj)
                 and context.mode == "OBJECT")
 
     def _handle(self, context, event):
         if not self.preview.there():  # a file was saved meanwhile, or a step undone
             self._show(context)
-        if event.type in PASS:
-            return {"PASS_THROUGH"}
-        if event.value not in {"PRESS", "DOUBLE_CLICK"}:
-            return {"RUNNING_MODAL"}
-        if event.type in CANCEL:
-            return {"CANCELLED"}
-        if event.type in CONFIRM:
-            return self._confirmed(context)
-        sign = keys.TURNS.get(event.type, 0)
-        if event.type in keys.DEPTH.events:
-            self.depth -= sign * DEPTH_STEP
-        elif event.type in keys.MIRROR.events:
-            self.mirror = not self.mirror
-        elif event.type in keys.TURN.events and event.shift:
-            self.angle += sign * TURN_STEP
-        elif event.type in keys.SIZE.events and (event.ctrl or event.type not in keys.OFFER.events):
-            self.scale *= SIZE_STEP ** sign
-        elif event.type in keys.OFFER.events:
+        return Adjusting._handle(self, context, event)
+
+    def _changed(self, event, sign):
+        if event.type in keys.OFFER.events:
             self.index = min(max(self.index + sign, 0), len(self.offers) - 1)
-        else:
-            return {"RUNNING_MODAL"}
-        self._show(context)
-        return {"RUNNING_MODAL"}
+        return event.type in keys.OFFER.events
 
     def _show(self, context, problem=""):
         offer = self.offers[self.index]
         self.preview.show(offer, self._adjustment())
         state = [f"{offer.name}, part {self.index + 1} of {len(self.offers)}", f"{offer.score:.0%} alike",
-                 f"size {self.scale:.2f}", f"turn {math.degrees(self.angle):.0f}°", f"depth {self.depth:.2f}"]
+                 self._adjustments()]
         self._tell(context, problem or ", ".join(state + ["mirrored"] * self.mirror), keys.SWAPPING)
 
     def _confirmed(self, context):
@@ -146,7 +119,7 @@ class MESH_OT_partwheel_swap(InView, Snaps, OnPart, OnParts, bpy.types.Operator)
             bpy.ops.ed.undo_push(message="Leave Edit Mode")
         try:
             self._swap(self.place, self.offers[self.index])
-        except self.refusals as error:  # another part may do
+        except Error as error:  # another part may do
             self.report({"ERROR"}, str(error))
             self._show(context, str(error))
             return {"RUNNING_MODAL"}
@@ -180,7 +153,7 @@ class Preview:
             self.shown[wanted] = previews.show(self.place.stand_in(offer, adjustment)).name
 
     def _begin(self):
-        obj = objects.named(self.place.name)
+        obj = kept.named(self.place.name)
         mesh = self.place.rest()
         rest = obj.copy()  # with its modifiers and materials
         rest.data = mesh

@@ -13,18 +13,14 @@ from ..mesh import arrays
 from ..parts import registry
 from ..solid import composition
 from . import placement, union
-from partwheel import Error, compatible
-from ..mesh.arrays import read
-from ..mesh.objects import named
-
-
-class NotSwapped(Error):
-    """Why a part can't be exchanged. str() is sentences for the user."""
+from partwheel import compatible
+from ..mesh.kept import named
+from ..mesh.refusing import Refused
 
 
 class Offer(NamedTuple):
-    """A part that can stand in. name: its object's, in full; node: of that one's hierarchy, or None for the object as it
-    is, one that was cut out as a part before; score: from 1, the same shape, down to 0; shape: a compatible.Shape."""
+    """A part that can stand in. name: its object's, in full; node: of that one's hierarchy, or None for the object as
+    it is, one that was cut out as a part before; score: from 1, the same shape, down to 0; shape: a compatible.Shape."""
 
     name: str
     node: int
@@ -47,22 +43,22 @@ class Place:
     the creases nearby."""
 
     def __init__(self, obj, hierarchy, node, snap=False):
-        """Raises NotSwapped, or PartwheelError."""
+        """Raises Refused, or PartwheelError."""
         if node == len(hierarchy.parent) - 1:
-            raise NotSwapped("The part is the whole model: nothing would be left to put another part on. Pick a "
+            raise Refused("The part is the whole model: nothing would be left to put another part on. Pick a "
                              "smaller one.")
         composition.update_matrices()
         self.name, self.hierarchy, self.node, self.snap = obj.name_full, hierarchy, node, snap
         self._fits = {}  # (name, node, mirrored) -> matrix, of what was offered
         self._cut = {}  # (name, node) -> Shape, of what was put here
-        self.shape = dict(_shapes(obj, hierarchy, [node], snap)).get(node)
-        if self.shape is None or not self.shape.usable:
-            raise NotSwapped("The part has no border with the rest of the model, so there is nothing to fit another "
+        self.shape = _shape(obj, hierarchy, node, snap)
+        if not self.shape:
+            raise Refused("The part has no border with the rest of the model, so there is nothing to fit another "
                              "part to. Pick one that was grown from the model, not a piece of its own.")
 
     def offers(self, others):
         """The Offers of these mesh objects, the most compatible first, and none that is nearly the same part of its
-        object as a better one. Of the object itself parts beside the one to be exchanged. Raises NotSwapped if no
+        object as a better one. Of the object itself parts beside the one to be exchanged. Raises Refused if no
         object has parts."""
         found, having = [], 0
         for other in others:
@@ -80,30 +76,30 @@ class Place:
                 if not self.snap:
                     self._fits[other.name_full, match.key, False] = match.matrix
         if not having:
-            raise NotSwapped("No other object has parts. Build the parts of the one that the new part comes from, and "
+            raise Refused("No other object has parts. Build the parts of the one that the new part comes from, and "
                              "select it too; or paste a part that was copied as a solid.")
         if not found:
-            raise NotSwapped("No part there has a border that could be fitted to this one's.")
+            raise Refused("No part there has a border that could be fitted to this one's.")
         return sorted(found, key=lambda offer: -offer.score)
 
     def offer(self, other, node=None):
-        """The Offer of this node of an object, or of the object itself, a part. Raises NotSwapped or PartwheelError."""
+        """The Offer of this node of an object, or of the object itself, a part. Raises Refused or PartwheelError."""
         hierarchy = registry.hierarchy(other)
         if node is None:
             shape = _whole(other)
         elif hierarchy and 0 <= node < len(hierarchy.parent):
-            shape = dict(_shapes(other, hierarchy, [node])).get(node)
+            shape = _shape(other, hierarchy, node)
         else:
-            raise NotSwapped(f"{other.name} has no part {node}.")
-        if shape is None or not shape.usable:
-            raise NotSwapped(f"That part of {other.name} has no border that could be fitted to this one's.")
+            raise Refused(f"{other.name} has no part {node}.")
+        if not shape:
+            raise Refused(f"That part of {other.name} has no border that could be fitted to this one's.")
         match = compatible.ranked(self.shape, [(node, shape)])[0]
         if not self.snap:
             self._fits[other.name_full, node, False] = match.matrix
         return Offer(other.name_full, node, match.score, shape)
 
     def rest(self):
-        """A new mesh: the object's without the part, closed. Raises NotSwapped or PartwheelError."""
+        """A new mesh: the object's without the part, closed. Raises Refused or PartwheelError."""
         return composition.rest(named(self.name), self.hierarchy, self.node, self.snap)
 
     def stand_in(self, offer, adjustment=Adjustment()):
@@ -141,15 +137,12 @@ class Place:
             return offer.shape
         known = offer.name, offer.node
         if known not in self._cut:
-            moved = dict(_shapes(named(offer.name), _hierarchy_of(offer), [offer.node], snap=True))
-            shape = moved.get(offer.node)
-            self._cut[known] = shape if shape and shape.usable else offer.shape
+            self._cut[known] = _shape(named(offer.name), _hierarchy_of(offer), offer.node, snap=True) or offer.shape
         return self._cut[known]
 
     def swap(self, offer, adjustment=Adjustment(), blend=0.0):
         """Takes the part out of the object's mesh and unites what is left with the one offered; blend: as for
-        union.unite(). Raises NotSwapped, PartwheelError, solids.NotClosed or union.NotUnited, before anything has
-        changed."""
+        union.unite(). Raises an Error before anything has changed."""
         rest, new = self.rest(), None
         try:
             new = self.stand_in(offer, adjustment)
@@ -161,10 +154,10 @@ class Place:
 
 
 def _hierarchy_of(offer):
-    """Of the object that the offer's node is of. Raises NotSwapped."""
+    """Of the object that the offer's node is of. Raises Refused."""
     hierarchy = registry.hierarchy(named(offer.name))
     if not hierarchy or offer.node >= len(hierarchy.parent):
-        raise NotSwapped(f"{offer.name} was changed and has other parts now. Start again.")
+        raise Refused(f"{offer.name} was changed and has other parts now. Start again.")
     return hierarchy
 
 
@@ -201,12 +194,17 @@ def _shapes(obj, hierarchy, nodes, snap=False):
     snap: with their borders in creases."""
     positions = np.array(hierarchy.vertices)
     known = hierarchy.source >= 0
-    positions[known] = read(arrays.up_to_date(obj).vertices, "co", np.float32, 3)[hierarchy.source[known]]
+    positions[known] = arrays.read(arrays.up_to_date(obj).vertices, "co", np.float32, 3)[hierarchy.source[known]]
     matrix = np.array(obj.matrix_world)
     size = _size(positions, matrix)
     shapes = [(node, compatible.shape(hierarchy, node, positions, matrix, size,
                                       composition.moved_faces(obj, hierarchy, node, snap))) for node in nodes]
     return [(node, shape) for node, shape in shapes if shape]
+
+
+def _shape(obj, hierarchy, node, snap=False):
+    """The Shape of one node, or None if it can't be compared."""
+    return next((shape for _, shape in _shapes(obj, hierarchy, [node], snap) if shape.usable), None)
 
 
 def _whole(obj):
@@ -216,7 +214,7 @@ def _whole(obj):
     if obj.mode == "EDIT" or caps is None or not caps.any() or union.problem(mesh):
         return None
     triangles, polygons = arrays.triangles(mesh)
-    positions, matrix = read(mesh.vertices, "co", np.float32, 3).astype(float), np.array(obj.matrix_world)
+    positions, matrix = arrays.read(mesh.vertices, "co", np.float32, 3).astype(float), np.array(obj.matrix_world)
     shape = compatible.Shape(positions, triangles, caps[polygons], matrix, _size(positions, matrix))
     return shape if shape.usable else None
 

@@ -2,16 +2,14 @@
 """Closed meshes united into one by Blender's Boolean. What it gives is never trusted: it is checked, and the next
 solver is tried."""
 
-import bmesh
 import bpy
 import numpy as np
 from mathutils import Vector
-from mathutils.bvhtree import BVHTree
 
 from ..mesh import arrays, pieces
 from . import pinches, seams
-from partwheel import Error, polygon_faults
-from ..mesh.arrays import read
+from partwheel import RayTarget, polygon_faults
+from ..mesh.refusing import Refused
 
 # (solver, whether it also unites what overlaps within one mesh), in the order tried. Blenders before 4.5 have no
 # MANIFOLD; some later ones have it and do nothing.
@@ -23,14 +21,10 @@ TOLERANCE = 1e-5  # of the sum of the volumes: coordinates are of 24 bits
 SETTINGS = ("remesh_", "use_remesh_", "use_mirror_", "use_paint_", "use_auto_", "auto_smooth", "radial", "texspace")
 
 
-class NotUnited(Error):
-    """Why meshes can't be united. str() is a sentence for the user."""
-
-
 def unite(target, others, blend=0.0, instead=None):
     """Makes the target's mesh the union of it, as it is without modifiers, and of the other objects, with theirs. The
     others stay. blend: the width of a smooth transition on either side of each seam, times the seam's radius. instead:
-    a mesh to be taken for the target's own. Returns the solver that did it. Raises NotUnited before anything has
+    a mesh to be taken for the target's own. Returns the solver that did it. Raises Refused before anything has
     changed."""
     slots = []
     base = _input(target, instead or target.data, slots)
@@ -67,7 +61,7 @@ def problem(mesh):
     if not len(mesh.polygons):
         return "it has no faces"
     begin, _ = arrays.polygon_sizes(mesh)
-    faults = polygon_faults(read(mesh.loops, "vertex_index", np.int32), begin, len(mesh.vertices))
+    faults = polygon_faults(arrays.read(mesh.loops, "vertex_index", np.int32), begin, len(mesh.vertices))
     open_edges = faults.open or abs(len(mesh.edges) - len(mesh.loops) // 2)  # or edges that no face has
     if open_edges:
         return f"{open_edges} edges have not just two faces"
@@ -80,7 +74,7 @@ def problem(mesh):
 
 def volume(mesh):
     """That the mesh encloses, in its own unit cubed."""
-    corners = read(mesh.vertices, "co", np.float32, 3).astype(float)
+    corners = arrays.read(mesh.vertices, "co", np.float32, 3).astype(float)
     if not len(corners):
         return 0.0
     corners -= corners.mean(axis=0)
@@ -102,7 +96,7 @@ def _input(obj, mesh, slots):
     """A copy of the mesh with its materials numbered by slots, a list of all materials, which grows."""
     wrong = problem(mesh)
     if wrong:
-        raise NotUnited(f"{obj.name} is no solid: {wrong}. Repair it, or copy its part anew.")
+        raise Refused(f"{obj.name} is no solid: {wrong}. Repair it, or copy its part anew.")
     own = [slot.material for slot in obj.material_slots] or [None]
     for material in own:
         if material not in slots:
@@ -113,9 +107,7 @@ def _input(obj, mesh, slots):
     copy.materials.clear()
     arrays.set_material_indices(copy, numbers[np.minimum(indices, len(own) - 1)])
     if copy.shape_keys:  # they can't outlive a union
-        holder = bpy.data.objects.new(copy.name, copy)
-        holder.shape_key_clear()
-        bpy.data.objects.remove(holder)
+        pieces.clear_keys(copy)
     return copy
 
 
@@ -125,7 +117,7 @@ def _united(base, operand, base_name, operand_name, slots):
     volumes = volume(base), volume(operand)
     for name, measured in zip((base_name, operand_name), volumes):
         if measured <= 0:
-            raise NotUnited(f"{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).")
+            raise Refused(f"{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).")
     reasons = []
     for solver, within in WAYS:
         if solver not in known:
@@ -139,42 +131,33 @@ def _united(base, operand, base_name, operand_name, slots):
             return result, solver
         reasons.append(f"by {solver.title()}{' within' if within else ''}: {wrong}")
         bpy.data.meshes.remove(result)
-    raise NotUnited(f"{base_name} and {operand_name} can't be united ({'; '.join(reasons)}). Move one of them a "
+    raise Refused(f"{base_name} and {operand_name} can't be united ({'; '.join(reasons)}). Move one of them a "
                     "little: faces that lie in each other are the usual cause.")
 
 
 def _inside(inner, outer):
     """Whether the vertices of one mesh lie in the other, by the parity of crossings along a ray."""
-    bm = bmesh.new()
-    try:
-        bm.from_mesh(outer)
-        tree = BVHTree.FromBMesh(bm)
-    finally:
-        bm.free()
+    target = RayTarget(arrays.read(outer.vertices, "co", np.float32, 3), arrays.triangles(outer)[0])
     step = max(len(inner.vertices) // SAMPLES, 1)
-    return all(_crossings(tree, inner.vertices[i].co) % 2 for i in range(0, len(inner.vertices), step))
+    return all(_crossings(target, inner.vertices[i].co) % 2 for i in range(0, len(inner.vertices), step))
 
 
-def _crossings(tree, place):
-    count, (found, _, _, _) = 0, tree.ray_cast(place, RAY)
-    while found:
+def _crossings(target, place):
+    count, hit = 0, target.first(place, RAY)
+    while hit:
         count += 1
-        found, _, _, _ = tree.ray_cast(found + RAY * (1e-6 * max(found.length, 1e-6)), RAY)
+        hit = target.first(place, RAY, hit[1] * (1 + 1e-6))
     return count
 
 
 def _set_apart(mesh):
     """Where the solids only touch, and vertices of one place were joined into one. Whether it could."""
-    bm = bmesh.new()
-    try:
-        bm.from_mesh(mesh)
+    with pieces.edited(mesh) as bm:
         bm.normal_update()
         done = pinches.set_apart(bm)
         if done:
             bm.to_mesh(mesh)
         return done
-    finally:
-        bm.free()
 
 
 def _implausible(meshes, volumes, result):

@@ -5,8 +5,10 @@ import bpy
 
 from ..parts import builds
 from . import union
-from partwheel import PartwheelError
-from ..mesh.linked import changeable
+from partwheel import Error
+from ..mesh.refusing import can, changeable
+
+NO_OTHERS = "Select the parts, and then the mesh object that they are to become part of, in Object Mode."
 
 
 def find_parts(operator):
@@ -37,11 +39,8 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
     def poll(cls, context):
         # Not that others are selected: afterwards they are gone, and Blender polls before it repeats an operator.
         target = context.active_object
-        if context.mode != "OBJECT" or target is None or target.type != "MESH":
-            cls.poll_message_set("In Object Mode, select the parts and then the mesh object that they are to become "
-                                 "part of")
-            return False
-        return changeable(cls, target)
+        return can(cls, context.mode == "OBJECT" and target is not None and target.type == "MESH",
+                   NO_OTHERS) and changeable(cls, target)
 
     @staticmethod
     def others(context):
@@ -50,11 +49,11 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
     def execute(self, context):
         target, others = context.active_object, self.others(context)
         if not others:
-            self.report({"ERROR"}, "Select the parts as well, before the object that they are to become part of.")
+            self.report({"ERROR"}, NO_OTHERS)
             return {"CANCELLED"}
         try:
             solver = union.unite(target, others, self.blend)
-        except (union.NotUnited, PartwheelError) as error:
+        except Error as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         if not self.keep:

@@ -10,7 +10,6 @@ import numpy as np
 
 from ..mesh import arrays
 from ..parts import picks, registry
-from ..pick.polls import NeedsPick
 
 REACH = 0.5  # beyond the part, by the square root of its area
 TICK = 0.05  # seconds between two looks for the end of Blender's tool
@@ -18,7 +17,7 @@ TICK = 0.05  # seconds between two looks for the end of Blender's tool
 _waiting = None  # the timer that looks
 
 
-class MESH_OT_partwheel_move(NeedsPick, bpy.types.Operator):
+class MESH_OT_partwheel_move(picks.NeedsPick, bpy.types.Operator):
     """Move the part that was picked last; its surroundings follow, as far as suits its size. R turns and S scales it"""
 
     bl_idname = "mesh.partwheel_move"
@@ -27,7 +26,7 @@ class MESH_OT_partwheel_move(NeedsPick, bpy.types.Operator):
 
     def invoke(self, context, _event):
         if not picks.picked(context.edit_object):
-            self.report({"ERROR"}, "The mesh was changed: pick the part anew.")
+            self.report({"ERROR"}, picks.NO_PICK)
             return {"CANCELLED"}
         global _waiting
         unregister()  # or the reach that the last tool has left would be taken for the user's

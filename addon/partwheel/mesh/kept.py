@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is remembered of meshes. No pointer into Blender's data is: undo and file loading would make it dangle. So it is
-under a key; tables of it are emptied when another file is opened, and when the add-on ends."""
+"""What is remembered of meshes and objects. No pointer into Blender's data is: undo and file loading would make it
+dangle. So it is under a key; tables of it are emptied when another file is opened, and when the add-on ends. Objects
+are held by name, the one in full, for a linked and a local one may have the same."""
 
 import bmesh
 import bpy
@@ -33,3 +34,16 @@ def counts(mesh):
         bm = bmesh.from_edit_mesh(mesh)
         return len(bm.verts), len(bm.faces)
     return len(mesh.vertices), len(mesh.polygons)
+
+
+def named(name_full):
+    """The object that is named so, or None."""
+    found = bpy.data.objects.get(name_full)  # any linked one too
+    if found is None or found.name_full != name_full:
+        found = next((obj for obj in bpy.data.objects if obj.name_full == name_full), None)
+    return found
+
+
+def wanted(name):
+    """The one that a user or a script names, in full or, where that is none, without its library."""
+    return named(name) or bpy.data.objects.get(name)

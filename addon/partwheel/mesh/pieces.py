@@ -2,6 +2,7 @@
 """A mesh put together from pieces of another, with all their layers, by whole arrays: a bmesh of the same costs ten
 times as much. (Not taken along: multires displacements, which Python can't write.)"""
 
+from contextlib import contextmanager
 from typing import NamedTuple
 
 import bmesh
@@ -52,6 +53,20 @@ if bpy.app.version >= (4, 0, 0):  # the others are attributes
 _NONE = np.empty(0, np.int64)
 
 
+@contextmanager
+def edited(mesh, into=None):
+    """A bmesh of the mesh, or of nothing, for a while; what was done with it is written into another, or the same."""
+    bm = bmesh.new()
+    try:
+        if mesh:
+            bm.from_mesh(mesh)
+        yield bm
+        if into:
+            bm.to_mesh(into)
+    finally:
+        bm.free()
+
+
 class Origins(NamedTuple):
     """Where n elements come from: first (n,) the source's that each is, -1 for new ones; but those at (k,) are midway
     between that one and other (k,)."""
@@ -91,7 +106,7 @@ def assembled(mesh, plan, name, selection):
     made = mesh.copy()
     made.name = name
     if made.shape_keys:
-        _clear_keys(made)
+        clear_keys(made)
     made.clear_geometry()
     _make_own_layers(mesh, made)
     of_edge, ends, edge_from = _edges(mesh, plan)
@@ -237,11 +252,9 @@ def _make_own_layers(mesh, made):
     """made has no elements yet."""
     names = [each[1:3] for collection, each in _OWN_LAYERS.items() if len(getattr(mesh, collection))]
     if names:
-        bm = bmesh.new()
-        for elements, name in names:
-            getattr(getattr(bm, elements).layers, name).verify()
-        bm.to_mesh(made)
-        bm.free()
+        with edited(None, made) as bm:
+            for elements, name in names:
+                getattr(getattr(bm, elements).layers, name).verify()
 
 
 def _copy_own_layers(mesh, made, origins):
@@ -254,9 +267,14 @@ def _copy_own_layers(mesh, made, origins):
                 new.data.foreach_set(field, taken.ravel())
 
 
+@contextmanager
 def _held(mesh):
-    """An object that holds the mesh for as long as its groups and keys are at work; the caller removes it."""
-    return bpy.data.objects.new("partwheel", mesh)
+    """An object that holds the mesh while its groups and keys are at work."""
+    holder = bpy.data.objects.new("partwheel", mesh)
+    try:
+        yield holder
+    finally:
+        bpy.data.objects.remove(holder)
 
 
 def _copy_groups(mesh, made, origins):
@@ -264,40 +282,30 @@ def _copy_groups(mesh, made, origins):
     if not _name_groups(mesh, made):
         return
     bare = _vertices_alone(mesh)
-    olds, news = bmesh.new(), bmesh.new()
-    try:
-        olds.from_mesh(bare)
+    with edited(bare) as olds:
+        bpy.data.meshes.remove(bare)
         layer = olds.verts.layers.deform.active
         if layer is None:  # nothing is in a group
             return
-        news.from_mesh(made)
-        own = news.verts.layers.deform.verify()
-        sources, verts = list(olds.verts), list(news.verts)
-        for vert, first in zip(verts, origins.first.tolist()):
-            if first >= 0:
-                vert[own] = sources[first][layer]
-        for at, other in zip(origins.at.tolist(), origins.other.tolist()):
-            weights, beyond = verts[at][own], sources[other][layer]
-            for group in {*weights.keys(), *beyond.keys()}:
-                weights[group] = (weights.get(group, 0) + beyond.get(group, 0)) / 2
-        news.to_mesh(made)
-    finally:
-        olds.free()
-        news.free()
-        bpy.data.meshes.remove(bare)
+        with edited(made, made) as news:
+            own = news.verts.layers.deform.verify()
+            sources, verts = list(olds.verts), list(news.verts)
+            for vert, first in zip(verts, origins.first.tolist()):
+                if first >= 0:
+                    vert[own] = sources[first][layer]
+            for at, other in zip(origins.at.tolist(), origins.other.tolist()):
+                weights, beyond = verts[at][own], sources[other][layer]
+                for group in {*weights.keys(), *beyond.keys()}:
+                    weights[group] = (weights.get(group, 0) + beyond.get(group, 0)) / 2
 
 
 def _name_groups(mesh, made):
     """Gives made groups of the same names; whether there are any."""
-    old, new = _held(mesh), _held(made)
-    try:
+    with _held(mesh) as old, _held(made) as new:
         new.vertex_groups.clear()
         for group in old.vertex_groups:
             new.vertex_groups.new(name=group.name).lock_weight = group.lock_weight
         return len(old.vertex_groups) > 0
-    finally:
-        bpy.data.objects.remove(old)
-        bpy.data.objects.remove(new)
 
 
 def _vertices_alone(mesh):
@@ -305,7 +313,7 @@ def _vertices_alone(mesh):
     away quickly: those, and edges, whose corners are all one vertex."""
     bare = mesh.copy()
     if bare.shape_keys:
-        _clear_keys(bare)
+        clear_keys(bare)
     write(bare.loops, "vertex_index", np.zeros(len(bare.loops), np.int32))
     write(bare.edges, "vertices", np.zeros(2 * len(bare.edges), np.int32))
     if bpy.app.version < (4, 0, 0):
@@ -314,17 +322,15 @@ def _vertices_alone(mesh):
     return bare
 
 
-def _clear_keys(mesh):
-    holder = _held(mesh)
-    holder.shape_key_clear()
-    bpy.data.objects.remove(holder)
+def clear_keys(mesh):
+    with _held(mesh) as holder:
+        holder.shape_key_clear()
 
 
 def _copy_keys(mesh, made, plan):
     if not mesh.shape_keys:
         return
-    holder = _held(made)
-    try:
+    with _held(made) as holder:
         for old in mesh.shape_keys.key_blocks:
             new = holder.shape_key_add(name=old.name, from_mix=False)
             places = plan.places.copy()
@@ -337,15 +343,9 @@ def _copy_keys(mesh, made, plan):
         for old in mesh.shape_keys.key_blocks:
             made.shape_keys.key_blocks[old.name].relative_key = made.shape_keys.key_blocks[old.relative_key.name]
         made.shape_keys.use_relative = mesh.shape_keys.use_relative
-    finally:
-        bpy.data.objects.remove(holder)
 
 
 def replace_geometry(target, made):
     """Puts a mesh's geometry, with all layers and shape keys, into another, whose name, properties and users stay."""
-    bm = bmesh.new()
-    try:
-        bm.from_mesh(made)
-        bm.to_mesh(target)
-    finally:
-        bm.free()
+    with edited(made, target):
+        pass

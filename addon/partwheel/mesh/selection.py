@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from . import arrays
-from .objects import named
+from .kept import named
 
 # Select mode -> what is selected in it: the mesh's elements and the loops' reference to them. The finest mode that is
 # on rules: Blender derives the coarser elements' selection from it.

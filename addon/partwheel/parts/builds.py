@@ -7,7 +7,7 @@ from ..mesh import arrays
 from ..mesh.kept import PerMesh, counts, key
 from ..preferences import preferences
 from . import registry
-from .opening import unopened
+from .stored import unopened
 from partwheel import Error, Mode, PartwheelError, Status
 from partwheel.library import load
 from partwheel.worker import WAIT_SECONDS, Job, available_memory
@@ -45,7 +45,8 @@ def build(obj, **options):
 
 class Build:
     """A build of the object's mesh as it is now, in a process of its own, once those asked for earlier are over. The
-    mesh is not changed, nor kept from changing. To be had from build(): there is one a mesh."""
+    mesh is not changed, nor kept from changing. To be had from build(): there is one a mesh. Ask it from the main
+    thread: poll(), wait(), cancel(), result()."""
 
     def __init__(self, obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None,
                  exactly=None):
@@ -82,28 +83,29 @@ class Build:
                            memory_limit=options["memory_limit"] or int(share * available_memory()),
                            time_limit=options["time_limit"] or 60 * preferences().time_limit or None,
                            python=bpy.path.abspath(preferences().python))
-        except Exception as error:  # whatever it is, finish() raises it
+        except Exception as error:  # whatever it is, result() raises it
             self._error = error
             self._leave()
         return self.job is not None
 
     def poll(self):
-        """(fraction 0..1 that never falls, what is done or waited for); None once finish() won't block."""
+        """(fraction 0..1 that never falls, what is done or waited for); None once result() won't block."""
         turn = _turn()
         if self.job:
             return self.job.poll()
         return None if self._cancelled or self._error else (0.0, f"after those of {turn.name}")
 
     def wait(self, seconds):
-        """Waits so long at most, and says whether finish() won't block."""
+        """Waits so long at most; whether result() won't block."""
         turn = None if self.poll() is None else self if self.job else _turn()
         if turn:
             turn.job.wait(seconds)
         return self.poll() is None
 
     def cancel(self):
-        """Takes it out of the queue and kills the worker. finish() is still to be called, and tells of the cancel even
-        if the answer is there: nobody has seen that yet, and what Esc does must not depend on who was faster."""
+        """Takes it out of the queue and ends it at once: result() then raises PartwheelError, status CANCELLED, and no
+        hierarchy is kept, even if the answer is there: nobody has seen that yet, and what Esc does must not depend on
+        who was faster."""
         self._cancelled = True
         self._leave()
         if self.job:
@@ -113,13 +115,16 @@ class Build:
         if _builds.get(self._key) is self:
             del _builds[self._key]
 
-    def finish(self):
-        """Waits for the end and keeps the result: the Hierarchy. Raises PartwheelError, or Outdated if the mesh was
-        edited or deleted meanwhile. All who wait for it may call it."""
+    def result(self, progress=None):
+        """Waits for the end and keeps the Hierarchy, which is returned; without this call it is not kept. All who wait
+        for it may call it. progress(fraction, what): called ten times a second; returning True cancels. Raises
+        PartwheelError: why the mesh has no parts, or a limit was met; Outdated: it was edited or deleted meanwhile."""
         try:
-            while not self.wait(WAIT_SECONDS):
-                pass
-        except BaseException:  # Ctrl-C
+            while told := self.poll():
+                if progress and progress(*told):
+                    self.cancel()
+                self.wait(WAIT_SECONDS)
+        except BaseException:  # what progress() raised, or Ctrl-C
             self.cancel()
             raise
         self._leave()

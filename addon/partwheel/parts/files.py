@@ -7,7 +7,7 @@ from bpy.app.handlers import persistent
 from ..mesh.kept import key
 from ..preferences import preferences
 from . import builds, registry, stored
-from .opening import carried, unopened
+from .stored import carried, unopened
 
 
 @persistent

@@ -4,8 +4,11 @@
 from typing import NamedTuple
 
 from ..mesh.kept import PerMesh, key
+from ..mesh.refusing import Refused, can
 from . import registry
 from partwheel import Hierarchy
+
+NO_PICK = "No part is picked. Pick one with Select Part by Wheel, and confirm it."
 
 
 class Picked(NamedTuple):
@@ -40,6 +43,26 @@ def picked_as_told(obj):
         return None
     fits, entry = registry.state(obj.data)
     return pick if fits in registry.USABLE and entry.hierarchy is pick.hierarchy else None
+
+
+def chosen(obj, node):
+    """(the hierarchy of the object's mesh as it is now, one of its nodes): this one, or for -1 the one that was picked
+    last. Raises Refused."""
+    found = registry.needed(obj)
+    if node >= len(found.parent):
+        raise Refused(f"There is no part {node}: the hierarchy has {len(found.parent)}.")
+    pick = picked(obj)
+    if node < 0 and not pick:
+        raise Refused(NO_PICK)
+    return found, node if node >= 0 else pick.node
+
+
+class NeedsPick:
+    """Mixed into an operator, ahead of bpy.types.Operator: it needs a part that was picked, in Edit Mode."""
+
+    @classmethod
+    def poll(cls, context):
+        return can(cls, context.mode == "EDIT_MESH" and picked_as_told(context.edit_object), NO_PICK)
 
 
 def forget(obj):

@@ -11,8 +11,9 @@ from enum import Enum, auto
 from ..mesh import arrays
 from ..mesh.arrays import Fingerprint
 from ..mesh.kept import PerMesh, counts, key
+from ..mesh.refusing import Refused
 from . import changes
-from .opening import Opening, carried, unopened, waits
+from .stored import Opening, carried, unopened, waits
 from partwheel import Hierarchy
 
 
@@ -61,6 +62,14 @@ def hierarchy(obj):
         return None
     keep(mesh, entry, now)
     return entry.hierarchy if entry.built.topology == now.topology else None
+
+
+def needed(obj):
+    """The same. Raises Refused if there is none."""
+    found = hierarchy(obj)
+    if not found:
+        raise Refused(f"{obj.name} has no parts for its mesh as it is now. Build them first.")
+    return found
 
 
 def _twin(now):

@@ -2,62 +2,48 @@
 """A hierarchy as it travels with its mesh in a .blend file: packed into bytes, and refused if not wholly sound.
 
 The bytes are a custom property of the mesh, there only while a file is written or has just been read: otherwise every
-undo step and every copy of the mesh that Blender makes for drawing would drag them along. No bpy here.
+undo step and every copy of the mesh that Blender makes for drawing would drag them along. From then on they are kept
+here, until they are opened, or refused, at their first use.
 """
 
 import hashlib
 import struct
-import threading
 
 import numpy as np
 
 from partwheel import Hierarchy, PartwheelError
+from ..mesh import arrays
 from ..mesh.arrays import Fingerprint
+from ..mesh.kept import PerMesh, key
+from ..view.background import Background
 
 PROPERTY = "partwheel"
-MAGIC, VERSION = b"PWPARTS\0", 2
+MAGIC, VERSION = b"PWPARTS\0", 2  # grows with this form, and with the hierarchy's (format_version in hierarchy.cpp)
 # Magic, version, fingerprint, hash of these. The saved hierarchy that follows has a hash of its own, and is compact as it
 # is: zlib would make it a sixth smaller, and opening it would take twice as long.
 HEADER = struct.Struct("<8sI16s16s")
 HASH_SIZE = 16
 SPACING = 0.01  # of the points that a hierarchy's deviation was measured at, as a share of the mesh's diagonal
 
+unopened = PerMesh()  # packed
+newer = PerMesh()  # True: those that came with it are of a version after this one, which the user hasn't been told
 
-class Refused(Exception):
+
+class Unsound(Exception):
     """Bytes that are not a hierarchy of this mesh. str() says why, as the end of a sentence."""
+
+
+class Older(Unsound):
+    """Bytes of a version before this one, that it can't read any more."""
+
+
+class Newer(Unsound):
+    """Bytes of a version after this one."""
 
 
 def pack(fingerprint, hierarchy):
     header = HEADER.pack(MAGIC, VERSION, *fingerprint)
     return b"".join([header, _hash(header), hierarchy.save()])
-
-
-class Unpacking:
-    """Bytes that are being unpacked in a thread, while the caller finds out which mesh they must fit."""
-
-    def __init__(self, data):
-        self._opened = self._error = None
-        self._thread = threading.Thread(target=self._run, args=[data], name="partwheel-unpack")
-        self._thread.start()
-
-    def _run(self, data):
-        try:
-            self._opened = unpack(data)
-        except Exception as error:  # whatever it is, result() raises it
-            self._error = error
-
-    def result(self, now, positions, begin, corners):
-        """(Fingerprint when it was built, Hierarchy). now: the Fingerprint of the mesh; the rest as for fits(). Raises
-        Refused, also when they are of another mesh."""
-        self._thread.join()
-        if self._error:
-            raise self._error
-        fingerprint, hierarchy = self._opened
-        if fingerprint.topology != now.topology:
-            raise Refused("the mesh has changed since")
-        if not fits(hierarchy, positions, begin, corners, fingerprint.positions != now.positions):
-            raise Refused("it is of another mesh")
-        return fingerprint, hierarchy
 
 
 def fits(hierarchy, positions, begin, corners, moved):
@@ -87,22 +73,70 @@ def fits(hierarchy, positions, begin, corners, moved):
 
 
 def unpack(data):
-    """(Fingerprint when it was built, Hierarchy). Raises Refused."""
+    """(Fingerprint when it was built, Hierarchy). Raises Unsound."""
     start = HEADER.size + HASH_SIZE
     if not isinstance(data, bytes) or len(data) < start or not data.startswith(MAGIC):
-        raise Refused("it is not ours")
+        raise Unsound("it is not ours")
     _, version, *fingerprint = HEADER.unpack_from(data)
     fingerprint = Fingerprint(*fingerprint)
     if version != VERSION:
-        raise Refused("it is of another version")
+        raise (Newer if version > VERSION else Older)("it is of another version")
     if _hash(data[:HEADER.size]) != data[HEADER.size:start]:
-        raise Refused("it is damaged")
+        raise Unsound("it is damaged")
     try:
         hierarchy = Hierarchy.load(memoryview(data)[start:])
     except PartwheelError as error:
-        raise Refused("it is damaged, or of another version") from error
+        raise Unsound("it is damaged") from error
     return fingerprint, hierarchy
 
 
 def _hash(data):
     return hashlib.blake2b(data, digest_size=HASH_SIZE).digest()
+
+
+def waits(mesh):
+    """Whether one is there."""
+    return key(mesh) in unopened or PROPERTY in mesh
+
+
+def carried(mesh):
+    """What an appended or linked mesh has brought along, packed, or None; taken off it, if it can be changed."""
+    packed = mesh.get(PROPERTY)
+    if packed is not None and not mesh.library:
+        del mesh[PROPERTY]
+    return packed
+
+
+class Opening:
+    """The hierarchy, if any, that came with the mesh, being opened while the caller does other things."""
+
+    def __init__(self, mesh):
+        self.mesh, self.packed = mesh, unopened.pop(key(mesh), None) or carried(mesh)
+        self._opened = None
+        self._task = None if self.packed is None else Background(self._unpack)
+
+    def _unpack(self, _stop):
+        self._opened = unpack(self.packed)
+
+    def result(self, now):
+        """(Fingerprint when it was built, Hierarchy), or None. now: the Fingerprint of the mesh."""
+        if not self._task:
+            return None
+        try:
+            self._task.finish()
+            built, hierarchy = self._opened
+            if built.topology != now.topology:
+                raise Unsound("the mesh has changed since")
+            corners = arrays.read(self.mesh.loops, "vertex_index", np.int32)
+            if not fits(hierarchy, arrays.read(self.mesh.vertices, "co", np.float32, 3),
+                        arrays.polygon_sizes(self.mesh)[0], corners, built.positions != now.positions):
+                raise Unsound("it is of another mesh")
+            return self._opened
+        except Older:
+            return None  # they are found anew, as any that aren't there
+        except Newer:
+            newer[key(self.mesh)] = True
+            return None
+        except Unsound as reason:
+            print(f"Partwheel: the parts saved with {self.mesh.name} are left aside, for {reason}.")
+            return None

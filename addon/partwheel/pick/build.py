@@ -9,11 +9,13 @@ import time
 
 import bpy
 
-from ..parts import builds, picks, registry
-from partwheel import LibraryError, PartwheelError, Status
+from .. import trouble
+from ..parts import builds, picks, registry, stored
+from partwheel import Error, LibraryError, PartwheelError, Status
+from ..mesh.kept import key
 from ..view import status
 from ..view.in_view import InView
-from .polls import NeedsMesh
+from ..mesh.refusing import NeedsMesh, can
 
 TICK = 0.1  # seconds between two looks at the worker
 
@@ -24,10 +26,13 @@ class Building:
     hierarchy: None until it is done, and if it fails."""
 
     def __init__(self, operator, obj, **options):
-        """options: of builds.build(). Raises LibraryError or PartwheelError when it can't even begin."""
+        """options: of builds.build(). Raises an Error when it can't even begin."""
         self.operator, self.hierarchy = operator, None
         self.began = time.perf_counter()
         self.build = builds.build(obj, **options)
+        if stored.newer.pop(key(obj.data), False):
+            operator.report({"WARNING"}, f"The parts saved with {obj.data.name} are of a newer Partwheel than this one, "
+                                         "so they are found anew. Update Partwheel to have those of the file.")
         self.timer, self.line = None, status.Line()
         self.printed = 0
 
@@ -36,14 +41,9 @@ class Building:
     def wait(self, context):
         """For scripts: blocks, and shows progress at the cursor, or in the terminal when there are no windows."""
         try:
-            while not self.build.wait(TICK):
-                self._show(context, *(self.build.poll() or (1.0, "")))
-        except BaseException:  # Ctrl-C
-            self.build.cancel()
-            raise
+            self._conclude(lambda *told: self._show(context, *told))
         finally:
             self._end_progress(context)
-            self._conclude()
         return self.hierarchy
 
     # ---- Beside Blender's own work
@@ -107,11 +107,11 @@ class Building:
             print(f"Partwheel: {percent:3d} % {stage}", flush=True)
             self.printed = percent
 
-    def _conclude(self):
+    def _conclude(self, progress=None):
         """Takes the result over, if there is one, and reports."""
         name, report = self.build.name, self.operator.report
         try:
-            self.hierarchy = self.build.finish()
+            self.hierarchy = self.build.result(progress)
         except PartwheelError as error:
             cancelled = error.name == "cancelled"
             where = " The panel Partwheel in the sidebar does that." if error.status == Status.NOT_SOLID else ""
@@ -132,33 +132,26 @@ def start(operator, obj, **options):
     """A Building, or None and a report."""
     try:
         return Building(operator, obj, **options)
-    except (PartwheelError, LibraryError) as error:
-        name = getattr(error, "name", "library")
-        operator.report({"ERROR"}, f"No parts for {obj.data.name} ({name}): {error}")
-        return None
+    except LibraryError as error:
+        operator.report({"ERROR"}, f"No parts for {obj.data.name}: {trouble.logged(error)}")
+    except Error as error:
+        operator.report({"ERROR"}, f"No parts for {obj.data.name} ({error.name}): {error}")
+    return None
 
 
 class _Build(NeedsMesh, InView):
     """What building and finding have in common."""
 
     quality: bpy.props.FloatProperty(
-        name="Quality",
-        description="0 adds no points inside the mesh; from 1.1 on, bounds how stretched the tetrahedra may be "
-                    "(1.4 is usual, smaller is slower)",
-        default=0.0, min=0.0, soft_max=3.0,
-    )
+        name="Quality", description="0 adds no points inside the mesh; from 1.1 on, bounds how stretched the "
+        "tetrahedra may be (1.4 is usual, smaller is slower)", default=0.0, min=0.0, soft_max=3.0)
     open_surfaces: bpy.props.BoolProperty(
-        name="Open Surfaces",
-        description="Take a surface that encloses nothing, such as cloth or a car's door, for a thin solid, instead of "
-                    "refusing it",
-        default=False,
-    )
+        name="Open Surfaces", description="Take a surface that encloses nothing, such as cloth or a car's door, for a "
+        "thin solid, instead of refusing it", default=False)
     exactly: bpy.props.BoolProperty(
-        name="Exactly",
-        description="Find the parts of a mesh of more than 200,000 triangles on all of these, not on a coarser copy: "
-                    "some ten times the time and memory. The add-on's preferences can have it so for all",
-        default=False,
-    )
+        name="Exactly", description="Find the parts of a mesh of more than 200,000 triangles on all of these, not on a "
+        "coarser copy: some ten times the time and memory. The add-on's preferences can have it so for all",
+        default=False)
 
     def execute(self, context):
         building = self._start(context)
@@ -220,10 +213,8 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         obj = context.active_object
-        if obj is None or obj.type != "MESH" or registry.state(obj.data)[0] == registry.State.NONE:
-            cls.poll_message_set("The active object has no parts")
-            return False
-        return True
+        return can(cls, obj is not None and obj.type == "MESH" and registry.state(obj.data)[0] != registry.State.NONE,
+                   "The active object has no parts")
 
     def execute(self, context):
         picks.forget(context.active_object)

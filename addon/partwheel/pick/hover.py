@@ -7,7 +7,8 @@ draws it in every 3D view, for as long as the tool is active and no longer. It n
 
 import bpy
 
-from ..mesh import objects
+from .. import trouble
+from ..mesh import kept
 from ..view import overlay, picking
 from . import borders, states
 from .prepared import current, prepared
@@ -43,7 +44,7 @@ class Hover:
         if not self.what or overlay.shown.on:
             return
         name, parts, node, snapped = self.what
-        obj = objects.named(name)
+        obj = kept.named(name)
         if obj and obj.mode == "EDIT" and overlay.visible(context, obj) and current(obj, parts):
             overlay.draw_hover(context, obj, parts, node, snapped)
 
@@ -77,7 +78,7 @@ class VIEW3D_GGT_partwheel_hover(bpy.types.GizmoGroup):
 
     @classmethod
     def poll(cls, context):
-        return context.mode == "EDIT_MESH"
+        return context.mode == "EDIT_MESH" and not trouble.of_library()
 
     def setup(self, _context):
         self.gizmos.new(VIEW3D_GT_partwheel_hover.bl_idname)

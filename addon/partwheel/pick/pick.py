@@ -23,28 +23,21 @@ class PartPicker(InView):
     face_index: bpy.props.IntProperty(name="Face", description="The face that was clicked", default=0, min=0)
     level: bpy.props.IntProperty(
         name="Level", description="Notches of the wheel from the part that the click alone takes: up is positive",
-        default=0,
-    )
+        default=0)
     extend: bpy.props.BoolProperty(
-        name="Extend", description="Add the part to what is selected, instead of replacing it",
-        default=False, options={"SKIP_SAVE"},
-    )
+        name="Extend", description="Add the part to what is selected, instead of replacing it", default=False,
+        options={"SKIP_SAVE"})
     deselect: bpy.props.BoolProperty(
-        name="Deselect", description="Take the part away from what is selected",
-        default=False, options={"SKIP_SAVE"},
-    )
+        name="Deselect", description="Take the part away from what is selected", default=False, options={"SKIP_SAVE"})
     snap: bpy.props.BoolProperty(
-        name="Snap Border", description="Move the border of the part to the creases nearby",
-        default=False, options={"SKIP_SAVE"},
-    )
+        name="Snap Border", description="Move the border of the part to the creases nearby", default=False,
+        options={"SKIP_SAVE"})
     begin: bpy.props.IntProperty(
         name="Begin At", description="The face of the active object that is picked first; -1: the one under the mouse",
-        default=NO_FACE, min=NO_FACE, options={"SKIP_SAVE", "HIDDEN"},
-    )
+        default=NO_FACE, min=NO_FACE, options={"SKIP_SAVE", "HIDDEN"})
     tool: bpy.props.BoolProperty(
         name="From the Toolbar", description="The next click starts with the next part, and other keys go to Blender",
-        default=False, options={"SKIP_SAVE", "HIDDEN"},
-    )
+        default=False, options={"SKIP_SAVE", "HIDDEN"})
 
     # ---- What operators differ in
 
@@ -115,13 +108,12 @@ class PartPicker(InView):
 
     def _under(self, context, event):
         """(object, face index) under the mouse, or (None, None)."""
-        view = picking.view_under(context.window, event.mouse_x, event.mouse_y)
+        view = picking.under_mouse(context, event)
         if not view:
             return None, None
-        area, region, region_view = view
-        point = event.mouse_x - region.x, event.mouse_y - region.y
+        area, *pixel = view
         shown = [each for each in self._objects(context) if each.visible_get(viewport=area.spaces.active)]
-        obj, face = picking.nearest(shown, lambda each: prepared(each).tree, region, region_view, point)
+        obj, face = picking.nearest(shown, lambda each: prepared(each).tree, *pixel)
         if face == NO_FACE:
             self.report({"INFO"}, f"What is seen there was made by the modifiers of {obj.name} and belongs to no face "
                                   "of its mesh")
@@ -193,7 +185,7 @@ class PartPicker(InView):
         holding = isinstance(self.state, states.Picked)
         if event.type in keys.MOVES:
             return self._dragged(context, event)
-        over = picking.view_under(context.window, event.mouse_x, event.mouse_y) is not None
+        over = picking.under_mouse(context, event) is not None
         plain = not (event.alt or event.oskey or event.ctrl and not (self.deselect or event.type == "LEFTMOUSE"))
         if event.type == "TRACKPADPAN" and holding and over and plain and not event.shift:
             notches = self.scroll.notches(event.mouse_y - event.mouse_prev_y)

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What hovering, picking and drawing need of a mesh, made at its first use and kept while the mesh stays as it is."""
 
-import bpy
-
 from ..mesh import arrays
-from ..mesh.kept import counts, key
+from ..mesh.kept import PerMesh, counts, key
 from ..parts import changes, registry
 from ..view import overlay, picking, seen
 
-_kept = {}  # key(mesh) -> Prepared
+_kept = PerMesh()  # Prepared
 
 
 class Prepared:
@@ -41,8 +39,7 @@ def prepared(obj):
     """The Prepared of the object's mesh as it is now, as far as Blender has told of changes."""
     stamp, kept = _stamp(obj), _kept.get(key(obj.data))
     if not kept or kept.stamp != stamp:
-        for gone in _kept.keys() - {key(mesh) for mesh in bpy.data.meshes}:
-            del _kept[gone]
+        _kept.drop_gone()
         kept = _kept[key(obj.data)] = Prepared(obj, stamp)
     return kept
 
@@ -56,12 +53,3 @@ def current(obj, parts):
 
 def _stamp(obj):
     return obj.name_full, obj.mode, changes.revision(obj.data), counts(obj.data)
-
-
-@bpy.app.handlers.persistent
-def unregister(*_):
-    """Nothing is kept, nor of another file."""
-    _kept.clear()
-
-
-HANDLERS = {"load_post": unregister}

@@ -15,7 +15,7 @@ def bridge(bm, facets):
     """Adds facets, (vertices (n,3), triangles (m,3) wound outwards), to a bmesh: each group of them of which most of the
     border has one of the bmesh's own to itself nearby. What its polygons there are a part of is turned as the facets
     are. The new faces. Other borders stay open: those of holes that only the filling closes are there, too."""
-    own = closing.borders(bm, {edge for edge in bm.edges if edge.is_boundary})
+    own = closing.borders([edge for edge in bm.edges if edge.is_boundary])
     places, triangles = facets
     if not own or not len(triangles):
         return []
@@ -28,11 +28,12 @@ def bridge(bm, facets):
         if border is not None:
             joints[group].append((ring, own[border]))
     used = lengths[:, 1] > MOST * lengths[:, 0]
-    _turn_pieces([joint for each, use in zip(joints, used) if use for joint in each])
+    _turn_pieces(bm, [joint for each, use in zip(joints, used) if use for joint in each])
     caps = []
     for (faces, _), each, use in zip(groups, joints, used):
         if not use or any(_run_alike(*joint) for joint in each):
-            bmesh.ops.delete(bm, geom=list({vert for face in faces for vert in face.verts}), context="VERTS")
+            verts = dict.fromkeys(vert for face in faces for vert in face.verts)
+            bmesh.ops.delete(bm, geom=list(verts), context="VERTS")
             continue
         caps += faces
         for ring, border in each:
@@ -40,14 +41,14 @@ def bridge(bm, facets):
     return caps
 
 
-def _turn_pieces(joints):
+def _turn_pieces(bm, joints):
     """Turns those pieces of the mesh of which most borders run as the facets' do: two that a strip can join never do.
     The borders, lists of vertices, are turned too."""
     pieces = {}  # the number of the first border of each piece -> (its faces, borders, votes)
-    of = {}
+    of, left = {}, set(bm.faces)
     for number, (ring, border) in enumerate(joints):
         if border[0] not in of:
-            faces = _piece(border[0])
+            faces = closing.reached(border[0].link_faces[0], left, closing.around)
             pieces[number] = faces, [], []
             of.update((vert, number) for face in faces for vert in face.verts)
         _, borders, votes = pieces[of[border[0]]]
@@ -65,26 +66,10 @@ def _groups(bm, places, triangles):
     """[(faces, borders), ...] of the new faces, those that are joined across edges together."""
     used, triangles = np.unique(triangles, return_inverse=True)
     verts = [closing.new_vert(bm, place) for place in places[used].tolist()]
-    new = {bm.faces.new([verts[k] for k in triangle]) for triangle in triangles.reshape(-1, 3).tolist()}
+    new = [bm.faces.new([verts[k] for k in triangle]) for triangle in triangles.reshape(-1, 3).tolist()]
     closing.set_apart(bm)
-    groups = []
-    while new:
-        faces = _piece(next(iter(new)).verts[0])
-        new.difference_update(faces)
-        edges = {edge for face in faces for edge in face.edges if edge.is_boundary}
-        groups.append((faces, closing.borders(bm, edges)))
-    return groups
-
-
-def _piece(vert):
-    """The faces that are joined with a vertex, by steps across edges and vertices."""
-    seen, todo = set(vert.link_faces), list(vert.link_faces)
-    while todo:
-        for corner in todo.pop().verts:
-            beyond = [face for face in corner.link_faces if face not in seen]
-            seen.update(beyond)
-            todo += beyond
-    return list(seen)
+    return [(faces, closing.borders([edge for face in faces for edge in face.edges if edge.is_boundary]))
+            for faces in closing.groups(new, closing.around)]
 
 
 def _places(ring):
@@ -122,24 +107,40 @@ def _run_alike(one, other):
 
 
 def _strip(bm, one, other):
-    """Triangles between two rings of vertices that run the same way, along the first: always across the shorter of the
-    next two diagonals."""
+    """Triangles between two rings of vertices that run the same way, along the first: those whose edges across are the
+    shortest, together, of all that have the one between the nearest two (by dynamic programming, as Fuchs, Kedem and
+    Uselton 1977 find those of least area)."""
     a, b = _places(one), _places(other)
     start = np.unravel_index(np.linalg.norm(a[:, None] - b[None], axis=2).argmin(), (len(a), len(b)))
     one, other = ([*ring[at:], *ring[:at], ring[at]] for ring, at in zip((one, other), start))
-    n, m = len(a), len(b)
-    faces, i, j, across = [], 0, 0, {(0, 0)}
-    while (i, j) != (n, m):
-        # No edge across is there twice, though both rings end where they began.
-        first, second = i < n and (i + 1, j), j < m and (i, j + 1)
-        may_first, may_second = (each and (each == (n, m) or (each[0] % n, each[1] % m) not in across)
-                                 for each in (first, second))
-        if may_first and (not may_second or (one[i + 1].co - other[j].co).length
-                          <= (one[i].co - other[j + 1].co).length):
+    faces, i, j = [], 0, 0
+    for along in _along(np.linalg.norm(_places(one)[:, None] - _places(other)[None], axis=2)):
+        if along:
             faces.append(bm.faces.new((one[i], one[i + 1], other[j])))
-            i, j = first
+            i += 1
         else:
             faces.append(bm.faces.new((one[i], other[j + 1], other[j])))
-            i, j = second
-        across.add((i % n, j % m))
+            j += 1
     return faces
+
+
+def _along(across):
+    """The steps from the first to the last of across (n+1,m+1), True along the first axis and False along the second,
+    for which the sum of what is passed is least."""
+    n, m = np.array(across.shape) - 1
+    # No edge across is there twice, though both rings end where they began: at most half of either lies before it.
+    across = across.copy()
+    across[0, m // 2 + 1:] = across[n, :m // 2 + 1] = np.inf
+    across[n // 2 + 1:, 0] = across[:n // 2 + 1, m] = np.inf
+    across[n, m] = 0
+    least = np.full((n + 2, m + 2), np.inf)  # with a row and a column before
+    least[1, 1] = 0
+    for step in range(1, n + m + 1):  # all that are so many steps from the first
+        i = np.arange(max(step - m, 0), min(step, n) + 1)
+        j = step - i
+        least[i + 1, j + 1] = np.minimum(least[i, j + 1], least[i + 1, j]) + across[i, j]
+    steps, i, j = [], n, m
+    while i or j:
+        steps.append(bool(least[i, j + 1] <= least[i + 1, j]))
+        i, j = (i - 1, j) if steps[-1] else (i, j - 1)
+    return steps[::-1]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Borders of a bmesh closed by faces, flat or going on as the surface about them does."""
+"""Borders of a bmesh closed by faces, flat or going on as the surface about them does. A set of its elements is
+only asked what it holds: its order is that of memory, another on every run."""
 
 import bmesh
 import numpy as np
@@ -22,42 +23,46 @@ def set_apart(bm):
 
 def _fans(vert):
     """The edges about a vertex in groups that are joined by faces."""
-    fans, left = [], {edge for edge in vert.link_edges if edge.link_faces}
-    while left:
-        fan, todo = set(), [left.pop()]
-        while todo:
-            edge = todo.pop()
-            fan.add(edge)
-            for face in edge.link_faces:
-                for other in face.edges:
-                    if other in left and vert in other.verts:
-                        left.remove(other)
-                        todo.append(other)
-        fans.append(fan)
-    return fans
+    return groups((edge for edge in vert.link_edges if edge.link_faces),
+                  lambda edge: (other for face in edge.link_faces for other in face.edges))
+
+
+def groups(items, beside):
+    """The items in lists of those that are joined by steps to one that is beside(item)."""
+    items = list(items)
+    left = set(items)
+    return [reached(first, left, beside) for first in items if first in left]
+
+
+def reached(first, left, beside):
+    """The list of those of a set that are joined so with the first, which it then has no more."""
+    left.remove(first)
+    group = [first]
+    for each in group:
+        new = [other for other in dict.fromkeys(beside(each)) if other in left]
+        left.difference_update(new)
+        group += new
+    return group
 
 
 def fill(bm, smooth, open_before):
     """Closes every other border by rings of faces around a new vertex in its middle; smooth: relaxed so that they go on
     as the surface about them does. The new faces."""
     caps = []
-    for border in borders(bm, {edge for edge in bm.edges if edge.is_boundary} - open_before):
+    for border in borders([edge for edge in bm.edges if edge.is_boundary and edge not in open_before]):
         caps += _fill_border(bm, border, RINGS if smooth else 0)
     return caps
 
 
-def borders(bm, edges):
-    """The borders that these edges make, each as its vertices in the order that new faces run along it."""
-    found, left = [], set(edges)
-    while left:
-        border = _border(left.pop(), left)
-        if border:
-            found.append(border)
-    return found
+def borders(edges):
+    """The borders that a list of edges makes, each as its vertices in the order that new faces run along it."""
+    left = set(edges)
+    return list(filter(None, (_border(first, left) for first in edges if first in left)))
 
 
 def _border(edge, left):
     """The vertices of a border in the order that new faces run along it: against its own faces."""
+    left.remove(edge)
     loop = edge.link_loops[0]
     start, vert = loop.link_loop_next.vert, loop.vert
     border = [start]
@@ -88,6 +93,30 @@ def _fill_border(bm, border, rings):
     if rings:
         _fair(rows, top)
     return caps
+
+
+def turn_outwards(bm, told):
+    """Turns those pieces of a closed bmesh that are inside out, but for pieces with one of the faces told: what was
+    open has no outside before it is closed."""
+    told = set(told)
+    for piece in groups(bm.faces, around):
+        if told.isdisjoint(piece) and _volume(piece) < 0:
+            for face in piece:
+                face.normal_flip()
+
+
+def around(face):
+    """Those that it has a vertex in common with."""
+    return (other for corner in face.verts for other in corner.link_faces)
+
+
+def _volume(faces):
+    """Six times that of closed faces."""
+    about, volume = faces[0].verts[0].co, 0.0
+    for face in faces:
+        first, *others = (vert.co - about for vert in face.verts)
+        volume += sum(first.dot(one.cross(other)) for one, other in zip(others, others[1:]))
+    return volume
 
 
 def new_vert(bm, place):

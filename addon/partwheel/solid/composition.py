@@ -5,9 +5,9 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
+from ..mesh import arrays
 from ..pick import borders
 from . import solids
-from ..mesh.arrays import read
 
 
 def copied(obj, hierarchy, node, options=solids.Options(), snap=False, collection=None):
@@ -43,7 +43,7 @@ def split(obj, hierarchy, bounds, options=solids.Options(), explode=0.0):
     home(obj).children.link(collection)
     for mesh in filter(None, meshes):
         part = _beside(obj, mesh, f"{obj.name} part", collection)
-        corners = read(mesh.vertices, "co", np.float32, 3)
+        corners = arrays.read(mesh.vertices, "co", np.float32, 3)
         away = Vector((corners.min(axis=0) + corners.max(axis=0)) / 2) - middle
         part.matrix_world.translation += obj.matrix_world.to_3x3() @ away * explode
         made.append(part)

@@ -4,10 +4,9 @@
 import bpy
 
 from ..parts import picks, registry
-from ..pick.polls import NeedsMesh
 from . import composition, solids
-from partwheel import PartwheelError
-from ..mesh.linked import changeable
+from partwheel import Error
+from ..mesh.refusing import NeedsMesh, changeable
 
 
 class OnParts(NeedsMesh):
@@ -15,13 +14,12 @@ class OnParts(NeedsMesh):
 
     bl_options = {"REGISTER", "UNDO"}
     edits = False  # whether it changes the mesh itself: then Edit Mode goes on afterwards
-    refusals = PartwheelError, solids.NotClosed  # with sentences for the user
 
     def execute(self, context):
         obj = context.active_object
         was_edited = obj.mode == "EDIT"
         try:
-            hierarchy = self.hierarchy(context, obj)
+            hierarchy = self.hierarchy(obj)
             if was_edited:
                 bpy.ops.object.mode_set(mode="OBJECT")
                 if not self.edits:
@@ -30,69 +28,46 @@ class OnParts(NeedsMesh):
             self.work(context, obj, hierarchy)
             if was_edited and self.edits:
                 bpy.ops.object.mode_set(mode="EDIT")
-        except self.refusals as error:
+        except Error as error:
             if was_edited and obj.mode != "EDIT":
                 bpy.ops.object.mode_set(mode="EDIT")
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         return {"FINISHED"}
 
-    def hierarchy(self, context, obj):
-        found = registry.hierarchy(obj)
-        if not found:
-            raise solids.NotClosed(f"{obj.name} has no parts for its mesh as it is now. Build them first.")
+    def hierarchy(self, obj):
+        return registry.needed(obj)
+
+
+class OnPart(OnParts):
+    """The same for operators that cut a part out: a node, or the one that was picked last."""
+
+    snap: bpy.props.BoolProperty(
+        name="Snap Border", description="Move the border of the part to the creases nearby, as far as the tetrahedra "
+        "about it let it be there", default=True)
+    node: bpy.props.IntProperty(
+        name="Node", description="The part, as a number of the hierarchy; -1: the part that was picked last",
+        default=-1, min=-1, options={"SKIP_SAVE"})
+
+    def hierarchy(self, obj):
+        found, self.node = picks.chosen(obj, self.node)
         return found
 
 
-class _AsSolid(OnParts):
-    """Makes caps."""
+class _Caps:
+    """The options of what makes caps."""
 
     smooth: bpy.props.BoolProperty(
         name="Smooth Caps", description="Close the part with a smooth surface, instead of the flat facets inside the "
-        "solid that divide it from the rest", default=False,
-    )
+        "solid that divide it from the rest", default=False)
     material: bpy.props.BoolProperty(
-        name="Cap Material", description="Give the caps a material of their own", default=False,
-    )
+        name="Cap Material", description="Give the caps a material of their own", default=False)
 
     def caps(self):
         return solids.Options(self.smooth, self.material)
 
 
-class OnPart:
-    """Acts on a node, or on the part that was picked last. Mixed into one of the above."""
-
-    node: bpy.props.IntProperty(
-        name="Node", description="The part, as a number of the hierarchy; -1: the part that was picked last",
-        default=-1, min=-1, options={"SKIP_SAVE"},
-    )
-
-    def hierarchy(self, context, obj):
-        found = super().hierarchy(context, obj)
-        if self.node >= len(found.parent):
-            raise solids.NotClosed(f"There is no part {self.node}: the hierarchy has {len(found.parent)}.")
-        if self.node < 0:
-            picked = picks.picked(obj)
-            if not picked:
-                raise solids.NotClosed("No part is picked. Pick one with Select Part by Wheel, and confirm it.")
-            self.node = picked.node
-        return found
-
-
-class Snaps:
-    """Cuts parts out, whose borders may be moved. Mixed into an operator."""
-
-    snap: bpy.props.BoolProperty(
-        name="Snap Border", description="Move the border of the part to the creases nearby, as far as the tetrahedra "
-        "about it let it be there", default=True,
-    )
-
-
-class _SolidOfPart(Snaps, OnPart, _AsSolid):
-    """Of a node."""
-
-
-class MESH_OT_partwheel_copy(_SolidOfPart, bpy.types.Operator):
+class MESH_OT_partwheel_copy(OnPart, _Caps, bpy.types.Operator):
     """Copy the picked part as a solid: a new object, closed where it was cut; Ctrl C, Ctrl V take it to other files"""
 
     bl_idname = "mesh.partwheel_copy"
@@ -102,7 +77,7 @@ class MESH_OT_partwheel_copy(_SolidOfPart, bpy.types.Operator):
         only(context, [composition.copied(obj, hierarchy, self.node, self.caps(), self.snap)])
 
 
-class MESH_OT_partwheel_remove(_SolidOfPart, bpy.types.Operator):
+class MESH_OT_partwheel_remove(OnPart, _Caps, bpy.types.Operator):
     """Take the picked part out of the mesh and close the hole"""
 
     bl_idname = "mesh.partwheel_remove"
@@ -117,7 +92,7 @@ class MESH_OT_partwheel_remove(_SolidOfPart, bpy.types.Operator):
         composition.removed(obj, hierarchy, self.node, self.caps(), self.snap)
 
 
-class MESH_OT_partwheel_split(_AsSolid, bpy.types.Operator):
+class MESH_OT_partwheel_split(OnParts, _Caps, bpy.types.Operator):
     """Make each part of a cut an object of its own: closed solids that fit each other exactly"""
 
     bl_idname = "mesh.partwheel_split"
@@ -132,12 +107,10 @@ class MESH_OT_partwheel_split(_AsSolid, bpy.types.Operator):
     parts: bpy.props.IntProperty(name="Parts", description="How many parts", default=6, min=1, soft_max=64, max=4096)
     height: bpy.props.FloatProperty(
         name="Height", description="Largest concavity of a part: the volume between it and its convex hull", default=0,
-        min=0,
-    )
+        min=0)
     explode: bpy.props.FloatProperty(
         name="Explode", description="How far the parts are moved apart, by their distance from the middle", default=0,
-        min=0, soft_max=2,
-    )
+        min=0, soft_max=2)
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was split", default=True)
 
     def draw(self, _context):

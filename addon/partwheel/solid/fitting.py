@@ -6,13 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..mesh import arrays
-from partwheel import Error, PartwheelError, Solid, Status
-from ..mesh.arrays import read
+from partwheel import PartwheelError, Solid, Status
 from ..mesh.pieces import Origins, Plan
-
-
-class NotClosed(Error):
-    """A part that can't be made a solid. str() is a sentence for the user."""
+from ..mesh.refusing import Refused
 
 
 class Fitted(NamedTuple):
@@ -48,7 +44,7 @@ def facets(hierarchy, tet_first, tet_last, faces=None):
 def exactly(mesh, hierarchy, solid, alone):
     """The Fitted of a Solid of the exact rung."""
     between = hierarchy.source[solid.ends]
-    plain = _of_each(between[:, 0] == between[:, 1], solid.triangles, np.logical_and) & (solid.faces >= 0)
+    plain = (between[:, 0] == between[:, 1])[solid.triangles].all(axis=1) & (solid.faces >= 0)
     turned = False
     if plain.any():  # all are wound alike
         example = int(plain.argmax())
@@ -142,9 +138,9 @@ def of_solid(mesh, fitted, alone, facets):
     begin, totals = arrays.polygon_sizes(mesh)
     triangles = np.bincount(faces, minlength=len(totals))
     strange = np.zeros(len(totals), bool)  # with a corner that is not the polygon's own
-    strange[faces[_of_each(source < 0, corners, np.logical_or)]] = True
+    strange[faces[(source < 0)[corners].any(axis=1)]] = True
     parted = np.zeros(len(totals), bool)  # with a corner at which the surface is cut apart
-    parted[faces[_of_each(~is_first, corners, np.logical_or)]] = True
+    parted[faces[~is_first[corners].all(axis=1)]] = True
     whole = (triangles == totals - 2) & ~strange
     large = whole[faces] & (totals[faces] > 3)
     of, _ = _corners_of(faces[large], corners[large], len(source))
@@ -203,12 +199,6 @@ def of_solid(mesh, fitted, alone, facets):
     return _plan(mesh, parts, 0 if against.any() else len(stays), origins, places, wires, numbers, alias)
 
 
-def _of_each(marked, triangles, joined):
-    """(T,) of what each triangle's corners are marked by, (V,) bool, all or any: np.logical_and, np.logical_or."""
-    a, b, c = (marked[triangles[:, k]] for k in range(3))
-    return joined(joined(a, b), c)
-
-
 def _loops_of(begin, totals, polygons):
     """The loops of polygons, in turn. begin, totals (F,): the first loop of each of the mesh's, and how many it has."""
     sizes = totals[polygons]
@@ -228,7 +218,7 @@ def of_faces(mesh, hierarchy, tet_first, tet_last, faces, alone):
     """The pieces.Plan of the slice's polygons alone, or of those that it is to have in their place."""
     inside = np.flatnonzero(_inside(hierarchy, tet_first, tet_last, faces))
     if not len(inside):
-        raise NotClosed("This part has no face of the mesh. Take a larger one.")
+        raise Refused("This part has no face of the mesh. Take a larger one.")
     begin, totals = arrays.polygon_sizes(mesh)
     loops = _loops_of(begin, totals, inside)
     vertex, keep, wires = _kept(mesh, loops, alone)
@@ -260,14 +250,15 @@ class _Corners(NamedTuple):
 def _kept(mesh, loops, alone, alias=None):
     """((L,) the vertex of each loop, by alias if there is one, (V,) whether it is of one of the loops that stay, or has
     no face and stays, edges without a face that stay). What has no face goes if alone."""
-    vertex = own = read(mesh.loops, "vertex_index", np.int32)
+    vertex = own = arrays.read(mesh.loops, "vertex_index", np.int32)
     if alias is not None:
         vertex = alias[own]
     keep = np.zeros(len(mesh.vertices), bool)
     keep[vertex[loops]] = True
     wires = np.empty(0, np.int64)
     if not alone:
-        wires = np.flatnonzero(np.bincount(read(mesh.loops, "edge_index", np.int32), minlength=len(mesh.edges)) == 0)
+        edges = arrays.read(mesh.loops, "edge_index", np.int32)
+        wires = np.flatnonzero(np.bincount(edges, minlength=len(mesh.edges)) == 0)
         ends = arrays.edge_vertices(mesh)
         loose = np.ones(len(keep), bool)
         loose[own] = loose[ends] = False
@@ -282,7 +273,7 @@ def _plan(mesh, parts, whole, origins, places, wires, numbers, alias=None):
     loops = Origins(*(np.concatenate(each) for each in zip(*(
         (part.loops.first, start + part.loops.at, part.loops.other) for part, start in zip(parts, starts)))))
     corners, totals, polygons = (np.concatenate(each) for each in list(zip(*parts))[1:])
-    own = read(mesh.vertices, "co", np.float32, 3)
+    own = arrays.read(mesh.vertices, "co", np.float32, 3)
     kept = origins.first[:len(origins.first) - len(places)]
     places = np.concatenate([own[kept], places])
     return Plan(places, origins, loops, corners, np.cumsum(totals) - totals, polygons, whole, wires, numbers, alias)

@@ -16,8 +16,7 @@ import numpy as np
 
 from ..mesh import arrays, pieces
 from . import bridging, closing, fitting
-from .fitting import NotClosed
-from ..mesh.arrays import read
+from ..mesh.refusing import Refused
 
 CAP = "partwheel_cap"  # the attribute of faces that closes what was cut
 CAP_MATERIAL = "Partwheel Cap"
@@ -68,7 +67,7 @@ def parts(obj, hierarchy, slices, options=Options(), faces=None):
 
 def remove(obj, hierarchy, tet_first, tet_last, options=Options(), faces=None):
     """Takes the part out of the object's mesh, which must not be in Edit Mode, and closes the hole. faces: as for part().
-    Raises PartwheelError or NotClosed before anything has changed."""
+    Raises PartwheelError or Refused before anything has changed."""
     target = obj.data
     check_resolution(obj)
     if hierarchy.summary.rung == "exact":
@@ -86,10 +85,10 @@ def remove(obj, hierarchy, tet_first, tet_last, options=Options(), faces=None):
 
 
 def check_resolution(obj):
-    """Raises NotClosed if the object's mesh can't be given other faces without a loss that nobody would expect."""
+    """Raises Refused if the object's mesh can't be given other faces without a loss that nobody would expect."""
     if any(other.data == obj.data and any(each.type == "MULTIRES" and each.total_levels for each in other.modifiers)
            for other in bpy.data.objects):
-        raise NotClosed(f"{obj.name} is sculpted in several resolutions, which would be lost. Apply its "
+        raise Refused(f"{obj.name} is sculpted in several resolutions, which would be lost. Apply its "
                         "Multiresolution modifier first, or copy the part.")
 
 
@@ -127,9 +126,7 @@ def _closed(made, loops, mesh, facets, smooth, exact, alone):
     """Closes the borders of a mesh made of another's polygons, by facets near them, or else by new faces; where the
     polygons are of no use as a solid, all that were open before stay so, unless alone. (its caps, (L,) the loop of the
     other that each of its is, -1 for new ones)"""
-    bm = bmesh.new()
-    try:
-        bm.from_mesh(made)
+    with pieces.edited(made, made) as bm:
         number = bm.loops.layers.int.new(_LOOP)
         for loop, source in zip((loop for face in bm.faces for loop in face.loops), loops.tolist()):
             loop[number] = source + 1
@@ -138,18 +135,17 @@ def _closed(made, loops, mesh, facets, smooth, exact, alone):
             open_before = _mended(bm, loops, mesh, alone)
         if exact or alone:
             closing.set_apart(bm)
-        caps = bridging.bridge(bm, facets) if facets else []
-        caps += closing.fill(bm, smooth, open_before)
+        bridged = bridging.bridge(bm, facets) if facets else []
+        caps = bridged + closing.fill(bm, smooth, open_before)
         if (exact or alone) and any(len(edge.link_faces) != 2 for edge in bm.edges if edge.link_faces):
-            raise NotClosed("This part can't be closed: its border crosses itself. Take a larger or smaller one.")
+            raise Refused("This part can't be closed: its border crosses itself. Take a larger or smaller one.")
+        if alone and not exact:
+            closing.turn_outwards(bm, bridged)
         bm.faces.index_update()
         caps = np.array([face.index for face in caps], np.int32)
         number = bm.loops.layers.int[_LOOP]
         loops = np.array([loop[number] - 1 for face in bm.faces for loop in face.loops], np.int32)
         bm.loops.layers.int.remove(number)
-        bm.to_mesh(made)
-    finally:
-        bm.free()
     return caps, loops
 
 
@@ -157,7 +153,7 @@ def _mended(bm, loops, mesh, alone):
     """Wound alike and doubles welded, if alone; else it is the edges that stay open, since they were before: what is
     left of a broken mesh is as broken as before, and only the new hole is closed."""
     if not alone:
-        edge = read(mesh.loops, "edge_index", np.int32)
+        edge = arrays.read(mesh.loops, "edge_index", np.int32)
         was_open = np.bincount(edge, minlength=len(mesh.edges))[edge[loops]] == 1
         return {loop.edge for loop, was in zip((loop for face in bm.faces for loop in face.loops), was_open.tolist())
                 if was}
@@ -186,6 +182,6 @@ def _mark(mesh, caps):
     if known and (known.domain, known.data_type) != ("FACE", "BOOLEAN"):
         mesh.attributes.remove(known)
         known = None
-    marks = read(known.data, "value", bool) if known else np.zeros(len(mesh.polygons), bool)
+    marks = arrays.read(known.data, "value", bool) if known else np.zeros(len(mesh.polygons), bool)
     marks[caps] = True
     (known or mesh.attributes.new(CAP, "BOOLEAN", "FACE")).data.foreach_set("value", marks)

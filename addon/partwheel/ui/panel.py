@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The panel in the 3D view's sidebar: the active mesh's hierarchy, and what can be done with a selected part."""
 
-import textwrap
-
 import bpy
 
+from .. import trouble
 from ..parts import builds, registry
-from .menu import draw_handoffs
 
 State = registry.State
 STATES = {
@@ -22,8 +20,6 @@ RUNGS = {
     "exact": "From the mesh as it is", "repaired": "From a repaired copy", "points": "From points on it",
     "coarse": "From a coarser copy",
 }
-# Of Blender's interface font, on average, at a scale of 1; and what frames and tabs take of the sidebar's width.
-PIXELS_A_LETTER, PIXELS_BESIDE = 7, 40
 
 
 class VIEW3D_PT_partwheel(bpy.types.Panel):
@@ -39,11 +35,14 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
 
     def draw(self, context):
         layout = self.layout
+        if trouble.draw(context, layout):
+            return
         if context.mode == "EDIT_MESH":
             column = layout.column()
             column.operator_context = "INVOKE_REGION_WIN"
             column.operator("mesh.partwheel_select")
-            draw_handoffs(column)
+            column.operator("mesh.partwheel_move")
+            column.operator("mesh.duplicate_move", text="Duplicate Part")
             column.operator("mesh.partwheel_path")
             layout.separator()
         state, entry = registry.state(context.active_object.data)
@@ -70,9 +69,7 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
         column.label(text=f"Built in {seconds:.1f} s" if seconds else "Came with the file")
         column.label(text=RUNGS[hierarchy.summary.rung])
         if hierarchy.account:
-            width = context.region.width / context.preferences.system.ui_scale - PIXELS_BESIDE
-            for line in textwrap.wrap(hierarchy.account, max(int(width / PIXELS_A_LETTER), 20)):
-                column.label(text=line)
+            trouble.draw_lines(context, column, hierarchy.account)
 
 
 CLASSES = (VIEW3D_PT_partwheel,)

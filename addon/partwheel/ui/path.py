@@ -8,7 +8,6 @@ import bpy
 
 from ..parts import picks
 from ..pick import states
-from ..pick.polls import NeedsPick
 
 SMALLEST = 0.25  # share of the width that the smallest part's bar takes
 
@@ -48,7 +47,7 @@ class VIEW3D_PT_partwheel_path(bpy.types.Panel):
         draw_path(self.layout, context.edit_object)
 
 
-class MESH_OT_partwheel_path(NeedsPick, bpy.types.Operator):
+class MESH_OT_partwheel_path(picks.NeedsPick, bpy.types.Operator):
     """Show the parts that the wheel goes through, from the smallest to the whole, and click one to take it"""
 
     bl_idname = "mesh.partwheel_path"

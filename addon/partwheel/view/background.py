@@ -28,6 +28,7 @@ class Background:
         self._stop.set()
 
     def finish(self):
-        """To be called once it runs no more: raises what it raised."""
+        """Waits for its end; raises what it raised."""
+        self._thread.join()
         if self._error:
             raise self._error

@@ -7,6 +7,8 @@ import traceback
 
 import bpy
 
+from .. import trouble
+from partwheel import Error, LibraryError
 from . import overlay
 from . import status
 
@@ -14,7 +16,6 @@ from . import status
 class InView:
     """Mixed into an operator. Its steps answer as invoke() and modal() do; "CANCELLED" takes back what they did."""
 
-    refusals = ()  # exceptions whose text is for the user
     lost = "the mesh is no longer being edited as it was"
 
     # ---- What operators differ in
@@ -77,7 +78,9 @@ class InView:
             if answer & {"CANCELLED", "FINISHED"}:
                 self._end(context)
             return answer
-        except self.refusals as error:
+        except LibraryError as error:
+            self.report({"ERROR"}, trouble.logged(error))
+        except Error as error:  # its text is for the user
             self.report({"ERROR"}, str(error))
         except Exception as error:  # any: a tool that dies in the middle leaves Blender with its keys and its changes
             traceback.print_exception(error)

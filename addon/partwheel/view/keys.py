@@ -80,13 +80,12 @@ DONE = Key("DONE", CLICK.events | CONFIRM.events, "Done", ("MOUSE_LMB", "EVENT_R
 DEFORMING = (DRAG, ONE_MORE, TRANSFORM, HANDLE_SIZE, CONFIRM, RECOMPUTE, NAVIGATE, CANCEL)
 MOVING = (AXIS, PLANE, TYPE, STEPS, FINE, TRANSFORM, DONE, CANCEL)
 
-# While a part is placed. SIGNS: of events that come in pairs, which makes more and which less.
+# While a part is placed; those that come in pairs are in TURNS too.
 SIZE = Key("SIZE", frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "NUMPAD_PLUS", "NUMPAD_MINUS"}), "Size", names="Wheel")
 TURN = Key("TURN", SIZE.events, "Turn", names="Shift Wheel")
 DEPTH = Key("DEPTH", frozenset({"PAGE_UP", "PAGE_DOWN"}), "Depth", names="Page Up/Down")
 FIT = Key("FIT", frozenset({"F"}), "Fit Border", ("EVENT_F",))
 MIRROR = Key("MIRROR", frozenset({"M"}), "Mirror Copy", ("EVENT_M",))
-SIGNS = {"WHEELUPMOUSE": 1, "NUMPAD_PLUS": 1, "PAGE_UP": 1, "WHEELDOWNMOUSE": -1, "NUMPAD_MINUS": -1, "PAGE_DOWN": -1}
 # While compatible parts are offered: those in pairs as above, with other keys held.
 OFFER = Key("OFFER", frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "UP_ARROW", "DOWN_ARROW"}), "Next, Previous Part",
             names="Wheel")

@@ -4,12 +4,14 @@
 Everything on the graphics card is made when it is first drawn: without a window there is none.
 """
 
+from functools import cached_property
+
 import bpy
 import gpu
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ..mesh import objects
+from ..mesh import kept
 from ..preferences import preferences
 from .seen import NO_FACE
 
@@ -92,7 +94,6 @@ class Parts:
         begin, counts = (np.cumsum(counts) - counts)[hierarchy.order], counts[hierarchy.order]
         self._start = np.concatenate([[0], np.cumsum(counts)])
         self.triangles = triangles[by_face[np.arange(len(faces)) + np.repeat(begin - self._start[:-1], counts)]]
-        self._buffer = None
         self._batches = {}
 
     def slice(self, node):
@@ -106,47 +107,48 @@ class Parts:
 
     def batch(self, piece):
         """(shader, batch) of a slice of triangles."""
-        if piece not in self._batches:
-            self._buffer = self._buffer or _vertices(pos=self.positions)
-            indices = gpu.types.GPUIndexBuf(type="TRIS", seq=self.triangles[slice(*piece)])
-            self._keep(piece, gpu.types.GPUBatch(type="TRIS", buf=self._buffer, elem=indices))
-        return _shader(False), self._batches[piece]
+        return _shader(False), self._kept(piece, lambda: _batch(self._buffer, self.triangles[slice(*piece)]))
 
     def of_faces(self, name, faces):
         """The same of the triangles of any faces, kept under a name."""
-        if name not in self._batches:
-            self._buffer = self._buffer or _vertices(pos=self.positions)
+        def make():
             chosen = np.zeros(len(self.hierarchy.order), bool)
             chosen[faces] = True
-            chosen = np.repeat(chosen[self.hierarchy.order], np.diff(self._start))
-            indices = gpu.types.GPUIndexBuf(type="TRIS", seq=self.triangles[chosen])
-            self._keep(name, gpu.types.GPUBatch(type="TRIS", buf=self._buffer, elem=indices))
-        return _shader(False), self._batches[name]
+            return _batch(self._buffer, self.triangles[np.repeat(chosen[self.hierarchy.order], np.diff(self._start))])
+        return _shader(False), self._kept(name, make)
 
     def hull(self, node):
         """The same of a node's convex hull."""
-        if node not in self._batches:
+        def make():
             vertices, triangles = self.hierarchy.hull(node)
-            indices = gpu.types.GPUIndexBuf(type="TRIS", seq=np.ascontiguousarray(triangles))
-            self._keep(node, gpu.types.GPUBatch(type="TRIS", buf=_vertices(pos=vertices), elem=indices))
-        return _shader(False), self._batches[node]
+            return _batch(_vertices(pos=vertices), np.ascontiguousarray(triangles))
+        return _shader(False), self._kept(node, make)
 
     def cut(self, node):
         """The same of all triangles, coloured by the parts of the dendrogram cut at the node's height."""
-        name = "cut", node
-        if name not in self._batches:
+        def make():
             bounds = self.hierarchy.cut_height(self.hierarchy.height[node])
             labels = self.hierarchy.face_labels(bounds)[self.hierarchy.order]
             corners = self.positions[self.triangles.ravel()]
             colors = np.repeat(distinct(labels), 3 * np.diff(self._start), axis=0)
-            self._keep(name, gpu.types.GPUBatch(type="TRIS", buf=_vertices(pos=corners, color=colors)))
-        return _shader(True), self._batches[name]
+            return gpu.types.GPUBatch(type="TRIS", buf=_vertices(pos=corners, color=colors))
+        return _shader(True), self._kept(("cut", node), make)
 
-    def _keep(self, name, batch):
+    @cached_property
+    def _buffer(self):
+        return _vertices(pos=self.positions)
+
+    def _kept(self, name, make):
         """Of what was drawn last, since the user goes back and forth."""
-        while len(self._batches) >= 12:
-            del self._batches[next(iter(self._batches))]
-        self._batches[name] = batch
+        if name not in self._batches:
+            while len(self._batches) >= 12:
+                del self._batches[next(iter(self._batches))]
+            self._batches[name] = make()
+        return self._batches[name]
+
+
+def _batch(buffer, triangles):
+    return gpu.types.GPUBatch(type="TRIS", buf=buffer, elem=gpu.types.GPUIndexBuf(type="TRIS", seq=triangles))
 
 
 def distinct(labels):
@@ -253,7 +255,7 @@ class Shown:
 
     def _draw(self):
         context, (name, *what) = bpy.context, self._what
-        obj = objects.named(name)
+        obj = kept.named(name)
         if obj and visible(context, obj):
             draw_held(context, obj, *what)
 

@@ -93,16 +93,20 @@ def nearest(objects, tree_of, region, view, point):
     return obj, face
 
 
+def under_mouse(context, event):
+    """(area, region, RegionView3D, point of the region) of the 3D view that the mouse is over, or None."""
+    return view_under(context.window, event.mouse_x, event.mouse_y) if context.window else None
+
+
 def view_under(window, x, y):
-    """(area, region, RegionView3D) of the 3D view at a window's pixel, or None; a panel lying over the view counts as
-    not the view."""
+    """The same at a window's pixel; a panel lying over the view counts as not the view."""
     for area in window.screen.areas:
         if area.type != "VIEW_3D" or not _holds(area, x, y):
             continue
         regions = [region for region in area.regions if region.width > 1 and region.height > 1 and _holds(region, x, y)]
         if len(regions) != 1 or regions[0].type != "WINDOW":
             return None
-        return area, regions[0], view_of(area, regions[0])
+        return area, regions[0], view_of(area, regions[0]), (x - regions[0].x, y - regions[0].y)
     return None
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from . import meshes
 from .hierarchy import Hierarchy
-from .library import LibraryError, Mode, PartwheelError, Rung
+from .library import Error, Mode, Rung
 
 BUILT, NAMED_ERROR, USAGE = 0, 1, 2
 
@@ -104,16 +104,10 @@ def main(arguments=None):
     code = BUILT
     try:
         build(options, report)
-    except PartwheelError as error:
+    except Error as error:
         code = NAMED_ERROR
         report["error"] = {"name": error.name, "message": str(error)}
         report["seconds"] = error.seconds
-    except meshes.MeshFileError as error:
-        code = NAMED_ERROR
-        report["error"] = {"name": error.name, "message": str(error)}
-    except LibraryError as error:
-        code = NAMED_ERROR
-        report["error"] = {"name": "library", "message": str(error)}
     except OSError as error:
         code = USAGE
         report["error"] = {"name": "file", "message": f"{error.strerror}: {error.filename}"}

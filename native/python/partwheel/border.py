@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The border of a part, moved to the creases nearby. Native, with numpy."""
 
-from ctypes import byref, c_void_p
-
 import numpy as np
 
-from .hierarchy import _Handle, checked_surface
-from .library import check, load
+from .hierarchy import surface
+from .library import Handle, check, load, made
 
 
 class Creases:
@@ -17,12 +15,8 @@ class Creases:
     """
 
     def __init__(self, vertices, triangles, faces=None, face_count=None):
-        arrays, self.face_count = checked_surface(vertices, triangles, faces, face_count)
-        vertices, triangles, faces = (*arrays, None)[:3]
-        address = c_void_p()
-        check(load().pw_creases_create(vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles),
-                                       None if faces is None else faces.ctypes.data, self.face_count, byref(address)))
-        self._handle = _Handle(address.value, load().pw_creases_free)
+        *given, self.face_count = surface(vertices, triangles, faces, face_count)
+        self._handle = Handle(load().pw_creases_free, made(load().pw_creases_create, *given, self.face_count))
 
     def snapped(self, inside):
         """(face_count,) bool: a part with its border in the creases nearby, at the least cost. inside (face_count,)
@@ -34,7 +28,7 @@ class Creases:
             raise ValueError(f"inside must have the shape ({self.face_count},), not {inside.shape}.")
         inside = np.ascontiguousarray(inside)
         result = np.empty_like(inside)
-        check(load().pw_creases_snap(self._handle.address, inside.ctypes.data, len(inside), result.ctypes.data))
+        check(load().pw_creases_snap(self._handle, inside, len(inside), result))
         return result
 
 

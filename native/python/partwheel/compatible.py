@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .deform import crossing, rotation_by
 from .joint import groups
 
 SAMPLES, COARSE = 800, 4  # points on the part that stays, and of how many one is looked at on the one that moves
@@ -327,30 +328,15 @@ def _step(points, onto, normals, held):
     rows = [np.hstack([np.cross(points, normals), normals]) * share]
     sides = [np.einsum("ij,ij->i", normals, onto - points) * share]
     for end, target in zip(ends, targets):
-        rows.append(np.sqrt(end_weight) * np.hstack([-_cross(end), np.eye(3)]))
+        rows.append(np.sqrt(end_weight) * np.hstack([-crossing(end), np.eye(3)]))
         sides.append(np.sqrt(end_weight) * (target - end))
-    rows.append(np.sqrt(normal_weight) * np.hstack([-_cross(normal), np.zeros((3, 3))]))
+    rows.append(np.sqrt(normal_weight) * np.hstack([-crossing(normal), np.zeros((3, 3))]))
     sides.append(np.sqrt(normal_weight) * (wanted - normal))
     solution = np.linalg.lstsq(np.vstack(rows), np.concatenate(sides), rcond=None)[0]
     motion = np.eye(4)
-    motion[:3, :3] = _rotation(solution[:3])
+    motion[:3, :3] = rotation_by(solution[:3])
     motion[:3, 3] = solution[3:]
     return motion
-
-
-def _cross(vector):
-    """(3,3) that gives the cross product with the vector on its left."""
-    x, y, z = vector
-    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-
-
-def _rotation(vector):
-    """(3,3) about the vector by its length (Rodrigues)."""
-    angle = np.linalg.norm(vector)
-    if angle < 1e-12:
-        return np.eye(3)
-    cross = _cross(vector / angle)
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
 # ---- Among many

@@ -2,12 +2,12 @@
 """Deformation: a surface follows handles as rigidly as possible; and distances along a surface. Native, with numpy."""
 
 import math
-from ctypes import byref, c_double, c_void_p
+from ctypes import byref, c_double
 
 import numpy as np
 
-from .hierarchy import _Handle, checked_surface
-from .library import PartwheelError, Status, check, load
+from .hierarchy import surface
+from .library import Handle, PartwheelError, Status, check, load, made
 
 FREE, FIXED = -1, -2  # PW_VERTEX_FREE, PW_VERTEX_FIXED
 # Deforming at once, without a mouse: the handle turns by at most so much a step.
@@ -26,7 +26,7 @@ class Deformation:
     """
 
     def __init__(self, vertices, triangles, roles):
-        (vertices, triangles), _ = checked_surface(vertices, triangles, None, None)
+        vertices, *_ = given = surface(vertices, triangles)[:4]
         roles = np.asarray(roles)
         if roles.shape != (len(vertices),):
             raise ValueError(f"roles must have the shape ({len(vertices)},), not {roles.shape}.")
@@ -35,10 +35,7 @@ class Deformation:
         if roles.size and (roles.min() < FIXED or roles.max() >= len(vertices)):
             raise PartwheelError(Status.ARGUMENT, "A role is neither FREE, nor FIXED, nor the number of a handle.")
         roles = np.ascontiguousarray(roles, np.int32)
-        address = c_void_p()
-        check(load().pw_deformation_create(vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles),
-                                           roles.ctypes.data, byref(address)))
-        self._handle = _Handle(address.value, load().pw_deformation_free)
+        self._handle = Handle(load().pw_deformation_free, made(load().pw_deformation_create, *given, roles))
         self._count = len(vertices)
 
     def move(self, handle, matrix):
@@ -50,27 +47,27 @@ class Deformation:
         handle = int(handle)
         if handle < 0:
             raise PartwheelError(Status.ARGUMENT, f"There is no handle {handle}.")
-        check(load().pw_deformation_move(self._handle.address, handle, rows.ctypes.data))
+        check(load().pw_deformation_move(self._handle, handle, rows))
 
     def iterate(self, iterations=1):
         """Improves the free vertices' places; the energy falls, or stays where it is least."""
-        check(load().pw_deformation_iterate(self._handle.address, max(int(iterations), 0)))
+        check(load().pw_deformation_iterate(self._handle, max(int(iterations), 0)))
 
     def energy(self):
         """In the unit of the coordinates squared."""
         energy = c_double()
-        check(load().pw_deformation_energy(self._handle.address, byref(energy)))
+        check(load().pw_deformation_energy(self._handle, byref(energy)))
         return energy.value
 
     def positions(self):
         """(V,3) where all vertices are now."""
         positions = np.empty((self._count, 3))
-        check(load().pw_deformation_positions(self._handle.address, positions.ctypes.data, self._count))
+        check(load().pw_deformation_positions(self._handle, positions, self._count))
         return positions
 
     def reset(self):
         """Everything back to rest."""
-        check(load().pw_deformation_reset(self._handle.address))
+        check(load().pw_deformation_reset(self._handle))
 
     def settle(self, settled=SETTLED, most=MOST_ITERATIONS, stop=None):
         """Iterates until little changes, or the threading.Event stop is set. The number of iterations."""
@@ -122,7 +119,7 @@ def part_of_the_way(matrix, share):
     stretch = rotation.T @ matrix[:3, :3]
     turn = share * _turn(rotation)
     result = np.eye(4)
-    result[:3, :3] = _rotation_by(turn) @ (np.eye(3) + share * (stretch - np.eye(3)))
+    result[:3, :3] = rotation_by(turn) @ (np.eye(3) + share * (stretch - np.eye(3)))
     # The point that a pure rotation keeps in place is kept all the way: it moves on a circle, not on a chord.
     offset = matrix[:3, 3]
     center, *_ = np.linalg.lstsq(np.eye(3) - matrix[:3, :3], offset, rcond=1e-6)
@@ -148,31 +145,35 @@ def _turn(rotation):
     return angle * axis / np.linalg.norm(axis)
 
 
-def _rotation_by(turn):
+def rotation_by(turn):
+    """(3,3) about turn (3,) by its length (Rodrigues)."""
     angle = np.linalg.norm(turn)
     if angle == 0:
         return np.eye(3)
-    x, y, z = turn / angle
-    k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    k = crossing(turn / angle)
     return np.eye(3) + math.sin(angle) * k + (1 - math.cos(angle)) * (k @ k)
+
+
+def crossing(vector):
+    """(3,3) that gives the cross product with the vector on its left."""
+    x, y, z = vector
+    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
 
 
 def vertex_normals(vertices, triangles):
     """(V,3) of length 1, for shading; 0, 0, 0 where there are no triangles with area. See pw_vertex_normals."""
-    (vertices, triangles), _ = checked_surface(vertices, triangles, None, None)
+    vertices, *_ = given = surface(vertices, triangles)[:4]
     normals = np.empty_like(vertices)
-    check(load().pw_vertex_normals(vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles),
-                                   normals.ctypes.data))
+    check(load().pw_vertex_normals(*given, normals))
     return normals
 
 
 def surface_distances(vertices, triangles, start):
     """(V,) how far each vertex is from the nearest start along the surface, a few percent too long; infinity where no
     way leads. start: (V,) bool, or an array of vertex indices."""
-    (vertices, triangles), _ = checked_surface(vertices, triangles, None, None)
+    vertices, *_ = given = surface(vertices, triangles)[:4]
     mask = np.zeros(len(vertices), np.uint8)
     mask[start] = 1
     distance = np.empty(len(vertices))
-    check(load().pw_surface_distances(vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles),
-                                      mask.ctypes.data, distance.ctypes.data))
+    check(load().pw_surface_distances(*given, mask, distance))
     return distance

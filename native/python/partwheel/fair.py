@@ -14,6 +14,5 @@ def faired(vertices, edges, free):
     if vertices.shape[1:] != (3,) or edges.shape[1:] != (2,) or free.shape != vertices.shape[:1]:
         raise ValueError("vertices must be (V,3), edges (E,2) and free (V,).")
     result = np.empty_like(vertices)
-    check(load().pw_faired(vertices.ctypes.data, len(vertices), edges.ctypes.data, len(edges), free.ctypes.data,
-                           result.ctypes.data))
+    check(load().pw_faired(vertices, len(vertices), edges, len(edges), free, result))
     return result

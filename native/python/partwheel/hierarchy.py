@@ -2,15 +2,14 @@
 """Hierarchy: a mesh's tree of nearly convex parts, built by the native library, as numpy arrays and questions."""
 
 import operator
-import threading
-import weakref
-from ctypes import byref, c_double, c_int, c_size_t, c_void_p
+from ctypes import byref, c_size_t, c_void_p
 from typing import NamedTuple
 
 import numpy as np
 
 from .library import (
-    STAGE_COUNT, Arrays, BuildOptions, Mode, PartwheelError, Rung, Stage, Status, SummaryStruct, check, load,
+    Arrays, Build, BuildOptions, Context, Handle, Mode, PartwheelError, Rung, Status, SummaryStruct, check, load,
+    made,
 )
 
 POLL_SECONDS = 0.1
@@ -45,15 +44,6 @@ class Solid(NamedTuple):
     ends: np.ndarray
     faces: np.ndarray
     beyond: np.ndarray
-
-
-class _Handle:
-    """A native object, freed with the last reference to this."""
-
-    def __init__(self, address, free):
-        self.address = address
-        # Not at exit: views may still be in use then, and the process gives the memory back anyway.
-        weakref.finalize(self, free, address).atexit = False
 
 
 class _Memory:
@@ -109,53 +99,12 @@ def checked_surface(vertices, triangles, faces, face_count):
     return arrays, _number(face_count)
 
 
-class _Context:
-    """pw_context: progress, cancel and timing of one build."""
-
-    def __init__(self):
-        address = c_void_p()
-        check(load().pw_context_create(byref(address)))
-        self.handle = _Handle(address.value, load().pw_context_free)
-
-    def cancel(self):
-        check(load().pw_context_cancel(self.handle.address))
-
-    def progress(self):
-        """(fraction, stage name)"""
-        fraction, stage = c_double(), c_int()
-        check(load().pw_context_progress(self.handle.address, byref(fraction), byref(stage)))
-        return fraction.value, load().pw_stage_name(stage.value).decode()
-
-    def seconds(self):
-        """Stage name -> seconds of the last build."""
-        seconds = (c_double * STAGE_COUNT)()
-        check(load().pw_context_seconds(self.handle.address, seconds))
-        return {load().pw_stage_name(stage).decode(): seconds[stage] for stage in Stage}
-
-
-class _Build(threading.Thread):
-    """pw_build in a thread of its own: ctypes lets go of Python's lock, so the caller's thread stays free."""
-
-    def __init__(self, context, arrays, face_count, options):
-        super().__init__(name="partwheel-build", daemon=True)
-        self.context = context
-        self.arguments = arrays, face_count, options
-        self.address = c_void_p()
-        self.error = None
-        self.done = threading.Event()  # not is_alive(), which may say no too early after Ctrl-C (bpo-45274)
-
-    def run(self):
-        (vertices, triangles, *faces), face_count, options = self.arguments
-        try:
-            status = load().pw_build(
-                self.context.handle.address, vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles),
-                faces[0].ctypes.data if faces else None, face_count, byref(options), byref(self.address),
-            )
-            check(status, self.context.seconds())
-        except PartwheelError as error:
-            self.error = error
-        finally:
-            self.done.set()
+def surface(vertices, triangles, faces=None, face_count=None):
+    """The same as the arguments that functions of the library have for it: the arrays, each with its length, but for
+    faces with face_count."""
+    arrays, face_count = checked_surface(vertices, triangles, faces, face_count)
+    vertices, triangles, faces = (*arrays, None)[:3]
+    return vertices, len(vertices), triangles, len(triangles), faces, face_count
 
 
 class Hierarchy:
@@ -178,11 +127,11 @@ class Hierarchy:
     seconds of the build, empty after load().
     """
 
-    def __init__(self, address, seconds=None):
-        self._handle = _Handle(address, load().pw_hierarchy_free)
+    def __init__(self, handle, seconds=None):
+        self._handle = handle
         self.seconds = seconds or {}
         raw = Arrays()
-        check(load().pw_hierarchy_arrays(address, byref(raw)))
+        check(load().pw_hierarchy_arrays(handle, byref(raw)))
         faces, nodes, tets, vertices = (int(getattr(raw, name)) for name in Arrays.COUNTS)
         shapes = {
             "order": (faces,), "leaf": (faces,), "vertices": (vertices, 3), "source": (vertices,),
@@ -194,10 +143,10 @@ class Hierarchy:
             setattr(self, name, _view(self._handle, getattr(raw, name), shapes.get(name, (nodes,)),
                                       dtypes.get(name, np.int32)))
         summary = SummaryStruct()
-        check(load().pw_hierarchy_summary(address, byref(summary)))
+        check(load().pw_hierarchy_summary(handle, byref(summary)))
         summary = {name: getattr(summary, name) for name in Summary._fields}
         self.summary = Summary(**summary | {"rung": Rung(summary["rung"]).name.lower()})
-        self.account = load().pw_hierarchy_account(address).decode()
+        self.account = load().pw_hierarchy_account(handle).decode()
 
     @classmethod
     def build(cls, vertices, triangles, faces=None, face_count=None, *, quality=0.0, rungs=0, open_surfaces=False,
@@ -220,12 +169,11 @@ class Hierarchy:
 
         Raises PartwheelError with what is wrong with the surface, or that the build was cancelled.
         """
-        arrays, face_count = checked_surface(vertices, triangles, faces, face_count)
-        context = _Context()
+        given, context = surface(vertices, triangles, faces, face_count), Context()
         options = BuildOptions(quality=quality, rungs=_number(rungs), open_surfaces=bool(open_surfaces),
                                threads=_number(threads), mode=_number(mode),
                                exact_triangles=-1 if exactly else _number(exact_triangles))
-        build = _Build(context, arrays, face_count, options)
+        build = Build(context, given, options)
 
         def report():
             if progress is not None and progress(*context.progress()):
@@ -244,17 +192,14 @@ class Hierarchy:
             build.join()
         if build.error:
             raise build.error
-        return cls(build.address.value, context.seconds())
+        return cls(Handle(load().pw_hierarchy_free, build.address.value), context.seconds())
 
     @classmethod
     def load(cls, data):
         """A hierarchy from the bytes that save() gave. Raises PartwheelError (DATA) for any others."""
         data = np.frombuffer(data, np.uint8)
-        address = c_void_p()
-        # Never a null pointer: no bytes at all are damaged data too.
-        buffer = data if data.size else np.zeros(1, np.uint8)
-        check(load().pw_hierarchy_load(buffer.ctypes.data, data.size, byref(address)))
-        return cls(address.value)
+        buffer = data if data.size else np.zeros(1, np.uint8)  # no null pointer: no bytes at all are damaged data too
+        return cls(Handle(load().pw_hierarchy_free, made(load().pw_hierarchy_load, buffer, data.size)))
 
     def save(self):
         """The hierarchy as bytes, the same on every machine."""
@@ -274,7 +219,7 @@ class Hierarchy:
     def faces(self, node):
         """(n,) a node's source faces: a view of order."""
         address, count = c_void_p(), c_size_t()
-        check(load().pw_hierarchy_faces(self._handle.address, _number(node), byref(address), byref(count)))
+        check(load().pw_hierarchy_faces(self._handle, _number(node), byref(address), byref(count)))
         return _view(self._handle, address.value, (count.value,), np.int32)
 
     def cut_height(self, height):
@@ -312,10 +257,12 @@ class Hierarchy:
         without faces that has no tetrahedron left then."""
         return self.solid_of_slice(*self._slice(node))
 
-    def solid_of_slice(self, tet_first, tet_last):
+    def solid_of_slice(self, tet_first, tet_last, middles=()):
         """The same around tetrahedra[tet_first:tet_last], for a part of a cut. With the two exchanged, around the rest:
-        tetrahedra[tet_first:] and tetrahedra[:tet_last]."""
-        return self._solid(tet_first, tet_last, np.empty((0, 2), np.int32))
+        tetrahedra[tet_first:] and tetrahedra[:tet_last]. middles (m,2): edges, as their vertices, that get a vertex in
+        their middle wherever they are on it."""
+        middles = np.array(middles, np.int32).reshape(-1, 2)
+        return self._solid(load().pw_hierarchy_solid, tet_first, tet_last, middles, len(middles))
 
     def solid_of_faces(self, tet_first, tet_last, inside):
         """The same for a part whose faces are others than its own: those where inside, (F,) bool, is True; also where
@@ -323,37 +270,30 @@ class Hierarchy:
         inside = np.ascontiguousarray(inside, bool)
         if inside.shape != self.leaf.shape:
             raise ValueError(f"inside must have the shape {self.leaf.shape}, not {inside.shape}.")
-        return self._as_solid(*self._mesh(load().pw_hierarchy_solid_of_faces, tet_first, tet_last, inside.ctypes.data,
-                                          len(inside)))
+        return self._solid(load().pw_hierarchy_solid_of_faces, tet_first, tet_last, inside, len(inside))
 
     def solids(self, slices):
         """The Solids around slices (tet_first, tet_last) that have nothing in common, None for one that has no
         tetrahedron left. A cap between two of them is the same triangle in both: where one has a vertex in the middle
         of an edge, all have."""
-        none = np.empty((0, 2), np.int32)
-        made = [self._solid_or_none(*each, none) for each in slices]
-        wanted = [solid.ends[solid.ends[:, 0] != solid.ends[:, 1]] for solid in made if solid]
-        middles = np.unique(np.sort(np.vstack([none, *wanted]), axis=1), axis=0)
-        if not len(middles):
+        made = []
+        for each in slices:
+            try:
+                made.append(self.solid_of_slice(*each))
+            except PartwheelError as error:
+                if error.status != Status.EMPTY:
+                    raise
+                made.append(None)
+        middles = [solid.ends[solid.ends[:, 0] != solid.ends[:, 1]] for solid in made if solid]
+        if not any(map(len, middles)):
             return made
-        return [solid and self._solid(*each, middles) for each, solid in zip(slices, made)]
+        middles = np.unique(np.sort(np.vstack(middles), axis=1), axis=0)
+        return [solid and self.solid_of_slice(*each, middles) for each, solid in zip(slices, made)]
 
-    def _solid_or_none(self, tet_first, tet_last, middles):
-        try:
-            return self._solid(tet_first, tet_last, middles)
-        except PartwheelError as error:
-            if error.status != Status.EMPTY:
-                raise
-            return None
-
-    def _solid(self, tet_first, tet_last, middles):
-        middles = np.ascontiguousarray(middles, np.int32)
-        return self._as_solid(*self._mesh(load().pw_hierarchy_solid, tet_first, tet_last, middles.ctypes.data,
-                                          len(middles)))
-
-    def _as_solid(self, mesh, vertices, triangles):
+    def _solid(self, function, tet_first, tet_last, *arguments):
+        mesh, vertices, triangles = self._mesh(function, tet_first, tet_last, *arguments)
         ends, faces, beyond = c_void_p(), c_void_p(), c_void_p()
-        check(load().pw_mesh_origins(mesh.address, byref(ends), byref(faces), byref(beyond)))
+        check(load().pw_mesh_origins(mesh, byref(ends), byref(faces), byref(beyond)))
         return Solid(vertices, triangles, _view(mesh, ends.value, (len(vertices), 2), np.int32),
                      _view(mesh, faces.value, (len(triangles),), np.int32),
                      _view(mesh, beyond.value, (len(triangles),), np.int32))
@@ -371,11 +311,10 @@ class Hierarchy:
 
     def _mesh(self, function, tet_first, tet_last, *arguments):
         """What a function makes of a slice of the tetrahedra: (its handle, vertices, triangles)."""
-        address = c_void_p()
-        check(function(self._handle.address, _number(tet_first), _number(tet_last), *arguments, byref(address)))
-        mesh = _Handle(address.value, load().pw_mesh_free)
+        given = self._handle, _number(tet_first), _number(tet_last), *arguments
+        mesh = Handle(load().pw_mesh_free, made(function, *given))
         vertices, triangles, vertex_count, triangle_count = c_void_p(), c_void_p(), c_size_t(), c_size_t()
-        check(load().pw_mesh_arrays(mesh.address, byref(vertices), byref(vertex_count), byref(triangles),
+        check(load().pw_mesh_arrays(mesh, byref(vertices), byref(vertex_count), byref(triangles),
                                     byref(triangle_count)))
         return (mesh, _view(mesh, vertices.value, (vertex_count.value, 3), np.float64),
                 _view(mesh, triangles.value, (triangle_count.value, 3), np.int32))
@@ -383,9 +322,9 @@ class Hierarchy:
     def _ask(self, function, dtype, *arguments, after=()):
         """Calls a function that fills an array, first to learn the size, then to get it."""
         count = c_size_t()
-        check(function(self._handle.address, *arguments, None, 0, byref(count), *after))
+        check(function(self._handle, *arguments, None, 0, byref(count), *after))
         result = np.empty(count.value, dtype)
-        check(function(self._handle.address, *arguments, result.ctypes.data, result.size, byref(count), *after))
+        check(function(self._handle, *arguments, result, result.size, byref(count), *after))
         return result
 
 

@@ -1,51 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ctypes binding of the native library: every function, struct and status of native/include/."""
+"""The ctypes binding of the native library: every function, struct and status of native/include/; and builds by it, for
+this process and for a worker, which has neither numpy nor a package around this file."""
 
 import ctypes
 import enum
 import functools
 import os
-import sys
+import threading
+import weakref
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_int64, c_size_t, c_uint32, c_void_p
 from pathlib import Path
 
+if __package__:
+    from .loading import FILE_NAMES, SYSTEM, open_library
+else:  # the worker's bare Python
+    from loading import FILE_NAMES, SYSTEM, open_library
+
 VERSION = "0.1.0"  # of partwheel.h, as declared here
-FILE_NAME = {"win32": "partwheel.dll", "darwin": "libpartwheel.dylib"}.get(sys.platform, "libpartwheel.so")
-LIBRARY = Path(__file__).resolve().with_name(FILE_NAME)
+LIBRARY = Path(__file__).resolve().with_name(FILE_NAMES[SYSTEM])
 SOURCES = LIBRARY.parent / "../../src"
 
 
-class Status(enum.IntEnum):
-    """pw_status."""
-
-    OK = 0
-    ARGUMENT = 1
-    EMPTY = 2
-    NOT_FINITE = 3
-    INDEX = 4
-    DEGENERATE = 5
-    OPEN = 6
-    NON_MANIFOLD = 7
-    ORIENTATION = 8
-    SELF_INTERSECTION = 9
-    NO_VOLUME = 10
-    TETRAHEDRA = 11
-    CANCELLED = 12
-    MEMORY = 13
-    DATA = 14
-    INTERNAL = 15
-    NOT_SOLID = 16
-
-
-class Stage(enum.IntEnum):
-    """pw_stage: the stages of a build, in their order."""
-
-    SURFACE = 0
-    REPAIR = 1
-    TETRAHEDRA = 2
-    CLUSTER = 3
-    DENDROGRAM = 4
-    HIERARCHY = 5
+# pw_status; and pw_stage, the stages of a build in their order.
+Status = enum.IntEnum("Status", [
+    "OK", "ARGUMENT", "EMPTY", "NOT_FINITE", "INDEX", "DEGENERATE", "OPEN", "NON_MANIFOLD", "ORIENTATION",
+    "SELF_INTERSECTION", "NO_VOLUME", "TETRAHEDRA", "CANCELLED", "MEMORY", "DATA", "INTERNAL", "NOT_SOLID"], start=0)
+Stage = enum.IntEnum("Stage", ["SURFACE", "REPAIR", "TETRAHEDRA", "CLUSTER", "DENDROGRAM", "HIERARCHY"], start=0)
 
 
 class Rung(enum.IntEnum):
@@ -106,7 +86,15 @@ class SummaryStruct(_Sized):
     ]
 
 
-# Name -> result, arguments. Handles, and buffers that numpy owns, pass as addresses (c_void_p).
+class Address(c_void_p):
+    """An argument: a number, a Handle, a buffer of ctypes, or an array of numpy's, which lives on meanwhile."""
+
+    @classmethod
+    def from_param(cls, value):
+        return value.ctypes if hasattr(value, "ctypes") else super().from_param(value)
+
+
+# Name -> result, arguments. Every c_void_p that is not pointed to is taken as an Address.
 FUNCTIONS = {
     "pw_version": (c_char_p, []),
     "pw_version_number": (c_int32, []),
@@ -162,19 +150,20 @@ FUNCTIONS = {
 
 
 class Error(Exception):
-    """What this package refuses: the base of its own errors. str() is sentences a user can act on."""
+    """What this package refuses: the base of its own errors. str() is sentences a user can act on. name: what kind it
+    is, in stable words. seconds: stage name -> seconds spent in a failed build, else empty."""
+
+    name, seconds = "error", {}
 
 
 class LibraryError(Error, OSError):
     """The native library is missing, or is not the one this Python code was written for."""
 
+    name = "library"
+
 
 class PartwheelError(Error):
-    """What the native library refused, and why: str() is sentences a user can act on.
-
-    status: a Status. name: it in words, stable ("self-intersection"). seconds: stage name -> seconds spent in a failed
-    build, else empty.
-    """
+    """What the native library refused, and why. status: a Status; name: it in words ("self-intersection")."""
 
     def __init__(self, status, message, seconds=None):
         super().__init__(message)
@@ -190,19 +179,16 @@ def load():
     other = SOURCES.is_dir() and os.environ.get("PARTWHEEL_LIBRARY")
     path = other or str(LIBRARY)
     try:
-        library = ctypes.CDLL(path)
+        library = open_library(path)
     except OSError as error:
-        raise LibraryError(
-            f"Partwheel's native library can't be loaded: {error}. Install the add-on from the zip for this platform, "
-            "or build the library first (scripts/build)."
-        ) from error
+        raise LibraryError(str(error)) from error.__cause__  # the loader's own words
     for name, (result, arguments) in FUNCTIONS.items():
         try:
             function = getattr(library, name)
         except AttributeError as error:
             raise _other_version(path, f"it has no function {name}") from error
         function.restype = result
-        function.argtypes = arguments
+        function.argtypes = [Address if each is c_void_p else each for each in arguments]
     found = library.pw_version().decode()
     if found != VERSION:
         raise _other_version(path, f"it is {found}, not {VERSION}")
@@ -222,7 +208,67 @@ def version():
     return load().pw_version().decode()
 
 
-def check(status, seconds=None):
+def check(status, seconds=dict):
     """Raises PartwheelError for any status but OK. Call it in the failed call's thread: each has its own message."""
     if status != Status.OK:
-        raise PartwheelError(status, load().pw_error_message().decode(), seconds)
+        raise PartwheelError(status, load().pw_error_message().decode(), seconds())
+
+
+def made(create, *arguments):
+    """The address of the native object that this function makes."""
+    address = c_void_p()
+    check(create(*arguments, ctypes.byref(address)))
+    return address.value
+
+
+class Handle:
+    """A native object, freed with the last reference to this."""
+
+    def __init__(self, free, address):
+        self._as_parameter_ = address
+        # Not at exit: views may still be in use then, and the process gives the memory back anyway.
+        weakref.finalize(self, free, address).atexit = False
+
+
+# ---- Builds, in this process or in a worker
+
+
+class Context(Handle):
+    """pw_context: progress, cancel and timing of one build."""
+
+    def __init__(self):
+        super().__init__(load().pw_context_free, made(load().pw_context_create))
+
+    def cancel(self):
+        check(load().pw_context_cancel(self))
+
+    def progress(self):
+        """(fraction, stage name)"""
+        fraction, stage = c_double(), c_int()
+        check(load().pw_context_progress(self, ctypes.byref(fraction), ctypes.byref(stage)))
+        return fraction.value, load().pw_stage_name(stage.value).decode()
+
+    def seconds(self):
+        """Stage name -> seconds of the last build."""
+        seconds = (c_double * STAGE_COUNT)()
+        check(load().pw_context_seconds(self, seconds))
+        return {load().pw_stage_name(stage).decode(): seconds[stage] for stage in Stage}
+
+
+class Build(threading.Thread):
+    """pw_build in a thread of its own: ctypes lets go of Python's lock, so the caller's thread stays free."""
+
+    def __init__(self, context, surface, options):
+        """surface: the arguments that pw_build has for it."""
+        super().__init__(name="partwheel-build", daemon=True)
+        self._arguments = context, *surface, ctypes.byref(options)
+        self.context, self.address, self.error = context, c_void_p(), None
+        self.done = threading.Event()  # not is_alive(), which may say no too early after Ctrl-C (bpo-45274)
+
+    def run(self):
+        try:
+            check(load().pw_build(*self._arguments, ctypes.byref(self.address)), self.context.seconds)
+        except PartwheelError as error:
+            self.error = error
+        finally:
+            self.done.set()

@@ -47,7 +47,7 @@ def _read_with_trimesh(path):
     except ImportError as error:
         raise MeshFileError(
             f"Reading {path.suffix or 'this'} files needs the Python package trimesh, which is not installed: "
-            "pip install trimesh. OFF files are read without it."
+            "pip install partwheel[meshes]. OFF files are read without it."
         ) from error
     try:
         suffix = path.suffix.lower().lstrip(".")

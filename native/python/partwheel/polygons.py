@@ -24,8 +24,7 @@ def polygon_faults(corners, begin, vertex_count):
     Raises PartwheelError (INDEX)."""
     corners, begin = (np.ascontiguousarray(each, np.int32) for each in (corners, begin))
     counts = [ctypes.c_size_t() for _ in Faults._fields]
-    check(load().pw_polygon_faults(corners.ctypes.data, len(corners), begin.ctypes.data, len(begin), vertex_count,
-                                   *map(ctypes.byref, counts)))
+    check(load().pw_polygon_faults(corners, len(corners), begin, len(begin), vertex_count, *map(ctypes.byref, counts)))
     return Faults(*(count.value for count in counts))
 
 

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The first triangle of a surface that a ray meets. Native, with numpy."""
 
-from ctypes import byref, c_double, c_int32, c_void_p
+from ctypes import byref, c_double, c_int32
 
-import numpy as np
-
-from .hierarchy import _Handle, checked_surface
-from .library import check, load
+from .hierarchy import surface
+from .library import Handle, check, load, made
 
 
 class RayTarget:
@@ -16,17 +14,13 @@ class RayTarget:
     """
 
     def __init__(self, vertices, triangles):
-        (vertices, triangles), _ = checked_surface(vertices, triangles, None, None)
-        address = c_void_p()
-        check(load().pw_ray_target_create(vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles),
-                                          byref(address)))
-        self._handle = _Handle(address.value, load().pw_ray_target_free)
+        given = surface(vertices, triangles)[:4]
+        self._handle = Handle(load().pw_ray_target_free, made(load().pw_ray_target_create, *given))
 
     def first(self, origin, direction, beyond=0.0):
         """(triangle, distance) of the first hit farther than beyond, or None. origin, direction (3,); distances are in
         lengths of the direction. Raises PartwheelError for a ray that has none."""
         origin, direction = ((c_double * 3)(*each) for each in (origin, direction))
         triangle, distance = c_int32(), c_double()
-        check(load().pw_ray_target_first(self._handle.address, origin, direction, beyond, byref(triangle),
-                                         byref(distance)))
+        check(load().pw_ray_target_first(self._handle, origin, direction, beyond, byref(triangle), byref(distance)))
         return None if triangle.value < 0 else (triangle.value, distance.value)

@@ -31,6 +31,10 @@ namespace {
 // and where they are denser more come together. Three times as many select no better.
 constexpr size_t least_points = 2000, usual_points = 15000;
 
+// Points are no closer together than this share of the diagonal. What has so little area that they would be is all but
+// lines, and of points on lines nearly every two pairs make a tetrahedron.
+constexpr double least_spacing = 1.0 / 1000;
+
 // Where sheets have more than this share of the area, the mesh may be a soup of triangles, or of patches, that wind
 // around something together as they are. So it is if they enclose more volume than this times their area to the power of
 // 3/2, and wind around it so nearly once.
@@ -314,7 +318,7 @@ Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Pro
             throw Error(PW_ERROR_NOT_SOLID, "The mesh has no area at all: only edges and points.");
         const size_t wanted = std::clamp(source.vertices.size(), least_points, usual_points);
         progress.enter(PW_STAGE_TETRAHEDRA);
-        return Sides(tetrahedralized(shell.points(wanted), progress),
+        return Sides(tetrahedralized(shell.points(wanted, least_spacing * diagonal(source)), progress),
                      WindingNumber(shell.vertices, shell.triangles), threads, progress);
     };
     Account account;

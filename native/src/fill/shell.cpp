@@ -2,6 +2,7 @@
 #include "fill/shell.h"
 
 #include "base/groups.h"
+#include "fill/winding.h"
 
 #include <algorithm>
 #include <cmath>
@@ -59,6 +60,43 @@ void thicken(const CgalMesh& mesh, double thickness, Shell& shell) {
     }
 }
 
+// Parts that are inside out are turned. One within others is a hollow in them if it looks the other way than they do.
+void turn_outwards(Shell& shell) {
+    Joined parts(shell.vertices.size());
+    for (const Triangle& t : shell.triangles)
+        for (const int32_t v : t) parts.join(at(t[0]), at(v));
+    std::vector<double> volume(shell.vertices.size(), 0);  // six times, of each part
+    for (const auto& [a, b, c] : shell.triangles) {
+        const size_t part = parts.find(at(a));
+        volume[part] += six_volumes(shell.vertices[part], shell.vertices[at(a)], shell.vertices[at(b)],
+                                    shell.vertices[at(c)]);
+    }
+    if (std::none_of(volume.begin(), volume.end(), [](double v) { return v < 0; })) return;
+
+    const auto outward = [&](Triangle t) {
+        if (volume[parts.find(at(t[0]))] < 0) std::swap(t[1], t[2]);
+        return t;
+    };
+    std::vector<Triangle> all = shell.triangles;
+    for (Triangle& t : all) t = outward(t);
+    const WindingNumber given(shell.vertices, shell.triangles), solid(shell.vertices, all);
+    const Grouped<Triangle> own(shell.vertices.size(), [&](const auto& put) {
+        for (const Triangle& t : all) put(parts.find(at(t[0])), t);
+    });
+    std::vector<bool> hollow(shell.vertices.size(), false);
+    for (size_t part = 0; part < hollow.size(); ++part) {
+        if (own.with(part).empty()) continue;
+        const Point& p = shell.vertices[part];
+        const double mine = winding_number(shell.vertices, own.with(part), p);
+        const double others = given.at(p) - (volume[part] < 0 ? -mine : mine);
+        hollow[part] = solid.at(p) - mine > 0.5 && (others < 0) != (volume[part] < 0);
+    }
+    for (size_t t = 0; t < all.size(); ++t) {
+        shell.triangles[t] = all[t];
+        if (hollow[parts.find(at(all[t][0]))]) std::swap(shell.triangles[t][1], shell.triangles[t][2]);
+    }
+}
+
 }  // namespace
 
 double Shell::area() const {
@@ -67,11 +105,12 @@ double Shell::area() const {
     return sum;
 }
 
-std::vector<Point> Shell::points(size_t wanted) const {
+std::vector<Point> Shell::points(size_t wanted, double least_spacing) const {
     double sides = 0;
     for (const Triangle& t : triangles)
         for (size_t k = 0; k < 3; ++k) sides += length(vertices[at(t[(k + 1) % 3])] - vertices[at(t[k])]);
-    const double spacing = std::max(std::sqrt(area() / static_cast<double>(wanted)), sides / most_tried);
+    const double spread = std::sqrt(area() / static_cast<double>(wanted));
+    const double spacing = std::max({spread, sides / most_tried, least_spacing});
     std::vector<Point> found = vertices;
     // Where there are long and thin triangles side by side, one point does for all: a cell of a grid gets one.
     std::unordered_set<uint64_t> taken;
@@ -122,6 +161,7 @@ Shell shell_of(const Mended& mended, double thickness) {
         for (const auto v : CGAL::vertices_around_face(mesh.halfedge(f), mesh)) t[k++] = number(v);
     }
     if (mended.sheets > 0) thicken(mesh, thickness, shell);
+    turn_outwards(shell);
     return shell;
 }
 

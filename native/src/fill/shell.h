@@ -16,11 +16,12 @@ struct Shell {
     double area() const;
 
     // The vertices; where triangles are larger, others along their edges and within, as far apart as so many would be that
-    // are spread evenly over all. Each place once, in rising order.
-    std::vector<Point> points(size_t wanted) const;
+    // are spread evenly over all, and no closer. Each place once, in rising order.
+    std::vector<Point> points(size_t wanted, double least_spacing) const;
 };
 
-// The mended mesh, its sheets made thin solids by moving them half of a thickness to either side.
+// The mended mesh, its sheets made thin solids by moving them half of a thickness to either side, and parts that are
+// inside out turned.
 Shell shell_of(const Mended& mended, double thickness);
 
 }  // namespace partwheel

@@ -42,6 +42,15 @@ double solid_angle(const Point& a, const Point& b, const Point& c) {
 
 }  // namespace
 
+double winding_number(std::span<const Point> vertices, std::span<const Triangle> triangles, const Point& p) {
+    double sum = 0;
+    for (const Triangle& t : triangles) {
+        const auto corner = [&](size_t k) { return vertices[at(t[k])] - p; };
+        sum += solid_angle(corner(0), corner(1), corner(2));
+    }
+    return sum / (4 * std::numbers::pi);
+}
+
 WindingNumber::WindingNumber(std::span<const Point> vertices, std::span<const Triangle> triangles)
     : vertices_(vertices), triangles_(triangles.begin(), triangles.end()) {
     if (triangles.empty()) return;

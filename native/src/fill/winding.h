@@ -13,6 +13,9 @@
 
 namespace partwheel {
 
+// At a point, by all triangles one after the other.
+double winding_number(std::span<const Point> vertices, std::span<const Triangle> triangles, const Point& p);
+
 class WindingNumber {
 public:
     // The surface must live as long. Each triangle counts as it winds.

@@ -395,9 +395,14 @@ std::vector<uint8_t> Hierarchy::save() const {
 Hierarchy Hierarchy::load(std::span<const uint8_t> bytes) {
     if (bytes.size() < magic.size() || !std::equal(magic.begin(), magic.end(), bytes.begin()))
         refuse_saved("it is something else");
+    // All versions have theirs behind the magic bytes; what follows, and how it is hashed, may be another matter in each.
+    uint32_t version;
+    if (bytes.size() < magic.size() + sizeof version) refuse_saved("it is cut short");
+    std::memcpy(&version, bytes.data() + magic.size(), sizeof version);
+    if (version > format_version) refuse_saved("it was written by a newer version of Partwheel, which can read it");
+    if (version < format_version) refuse_saved("it was written by an older version of Partwheel");
     Unpacker in(bytes);
     const auto header = in.get<Header>();
-    if (header.version != format_version) refuse_saved("it was written by another version of Partwheel");
     for (uint64_t n : {header.faces, header.tetrahedra, header.vertices})
         if (n == 0 || n > PW_MAX_COUNT) refuse_saved("its sizes are impossible");
 

@@ -6,6 +6,7 @@ no graphics card: what the drawing itself takes there, in software, is told apar
 card the call comes back at once.
 """
 import contextlib
+import itertools
 import os
 import statistics
 import time
@@ -73,12 +74,12 @@ def watch_batches(parts):
     return Clock(Watched, "draw")
 
 
-def points(stage):
-    """Pixels of the window with the model under them."""
+def points(stage, count=16):
+    """So many pixels of the window with the model under them."""
     view = stage.view
     centers = view.centers().round().astype(int)
-    near = [tuple(map(int, centers[face])) for face in range(0, len(centers), len(centers) // 60)]
-    return [point for point in near if view.face_at(*point) is not None][:16]
+    near = (tuple(map(int, centers[face])) for face in range(0, len(centers), len(centers) // 60))
+    return list(itertools.islice((point for point in near if view.face_at(*point) is not None), count))
 
 
 def play(stage):

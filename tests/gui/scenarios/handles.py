@@ -9,7 +9,7 @@ from view import picture
 
 def play(stage):
     yield from stage.open("hand")
-    points, gizmo = stage.part("deform.handle_points"), stage.part("deform.handle_gizmo")
+    gizmo = stage.part("deform.gizmo")
     region, view = stage.view.region, stage.view_3d
     middle = region.width // 2, region.height // 2
     place = region_2d_to_location_3d(region, view, middle, view.view_location)
@@ -24,10 +24,10 @@ def play(stage):
     gpu.shader.from_builtin = noted
     try:
         handle = numpy.array([place])
-        changed = yield from drawn(stage, plain, "1-point", lambda: points.draw(Matrix(), [handle]))
+        changed = yield from drawn(stage, plain, "1-point", lambda: gizmo.draw_points(Matrix(), [handle]))
         rows, columns = numpy.nonzero(changed)
         for extent in (numpy.ptp(rows), numpy.ptp(columns)):
-            stage.check(abs(extent + 1 - points.SIZE) <= 1.5, f"a point of {points.SIZE} is {extent + 1} pixels wide")
+            stage.check(abs(extent + 1 - gizmo.SIZE) <= 1.5, f"a point of {gizmo.SIZE} is {extent + 1} pixels wide")
         centre = Vector((columns.mean() - region.x, rows.mean() - region.y))
         stage.check((centre - Vector(middle)).length < 2, f"it is where it is meant: {centre}, not {middle}")
         wanted = "POINT_UNIFORM_COLOR" if bpy.app.version >= (4, 5) else "UNIFORM_COLOR"

@@ -133,23 +133,23 @@ class Job:
                     return
                 launched = self._launch()
             except interpreter.NoInterpreter as reason:
-                launched = _raising(_no_worker(f"There is no Python to run the worker process: {reason}."))
+                launched = _no_worker(f"There is no Python to run the worker process: {reason}.")
             self._search.close()
             self._search = None
             self._thread = threading.Thread(target=self._run, args=[launched], name="partwheel-job", daemon=True)
             self._thread.start()
 
     def _launch(self):
-        """Starts a worker process: a function that gives it, or raises why there is none."""
+        """A worker process that was started, or the error why there is none."""
         with self._lock:
             if self._cancelled:
-                return _raising(PartwheelError(Status.CANCELLED, "The build was cancelled."))
+                return PartwheelError(Status.CANCELLED, "The build was cancelled.")
             try:
                 self._process = process = interpreter.start(self._python, str(ENTRY), stdin=subprocess.PIPE,
                                                             stdout=subprocess.PIPE)
             except OSError as error:
-                return _raising(_no_worker(f"The worker process could not be started: {error}."))
-        return lambda: process
+                return _no_worker(f"The worker process could not be started: {error}.")
+        return process
 
     # ---- In the job's thread ---------------------------------------------------------------------------------------
 
@@ -176,7 +176,7 @@ class Job:
 
     def _attempt(self, launched, rungs):
         """One worker process from start to end: the Hierarchy, or raises PartwheelError."""
-        process = launched()
+        process = _unless_error(launched)
         self._answered, self._work, self._seen_working = False, 0.0, time.monotonic()
         over, late = threading.Event(), []
 
@@ -206,7 +206,7 @@ class Job:
             except OSError:
                 pass  # the worker died before it had read everything: that is told below
         if answer:
-            return answer()
+            return self._loaded(_unless_error(answer))
         if self._cancelled:
             raise PartwheelError(Status.CANCELLED, "The build was cancelled.")
         if not self._answered:
@@ -233,7 +233,7 @@ class Job:
             pass
 
     def _listen(self, pipe):
-        """Takes in messages up to the answer: a function that returns the Hierarchy or raises; None without one."""
+        """Takes in messages up to the answer: (the saved Hierarchy, seconds of the stages), or an error; None: none."""
         seconds = {}
         while True:
             head = _read(pipe, MESSAGE.size)
@@ -246,7 +246,7 @@ class Job:
             self._answered = True
             try:
                 if kind == b"H":
-                    return self._loaded(payload, seconds)
+                    return payload, seconds
                 values = json.loads(payload)
                 if kind == b"E":
                     return self._refused(values, seconds)
@@ -259,19 +259,18 @@ class Job:
                         self._work, self._seen_working = float(work), time.monotonic()
                     self._progress = max(self._progress[0], float(fraction)), str(stage)
             except (ValueError, TypeError, AttributeError, LookupError):  # not what a sound worker writes
-                return _raising(WorkerError("crash", f"The worker process gave a damaged answer. {HARMLESS}"))
+                return WorkerError("crash", f"The worker process gave a damaged answer. {HARMLESS}")
 
-    def _loaded(self, data, seconds):
-        def answer():
-            try:
-                hierarchy = Hierarchy.load(data)
-            except PartwheelError as error:
-                raise WorkerError("crash", f"The worker process gave a damaged answer: {error} {HARMLESS}") from error
-            if len(hierarchy.order) != self._face_count:
-                raise WorkerError("crash", f"The worker process gave the answer to another mesh. {HARMLESS}")
-            hierarchy.seconds = seconds
-            return hierarchy
-        return answer
+    def _loaded(self, answer):
+        data, seconds = answer
+        try:
+            hierarchy = Hierarchy.load(data)
+        except PartwheelError as error:
+            raise WorkerError("crash", f"The worker process gave a damaged answer: {error} {HARMLESS}") from error
+        if len(hierarchy.order) != self._face_count:
+            raise WorkerError("crash", f"The worker process gave the answer to another mesh. {HARMLESS}")
+        hierarchy.seconds = seconds
+        return hierarchy
 
     def _refused(self, values, seconds):
         error = PartwheelError(int(values["status"]), str(values["message"]), seconds)
@@ -279,7 +278,7 @@ class Job:
             limit = f" It may use {self._memory_limit / 2**30:.1f} GiB." if self._memory_limit else ""
             error = WorkerError("memory", f"The worker process ran out of memory.{limit} {HARMLESS} A mesh with fewer "
                                           "faces (Decimate, or a voxel remesh) needs less.")
-        return _raising(error)
+        return error
 
 
 def available_memory():
@@ -296,11 +295,10 @@ def _no_worker(sentence):
                                  "the add-on's preferences, or the argument python.")
 
 
-def _raising(error):
-    """An answer that is this error."""
-    def answer():
-        raise error
-    return answer
+def _unless_error(found):
+    if isinstance(found, PartwheelError):
+        raise found
+    return found
 
 
 def _read(pipe, length):

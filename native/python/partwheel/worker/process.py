@@ -15,11 +15,11 @@ import struct
 import sys
 import threading
 import time
-from ctypes import byref, c_double, c_int, c_size_t, c_uint8, c_void_p
+from ctypes import byref, c_int, c_size_t, c_uint8
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
-from library import STAGE_COUNT, BuildOptions, Stage, Status, load  # noqa: E402
+from library import Build, BuildOptions, Context, PartwheelError, Status, check, load  # noqa: E402
 
 MESSAGE = struct.Struct("<cQ")
 TICK = 0.05  # seconds between reports of progress
@@ -35,7 +35,7 @@ def main():
         limit(header["memory_limit"])
         threading.Thread(target=wait_for_end_of_input, daemon=True).start()
         build(header, arrays, answers)
-    except MemoryError:
+    except (MemoryError, PartwheelError):  # of what is refused but for want of memory, build() tells
         send(answers, b"E", {"status": Status.MEMORY, "message": "Out of memory."})
     # Not sys.exit(): a build that went wrong may have left the library in a state that does not bear tidying up.
     answers.flush()
@@ -103,48 +103,27 @@ def send(pipe, kind, payload):
         os._exit(1)  # the parent has ended
 
 
-class Build(threading.Thread):
-    """pw_build in a thread of its own, while the main thread reports."""
-
-    def __init__(self, context, header, arrays):
-        super().__init__()
-        self.context, self.header, self.arrays = context, header, arrays
-        self.hierarchy, self.status, self.message = c_void_p(), Status.OK, ""
-
-    def run(self):
-        vertices, triangles, *faces = ((c_uint8 * len(array)).from_buffer(array) for array in self.arrays)
-        options = BuildOptions(**self.header["options"])
-        self.status = load().pw_build(
-            self.context, ctypes.addressof(vertices), len(vertices) // 24, ctypes.addressof(triangles),
-            len(triangles) // 12, ctypes.addressof(faces[0]) if faces else None, self.header["face_count"],
-            byref(options), byref(self.hierarchy))
-        self.message = load().pw_error_message().decode()  # each thread has its own
-
-
 def build(header, arrays, answers):
-    context = c_void_p()
-    if load().pw_context_create(byref(context)):
-        raise MemoryError
-    thread = Build(context, header, arrays)
+    vertices, triangles, *faces = ((c_uint8 * len(array)).from_buffer(array) for array in arrays)
+    surface = vertices, len(vertices) // 24, triangles, len(triangles) // 12, faces[0] if faces else None
+    context = Context()
+    thread = Build(context, (*surface, header["face_count"]), BuildOptions(**header["options"]))
     report(context, answers)  # that it has begun: one that ends before this could not be started
     thread.start()
-    while thread.is_alive():
-        thread.join(TICK)
+    while not thread.done.wait(TICK):
         report(context, answers)
-    seconds = (c_double * STAGE_COUNT)()
-    load().pw_context_seconds(context, seconds)
-    send(answers, b"S", {load().pw_stage_name(each).decode(): seconds[each] for each in Stage})
-    if thread.status:
-        send(answers, b"E", {"status": thread.status, "message": thread.message})
+    report(context, answers)
+    send(answers, b"S", context.seconds())
+    if thread.error:
+        send(answers, b"E", {"status": thread.error.status, "message": str(thread.error)})
     else:
-        send(answers, b"H", saved(thread.hierarchy))
+        send(answers, b"H", saved(thread.address.value))
 
 
 def report(context, answers):
-    fraction, stage, rung = c_double(), c_int(), c_int()
-    load().pw_context_progress(context, byref(fraction), byref(stage))
+    rung = c_int()
     load().pw_context_rung(context, byref(rung))
-    send(answers, b"P", [fraction.value, load().pw_stage_name(stage.value).decode(), rung.value, work()])
+    send(answers, b"P", [*context.progress(), rung.value, work()])
 
 
 def work():
@@ -154,11 +133,9 @@ def work():
 
 def saved(hierarchy):
     count = c_size_t()
-    status = load().pw_hierarchy_save(hierarchy, None, 0, byref(count))
+    check(load().pw_hierarchy_save(hierarchy, None, 0, byref(count)))
     buffer = (c_uint8 * count.value)()
-    status = status or load().pw_hierarchy_save(hierarchy, ctypes.addressof(buffer), count.value, byref(count))
-    if status:
-        raise MemoryError  # the only way for a finished hierarchy not to be saved
+    check(load().pw_hierarchy_save(hierarchy, buffer, count.value, byref(count)))
     return memoryview(buffer).cast("B")
 
 

@@ -1,37 +1,47 @@
-"""Writes the add-on with a wheel of the Python package inside: the same bytes for the same files. Called by scripts/package.
+"""Writes the add-on with a wheel of the Python package inside: the same bytes for the same files.
 
-    package_zip.py build/package/partwheel-VERSION-py3-none-TAG.whl
+    zips.py build/package/partwheel-VERSION-py3-none-TAG.whl
 
 Beside the wheel come partwheel-VERSION-PLATFORM.zip, an extension for Blender 4.2 and later, which installs the wheel;
-and -legacy.zip for 3.4 to 4.1, in which it is unpacked.
+and -legacy.zip for 3.4 to 4.1, in which it is unpacked. zips.py --version prints the version that all files agree on.
 """
 
 import ast
+import json
 import pathlib
-import platform
 import re
 import sys
 import zipfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
+from platforms import ROOT, platform_of
+
 ADDON = ROOT / "addon" / "partwheel"
 MANIFEST = ADDON / "blender_manifest.toml"
-MACHINES = {"x86_64": "x64", "aarch64": "arm64"}
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can hold
 
 
 def main(wheel):
-    here = f"linux-{MACHINES.get(platform.machine(), platform.machine())}"
-    files = {path.relative_to(ADDON).as_posix(): path.read_bytes() for path in ADDON.rglob("*") if wanted(path)}
-    files["LICENSE"] = (ROOT / "LICENSE").read_bytes()
-    name = f"partwheel-{agreed_version()}-{here}"
-    write(wheel.with_name(f"{name}.zip"), "partwheel",
-          {**files, MANIFEST.name: manifest_for(here, wheel.name), f"wheels/{wheel.name}": wheel.read_bytes()})
+    here = platform_of(wheel)
+    write(wheel.with_name(f"partwheel-{agreed_version()}-{here}.zip"), "partwheel",
+          {**addon_files(), MANIFEST.name: manifest_for([here], [wheel.name]),
+           f"wheels/{wheel.name}": wheel.read_bytes()})
+    legacy(wheel)
+
+
+def legacy(wheel):
+    """The add-on for Blender 3.4 to 4.1."""
     with zipfile.ZipFile(wheel) as archive:
         package = {f"packages/{name}": archive.read(name) for name in archive.namelist()
                    if name.startswith("partwheel/") and not name.endswith("/")}
     # The folder's name becomes the module's, which must not be the package's.
-    write(wheel.with_name(f"{name}-legacy.zip"), "partwheel_addon", {**files, **package})
+    write(wheel.with_name(f"partwheel-{agreed_version()}-{platform_of(wheel)}-legacy.zip"), "partwheel_addon",
+          {**addon_files(), **package})
+
+
+def addon_files():
+    """Name -> bytes, without a manifest and the Python package."""
+    files = {path.relative_to(ADDON).as_posix(): path.read_bytes() for path in ADDON.rglob("*") if wanted(path)}
+    return {**files, "LICENSE": (ROOT / "LICENSE").read_bytes()}
 
 
 def write(target, folder, files):
@@ -59,10 +69,10 @@ def wanted(path):
     return path.is_file() and path != MANIFEST and not hidden
 
 
-def manifest_for(here, wheel):
-    """The manifest, with the platform that the library in the wheel is for in place of that in the source."""
-    text, count = re.subn(r"^platforms = .*$", f'platforms = ["{here}"]\nwheels = ["./wheels/{wheel}"]',
-                          MANIFEST.read_text(), flags=re.M)
+def manifest_for(platforms, wheels):
+    """The manifest, with the platforms that the libraries in these wheels are for in place of those in the source."""
+    text, count = re.subn(r"^platforms = .*$", f"platforms = {json.dumps(platforms)}\n"
+                          f"wheels = {json.dumps([f'./wheels/{wheel}' for wheel in wheels])}", MANIFEST.read_text(), flags=re.M)
     if count != 1:
         sys.exit(f"{MANIFEST} must have one line that begins with platforms.")
     return text.encode()
@@ -83,4 +93,7 @@ def agreed_version():
 
 
 if __name__ == "__main__":
-    main(pathlib.Path(sys.argv[1]))
+    if sys.argv[1] == "--version":
+        print(agreed_version())
+    else:
+        main(pathlib.Path(sys.argv[1]))

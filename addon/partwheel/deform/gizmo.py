@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The gizmo of the deformation handle that moves: arrows along the axes move it, boxes scale it, rings turn it.
-
-Drawn and looked up by ourselves: Blender gives its own gizmos no events while an operator runs.
+"""What is seen of deformation handles: their vertices, and the gizmo of the one that moves: arrows along the axes move
+it, boxes scale it, rings turn it. Drawn and looked up by ourselves: Blender gives its own gizmos no events while an
+operator runs. Points and lines are by Blender's shaders: on Metal and Vulkan there is no other way to some width.
 """
 
 import math
@@ -12,12 +12,12 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d, region_2d_to_locat
 from gpu_extras.batch import batch_for_shader
 from mathutils import Vector
 
-from ..view import shaders
-
 # In pixels of an unscaled interface: where an arrow begins and ends, where a box is, how large a ring, how near counts.
 ARROW, BOX, RING, NEAR = (62, 90), 50, 105, 8
 HEAD, HALF_BOX = 6, 4
 LINE_WIDTH = 2.5
+COLOURS = (1.0, 0.85, 0.3, 0.8), (1.0, 0.35, 0.05, 1.0)  # of handles that stay, of the one that the mouse moves
+SIZE = 5.0  # of a point
 SIDES = 48  # of a ring
 STEEP, FLAT = 0.95, 0.25  # cosines: no arrow and box that points so much at the eye, no ring seen so much from its side
 
@@ -66,12 +66,41 @@ def _distance(point, a, b):
 
 
 def draw(pivot, region, view):
-    """To be called by a draw handler, POST_VIEW."""
+    """The gizmo. To be called by a draw handler, POST_VIEW."""
     theme = bpy.context.preferences.themes[0].user_interface
     colours = theme.axis_x, theme.axis_y, theme.axis_z
-    shader = shaders.lines(LINE_WIDTH)
+    shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
+    shader.bind()
+    shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+    shader.uniform_float("lineWidth", LINE_WIDTH)
     gpu.state.blend_set("ALPHA")
     for _, axis, points in _shapes(pivot, region, view):
         shader.uniform_float("color", (*colours[axis], 0.9))
         batch_for_shader(shader, "LINE_STRIP", {"pos": points}).draw(shader)
     gpu.state.blend_set("NONE")
+
+
+def draw_points(matrix_world, handles):
+    """The same of handles: (n,3) points of each in the object's space; the last is the one that moves."""
+    shader = _of_points()
+    gpu.state.blend_set("ALPHA")
+    with gpu.matrix.push_pop():
+        gpu.matrix.multiply_matrix(matrix_world)
+        for index, points in enumerate(handles):
+            shader.uniform_float("color", COLOURS[index == len(handles) - 1])
+            batch_for_shader(shader, "POINTS", {"pos": points.tolist()}).draw(shader)
+    gpu.state.blend_set("NONE")
+
+
+def _of_points():
+    """The shader, bound."""
+    try:
+        shader = gpu.shader.from_builtin("POINT_UNIFORM_COLOR")
+    except ValueError:  # Blender before 4.5, where all is drawn by OpenGL
+        shader = gpu.shader.from_builtin("UNIFORM_COLOR")
+        shader.bind()
+        gpu.state.point_size_set(SIZE)
+        return shader
+    shader.bind()
+    shader.uniform_float("size", SIZE)
+    return shader

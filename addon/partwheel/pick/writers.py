@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a part becomes outside Edit Mode: a face set, a mask, a vertex group, a paint mask, written into the mesh."""
+
+import bpy
+import numpy as np
+
+from ..mesh import arrays, pieces
+from ..mesh.refusing import Refused
+from ..mesh.selection import select_outside_edit_mode
+
+FACE_SET = ".sculpt_face_set"
+MASK = ".sculpt_mask"  # an attribute from Blender 4.1 on
+
+
+def _part_vertices(mesh, faces):
+    """(V,) bool: the vertices of these faces."""
+    inside = np.zeros(len(mesh.polygons), bool)
+    inside[faces] = True
+    corners = np.repeat(inside, arrays.polygon_sizes(mesh)[1])
+    chosen = np.zeros(len(mesh.vertices), bool)
+    chosen[arrays.read(mesh.loops, "vertex_index", np.int32)[corners]] = True
+    return chosen
+
+
+def _write_face_set(obj, faces, _node, _extend, deselect):
+    """A set of its own; with deselect the part goes back to the first one."""
+    mesh = obj.data
+    attribute = mesh.attributes.get(FACE_SET) or mesh.attributes.new(FACE_SET, "INT", "FACE")
+    values = arrays.read(attribute.data, "value", np.int32)
+    values[values == 0] = 1  # what Blender takes faces without a set for
+    values[faces] = 1 if deselect else values.max(initial=1) + 1
+    attribute.data.foreach_set("value", values)
+
+
+def _write_mask(obj, faces, _node, extend, deselect):
+    part = _part_vertices(obj.data, faces)
+    if bpy.app.version >= (4, 1):
+        attribute = obj.data.attributes.get(MASK) or obj.data.attributes.new(MASK, "FLOAT", "POINT")
+        before = arrays.read(attribute.data, "value", np.float32)
+        attribute.data.foreach_set("value", _joined(before, part, extend, deselect))
+        return
+    with pieces.edited(obj.data, obj.data) as bm:
+        layer = bm.verts.layers.paint_mask.verify()
+        before = np.array([vertex[layer] for vertex in bm.verts], np.float32)
+        for vertex, value in zip(bm.verts, _joined(before, part, extend, deselect).tolist()):
+            vertex[layer] = value
+
+
+def _joined(before, part, extend, deselect):
+    """(V,) float32: the mask with the part in it, or taken out of it."""
+    if deselect:
+        return np.where(part, 0, before).astype(np.float32)
+    return np.where(part, 1, before if extend else 0).astype(np.float32)
+
+
+def _write_vertex_group(obj, faces, node, extend, deselect):
+    """A new group, which becomes the active one; extend and deselect change the active one, unless it is locked. What
+    was done, as a sentence."""
+    part = np.flatnonzero(_part_vertices(obj.data, faces)).tolist()
+    group = obj.vertex_groups.active if extend or deselect else None
+    if group and group.lock_weight:
+        raise Refused(f"The vertex group {group.name} is locked. Unlock it, or pick the part alone: it gets a group "
+                         "of its own")
+    if deselect:
+        if not group:
+            raise Refused(f"{obj.name} has no vertex group that the part could be taken out of")
+        group.remove(part)
+        return f"The part was taken out of the vertex group {group.name}"
+    if group:
+        group.add(part, 1.0, "REPLACE")
+        return f"The part was added to the vertex group {group.name}"
+    group = obj.vertex_groups.new(name=f"Part {node}")
+    group.add(part, 1.0, "REPLACE")
+    return f"The part is the new vertex group {group.name}"
+
+
+def _write_paint_mask(obj, faces, _node, extend, deselect):
+    select_outside_edit_mode(obj.data, faces, extend, deselect)
+    obj.data.use_paint_mask = True
+
+
+# What writes the faces of a node: functions of (obj, faces, node, extend, deselect).
+WRITERS = {"FACE_SET": _write_face_set, "MASK": _write_mask, "VERTEX_GROUP": _write_vertex_group,
+           "PAINT_MASK": _write_paint_mask}

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the user is told while the native library can't be loaded: in the preferences, in the panel, at a click."""
+
+import textwrap
+
+from partwheel import LibraryError
+from partwheel.library import load
+
+# Of Blender's interface font, on average, at a scale of 1; and what frames and tabs take of a region's width.
+PIXELS_A_LETTER, PIXELS_BESIDE = 7, 40
+
+_logged = set()
+
+
+def of_library():
+    """Why the library can't be used and what to do, in sentences; "" while it can."""
+    try:
+        load()
+        return ""
+    except LibraryError as error:
+        return logged(error)
+
+
+def logged(error):
+    """The LibraryError's sentences. The loader's own words go to the log, once."""
+    if str(error) not in _logged:
+        _logged.add(str(error))
+        print(f"Partwheel: {error}" + (f"\nThe loader said: {error.__cause__}" if error.__cause__ else ""), flush=True)
+    return str(error)
+
+
+def draw(context, layout):
+    """Says so in a panel or in the preferences: whether there is anything to be said."""
+    sentences = of_library()
+    if sentences:
+        column = layout.column(align=True)
+        column.alert = True
+        draw_lines(context, column, sentences, icon="ERROR")
+    return bool(sentences)
+
+
+def draw_lines(context, column, text, icon="NONE"):
+    """A text in lines as long as the region is wide."""
+    width = context.region.width / context.preferences.system.ui_scale - PIXELS_BESIDE
+    for line in textwrap.wrap(text, max(int(width / PIXELS_A_LETTER), 20)):
+        column.label(text=line, icon=icon)
+        icon = "BLANK1" if icon != "NONE" else icon

@@ -1,0 +1,52 @@
+# A toolchain: the compiler zig, a clang that brings every platform's C and C++ library, for one of the platforms that are
+# shipped. The presets of their names use it; scripts/setup.sh (setup_cross) installs it.
+#
+#   cmake --preset windows-x64
+
+list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES PARTWHEEL_PLATFORM)
+
+# What they need at least: glibc 2.28 as Blender 4.2 does, macOS 11.0 as the first for arm64.
+if(PARTWHEEL_PLATFORM STREQUAL "linux-x64")
+  set(CMAKE_SYSTEM_NAME Linux)
+  set(CMAKE_SYSTEM_PROCESSOR x86_64)
+  set(CMAKE_CXX_COMPILER_TARGET x86_64-linux-gnu.2.28)
+elseif(PARTWHEEL_PLATFORM STREQUAL "linux-arm64")
+  set(CMAKE_SYSTEM_NAME Linux)
+  set(CMAKE_SYSTEM_PROCESSOR aarch64)
+  set(CMAKE_CXX_COMPILER_TARGET aarch64-linux-gnu.2.28)
+elseif(PARTWHEEL_PLATFORM STREQUAL "windows-x64")
+  set(CMAKE_SYSTEM_NAME Windows)
+  set(CMAKE_SYSTEM_PROCESSOR AMD64)
+  set(CMAKE_CXX_COMPILER_TARGET x86_64-windows-gnu)
+elseif(PARTWHEEL_PLATFORM STREQUAL "windows-arm64")
+  set(CMAKE_SYSTEM_NAME Windows)
+  set(CMAKE_SYSTEM_PROCESSOR ARM64)
+  set(CMAKE_CXX_COMPILER_TARGET aarch64-windows-gnu)
+elseif(PARTWHEEL_PLATFORM STREQUAL "macos-x64")
+  set(CMAKE_SYSTEM_NAME Darwin)
+  set(CMAKE_SYSTEM_PROCESSOR x86_64)
+  set(CMAKE_CXX_COMPILER_TARGET x86_64-macos.11.0)
+elseif(PARTWHEEL_PLATFORM STREQUAL "macos-arm64")
+  set(CMAKE_SYSTEM_NAME Darwin)
+  set(CMAKE_SYSTEM_PROCESSOR arm64)
+  set(CMAKE_CXX_COMPILER_TARGET aarch64-macos.11.0)
+else()
+  message(FATAL_ERROR "There is no platform '${PARTWHEEL_PLATFORM}'.")
+endif()
+set(CMAKE_OSX_SYSROOT "")
+set(CMAKE_OSX_ARCHITECTURES "")
+set(CMAKE_OSX_DEPLOYMENT_TARGET "")
+
+get_filename_component(build "${CMAKE_CURRENT_LIST_DIR}/../../build" ABSOLUTE)
+file(GLOB zig "${build}/venv/cross/lib/python3*/site-packages/ziglang/zig")
+if(NOT zig)
+  message(FATAL_ERROR "zig was not found under ${build}/venv/cross. scripts/package all installs it.")
+endif()
+# zig is one program that has its tools as commands; CMake wants a program each.
+foreach(tool c++ ar ranlib)
+  file(CONFIGURE OUTPUT "${build}/zig/${tool}" CONTENT "#!/bin/sh\nexec '${zig}' ${tool} \"$@\"\n" @ONLY)
+  file(CHMOD "${build}/zig/${tool}" PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
+endforeach()
+set(CMAKE_CXX_COMPILER "${build}/zig/c++")
+set(CMAKE_AR "${build}/zig/ar")
+set(CMAKE_RANLIB "${build}/zig/ranlib")

@@ -1,0 +1,34 @@
+"""Large meshes: one natural model of 1, 4 and 10 million faces, by the coarser copy; at a million also exactly, and how
+well the wheel's stops agree."""
+
+from pathlib import Path
+
+import models
+import numpy as np
+from programs import ROOT, WORK, Failure, run
+
+PYTHON = ROOT / "build" / "venv" / "core" / "bin" / "python"
+PROGRAM = Path(__file__).with_name("large_build.py")
+SIZES = (1_000_000, 4_000_000, 10_000_000)
+QUICK = SIZES[:1]
+
+
+def measure(quick):
+    mesh = models.read(models.NATURAL)
+    shaken, rows = one(mesh, "shaken"), []
+    for faces in QUICK if quick else SIZES:
+        mesh = models.subdivided(mesh, faces)
+        rows.append(one(mesh, *["beside"] * (faces == SIZES[0])))
+        print(f"   {faces} faces: {rows[-1]['seconds']:.1f} s of processors, {rows[-1]['peak'] / 1e9:.2f} GB")
+    return {"model": models.NATURAL.stem, "sizes": rows, "shaken": shaken}
+
+
+def one(mesh, *how):
+    WORK.mkdir(parents=True, exist_ok=True)
+    path = WORK / "large.npz"
+    np.savez(path, vertices=mesh[0].astype(np.float32), triangles=mesh[1].astype(np.int32))
+    row, why_not = run(PYTHON, PROGRAM, path, *how)
+    path.unlink()
+    if row is None:
+        raise Failure(f"{len(mesh[1]):,} faces: {why_not}")
+    return row

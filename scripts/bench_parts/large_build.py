@@ -1,0 +1,78 @@
+"""One build of a large mesh, in a process of its own: prints what it took as JSON. Seconds are processor time, of all
+threads together.
+
+Run as: build/venv/core/bin/python large_build.py MODEL.npz [beside | shaken]
+beside: exactly, too, and how well the wheel's stops of the one are stops of the other. shaken: the same of two exact
+ones, of which the first has its vertices moved by a millionth of the model's size: how far exact trees agree at all.
+"""
+
+import json
+import re
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "native" / "python"))
+
+import numpy as np  # noqa: E402
+from partwheel import Hierarchy  # noqa: E402
+
+CLICKS = 200
+SHAKE = 1e-6
+
+
+def peak():
+    with open("/proc/self/status") as file:
+        return 1024 * int(re.search(r"VmHWM:\s+(\d+)", file.read()).group(1))
+
+
+def built(vertices, triangles, exactly):
+    """(Hierarchy, report)"""
+    began = time.process_time()
+    hierarchy = Hierarchy.build(vertices, triangles, exactly=exactly)
+    return hierarchy, {"faces": len(triangles), "seconds": time.process_time() - began, "peak": peak(),
+                       "way": hierarchy.summary.rung}
+
+
+def overlaps(vertices, triangles, coarse, exact):
+    """Of each wheel stop of some clicks the largest overlap, by area, with a stop of the exact tree at that face."""
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    areas, found = np.linalg.norm(np.cross(b - a, c - a), axis=1), []
+    for face in np.random.default_rng(1).choice(len(areas), CLICKS, p=areas / areas.sum()):
+        # The stops of a path lie in each other: the first that holds each face tells all that two paths share.
+        (mine, counts), (theirs, others) = (first_stops(hierarchy, face) for hierarchy in (coarse, exact))
+        shared = np.bincount(mine * others + theirs, areas, counts * others).reshape(counts, others)
+        shared = shared.cumsum(axis=0).cumsum(axis=1)
+        union = shared[:, -1:] + shared[-1:] - shared
+        found += (shared / union).max(axis=1).tolist()
+    return found
+
+
+def first_stops(hierarchy, face):
+    """(the number of the first of the face's stops that holds each face, how many stops there are)"""
+    stops = hierarchy.wheel(face)[0].tolist()
+    first = np.full(len(hierarchy.order), len(stops) - 1)
+    for number, node in reversed(list(enumerate(stops))):
+        first[hierarchy.faces(node)] = number
+    return first, len(stops)
+
+
+def main():
+    path, *how = sys.argv[1:]
+    with np.load(path) as file:
+        vertices, triangles = file["vertices"].astype(float), file["triangles"]
+    given = vertices
+    if how == ["shaken"]:
+        size = np.linalg.norm(np.ptp(vertices, axis=0))
+        given = vertices + SHAKE * size * np.random.default_rng(1).normal(size=vertices.shape)
+    hierarchy, report = built(given, triangles, how == ["shaken"])
+    if how:
+        exact, report["exactly"] = built(vertices, triangles, True)
+        found = overlaps(vertices, triangles, hierarchy, exact)
+        report["overlap"] = {"median": float(np.median(found)), "mean": float(np.mean(found)), "stops": len(found)}
+    print(json.dumps(report))
+
+
+if __name__ == "__main__":
+    main()

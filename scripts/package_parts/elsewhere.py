@@ -1,0 +1,63 @@
+"""Tries what was packed on the system that it is for, with nothing but Python 3.11: the wheel in an empty environment with the
+core tests that need no compiler, and the extension in Blender as a Python module. Of public CI, on Windows and macOS.
+
+    python scripts/package_parts/elsewhere.py build/ship
+
+The models that tests read are looked for in build/deps/meshes.
+"""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import venv
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "native/python/partwheel"))
+from loading import here  # noqa: E402
+
+from platforms import TAGS  # noqa: E402
+
+CORE = ("hierarchy", "loading", "rays", "saved", "wheel")
+BLENDER = "4.5"
+
+
+def main(ship):
+    platform = here()
+    (wheel,) = ship.glob(f"partwheel-*-py3-none-{TAGS[platform]}.whl")
+    (extension,) = ship.glob(f"partwheel-*-{platform}.zip")
+    print(f"{platform}: {wheel.name}, {extension.name}", flush=True)
+    with tempfile.TemporaryDirectory() as directory:
+        python = environment(directory, "core", f"{wheel}[meshes]", "scipy", "pytest")
+        packages = run(python, "-c", "import partwheel; print(partwheel.__path__[0])").parent
+        run(python, "-m", "pytest", "-p", "no:cacheprovider", *(ROOT / f"tests/core/test_{name}.py" for name in CORE),
+            PARTWHEEL_PACKAGES=str(packages), shown=True)
+        if platform == "windows-arm64":
+            print("There is no Blender for this platform as a Python module.")
+            return
+        python = environment(directory, "blender", f"bpy=={BLENDER}.*", "numpy")
+        run(python, ROOT / "tests/addon/run.py", "--", extension, pathlib.Path(directory) / "result.json", shown=True,
+            HOME=directory, APPDATA=directory)
+
+
+def environment(directory, name, *packages):
+    """The Python of a new environment with these packages."""
+    place = pathlib.Path(directory) / name
+    venv.create(place, with_pip=True)
+    python = place / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+    run(python, "-m", "pip", "install", "--disable-pip-version-check", *packages, shown=True)
+    return python
+
+
+def run(*command, shown=False, **environment):
+    """What it prints, as a path. Ends this program where it fails."""
+    done = subprocess.run(list(map(str, command)), cwd=ROOT, env={**os.environ, **environment}, text=True,
+                          stdout=None if shown else subprocess.PIPE)
+    if done.returncode:
+        sys.exit(f"This failed: {' '.join(map(str, command))}")
+    return pathlib.Path((done.stdout or "").strip())
+
+
+if __name__ == "__main__":
+    main(pathlib.Path(sys.argv[1]).resolve())

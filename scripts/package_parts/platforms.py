@@ -1,0 +1,27 @@
+"""The platforms that are shipped: the names that Blender, CMakePresets.json and cmake/cross/zig.cmake have for them."""
+
+import pathlib
+import re
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+# Name -> what a wheel's file name ends with: glibc 2.28 and macOS 11 are the oldest that do.
+TAGS = {
+    "linux-x64": "manylinux_2_28_x86_64", "linux-arm64": "manylinux_2_28_aarch64",
+    "windows-x64": "win_amd64", "windows-arm64": "win_arm64",
+    "macos-x64": "macosx_11_0_x86_64", "macos-arm64": "macosx_11_0_arm64",
+}
+LIBRARIES = {"linux": "libpartwheel.so", "windows": "partwheel.dll", "macos": "libpartwheel.dylib"}
+SYSTEMS = {"manylinux": "linux", "linux": "linux", "win": "windows", "macosx": "macos"}
+MACHINES = {"x86_64": "x64", "amd64": "x64", "aarch64": "arm64", "arm64": "arm64"}
+
+
+def library_of(platform):
+    """The file name of the native library."""
+    return LIBRARIES[platform.split("-")[0]]
+
+
+def platform_of(wheel):
+    """The platform of a wheel, from its file name: some machine's own, or one of the above."""
+    tag = pathlib.Path(wheel).stem.rsplit("-", 1)[1]
+    system, machine = re.fullmatch(r"([a-z]+)[0-9_]*_(x86_64|[a-z0-9]+)", tag).groups()
+    return f"{SYSTEMS[system]}-{MACHINES.get(machine, machine)}"

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the user sees while the native library can't be loaded, and of parts saved by other versions."""
+
+import contextlib
+import io
+import struct
+import tempfile
+from pathlib import Path
+from types import SimpleNamespace
+
+import bpy
+from common import MeshTest, package, part, read_off
+
+
+class Layout:
+    """Keeps what a draw() function writes into it."""
+
+    def __init__(self, said=None):
+        self.said = [] if said is None else said
+
+    def label(self, text="", icon="NONE"):
+        self.said.append(text)
+
+    def __getattr__(self, name):
+        return lambda *_, **__: Layout(self.said)
+
+
+class Context:
+    """Of a region; without a window Blender's own has no scale."""
+
+    region = SimpleNamespace(width=400)
+    preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1))
+    mode = "EDIT_MESH"
+
+    @property
+    def active_object(self):
+        return bpy.context.view_layer.objects.active
+
+
+class NoLibrary(MeshTest):
+    """The installed library is a file that no system can load."""
+
+    def setUp(self):
+        super().setUp()
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.binding = package("library")
+        self.installed = self.binding.LIBRARY
+        self.path = Path(directory.name) / self.installed.name
+        self.path.write_bytes(b"no library")
+        self.addCleanup(setattr, self.binding, "LIBRARY", self.installed)
+        self.addCleanup(self.binding.load.cache_clear)
+        self.binding.LIBRARY = self.path
+        self.binding.load.cache_clear()
+        part("trouble")._logged.clear()
+
+    def drawn(self, cls):
+        layout = Layout()
+        cls.draw(SimpleNamespace(layout=layout), Context())
+        return " ".join(layout.said)
+
+    def preferences(self):
+        return self.drawn(part("preferences").PartwheelPreferences)
+
+    def test_the_preferences_say_why(self):
+        said = self.preferences()
+        self.assertIn("Partwheel's native library is damaged", said)
+        self.assertIn("Install the Partwheel that is made for", said)
+
+    def test_they_say_nothing_when_it_is_there(self):
+        self.binding.LIBRARY = self.installed
+        self.assertNotIn("library", self.preferences())
+
+    def test_the_panel_says_why_and_nothing_else(self):
+        self.add(*read_off("hand"))
+        said = self.drawn(part("ui.panel").VIEW3D_PT_partwheel)
+        self.assertIn("is damaged", said)
+        self.assertNotIn("No parts yet", said)
+
+    def test_a_build_says_why_and_the_log_has_the_loaders_words_once(self):
+        self.add(*read_off("hand"))
+        log = io.StringIO()
+        with contextlib.redirect_stdout(log):
+            for _ in range(2):
+                with self.assertRaises(RuntimeError) as refused:
+                    bpy.ops.mesh.partwheel_build()
+                self.assertIn("is damaged", str(refused.exception))
+        self.assertEqual(log.getvalue().count("The loader said: "), 1)
+        self.assertNotIn("Traceback", log.getvalue())
+
+    def test_hovering_is_off_meanwhile(self):
+        group = part("pick.hover").VIEW3D_GGT_partwheel_hover
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.assertFalse(group.poll(Context()))
+
+    def test_it_works_once_the_file_is_there(self):
+        """Without a restart: what failed is not remembered."""
+        self.add(*read_off("hand"))
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.assertRaises(RuntimeError, bpy.ops.mesh.partwheel_build)
+        self.path.write_bytes(self.installed.read_bytes())
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+
+
+class OtherVersions(MeshTest):
+    """Parts that another version saved with the mesh."""
+
+    def opened(self, version):
+        """What the console got when parts of such a version were there, and what a build then reports."""
+        obj = self.add(*read_off("hand"))
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+        stored, registry = part("parts.stored"), part("parts.registry")
+        packed = bytearray(stored.pack(registry.entry_of(obj.data).built, registry.known(obj.data)))
+        packed[8:12] = struct.pack("<I", version)
+        bpy.ops.mesh.partwheel_clear()
+        obj.data[stored.PROPERTY] = bytes(packed)
+        self.assertEqual(registry.state(obj.data)[0], registry.State.UNOPENED)
+        log, reports = io.StringIO(), []
+        with contextlib.redirect_stdout(log):
+            self.assertIsNone(registry.hierarchy(obj))
+
+            class Operator:
+                @staticmethod
+                def report(kind, text):
+                    reports.append((*kind, text))
+            building = part("pick.build").start(Operator, obj)
+            building.wait(bpy.context)
+        self.assertIsNotNone(registry.known(obj.data))
+        return log.getvalue(), reports
+
+    def test_older_ones_are_found_anew_and_nothing_is_said(self):
+        log, reports = self.opened(1)
+        self.assertNotIn("left aside", log)
+        self.assertEqual([kind for kind, _ in reports], ["INFO"])
+
+    def test_newer_ones_are_found_anew_and_that_is_said(self):
+        _, reports = self.opened(part("parts.stored").VERSION + 1)
+        self.assertEqual([kind for kind, _ in reports], ["WARNING", "INFO"])
+        self.assertIn("of a newer Partwheel than this one", reports[0][1])
+
+    def test_it_is_said_once(self):
+        self.opened(part("parts.stored").VERSION + 1)
+        self.assertEqual(dict(part("parts.stored").newer), {})

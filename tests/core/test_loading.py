@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Why the native library can't be loaded, in words; and a copy that is loaded in its place where a file in use is locked."""
+
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import partwheel
+import pytest
+from conftest import PACKAGES
+from partwheel import library, loading
+
+THIS = loading.here()
+OTHER = next(name for name in ("linux-x64", "linux-arm64") if name != THIS)
+
+
+def head_of(platform):
+    """The first bytes of a library for a platform, as its formats are specified."""
+    system, machine = platform.split("-")
+    arm = machine == "arm64"
+    if system == "linux":
+        return b"\x7fELF\2\1\1".ljust(16, b"\0") + struct.pack("<HHI", 3, 183 if arm else 62, 1) + bytes(200)
+    if system == "windows":
+        return b"MZ".ljust(60, b"\0") + struct.pack("<I", 128) + bytes(64) + b"PE\0\0" + \
+            struct.pack("<H", 0xAA64 if arm else 0x8664) + bytes(200)
+    return struct.pack("<III", 0xFEEDFACF, 0x100000C if arm else 0x1000007, 0) + bytes(200)
+
+
+def refusal(path, monkeypatch):
+    monkeypatch.delenv("PARTWHEEL_LIBRARY", raising=False)
+    monkeypatch.setattr(library, "LIBRARY", Path(path))
+    with pytest.raises(partwheel.LibraryError) as refused:
+        library.load.__wrapped__()
+    assert str(refused.value.__cause__), "the loader's own words are lost"
+    return str(refused.value)
+
+
+@pytest.mark.parametrize("platform", [f"{system}-{machine}" for system in loading.FILE_NAMES
+                                      for machine in ("x64", "arm64")])
+def test_every_platform_is_told_from_the_library(platform, tmp_path):
+    path = tmp_path / "library"
+    path.write_bytes(head_of(platform))
+    assert loading.made_for(path) == platform
+    path.write_bytes(head_of(platform)[:6])
+    assert loading.made_for(path) is None
+
+
+def test_this_one_is_of_this_platform():
+    assert loading.made_for(library.load()._name) == THIS
+
+
+@pytest.mark.parametrize("name", loading.FILE_NAMES.values())
+def test_of_another_platform(name, tmp_path, monkeypatch):
+    """Be it a file of another name, or of the same."""
+    platform = {"libpartwheel.so": OTHER, "partwheel.dll": "windows-x64", "libpartwheel.dylib": "macos-arm64"}[name]
+    (tmp_path / name).write_bytes(head_of(platform))
+    said = refusal(tmp_path / library.LIBRARY.name, monkeypatch)
+    assert f"This is Partwheel for {loading.in_words(platform)}" in said
+    assert f"it runs on {loading.in_words(THIS)}" in said and f"({THIS})" in said
+
+
+def test_missing(tmp_path, monkeypatch):
+    said = refusal(tmp_path / library.LIBRARY.name, monkeypatch)
+    assert "is missing" in said and str(tmp_path) in said and "Install" in said
+
+
+def test_damaged(tmp_path, monkeypatch):
+    """Also one that is cut short anywhere, which Linux would load and die of."""
+    path = tmp_path / library.LIBRARY.name
+    sound = Path(library.load()._name).read_bytes()
+    for data in (b"", b"no library at all", *(sound[:len(sound) * part // 8] for part in range(8)), sound[:-1]):
+        path.write_bytes(data)
+        said = refusal(path, monkeypatch)
+        assert "is damaged" in said and str(path) in said and "Install" in said
+
+
+@pytest.mark.parametrize(("system", "words", "code", "said"), [
+    ("linux", "/lib/libc.so.6: version `GLIBC_2.28' not found (required by libpartwheel.so)", None, "Linux is too old"),
+    ("windows", "Could not find module 'partwheel.dll' (or one of its dependencies).", None, "Universal C Runtime"),
+    ("windows", "[WinError 126] The specified module could not be found", 126, "Universal C Runtime"),
+    ("windows", "[WinError 193] %1 is not a valid Win32 application", 193, "damaged"),
+    ("windows", "[WinError 225] the file contains a virus or potentially unwanted software", 225, "virus scanner"),
+    ("windows", "[WinError 4551] An Application Control policy has blocked this file", 4551, "Windows, or a virus"),
+    ("macos", "library load disallowed by system policy", None, "xattr -d com.apple.quarantine"),
+    ("macos", "code signature in 'x' not valid for use in process", None, "Privacy & Security"),
+    ("linux", "undefined symbol: nothing_known", None, "undefined symbol: nothing_known"),
+])
+def test_what_the_loaders_say_is_told_in_words(system, words, code, said, tmp_path, monkeypatch):
+    monkeypatch.setattr(loading, "SYSTEM", system)
+    monkeypatch.setattr(loading, "here", lambda: f"{system}-x64")
+    path = tmp_path / loading.FILE_NAMES[system]
+    path.write_bytes(head_of(f"{system}-x64"))
+    assert said in loading.why(path, words, code)
+
+
+def test_a_loaded_copy_lets_the_file_go(tmp_path, monkeypatch):
+    """What is loaded on Windows is a copy: the installed file is not mapped, earlier copies go, the same one stays."""
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
+    installed = tmp_path / "installed" / library.LIBRARY.name
+    installed.parent.mkdir()
+    shutil.copy(library.load()._name, installed)
+    earlier = tmp_path / "partwheel" / f"0123-{installed.name}"
+    earlier.parent.mkdir()
+    earlier.write_bytes(b"of an earlier version")
+    copy = loading.replaceable(installed)
+    assert copy.read_bytes() == installed.read_bytes() and not earlier.exists()
+    made = copy.stat().st_mtime_ns
+    assert loading.replaceable(installed) == copy and copy.stat().st_mtime_ns == made
+    copy.write_bytes(b"planted")
+    assert loading.replaceable(installed).read_bytes() == installed.read_bytes()
+    assert [each.name for each in copy.parent.iterdir()] == [copy.name]
+
+
+def test_where_no_copy_can_be_made_the_file_itself_is_loaded(tmp_path, monkeypatch):
+    (tmp_path / "file").write_bytes(b"")
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path / "file"))
+    installed = Path(library.load()._name)
+    assert loading.replaceable(installed) == installed
+
+
+def test_the_worker_needs_nothing_but_its_folder():
+    """A bare Python finds the binding, as worker/process.py has it."""
+    code = "import sys; sys.path.insert(0, sys.argv[1]); import library; print(library.load().pw_version().decode())"
+    done = subprocess.run([sys.executable, "-I", "-S", "-c", code, str(Path(PACKAGES) / "partwheel")],
+                          capture_output=True, text=True)
+    assert done.stdout.strip() == library.VERSION, done.stderr

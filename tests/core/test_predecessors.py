@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hierarchies that earlier versions saved: tests/core/saved/FORMAT-MODEL.partwheel, never written anew. A format that is still
+read gives the same hierarchy for ever; others are refused in words that say whether they are older or newer."""
+
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+from partwheel import Hierarchy, PartwheelError, Status
+
+SAVED = Path(__file__).with_name("saved")
+FORMAT = 5  # that this version writes; when it grows, files of the one before stay here
+# File -> faces, nodes, tetrahedra, way taken.
+READ = {
+    "5-first_tripod": (44, 84, 43, "exact"),  # by the first commit that wrote the format
+    "5-open_cube": (10, 7, 6, "repaired"),
+    "5-star": (12, 56, 31, "exact"),
+    "5-tripod": (44, 84, 43, "exact"),
+}
+
+
+REFUSED = ("4-tripod",)  # by the last commit before that
+
+
+def data(name):
+    return (SAVED / f"{name}.partwheel").read_bytes()
+
+
+def format_of(saved):
+    return struct.unpack_from("<I", saved, 8)[0]
+
+
+def refusal(saved):
+    with pytest.raises(PartwheelError) as refused:
+        Hierarchy.load(saved)
+    assert refused.value.status == Status.DATA
+    return str(refused.value)
+
+
+def test_every_file_is_known():
+    names = {path.stem for path in SAVED.glob("*.partwheel")}
+    assert names == set(READ) | set(REFUSED)
+    assert all(format_of(data(name)) == int(name.split("-")[0]) for name in names)
+
+
+@pytest.mark.parametrize("name", READ)
+def test_what_was_saved_is_read(name):
+    h = Hierarchy.load(data(name))
+    assert (len(h.order), len(h.parent), len(h.tetrahedra), h.summary.rung) == READ[name]
+    assert np.array_equal(np.sort(h.order), np.arange(len(h.order)))
+    stops, start = h.wheel(0)
+    assert stops[-1] == len(h.parent) - 1 and 0 <= start < len(stops)
+    assert h.solid(len(h.parent) - 1).triangles.shape[1] == 3
+
+
+def test_this_version_writes_what_it_says(build_shape):
+    assert format_of(build_shape("cube")[1].save()) == FORMAT
+
+
+@pytest.mark.parametrize("name", READ)
+def test_it_is_saved_again_as_it_was(name):
+    assert format_of(data(name)) != FORMAT or Hierarchy.load(data(name)).save() == data(name)
+
+
+def test_newer_ones_say_so_whatever_follows():
+    for later in (FORMAT + 1, 2**32 - 1):
+        newer = bytearray(data("5-star"))
+        newer[8:12] = struct.pack("<I", later)
+        for saved in (newer, newer[:12], newer + b"what no one knows"):
+            assert "by a newer version of Partwheel" in refusal(bytes(saved))
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_older_ones_say_so(name):
+    said = refusal(data(name))
+    assert "by an older version of Partwheel" in said and "Build it again" in said

@@ -1,0 +1,106 @@
+"""What the tool costs on a million faces: from the first click to the part that lights up, a notch, a start, memory, in
+Edit Mode and in Sculpt Mode, and beside that what Blender itself takes. Only measures: for scripts/bench_felt.
+
+Processor time as in felt.py. To that of the first click the worker's is added; the window is not held up by it.
+"""
+import resource
+import statistics
+import time
+
+import bpy
+
+from scenarios.felt import Clock, points, watch_batches
+
+GOALS = {"first part lit, Edit Mode": 6.0, "longest step of the add-on meanwhile": 0.1,
+         "notch in Sculpt Mode, median": 0.033}
+NOTCHES = 5  # up, and down again
+
+
+def play(stage):
+    yield from stage.open("million", build=False)
+    faces = len(stage.wheels.triangles)
+    spot, = points(stage, 1)
+    mode_set = {name: seconds(lambda name=name: mode(stage, name)) for name in ("OBJECT", "EDIT")}
+    picker, hover = stage.part("pick.pick").PartPicker, stage.part("pick.hover").Hover
+    overlay = stage.part("view.overlay")
+    handle, begin, moves = Clock(picker, "_handle"), Clock(picker, "_begun"), Clock(hover, "move")
+    draws, software = Clock(overlay, "draw_held"), watch_batches(overlay.Parts)
+    written = Clock(stage.part("mesh.arrays"), "up_to_date")
+    clocks = handle, begin, moves, draws, software, written
+    stage.use_tool()
+
+    stage.mouse.move(*spot)
+    yield from stage.settle()
+    forget(clocks)
+    before, workers, wall = time.process_time(), children(), time.monotonic()
+    stage.mouse.click()
+    yield from stage.until("a part is lit", lambda: stage.drawn_things() == 1)
+    wall = time.monotonic() - wall
+    steps = [step for clock in (handle, begin, moves) for step in clock.take()]
+    measured = {"first part lit, Edit Mode": sum(steps) + children() - workers,
+                "longest step of the add-on meanwhile": max(steps),
+                "Blender writing its edits back in these steps, all together": sum(written.take()),
+                "the same by the clock of the wall, as busy as this machine is": wall,
+                "Blender's own work meanwhile, drawing in software": time.process_time() - before - sum(steps)}
+    measured |= yield from notched(stage, "Edit Mode", handle, draws, software)
+    stage.mouse.key("ESC")
+    yield from stage.settle()
+
+    mode(stage, "OBJECT")
+    measured["entering Sculpt Mode, Blender's own"] = seconds(lambda: mode(stage, "SCULPT"))
+    yield from stage.drawn()
+    stage.mouse.move(*spot)
+    forget(clocks)
+    with stage.override():
+        bpy.ops.mesh.partwheel_paint("INVOKE_DEFAULT")
+    yield from stage.until("a part is shown", lambda: stage.drawn_things() == 1)
+    measured["start in Sculpt Mode"] = sum(begin.take())
+    measured |= yield from notched(stage, "Sculpt Mode", handle, draws, software)
+    stage.mouse.key("ESC")
+    yield from stage.settle()
+    measured |= {f"entering {name.title()} Mode, Blender's own": each for name, each in mode_set.items()}
+    print(f"felt | {faces:,} faces | milliseconds | goal |\nfelt | --- | --- | --- |")
+    for name, value in measured.items():
+        goal = GOALS.get(name)
+        print(f"felt | {name} | {1000 * value:.1f} | {f'{1000 * goal:.0f}' if goal else ''} |")
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(f"felt: Blender's memory at most {peak:.0f} MB")
+    mode(stage, "EDIT")
+
+
+def notched(stage, where, handle, draws, software):
+    """{name: seconds} of notches up and down again."""
+    whole, sizes, drawing = [], [], []
+    for step in (1,) * NOTCHES + (-1,) * NOTCHES:
+        forget((handle, draws, software))
+        stage.mouse.wheel(step)
+        yield from stage.settle()
+        drawn = software.take()
+        if drawn:  # not at the end of the path
+            whole.append(sum(handle.take()) + sum(draws.take()) - sum(drawn))
+            drawing.append(sum(drawn))
+    return {f"notch in {where}, median": statistics.median(whole), f"notch in {where}, largest": max(whole),
+            f"beside a notch in {where}, drawing in software, median": statistics.median(drawing)}
+
+
+def forget(clocks):
+    for clock in clocks:
+        clock.take()
+
+
+def seconds(action):
+    """Processor time of Blender for it."""
+    began = time.process_time()
+    action()
+    return time.process_time() - began
+
+
+def children():
+    """Processor time of all workers that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def mode(stage, name):
+    with stage.override():
+        bpy.ops.object.mode_set(mode=name)
