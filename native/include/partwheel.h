@@ -93,7 +93,10 @@ PW_API pw_status pw_context_seconds(const pw_context *context, double *seconds);
 /* Which tree is built. */
 typedef enum pw_mode {
     PW_MODE_REGROUPED = 0, /* the paper's below some 600 parts, which are joined by what people take for one part */
-    PW_MODE_PAPER = 1      /* the paper's in every step */
+    PW_MODE_PAPER = 1,     /* the paper's in every step */
+    PW_MODE_SYMMETRIC = 2  /* as PW_MODE_REGROUPED; and what is its own mirror image has the same parts on both sides:
+                            * those of the side where they score better. Twice the time for regrouping, and that of
+                            * clustering once more. What is not is as in PW_MODE_REGROUPED, bit for bit. */
 } pw_mode;
 
 /* What the default, PW_MODE_REGROUPED, does otherwise than the paper, and why:

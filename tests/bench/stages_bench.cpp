@@ -61,7 +61,7 @@ Run run(const Model& model, double quality) {
     const auto saved = staged("hierarchy", [&] {
         return Hierarchy(solid.surface, mesh, Regrouped{tree, {}}, model.vertices.data()).save();
     });
-    staged("regroup", [&] { return regroup(mesh, tree, mirror_planes(mesh.vertices, outer_facets(mesh), progress), progress); });
+    staged("regroup", [&] { return regroup(mesh, tree, {}, progress); });
     r.tetgen = tetgen_watch();
     r.tets = mesh.tetrahedra.size();
     r.bytes = saved.size();

@@ -13,7 +13,7 @@ NATIVE, PACKAGE, ADDON = ROOT / "native" / "src", ROOT / "native" / "python" / "
 # The order in which data flows: a file imports from its own room and from those before it. A room's sub-folder is a
 # room of its own; "x.py": that file alone.
 FLOWS = {
-    NATIVE: ["base", "surface", "surface/prepare", "fill", "cluster/hull", "cluster", "tree/regroup", "tree", "part",
+    NATIVE: ["base", "surface", "surface/prepare", "fill", "cluster/hull", "cluster", "tree/mirror", "tree/regroup", "tree", "part",
              "api.cpp"],
     ADDON: ["trouble.py", "preferences.py", "mesh", "view", "parts", "pick", "solid", "compose", "deform", "ui", "api.py",
             "command.py", "__init__.py"],

@@ -9,19 +9,13 @@ import shapes
 from partwheel import Hierarchy, Mode
 from reference_regroup import NODE_NAMES, PAIR_NAMES, Regrouped
 
-# Sheared: where costs tie by symmetry the last bit of a hull's volume decides, and what is its own mirror image gets its
-# parts otherwise (test_symmetry.py).
+# Without the symmetries by which costs tie: there the last bit of a hull's volume decides.
 MODELS = ["P", "hand", "elephant", "helmet", "femur", "blobby", "mpi", "double-torus-example", "dragknob", "cross"]
 OF_SEVERAL_PIECES = {
     "helmet, P": lambda: shapes.merged(of_length_1("helmet", 0), of_length_1("P", 1.5)),
     "P, mpi, hand": lambda: shapes.merged(of_length_1("P", 0), of_length_1("mpi", 1.5), of_length_1("hand", 4)),
 }
-SHEAR = np.array([[1, 0.4, 0.3], [0, 1, 0.35], [0, 0, 1]])
 TOLERANCE = 1e-9
-
-
-def sheared(shape):
-    return shape._replace(vertices=shape.vertices @ SHEAR.T)
 
 
 def of_length_1(name, x):
@@ -43,7 +37,7 @@ def signatures(tetrahedra):
 @functools.cache
 def both(name):
     """({set of tetrahedra: score}, {set: the sets of the two that it was joined from}): the reference's, the build's."""
-    shape = sheared(OF_SEVERAL_PIECES[name]() if name in OF_SEVERAL_PIECES else shapes.off(name))
+    shape = OF_SEVERAL_PIECES[name]() if name in OF_SEVERAL_PIECES else shapes.off(name)
     paper = Hierarchy.build(*shape, mode=Mode.PAPER)
     reference = Regrouped(paper.vertices, paper.tetrahedra, paper.merges, paper.summary.components)
     numbers = signatures(paper.tetrahedra)

@@ -191,7 +191,7 @@ TEST(Api, BuildChecksItsOptionsAndSizes) {
         expect_argument_error(status({sizeof(pw_build_options), 0, rungs, 0, 0, 0, 0}));
     for (const int32_t open : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, open, 0, 0, 0}));
     expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, -1, 0, 0}));
-    for (const int32_t mode : {-1, 2}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, 0, mode, 0}));
+    for (const int32_t mode : {-1, 3}) expect_argument_error(status({sizeof(pw_build_options), 0, 0, 0, 0, mode, 0}));
     const auto sized_build = [&](size_t vertices, size_t triangles, const int32_t* faces, size_t face_count) {
         return pw_build(nullptr, mesh.vertex_data(), vertices, mesh.triangle_data(), triangles, faces, face_count,
                         nullptr, &made);

@@ -2,7 +2,7 @@
 // copied across them.
 #include "support/shapes.h"
 #include "surface/symmetry.h"
-#include "tree/regroup/mirror.h"
+#include "tree/mirror/mirror.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace partwheel::test {
 namespace {
 
-using partwheel::operator+, partwheel::operator-, partwheel::operator*;
+using partwheel::operator*;
 
 std::vector<Plane> planes_of(const TriMesh& mesh) {
     Progress progress;
@@ -42,7 +42,7 @@ TEST(Symmetry, PlanesAreFoundWhereverTheModelStands) {
         std::array<int, 3> met{};
         for (const Plane& plane : planes) {
             EXPECT_NEAR(length(plane.normal), 1, 1e-12);
-            EXPECT_NEAR(plane.height(axes.vertices[3] + Point{5, -3, 2}), 0, 0.02);
+            EXPECT_NEAR(plane.height(partwheel::operator+(axes.vertices[3], Point{5, -3, 2})), 0, 0.02);
             for (size_t k = 0; k < 3; ++k) met[k] += std::fabs(dot(plane.normal, axes.vertices[k])) > 0.999;
         }
         EXPECT_EQ(met, (std::array<int, 3>{1, 1, 1}));
@@ -65,9 +65,8 @@ TEST(Symmetry, MostOfTheSurfaceIsEnough) {
     EXPECT_EQ(planes_of(knobbed).size(), 3U);
 }
 
-// Of a bar of cubes along x, each cube a part numbered along it but for the last quarter, which has parts of its own
-// making: what is copied is the finer side's.
-TEST(Symmetry, PartsOfTheFinerSideAreCopied) {
+// Of a bar of cubes along x, each cube on the left is a part, all of the right is one that is worth less.
+TEST(Symmetry, PartsOfTheBetterSideAreCopied) {
     const int length = 12;
     const TetMesh mesh = tets_of(block({0, 0, 0}, {length, 2, 2}));
     const auto cube = [&](size_t t) {
@@ -75,13 +74,15 @@ TEST(Symmetry, PartsOfTheFinerSideAreCopied) {
         for (const int32_t v : mesh.tetrahedra[t]) x += mesh.vertices[static_cast<size_t>(v)][0] / 4;
         return static_cast<int>(x);
     };
-    PartsOfTetrahedra parts;  // fine on the left, one part on the right from the middle on
+    PartsOfTetrahedra parts{{}, 0, {}, {}};  // fine on the left, one part on the right from the middle on
     for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) parts.of.push_back(std::min(cube(t), length / 2));
     parts.count = static_cast<size_t>(length / 2 + 1);
+    std::vector<double> worth(parts.count, 0.9);
+    worth.back() = 0.1;
     Progress progress;
     progress.begin();
     const Plane middle{{1, 0, 0}, length / 2.0};
-    const PartsOfTetrahedra found = mirrored(mesh, std::vector<Plane>{middle}, parts, progress);
+    const PartsOfTetrahedra found = mirrored(mesh, std::vector<Plane>{middle}, parts, worth, progress);
     ASSERT_EQ(found.count, static_cast<size_t>(length));
     ASSERT_EQ(found.images.size(), 1U);
     std::map<int, int32_t> part;  // of each cube
@@ -95,7 +96,7 @@ TEST(Symmetry, PartsOfTheFinerSideAreCopied) {
 TEST(Symmetry, WhatLiesAcrossThePlaneIsItsOwnImage) {
     const int length = 9;  // the middle cube lies across
     const TetMesh mesh = tets_of(block({0, 0, 0}, {length, 2, 2}));
-    PartsOfTetrahedra parts{{}, 3, {}};
+    PartsOfTetrahedra parts{{}, 3, {}, {}};
     for (const Tetrahedron& tet : mesh.tetrahedra) {
         double x = 0;
         for (const int32_t v : tet) x += mesh.vertices[static_cast<size_t>(v)][0] / 4;
@@ -103,7 +104,8 @@ TEST(Symmetry, WhatLiesAcrossThePlaneIsItsOwnImage) {
     }
     Progress progress;
     progress.begin();
-    const PartsOfTetrahedra found = mirrored(mesh, std::vector<Plane>{{{1, 0, 0}, length / 2.0}}, parts, progress);
+    const PartsOfTetrahedra found =
+        mirrored(mesh, std::vector<Plane>{{{1, 0, 0}, length / 2.0}}, parts, std::vector<double>(3, 1), progress);
     EXPECT_EQ(found.of, parts.of);
     EXPECT_EQ(found.images, (std::vector<std::vector<int32_t>>{{2, 1, 0}}));
 }

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "cluster/within.h"
 #include "surface/prepare/rough.h"
-#include "tree/regroup/spread.h"
+#include "tree/mirror/spread.h"
 
 #include <algorithm>
 #include <numeric>

@@ -2,7 +2,7 @@
 #include "tree/hierarchy.h"
 
 #include "cluster/hull/hull.h"
-#include "base/claims.h"
+#include "tree/mirror/claims.h"
 #include "tree/packed.h"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // The parts joined bottom-up, the likeliest pair first, then the components; and what that makes of the tree.
 #include "cluster/within.h"
-#include "tree/regroup/alike.h"
+#include "tree/mirror/alike.h"
+#include "tree/mirror/mirror.h"
+#include "tree/mirror/spread.h"
 #include "tree/regroup/fitted.h"
-#include "tree/regroup/mirror.h"
 #include "tree/regroup/parts.h"
-#include "tree/regroup/spread.h"
 
 #include <algorithm>
 #include <cmath>

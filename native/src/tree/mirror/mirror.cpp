@@ -1,9 +1,9 @@
 // Parts copied from one side of a plane to the other, on the surface first, then spread into the tetrahedra behind.
-#include "tree/regroup/mirror.h"
+#include "tree/mirror/mirror.h"
 
 #include "base/groups.h"
 #include "cluster/hull/hull.h"
-#include "tree/regroup/spread.h"
+#include "tree/mirror/spread.h"
 
 #include <algorithm>
 #include <numeric>

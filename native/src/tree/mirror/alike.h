@@ -1,7 +1,7 @@
 // In which order parts and their mirror images are joined: as those were that stand for one side.
 #pragma once
 
-#include "tree/regroup/mirror.h"
+#include "tree/mirror/mirror.h"
 
 #include <array>
 #include <span>

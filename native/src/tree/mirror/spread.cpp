@@ -1,5 +1,5 @@
 // Parts spread into the tetrahedra that have none yet: by claims, layer by layer.
-#include "tree/regroup/spread.h"
+#include "tree/mirror/spread.h"
 
 #include <utility>
 

@@ -1,8 +1,8 @@
 // Parts spread into the tetrahedra that have none yet.
 #pragma once
 
-#include "base/claims.h"
 #include "fill/tetrahedra.h"
+#include "tree/mirror/claims.h"
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 // The joins of one side, and with each of them those of its images.
-#include "tree/regroup/alike.h"
+#include "tree/mirror/alike.h"
 
 #include "base/groups.h"
 
