@@ -23,14 +23,14 @@ Cells u_shape() { return block({0, 0, 0}, {5, 1, 2}) + block({0, 0, 0}, {1, 4, 2
 TriMesh rough_torus() { return named(snapped(perturbed(torus(16, 8, 2, 0.6), 0.03, 1), 0x1p-16), "rough torus"); }
 TriMesh rough_snowman() { return named(snapped(perturbed(snowman(7, 12), 0.02, 2), 0x1p-16), "rough snowman"); }
 
-// In either mode.
+// In each mode.
 class Hierarchies : public testing::TestWithParam<pw_mode> {
 protected:
     static Handle build(const TriMesh& mesh, double quality = 0) { return test::build(mesh, quality, GetParam()); }
 };
 
-INSTANTIATE_TEST_SUITE_P(Mode, Hierarchies, testing::ValuesIn(both_modes), [](const auto& mode) {
-    return mode.param == PW_MODE_PAPER ? "paper" : "regrouped";
+INSTANTIATE_TEST_SUITE_P(Mode, Hierarchies, testing::ValuesIn(all_modes), [](const auto& mode) {
+    return mode_name(mode.param);
 });
 
 // ---- Invariants ----

@@ -154,8 +154,8 @@ protected:
     static Handle build(const TriMesh& mesh, double quality = 0) { return test::build(mesh, quality, GetParam()); }
 };
 
-INSTANTIATE_TEST_SUITE_P(Mode, Invariance, testing::ValuesIn(both_modes), [](const auto& mode) {
-    return mode.param == PW_MODE_PAPER ? "paper" : "regrouped";
+INSTANTIATE_TEST_SUITE_P(Mode, Invariance, testing::ValuesIn(all_modes), [](const auto& mode) {
+    return mode_name(mode.param);
 });
 
 TEST_P(Invariance, Scaled) {

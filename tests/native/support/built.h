@@ -24,7 +24,10 @@ struct Built {
 Built try_build(const TriMesh& mesh, double quality = 0, pw_context* context = nullptr,
                 uint32_t rungs = PW_RUNG_EXACT, int32_t mode = PW_MODE_REGROUPED);
 
-inline constexpr pw_mode both_modes[] = {PW_MODE_REGROUPED, PW_MODE_PAPER};
+inline constexpr pw_mode all_modes[] = {PW_MODE_REGROUPED, PW_MODE_PAPER, PW_MODE_SYMMETRIC};
+inline const char* mode_name(pw_mode mode) {
+    return mode == PW_MODE_PAPER ? "paper" : mode == PW_MODE_SYMMETRIC ? "symmetric" : "regrouped";
+}
 
 // On the exact rung. Throws with the library's message if it can't be built.
 Handle build(const TriMesh& mesh, double quality = 0, int32_t mode = PW_MODE_REGROUPED);

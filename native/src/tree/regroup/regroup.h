@@ -38,6 +38,11 @@
 // pair's first part had stay. A pair of which one has no area goes before all others, at -1000000 - interface / area of
 // all.
 // Components are joined at last, as in the paper's tree. A mesh of one tetrahedron is one part, of score 1.
+//
+// Planes. Where the model is its own mirror image in given planes, all this is done first as above; then the parts of the
+// sides that score better are copied (tree/mirror/mirror.h), and the copies joined in the order in which what they stand
+// for was, each join with its images at once (tree/mirror/alike.h). What joins more than two at once has steps, which are
+// merges of score 0 and no nodes. A node's score is the mean of it and its images'.
 #pragma once
 
 #include "cluster/cluster.h"
@@ -63,7 +68,7 @@ struct Regrouped {
     // as the paper's do.
     BinaryTree tree;
     // How well each node at or above the parts is expected to match what people would take, 0..1 (the mean overlap,
-    // intersection over union): first the parts in depth-first order, then the merges that join them. 2 parts - 1.
+    // intersection over union; 0: no node, but a step to what is joined from more than two): first the parts in depth-first order, then the merges that join them. 2 parts - 1.
     std::vector<double> scores;
 };
 
