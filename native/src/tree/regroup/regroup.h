@@ -68,7 +68,8 @@ struct Regrouped {
     // as the paper's do.
     BinaryTree tree;
     // How well each node at or above the parts is expected to match what people would take, 0..1 (the mean overlap,
-    // intersection over union; 0: no node, but a step to what is joined from more than two): first the parts in depth-first order, then the merges that join them. 2 parts - 1.
+    // intersection over union; 0: no node, but a step to what is joined from more than two): first the parts in
+    // depth-first order, then the merges that join them. 2 parts - 1.
     std::vector<double> scores;
 };
 
