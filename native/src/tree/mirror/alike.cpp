@@ -112,9 +112,10 @@ Alike joined_alike(const PartsOfTetrahedra& parts, std::span<const double> areas
     std::vector<uint8_t> is_scrap(areas.size(), 0);
     bool scraps = false;
     for (size_t i = 1; i < left.size(); ++i) {
+        if (joining.now(left[i]) != left[i]) continue;
         // Two sides that only meet in the plane are joined last.
         if (joining.area(left[i]) >= scrap * whole) {
-            joining.join(joining.now(left[0]), joining.now(left[i]), costs.back());
+            joining.join(joining.now(left[0]), left[i], costs.empty() ? 0 : costs.back());
             continue;
         }
         scraps = true;

@@ -258,11 +258,17 @@ PartsOfTetrahedra mirrored(const TetMesh& mesh, std::span<const Plane> planes, P
 
 PartsOfTetrahedra dissolved(const TetMesh& mesh, PartsOfTetrahedra parts, std::span<const int32_t> scraps,
                             Progress& progress) {
+    const std::vector<int32_t> before = parts.of;
     std::vector<int32_t> number(parts.count, 0);
     for (const int32_t p : scraps) number[at(p)] = unsettled;
     for (int32_t& p : parts.of)
         if (number[at(p)] < 0) p = unsettled;
     spread(mesh, claims_of_neighbours(mesh, parts.of), parts.of, progress);
+    for (size_t t = 0; t < before.size(); ++t)
+        if (parts.of[t] < 0) {  // it has no neighbours
+            parts.of[t] = before[t];
+            number[at(before[t])] = 0;
+        }
     parts.count = 0;
     for (int32_t& n : number)
         if (n == 0) n = static_cast<int32_t>(parts.count++);
