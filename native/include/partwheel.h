@@ -96,7 +96,8 @@ typedef enum pw_mode {
     PW_MODE_PAPER = 1,     /* the paper's in every step */
     PW_MODE_SYMMETRIC = 2  /* as PW_MODE_REGROUPED; and what is its own mirror image has the same parts on both sides:
                             * those of the side where they score better. Twice the time for regrouping, and that of
-                            * clustering once more. What is not is as in PW_MODE_REGROUPED, bit for bit. */
+                            * clustering once more. Rounding coordinates may change its tree more than the others'.
+                            * What is not symmetric is as in PW_MODE_REGROUPED, bit for bit. */
 } pw_mode;
 
 /* What the default, PW_MODE_REGROUPED, does otherwise than the paper, and why:

@@ -18,6 +18,8 @@ constexpr double fair_share = 0.25;
 // A part and its image are one if the hull of both is no more than this share larger than the two hulls: not two sides of
 // the model, but two halves of its middle.
 constexpr double little_excess = 0.05;
+// What would tie on an exactly symmetric model, such as a tetrahedron in the plane, is not left to rounding.
+constexpr double rounding = 1e-7;
 constexpr int32_t unsettled = -1, elsewhere = -2;  // as parts: to be spread into; not to be touched
 
 Point centre(const TetMesh& mesh, size_t t) {
@@ -69,7 +71,7 @@ public:
     }
 
 private:
-    bool near(const Point& p) const { return plane_.height(p) >= 0; }
+    bool near(const Point& p) const { return plane_.height(p) >= -rounding; }
 
     void choose_side() {
         const size_t tetrahedra = mesh_.tetrahedra.size();
@@ -93,15 +95,15 @@ private:
                 area_here += size;
                 worth_here += worth;
             }
-        if (worth_here * area_all < worth_all * area_here) {
+        if (worth_here * area_all < (1 - rounding) * worth_all * area_here) {
             plane_ = {-1 * plane_.normal, -plane_.offset};
             for (size_t p = 0; p < old_.count; ++p) here[p] = all[p] - here[p];
         }
         lives_.assign(old_.count, 0);
         own_image_.assign(old_.count, 0);
         for (size_t p = 0; p < old_.count; ++p) {
-            lives_[p] = here[p] >= fair_share * all[p];
-            own_image_[p] = lives_[p] && all[p] - here[p] >= fair_share * all[p];
+            lives_[p] = here[p] >= (fair_share - rounding) * all[p];
+            own_image_[p] = lives_[p] && all[p] - here[p] >= (fair_share - rounding) * all[p];
         }
         for (size_t t = 0; t < tetrahedra; ++t) near_.push_back(near(centre(mesh_, t)));
     }
