@@ -57,7 +57,7 @@ def test_a_click_takes_the_mirror_image_on_the_other_side(both):
 
 
 def nodes_with_an_image(hierarchy, mirror):
-    """(share of the scored nodes of 3 to 80 % of the faces that overlap the mirror image of one by 0.9, their number)"""
+    """(share of the scored nodes of 3 to 80 % of the faces that overlap an image by 0.9, their number)"""
     sets = [faces_of(hierarchy, n) for n in np.flatnonzero(hierarchy.score)]
     sets = [faces for faces in sets if 0.03 < len(faces) / len(mirror) < 0.8]
     best = [max(overlap({int(mirror[f]) for f in faces}, other) for other in sets) for faces in sets]

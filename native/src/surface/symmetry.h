@@ -19,9 +19,10 @@ struct Plane {
 // What lies within this of its mirror image, relative to the bounding box's diagonal, has one there.
 inline constexpr double mirror_tolerance = 1.0 / 100;
 
-// The plane in which most of the surface has its mirror image, and those perpendicular to it and to each other: at most
-// three, in each of which `least_mirrored` of the area has. Candidates are the planes through the middle of the area and of
-// the bounding box, normal to the principal and the coordinate axes, each then moved to where its two sides meet best.
+// The plane in which most of the surface has its mirror image, and those perpendicular to it and to each other: at
+// most three, in each of which `least_mirrored` of the area has. Candidates are the planes through the middle of the
+// area and of the bounding box, normal to the principal and the coordinate axes, each then moved to where its two
+// sides meet best.
 inline constexpr double least_mirrored = 0.8;
 std::vector<Plane> mirror_planes(std::span<const Point> vertices, std::span<const Triangle> triangles,
                                  Progress& progress);

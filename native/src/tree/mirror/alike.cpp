@@ -30,7 +30,8 @@ public:
         for (const std::vector<int32_t>& image : result.images)
             for (size_t i = 0, n = all.size(); i < n; ++i) {
                 const std::array<int32_t, 2> there = {image[at(all[i][0])], image[at(all[i][1])]};
-                if (free(there[0]) && free(there[1]) && there[0] != there[1] && std::ranges::find(all, there) == all.end())
+                if (free(there[0]) && free(there[1]) && there[0] != there[1] &&
+                    std::ranges::find(all, there) == all.end())
                     all.push_back(there);
             }
         std::vector<int32_t> members;

@@ -9,8 +9,8 @@
 
 namespace partwheel {
 
-// What is joined at once: two, or where an image meets what it is the image of more. Parts have the numbers 0 to count - 1,
-// what join i makes is number count + i.
+// What is joined at once: two, or where an image meets what it is the image of more. Parts have the numbers 0 to
+// count - 1, what join i makes is number count + i.
 struct JoinedAlike {
     std::vector<int32_t> members;
     double cost = 0;

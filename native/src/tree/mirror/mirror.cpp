@@ -15,8 +15,8 @@ namespace {
 
 // A part with less of its volume on one side is of the other.
 constexpr double fair_share = 0.25;
-// A part and its image are one if the hull of both is no more than this share larger than the two hulls: not two sides of
-// the model, but two halves of its middle.
+// A part and its image are one if the hull of both is no more than this share larger than the two hulls: not two
+// sides of the model, but two halves of its middle.
 constexpr double little_excess = 0.05;
 // What would tie on an exactly symmetric model, such as a tetrahedron in the plane, is not left to rounding.
 constexpr double rounding = 1e-7;
@@ -112,12 +112,14 @@ private:
     void add_up_images(std::vector<double>& sums) const {
         for (const std::vector<int32_t>& image : old_.images)
             for (size_t p = 0; p < old_.count; ++p)
-                if (const int32_t q = image[p]; q > static_cast<int32_t>(p)) sums[p] = sums[at(q)] = sums[p] + sums[at(q)];
+                if (const int32_t q = image[p]; q > static_cast<int32_t>(p))
+                    sums[p] = sums[at(q)] = sums[p] + sums[at(q)];
     }
 
     // The parts that live on the near side share all of it.
     void settle_near_side() {
-        // What lies across the plane hangs together beyond it: of something thin the tetrahedra lie on either side in turns.
+        // What lies across the plane hangs together beyond it: of something thin the tetrahedra lie on either side in
+        // turns.
         part_ = old_.of;
         for (size_t t = 0; t < near_.size(); ++t)
             if (!lives_[at(part_[t])] || (!near_[t] && !own_image_[at(part_[t])])) part_[t] = unsettled;
@@ -146,8 +148,8 @@ private:
         for (size_t p = 0; p < old_.count; ++p) own_image_[p] |= both[p] - 2 * one[p] <= little_excess * both[p];
     }
 
-    // Numbers: part p of the near side is still p; its image is p or count + p. What has no counterpart is of the part that
-    // it was of: p, or if that does not live on the near side 2 count + p.
+    // Numbers: part p of the near side is still p; its image is p or count + p. What has no counterpart is of the
+    // part that it was of: p, or if that does not live on the near side 2 count + p.
     int32_t image(int32_t p) const {
         return own_image_[at(p)] ? p : static_cast<int32_t>(old_.count) + p;
     }

@@ -17,9 +17,11 @@ struct PartsOfTetrahedra {
     std::vector<int32_t> stands;  // of mirrored(): for each part that was given one that it has become; -1: none
 };
 
-// Plane by plane, the side whose area is worth more (worth: of each part, by area) is copied to the other: what lies there goes with the mirror image of the part
-// that lies behind its own mirror image. A part with a fair share of its volume on either side becomes its own image.
-// What has no counterpart within the tolerance keeps the part it had, which then has no image.
+// Plane by plane, the side whose area is worth more (worth: of each part, for its area) is copied to the other: what
+// lies there goes with the mirror image of the part that lies behind its own mirror image. A part becomes its own
+// image if it has a fair share of its volume on either side, or is convex together with its image. What has no
+// counterpart within the tolerance keeps the part it had, which has no image unless it lives on the side that is
+// copied.
 PartsOfTetrahedra mirrored(const TetMesh& mesh, std::span<const Plane> planes, PartsOfTetrahedra parts,
                            std::span<const double> worth, Progress& progress);
 

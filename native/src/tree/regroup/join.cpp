@@ -17,6 +17,9 @@ namespace partwheel {
 
 namespace {
 
+// Parts copied from side to side may leave scraps that nothing joins: up to this share of the area.
+constexpr double largest_scrap = 0.02;
+
 class Regrouping {
 public:
     Regrouping(const TetMesh& mesh, const BinaryTree& tree, Progress& progress, std::span<const double> pair_numbers,
@@ -265,13 +268,13 @@ void Regrouping::take(const PartsOfTetrahedra& parts, size_t threads) {
     measure(parts, numbers);
 }
 
-// The same joins for parts that were copied from one side to the other, each with those of its images at once. The steps
-// to what is made of more than two are no nodes; images score the same.
+// The same joins for parts that were copied from one side to the other, each with those of its images at once. The
+// steps to what is made of more than two are no nodes; images score the same.
 Regrouped Regrouping::alike(PartsOfTetrahedra parts, size_t threads) const {
     std::vector<double> costs;
     for (size_t j = 0; j < joined_.size(); ++j) costs.push_back(parts_.all[parts_.fine + j].own_cost);
     Alike plan;
-    for (double scrap = 0.02;;) {
+    for (double scrap = largest_scrap;;) {
         std::vector<double> areas(parts.count, 0);
         for (size_t t = 0; t < parts.of.size(); ++t)
             for (size_t k = 0; k < 4; ++k)

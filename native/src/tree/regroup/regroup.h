@@ -39,10 +39,10 @@
 // all.
 // Components are joined at last, as in the paper's tree. A mesh of one tetrahedron is one part, of score 1.
 //
-// Planes. Where the model is its own mirror image in given planes, all this is done first as above; then the parts of the
-// sides that score better are copied (tree/mirror/mirror.h), and the copies joined in the order in which what they stand
-// for was, each join with its images at once (tree/mirror/alike.h). What joins more than two at once has steps, which are
-// merges of score 0 and no nodes. A node's score is the mean of it and its images'.
+// Planes. Where the model is its own mirror image in given planes, all this is done first as above; then the parts of
+// the sides that score better are copied (tree/mirror/mirror.h), and the copies joined in the order in which what
+// they stand for was, each join with its images at once (tree/mirror/alike.h). What joins more than two at once has
+// steps, which are merges of score 0 and no nodes. A node's score is the mean of it and its images'.
 #pragma once
 
 #include "cluster/cluster.h"
@@ -86,8 +86,8 @@ struct RegroupTrace {
     std::vector<std::array<double, node_measures>> nodes;
 };
 
-// tree: the paper's of this mesh; planes: in which it is its own mirror image, see mirror_planes(). threads: as cluster()
-// takes it. pair_numbers: null, or another cost to be tried; trace: null, or what to fill.
+// tree: the paper's of this mesh; planes: in which it is its own mirror image, see mirror_planes(). threads: as
+// cluster() takes it. pair_numbers: null, or another cost to be tried; trace: null, or what to fill.
 Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, std::span<const Plane> planes, Progress& progress,
                   size_t threads = 1, std::span<const double> pair_numbers = {}, RegroupTrace* trace = nullptr);
 
