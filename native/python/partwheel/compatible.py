@@ -30,6 +30,7 @@ SMALL_BORDER = 0.25  # of the largest one's radius: those below don't count
 LEAST_SHARE, LARGEST_SHARE = 0.004, 0.7  # of the whole's area that a part offered has
 CUT = 200  # parts, into which the whole is cut to find what the wheel stops at
 ALIGNED = 16  # of the parts that are most alike by measure are fitted
+SCORE_DIGITS = 9
 SAME = 0.6  # overlap from which two nodes of one hierarchy are offered as one part
 
 
@@ -352,7 +353,9 @@ def ranked(place, parts, same=lambda one, other: False):
         if any(same(match.key, key) for match in found):
             continue
         fitted = fit(place, shape)
-        found.append(Match(key, float(np.exp(-(0.5 * unlike + 4 * fitted.distance))), fitted.matrix))
+        # Products of matrices differ in their last bits with where these lie in memory: that is no part of a score.
+        score = round(float(np.exp(-(0.5 * unlike + 4 * fitted.distance))), SCORE_DIGITS)
+        found.append(Match(key, score, fitted.matrix))
         if len(found) == ALIGNED:
             break
     return sorted(found, key=lambda each: -each.score)
