@@ -2,13 +2,14 @@
 // copied across them.
 #include "support/shapes.h"
 #include "surface/symmetry.h"
-#include "tree/mirror/mirror.h"
+#include "tree/mirror/alike.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <random>
 
 namespace partwheel::test {
 namespace {
@@ -118,6 +119,62 @@ TEST(Symmetry, WhatLiesAcrossThePlaneIsItsOwnImage) {
     EXPECT_EQ(image[static_cast<size_t>(number[0])], number[2]);
     EXPECT_EQ(image[static_cast<size_t>(number[1])], number[1]);
     EXPECT_EQ(image[static_cast<size_t>(number[2])], number[0]);
+}
+
+// Whatever the images: all is joined in the end, each part once, or there are scraps.
+TEST(Symmetry, JoinsAlikeEndInOnePart) {
+    std::mt19937 random(1);
+    const auto below = [&](size_t n) { return static_cast<int32_t>(random() % n); };
+    size_t whole = 0, scrapped = 0;
+    for (int round = 0; round < 3000; ++round) {
+        const size_t count = 2 + random() % 12;
+        PartsOfTetrahedra parts{{}, count, {}, {}};
+        for (size_t plane = 0; plane < 1 + random() % 3; ++plane) {
+            std::vector<int32_t> image(count, -1);
+            for (size_t p = 0; p < count; ++p)
+                if (const int32_t q = below(count); image[p] < 0 && image[static_cast<size_t>(q)] < 0) {
+                    image[p] = q;
+                    image[static_cast<size_t>(q)] = static_cast<int32_t>(p);
+                }
+            parts.images.push_back(image);
+        }
+        std::vector<double> areas;
+        for (size_t p = 0; p < count; ++p) areas.push_back(below(4) == 0 ? 0.001 : 1);
+        const size_t before = 1 + random() % 12;
+        for (size_t p = 0; p < before; ++p) parts.stands.push_back(below(count + 1) - 1);
+        std::vector<std::array<int32_t, 2>> joined;
+        std::vector<int32_t> tops;
+        for (size_t p = 0; p < before; ++p) tops.push_back(static_cast<int32_t>(p));
+        while (tops.size() > 1) {
+            std::shuffle(tops.begin(), tops.end(), random);
+            joined.push_back({tops[0], tops[1]});
+            tops.erase(tops.begin(), tops.begin() + 2);
+            tops.push_back(static_cast<int32_t>(before + joined.size() - 1));
+        }
+        const std::vector<double> costs(joined.size(), 0.5);
+        for (const double scrap : {0.02, 0.0}) {
+            const Alike alike = joined_alike(parts, areas, joined, costs, scrap);
+            if (!alike.scraps.empty()) {
+                ASSERT_TRUE(alike.joins.empty() && scrap > 0);
+                ++scrapped;
+                continue;
+            }
+            std::vector<int> used(count + alike.joins.size(), 0);
+            for (size_t j = 0; j < alike.joins.size(); ++j) {
+                ASSERT_GE(alike.joins[j].members.size(), 2U);
+                for (const int32_t member : alike.joins[j].members) {
+                    ASSERT_LT(static_cast<size_t>(member), count + j);
+                    ++used[static_cast<size_t>(member)];
+                }
+            }
+            ASSERT_EQ(used.back(), 0);
+            ASSERT_EQ(std::count(used.begin(), used.end(), 1), static_cast<std::ptrdiff_t>(used.size()) - 1);
+            for (const std::vector<int32_t>& image : alike.images) ASSERT_EQ(image.size(), used.size());
+            ++whole;
+        }
+    }
+    EXPECT_GT(whole, 3000U);
+    EXPECT_GT(scrapped, 100U);
 }
 
 }  // namespace

@@ -10,8 +10,8 @@ namespace partwheel {
 
 namespace {
 
-constexpr size_t few_samples = 256, many_samples = 2048;
-constexpr double promising = 0.4;  // of the samples: where a plane is worth moving
+constexpr size_t few_samples = 256, many_samples = 1024;
+constexpr double promising = 0.4, doubt = 0.1;  // of the few: where a plane is worth moving; how far they err
 constexpr int moves = 6;
 constexpr double reach = 1.0 / 20;  // relative to the diagonal: how far off a counterpart is when a plane is moved
 constexpr double perpendicular = 0.1;  // less than this is the cosine between planes that are
@@ -67,7 +67,8 @@ public:
         std::vector<Candidate> found;
         for (const Plane& plane : candidates()) {
             if (share(plane, few_) < promising) continue;
-            for (const Plane& each : {plane, moved(plane)}) found.push_back({each, share(each, many_)});
+            for (const Plane& each : {plane, moved(plane)})
+                if (share(each, few_) > least_mirrored - doubt) found.push_back({each, share(each, many_)});
         }
         std::vector<Plane> taken;
         while (taken.size() < 3) {

@@ -109,23 +109,16 @@ Alike joined_alike(const PartsOfTetrahedra& parts, std::span<const double> areas
         if (a >= 0 && b >= 0 && a != b) joining.join(a, b, costs[j]);
         stands.push_back(a >= 0 ? a : b);
     }
-    const std::vector<int32_t> left = joining.left();
-    std::vector<uint8_t> is_scrap(areas.size(), 0);
-    bool scraps = false;
-    for (size_t i = 1; i < left.size(); ++i) {
-        if (joining.now(left[i]) != left[i]) continue;
-        // Two sides that only meet in the plane are joined last.
-        if (joining.area(left[i]) >= scrap * whole) {
-            joining.join(joining.now(left[0]), left[i], costs.empty() ? 0 : costs.back());
-            continue;
-        }
-        scraps = true;
-        for (size_t p = 0; p < areas.size(); ++p) is_scrap[p] |= joining.now(static_cast<int32_t>(p)) == left[i];
+    // Two sides that only meet in the plane are joined last; each time their images go along.
+    std::vector<int32_t> left = joining.left();
+    while (left.size() > 1 && joining.area(left[1]) >= scrap * whole) {
+        joining.join(left[0], left[1], costs.empty() ? 0 : costs.back());
+        left = joining.left();
     }
-    if (!scraps) return std::move(joining.result);
+    if (left.size() == 1) return std::move(joining.result);
     Alike none;
     for (size_t p = 0; p < areas.size(); ++p)
-        if (is_scrap[p]) none.scraps.push_back(static_cast<int32_t>(p));
+        if (joining.now(static_cast<int32_t>(p)) != left[0]) none.scraps.push_back(static_cast<int32_t>(p));
     return none;
 }
 
