@@ -77,12 +77,6 @@ Expansion<2 * N> scaled(const Expansion<N>& e, double b) {
     return h;
 }
 
-template <int N>
-Expansion<N> negated(Expansion<N> e) {
-    for (int i = 0; i < e.size; ++i) e.part[i] = -e.part[i];
-    return e;
-}
-
 // The product of two numbers.
 inline Expansion<2> product(double a, double b) {
     double high, low;
@@ -97,7 +91,7 @@ inline Expansion<2> product(double a, double b) {
 // where the differences are exact. 2 if it doesn't tell (Shewchuk 1997, the second stage of his adaptive predicate).
 int rounded_orientation(const Point& u, const Point& v, const Point& w, double permanent, bool exact) {
     const auto term = [](double p, double q, double r, double s, double t) {
-        return scaled(sum(product(p, q), negated(product(r, s))), t);
+        return scaled(sum(product(p, q), product(-r, s)), t);
     };
     const auto det = sum(sum(term(u[1], v[2], u[2], v[1], w[0]), term(u[2], v[0], u[0], v[2], w[1])),
                          term(u[0], v[1], u[1], v[0], w[2]));

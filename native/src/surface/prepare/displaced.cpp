@@ -1,7 +1,6 @@
 // The gentlest repair: some vertices set apart, or all smoothed.
 #include "surface/prepare/displaced.h"
 
-#include "base/error.h"
 #include "surface/attach.h"
 #include "surface/prepare/rough.h"
 
