@@ -186,10 +186,10 @@ std::span<const Triangle> as_triangles(const int32_t* triangles, size_t count) {
 
 MeshView as_mesh(const double* vertices, size_t vertex_count, const int32_t* triangles, size_t triangle_count,
                  const int32_t* faces, size_t face_count) {
-    as_points(vertices, vertex_count);
-    as_triangles(triangles, triangle_count);
+    const auto points = as_points(vertices, vertex_count);
+    const auto corners = as_triangles(triangles, triangle_count);
     require_countable(face_count, "face_count");
-    return {vertices, vertex_count, triangles, triangle_count, faces, face_count};
+    return {points, corners, {faces, faces ? triangle_count : 0}, face_count};
 }
 
 // Structs of a program that may be older or newer than the library: see the header's habits. None ends with padding,

@@ -109,7 +109,7 @@ class Place(SolidTest):
         fitted = placement.border(copy)
         self.assertAlmostEqual(fitted.radius / where.radius, 1, places=3)
         self.near(fitted.normal, where.normal, 3)
-        self.assertLess((fitted.middle - where.middle).length, 1.1 * placement.SINK * where.radius)
+        self.assertLess(Vector(fitted.middle - where.middle).length, 1.1 * placement.SINK * where.radius)
         self.ready(obj, copy)
         self.assertEqual(bpy.ops.object.partwheel_unite(), {"FINISHED"})
         self.assertSolid(obj.data)

@@ -18,6 +18,7 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,8 +41,9 @@ struct Run {
 };
 
 Run run(const Model& model, double quality) {
-    const MeshView view{model.vertices.data(), model.vertex_count(), model.triangles.data(), model.triangle_count(),
-                        nullptr, model.triangle_count()};
+    const std::span vertices(reinterpret_cast<const Point*>(model.vertices.data()), model.vertex_count());
+    const std::span triangles(reinterpret_cast<const Triangle*>(model.triangles.data()), model.triangle_count());
+    const MeshView view{vertices, triangles, {}, model.triangle_count()};
     Run r;
     Progress progress;
     tetgen_watch() = {};
@@ -59,7 +61,7 @@ Run run(const Model& model, double quality) {
     const BinaryTree tree = staged("cluster", [&] { return cluster(mesh, progress, 1); });
     staged("dendrogram", [&] { return prune(tree.merges); });  // as Hierarchy does, once more
     const auto saved = staged("hierarchy", [&] {
-        return Hierarchy(solid.surface, mesh, Regrouped{tree, {}}, model.vertices.data()).save();
+        return Hierarchy(solid.surface, mesh, Regrouped{tree, {}}, vertices).save();
     });
     staged("regroup", [&] { return regroup(mesh, tree, {}, progress); });
     r.tetgen = tetgen_watch();

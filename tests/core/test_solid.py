@@ -270,6 +270,22 @@ def test_of_snapped_parts(name, otherwise):
     assert wrong < otherwise * moved
 
 
+def test_caps_of_snapped_parts_are_the_same_wherever_the_model_stands():
+    """Coordinates are whole steps of 2^-12, so that moving the model rounds nothing."""
+    shape = shapes.off("knot")
+    lowest = shape.vertices.min(axis=0)
+    vertices = np.round((shape.vertices - lowest) / (shape.vertices - lowest).max() * 4096) / 4096
+    made = []
+    for shift in (0, 64):
+        moved = vertices + shift, shape.triangles, shape.faces, shape.face_count
+        hierarchy, creases = Hierarchy.build(*moved), Creases(*moved)
+        bounds = hierarchy.cut_parts(6)
+        snapped = [creases.snapped(hierarchy.face_labels(bounds) == part) for part in range(6)]
+        made.append([hierarchy.solid_of_faces(*each) for each in zip(bounds, bounds[1:], snapped)])
+    for here, there in zip(*made):
+        assert np.array_equal(here.triangles, there.triangles) and np.array_equal(here.beyond, there.beyond)
+
+
 def pieces(solid):
     sides = np.vstack([solid.triangles[:, :2], solid.triangles[:, 1:]])
     graph = coo_matrix((np.ones(len(sides)), (sides[:, 0], sides[:, 1])), (len(solid.vertices),) * 2)

@@ -86,7 +86,7 @@ TEST(Carried, ARoughSurfaceHasThePartsOfTheSmoothOne) {
     EXPECT_EQ(roughness(plain->vertices, solid.surface.triangles), 0);
 
     const Regrouped parts = regroup(*plain, cluster(*plain, progress), {}, progress);
-    const Hierarchy smooth(solid.surface, *plain, parts, rough.vertex_data());
+    const Hierarchy smooth(solid.surface, *plain, parts, rough.vertices);
     const Handle handle = build(rough), paper = build(rough, 0, PW_MODE_PAPER);
     EXPECT_EQ(arrays(handle).tetrahedron_count, arrays(paper).tetrahedron_count);
     expect_invariants(handle, rough, enclosed_volume(rough));

@@ -77,10 +77,10 @@ TEST(Surface, SoundShapesPass) {
 TEST(Surface, Empty) {
     const TriMesh mesh = cube();
     MeshView view = mesh.view();
-    view.vertex_count = 0;
+    view.vertices = {};
     EXPECT_EQ(checked(view).status, PW_ERROR_EMPTY);
     view = mesh.view();
-    view.triangle_count = 0;
+    view.triangles = {};
     EXPECT_EQ(checked(view).status, PW_ERROR_EMPTY);
     EXPECT_EQ(checked(MeshView{}).status, PW_ERROR_EMPTY);
 }

@@ -20,9 +20,9 @@ def set_apart(bm):
             return False
         for one, other in pairs:
             across[one], across[other] = other, one
-    verts = {vert for edge in pinched for vert in edge.verts} | {vert for vert in bm.verts if not vert.is_manifold}
+    ends = {vert for edge in pinched for vert in edge.verts}  # sets are only asked: their order is that of memory
     own = {}  # loop -> the vertex that its umbrella gets
-    for vert in verts:
+    for vert in [vert for vert in bm.verts if vert in ends or not vert.is_manifold]:
         for umbrella in _umbrellas(vert, across)[1:]:
             new = bm.verts.new(vert.co, vert)
             own.update(dict.fromkeys(umbrella, new))
@@ -40,7 +40,8 @@ def set_apart(bm):
                 new = bm.verts.new((ends[0].co + ends[1].co) / 2, ends[0])
                 new.copy_from_vert_interp((edge.verts[0], edge.verts[1]), 0.5)
                 middle[loop] = middle[across[loop]] = new
-    faces = {loop.face for loop in own} | {loop.face for loop in middle}
+    changed = {loop.face for loop in (*own, *middle)}
+    faces = [face for face in bm.faces if face in changed]
     for face in faces:
         corners = []
         for loop in face.loops:
@@ -48,7 +49,7 @@ def set_apart(bm):
             if loop in middle:
                 corners.append((middle[loop], (loop, loop.link_loop_next)))
         _copy_face(bm, face, corners)
-    bmesh.ops.delete(bm, geom=list(faces), context="FACES")
+    bmesh.ops.delete(bm, geom=faces, context="FACES")
     return all(edge.is_contiguous for edge in bm.edges)
 
 

@@ -17,15 +17,6 @@ _CHANNELS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis
 SINK = 0.05  # of its border's radius that a part is sunk in: solids that only touch don't unite
 
 
-class Border(NamedTuple):
-    """Where a part was cut off, or where one was removed, in the world: the largest group of caps that touch, or the
-    nearest to a point. normal: out of the solid. radius: of a disk of its area."""
-
-    middle: Vector
-    normal: Vector
-    radius: float
-
-
 def caps(mesh):
     """(F,) bool: the faces that close a mesh where it was cut; None if nothing is marked so."""
     layer = mesh.attributes.get(CAP)
@@ -35,17 +26,17 @@ def caps(mesh):
 
 
 def border(obj, near=None):
-    """The object's Border; None if its mesh has no caps."""
+    """Where a part was cut off, or where one was removed, in the world: the compatible.Border that is the largest group
+    of the object's caps that touch, or the nearest to a point; None if its mesh has no caps."""
     marks = caps(obj.data)
     if marks is None or not marks.any():
         return None
     triangles, polygons = arrays.triangles(obj.data)
     places = arrays.read(obj.data.vertices, "co", np.float32, 3).astype(float)
-    found = [Border(Vector(each.middle), Vector(each.normal), each.radius)
-             for each in compatible.borders(places, triangles[marks[polygons]], np.array(obj.matrix_world))]
+    found = compatible.borders(places, triangles[marks[polygons]], np.array(obj.matrix_world))
     if not found:
         return None
-    return found[0] if near is None else min(found, key=lambda each: (each.middle - near).length)
+    return found[0] if near is None else min(found, key=lambda each: (Vector(each.middle) - near).length)
 
 
 def anchor(obj):
@@ -58,7 +49,7 @@ def anchor(obj):
     lowest = max(corner.dot(down) for corner in corners)
     middle = sum(corners, Vector()) / 8
     radius = max((corner - middle).length for corner in corners) / 2
-    return Border(middle + down * (lowest - middle.dot(down)), down, radius)
+    return compatible.Border(middle + down * (lowest - middle.dot(down)), down, radius)
 
 
 def matrix(start, own, location, normal, scale=1.0, angle=0.0, depth=0.0):
@@ -66,10 +57,10 @@ def matrix(start, own, location, normal, scale=1.0, angle=0.0, depth=0.0):
     border's middle to location, its normal against the surface's. scale: times the size it had. angle: about the
     normal, in radians. depth: how far it is sunk in, times the border's radius, beyond what unites well."""
     normal = normal.normalized()
-    turn = Quaternion(normal, angle) @ own.normal.rotation_difference(-normal)
+    turn = Quaternion(normal, angle) @ Vector(own.normal).rotation_difference(-normal)
     sunk = location - normal * ((SINK + depth) * own.radius * scale)
     return (Matrix.Translation(sunk) @ turn.to_matrix().to_4x4() @ Matrix.Scale(scale, 4)
-            @ Matrix.Translation(-own.middle) @ start)
+            @ Matrix.Translation(-Vector(own.middle)) @ start)
 
 
 class Pose(NamedTuple):
@@ -90,7 +81,8 @@ def put(part, start, own, target, pose):
         found = border(target, location)
         if not found:
             raise Refused(f"{target.name} has no border to fit: no part was removed from it.")
-        location, normal, scale = found.middle, found.normal, scale * found.radius / own.radius
+        location, normal = Vector(found.middle), Vector(found.normal)
+        scale *= found.radius / own.radius
     part.matrix_world = matrix(start, own, location, normal, scale, pose.angle, pose.depth)
 
 

@@ -125,10 +125,9 @@ class Place:
         shape = self._shape_of(offer)
         if known not in self._fits:
             self._fits[known] = compatible.fit(self.shape, shape, adjustment.mirror).matrix
-        border = placement.Border(Vector(own.middle), Vector(own.normal), own.radius)
         depth = adjustment.depth + compatible.gap(self.shape, shape, self._fits[known])
         start = Matrix(self._fits[known]) @ named(offer.name).matrix_world
-        new.matrix_world = placement.matrix(start, border, border.middle, -border.normal, adjustment.scale,
+        new.matrix_world = placement.matrix(start, own, Vector(own.middle), -Vector(own.normal), adjustment.scale,
                                             adjustment.angle, depth)
 
     def _shape_of(self, offer):

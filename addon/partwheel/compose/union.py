@@ -28,7 +28,6 @@ def unite(target, others, blend=0.0, instead=None):
     changed."""
     slots = []
     base = _input(target, instead or target.data, slots)
-    solvers = []
     try:
         if blend > 0:
             seams.mark(base, 0)
@@ -45,7 +44,6 @@ def unite(target, others, blend=0.0, instead=None):
                 bpy.data.meshes.remove(operand)
             bpy.data.meshes.remove(base)
             base = result
-            solvers.append(solver)
         if blend > 0:
             seams.blend(base, blend)
             seams.unmark(base)
@@ -53,7 +51,7 @@ def unite(target, others, blend=0.0, instead=None):
         bpy.data.meshes.remove(base)
         raise
     _replace(target, base, slots)
-    return solvers[-1]
+    return solver
 
 
 def problem(mesh):

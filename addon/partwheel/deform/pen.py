@@ -51,14 +51,11 @@ class Pen:
         self._put(obj, self.region.before)
 
     def _put(self, obj, points):
-        if self._bm is None:
-            self._put_mesh(obj, points)
+        if self._bm is not None:
+            _set_all(self._verts, "co", points)
+            self._bm.normal_update()
+            bmesh.update_edit_mesh(obj.data, loop_triangles=True, destructive=False)
             return
-        _set_all(self._verts, "co", points)
-        self._bm.normal_update()
-        bmesh.update_edit_mesh(obj.data, loop_triangles=True, destructive=False)
-
-    def _put_mesh(self, obj, points):
         mesh, key = obj.data, obj.active_shape_key
         basis = mesh.shape_keys and mesh.shape_keys.reference_key
         for collection in ([key.data] if key else []) + ([mesh.vertices] if key in {None, basis} else []):

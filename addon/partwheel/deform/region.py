@@ -39,16 +39,12 @@ class Region:
         surface = arrays.surface(arrays.up_to_date(obj))
         mesh, points = obj.data, arrays.edited_positions(obj)
         count = len(points)
-        inside = np.zeros(surface.face_count, bool)
-        inside[faces] = True
+        inside = arrays.mask(surface.face_count, faces)
         for _ in range(rings):
-            reached = np.zeros(count, bool)
-            reached[surface.triangles[inside[surface.faces]]] = True
+            reached = arrays.mask(count, surface.triangles[inside[surface.faces]])
             inside[surface.faces[reached[surface.triangles].any(axis=1)]] = True
         within = inside[surface.faces]
-        member, border = np.zeros(count, bool), np.zeros(count, bool)
-        member[surface.triangles[within]] = True
-        border[surface.triangles[~within]] = True
+        member, border = (arrays.mask(count, surface.triangles[side]) for side in (within, ~within))
         free, limb = member & ~border, np.zeros(count, bool)
         hinge = None if reach is None else joint(points.astype(np.float64), surface.triangles, within)
         if hinge and free.any():
@@ -79,13 +75,12 @@ class Region:
             self.partner, self._sources, images = self._partners(points)
         self.moving = np.concatenate([self.vertices[self.free], images])
         self.before = points[self.moving]
-        moves, changes, smooth = np.zeros(count, bool), np.zeros(len(inside), bool), np.zeros(count, bool)
-        moves[self.moving] = True
-        changes[surface.faces[moves[surface.triangles].any(axis=1)]] = True
+        moves = arrays.mask(count, self.moving)
+        changes = arrays.mask(len(inside), surface.faces[moves[surface.triangles].any(axis=1)])
         shaded_smooth = arrays.read(mesh.polygons, "use_smooth", bool)
         self.flat_faces = np.flatnonzero(changes & ~shaded_smooth)
-        smooth[surface.triangles[(changes & shaded_smooth)[surface.faces]]] = True
-        self.smooth = smooth[self.vertices]
+        smooth = surface.triangles[(changes & shaded_smooth)[surface.faces]]
+        self.smooth = arrays.mask(count, smooth)[self.vertices]
         self.polygons = bool((arrays.polygon_sizes(mesh)[1][changes] > 3).any())
 
     def _partners(self, points):

@@ -75,6 +75,13 @@ def write(collection, attribute, values):
         collection.foreach_set(attribute, values.view(np.uint32) if attribute in _UNSIGNED else values)
 
 
+def mask(count, indices):
+    """(count,) bool: True at these indices, an array or a list of any shape."""
+    result = np.zeros(count, bool)
+    result[np.asarray(indices, np.int64)] = True
+    return result
+
+
 def _layer(collection, attribute):
     """(what Blender keeps this attribute as, its field), or (None, "")."""
     name, field = _LAYERS.get(attribute, ("", ""))
@@ -92,6 +99,12 @@ def polygon_sizes(mesh):
     """((F,) the first corner of each polygon, (F,) how many it has)"""
     begin = read(mesh.polygons, "loop_start", np.int32)
     return begin, np.diff(begin, append=np.int32(len(mesh.loops)))
+
+
+def of_faces(mesh, chosen, elements="vertices", index="vertex_index"):
+    """(V,) or (E,) bool: the mesh's vertices or edges that faces have; chosen (F,) bool: which."""
+    corners = np.repeat(chosen, polygon_sizes(mesh)[1])
+    return mask(len(getattr(mesh, elements)), read(mesh.loops, index, np.int32)[corners])
 
 
 def material_indices(mesh):

@@ -139,9 +139,7 @@ def _edges(mesh, plan):
     rest = int(plan.begin[plan.whole]) if plan.whole < len(plan.begin) else count
     of_edge = np.empty(count, np.int32)
     source = numbers[own[:rest]]
-    there = np.zeros(len(all_ends), bool)
-    there[source] = True
-    used = np.flatnonzero(there)
+    used = np.flatnonzero(arrays.mask(len(all_ends), source))
     place = np.empty(len(all_ends), np.int32)
     place[used] = np.arange(len(used))
     of_edge[:rest] = place[source]
@@ -166,8 +164,7 @@ def _edges(mesh, plan):
 
     # Among them an edge may be one that is already there.
     low, high = (each(plan.corners[rest:], plan.corners[following]) for each in (np.minimum, np.maximum))
-    touched = np.zeros(len(plan.places), bool)
-    touched[low] = touched[high] = True
+    touched = arrays.mask(len(plan.places), [low, high])
     near = np.flatnonzero(touched[ends[:, 0]] & touched[ends[:, 1]])
     key = np.concatenate([np.sort(ends[near], axis=1), np.stack([low, high], axis=1)]).astype(np.int64)
     unique, which = np.unique(key[:, 0] * len(plan.places) + key[:, 1], return_inverse=True)
@@ -194,10 +191,10 @@ def _edge_numbers(mesh, alias):
     return first[which.ravel()][edges]
 
 
-def _picked(values, origins, mean):
-    """values (n,) or (n, width) at Origins: their mean, or the first's; 0 where there is none."""
+def _picked(values, origins, mean=False, otherwise=0):
+    """values (n,) or (n, width) at Origins: their mean, or the first's; otherwise where there is none."""
     taken = values[origins.first]
-    taken[origins.first < 0] = 0
+    taken[origins.first < 0] = otherwise
     if mean and len(origins.at):
         taken[origins.at] = (taken[origins.at] + values[origins.other]) / 2
     return taken
@@ -228,8 +225,7 @@ def _copy_attributes(mesh, made, origins, but):
         if bpy.app.version < (3, 5, 0):
             new = made.uv_layers[uv.name].data
             new.foreach_set("uv", _picked(read(uv.data, "uv", np.float32, 2), origins["CORNER"], True).ravel())
-            pins = read(uv.data, "pin_uv", bool)
-            new.foreach_set("pin_uv", _picked(pins, origins["CORNER"], False))
+            new.foreach_set("pin_uv", _picked(read(uv.data, "pin_uv", bool), origins["CORNER"]))
         made.uv_layers[uv.name].active_render = uv.active_render
     if mesh.uv_layers.active_index >= 0:
         made.uv_layers.active_index = mesh.uv_layers.active_index
@@ -242,10 +238,7 @@ def _copy_marks(mesh, made, origins):
                 continue
             values = read(getattr(mesh, kind), field, dtype)
             if values.any():
-                at = origins[kind]
-                taken = values[np.maximum(at, 0)]
-                taken[at < 0] = 0
-                getattr(made, kind).foreach_set(field, taken)
+                getattr(made, kind).foreach_set(field, _picked(values, Origins(origins[kind])))
 
 
 def _make_own_layers(mesh, made):
@@ -259,11 +252,10 @@ def _make_own_layers(mesh, made):
 
 def _copy_own_layers(mesh, made, origins):
     for collection, (elements, _, _, fields) in _OWN_LAYERS.items():
-        at = origins[elements]
+        of = Origins(origins[elements])
         for old, new in zip(getattr(mesh, collection), getattr(made, collection)):
             for field, dtype, width, otherwise in fields:
-                taken = read(old.data, field, dtype, width)[np.maximum(at, 0)]
-                taken[at < 0] = otherwise
+                taken = _picked(read(old.data, field, dtype, width), of, otherwise=otherwise)
                 new.data.foreach_set(field, taken.ravel())
 
 

@@ -69,14 +69,9 @@ class Selection:
         """Selects these faces (an array of indices), hidden ones left out, and nothing else; with extend also what was
         selected before; with deselect only what was selected before and is not in these faces. active: the index of
         the face to make the active one."""
-        chosen = np.zeros(len(self.visible), bool)
-        chosen[np.asarray(faces, np.int64)] = True
-        chosen &= self.visible
-        if self.kind == "FACE":
-            target = chosen
-        else:
-            target = np.zeros_like(self.now)
-            target[self.loop_element[chosen[self.loop_face]]] = True
+        target = chosen = arrays.mask(len(self.visible), faces) & self.visible
+        if self.kind != "FACE":
+            target = arrays.mask(len(self.now), self.loop_element[chosen[self.loop_face]])
         if deselect:
             target = self.before[self.kind] & ~target
         elif extend:
@@ -185,19 +180,12 @@ class Selections:
 
 def select_outside_edit_mode(mesh, faces, extend=False, deselect=False):
     """The same for a mesh that is not in Edit Mode: its faces, and their edges and vertices, are selected."""
-    chosen = np.zeros(len(mesh.polygons), bool)
-    chosen[np.asarray(faces, np.int64)] = True
-    chosen &= ~arrays.read(mesh.polygons, "hide", bool)
+    chosen = arrays.mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
     before = arrays.read(mesh.polygons, "select", bool)
     chosen = before & ~chosen if deselect else before | chosen if extend else chosen
-    corners = chosen[np.repeat(np.arange(len(mesh.polygons)), arrays.polygon_sizes(mesh)[1])]
-    selected = {}
-    for elements, index in (("edges", "edge_index"), ("vertices", "vertex_index")):
-        selected[elements] = np.zeros(len(getattr(mesh, elements)), bool)
-        selected[elements][arrays.read(mesh.loops, index, np.int32)[corners]] = True
     mesh.polygons.foreach_set("select", chosen)
-    mesh.vertices.foreach_set("select", selected["vertices"])
-    _select_edges(mesh, selected["edges"])
+    mesh.vertices.foreach_set("select", arrays.of_faces(mesh, chosen, "vertices", "vertex_index"))
+    _select_edges(mesh, arrays.of_faces(mesh, chosen, "edges", "edge_index"))
     if len(faces):
         mesh.polygons.active = int(faces[0])
     mesh.update()

@@ -18,8 +18,7 @@ def faces(obj, hierarchy, node, snap):
 
 def inside(obj, hierarchy, node):
     """(F,) bool: the faces of a node with its border in creases. The hierarchy is what registry.hierarchy(obj) said."""
-    part = np.zeros(len(hierarchy.order), bool)
-    part[hierarchy.faces(node)] = True
+    part = arrays.mask(len(hierarchy.order), hierarchy.faces(node))
     return _creases(obj).snapped(part) if part.any() else part
 
 

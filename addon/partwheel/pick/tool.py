@@ -21,13 +21,9 @@ class SelectPart(bpy.types.WorkSpaceTool):
                       "Shift adds, Ctrl takes away")
     bl_icon = ICON
     bl_widget = "VIEW3D_GGT_partwheel_hover"
-    bl_keymap = (
-        ("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "PRESS"}, {"properties": [("tool", True)]}),
-        ("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "PRESS", "shift": True},
-         {"properties": [("tool", True), ("extend", True)]}),
-        ("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "PRESS", "ctrl": True},
-         {"properties": [("tool", True), ("deselect", True)]}),
-    )
+    bl_keymap = tuple(
+        ("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "PRESS", **held}, {"properties": [("tool", True), *what]})
+        for held, what in (({}, ()), ({"shift": True}, [("extend", True)]), ({"ctrl": True}, [("deselect", True)])))
 
     def draw_settings(context, layout, tool):
         obj = context.edit_object

@@ -14,12 +14,7 @@ MASK = ".sculpt_mask"  # an attribute from Blender 4.1 on
 
 def _part_vertices(mesh, faces):
     """(V,) bool: the vertices of these faces."""
-    inside = np.zeros(len(mesh.polygons), bool)
-    inside[faces] = True
-    corners = np.repeat(inside, arrays.polygon_sizes(mesh)[1])
-    chosen = np.zeros(len(mesh.vertices), bool)
-    chosen[arrays.read(mesh.loops, "vertex_index", np.int32)[corners]] = True
-    return chosen
+    return arrays.of_faces(mesh, arrays.mask(len(mesh.polygons), faces))
 
 
 def _write_face_set(obj, faces, _node, _extend, deselect):

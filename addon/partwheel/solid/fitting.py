@@ -137,10 +137,9 @@ def of_solid(mesh, fitted, alone, facets):
 
     begin, totals = arrays.polygon_sizes(mesh)
     triangles = np.bincount(faces, minlength=len(totals))
-    strange = np.zeros(len(totals), bool)  # with a corner that is not the polygon's own
-    strange[faces[(source < 0)[corners].any(axis=1)]] = True
-    parted = np.zeros(len(totals), bool)  # with a corner at which the surface is cut apart
-    parted[faces[~is_first[corners].all(axis=1)]] = True
+    # With a corner that is not the polygon's own; with one at which the surface is cut apart.
+    strange = arrays.mask(len(totals), faces[(source < 0)[corners].any(axis=1)])
+    parted = arrays.mask(len(totals), faces[~is_first[corners].all(axis=1)])
     whole = (triangles == totals - 2) & ~strange
     large = whole[faces] & (totals[faces] > 3)
     of, _ = _corners_of(faces[large], corners[large], len(source))
@@ -253,8 +252,7 @@ def _kept(mesh, loops, alone, alias=None):
     vertex = own = arrays.read(mesh.loops, "vertex_index", np.int32)
     if alias is not None:
         vertex = alias[own]
-    keep = np.zeros(len(mesh.vertices), bool)
-    keep[vertex[loops]] = True
+    keep = arrays.mask(len(mesh.vertices), vertex[loops])
     wires = np.empty(0, np.int64)
     if not alone:
         edges = arrays.read(mesh.loops, "edge_index", np.int32)

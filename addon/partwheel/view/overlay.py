@@ -11,7 +11,7 @@ import gpu
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ..mesh import kept
+from ..mesh import arrays, kept
 from ..preferences import preferences
 from .seen import NO_FACE
 
@@ -112,8 +112,7 @@ class Parts:
     def of_faces(self, name, faces):
         """The same of the triangles of any faces, kept under a name."""
         def make():
-            chosen = np.zeros(len(self.hierarchy.order), bool)
-            chosen[faces] = True
+            chosen = arrays.mask(len(self.hierarchy.order), faces)
             return _batch(self._buffer, self.triangles[np.repeat(chosen[self.hierarchy.order], np.diff(self._start))])
         return _shader(False), self._kept(name, make)
 

@@ -41,7 +41,7 @@ class Border(NamedTuple):
     middle: np.ndarray
     normal: np.ndarray
     radius: float
-    flatness: float
+    flatness: float = 1.0
 
 
 class Fit(NamedTuple):

@@ -2,12 +2,12 @@
 """Deformation: a surface follows handles as rigidly as possible; and distances along a surface. Native, with numpy."""
 
 import math
-from ctypes import byref, c_double
+from ctypes import c_double
 
 import numpy as np
 
-from .hierarchy import surface
-from .library import Handle, PartwheelError, Status, check, load, made
+from .hierarchy import indices, surface
+from .library import Handle, PartwheelError, Status, check, load, made, told
 
 FREE, FIXED = -1, -2  # PW_VERTEX_FREE, PW_VERTEX_FIXED
 # Deforming at once, without a mouse: the handle turns by at most so much a step.
@@ -27,14 +27,9 @@ class Deformation:
 
     def __init__(self, vertices, triangles, roles):
         vertices, *_ = given = surface(vertices, triangles)[:4]
-        roles = np.asarray(roles)
-        if roles.shape != (len(vertices),):
-            raise ValueError(f"roles must have the shape ({len(vertices)},), not {roles.shape}.")
-        if roles.dtype.kind not in "iu":
-            raise TypeError(f"roles must be whole numbers, not {roles.dtype}.")
+        roles = indices(roles, "roles", (len(vertices),))
         if roles.size and (roles.min() < FIXED or roles.max() >= len(vertices)):
             raise PartwheelError(Status.ARGUMENT, "A role is neither FREE, nor FIXED, nor the number of a handle.")
-        roles = np.ascontiguousarray(roles, np.int32)
         self._handle = Handle(load().pw_deformation_free, made(load().pw_deformation_create, *given, roles))
         self._count = len(vertices)
 
@@ -55,9 +50,7 @@ class Deformation:
 
     def energy(self):
         """In the unit of the coordinates squared."""
-        energy = c_double()
-        check(load().pw_deformation_energy(self._handle, byref(energy)))
-        return energy.value
+        return told([c_double], load().pw_deformation_energy, self._handle)[0]
 
     def positions(self):
         """(V,3) where all vertices are now."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from .library import (
     Arrays, Build, BuildOptions, Context, Handle, Mode, PartwheelError, Rung, Status, SummaryStruct, check, load,
-    made,
+    made, told,
 )
 
 POLL_SECONDS = 0.1
@@ -71,7 +71,8 @@ def _coordinates(vertices):
     return vertices
 
 
-def _indices(values, name, shape):
+def indices(values, name, shape):
+    """Whole numbers of 32 bits, None in the shape for any size. Raises PartwheelError, ValueError or TypeError."""
     values = np.asarray(values)
     if values.size == 0:
         values = values.astype(np.int32)
@@ -90,10 +91,10 @@ def checked_surface(vertices, triangles, faces, face_count):
     """What Hierarchy.build() was given, as the library takes it: ([vertices, triangles, faces if given], face_count).
     Raises PartwheelError, ValueError or TypeError."""
     vertices = _coordinates(vertices)
-    triangles = _indices(triangles, "triangles", (None, 3))
+    triangles = indices(triangles, "triangles", (None, 3))
     arrays = [vertices, triangles]
     if faces is not None:
-        arrays.append(_indices(faces, "faces", (len(triangles),)))
+        arrays.append(indices(faces, "faces", (len(triangles),)))
     if face_count is None:
         face_count = len(triangles) if faces is None else int(arrays[2].max(initial=-1)) + 1
     return arrays, _number(face_count)
@@ -219,9 +220,8 @@ class Hierarchy:
 
     def faces(self, node):
         """(n,) a node's source faces: a view of order."""
-        address, count = c_void_p(), c_size_t()
-        check(load().pw_hierarchy_faces(self._handle, _number(node), byref(address), byref(count)))
-        return _view(self._handle, address.value, (count.value,), np.int32)
+        address, count = told([c_void_p, c_size_t], load().pw_hierarchy_faces, self._handle, _number(node))
+        return _view(self._handle, address, (count,), np.int32)
 
     def cut_height(self, height):
         """(parts + 1,) bounds of the cut at a height: part k holds tetrahedra[bounds[k]:bounds[k+1]]."""
@@ -293,11 +293,9 @@ class Hierarchy:
 
     def _solid(self, function, tet_first, tet_last, *arguments):
         mesh, vertices, triangles = self._mesh(function, tet_first, tet_last, *arguments)
-        ends, faces, beyond = c_void_p(), c_void_p(), c_void_p()
-        check(load().pw_mesh_origins(mesh, byref(ends), byref(faces), byref(beyond)))
-        return Solid(vertices, triangles, _view(mesh, ends.value, (len(vertices), 2), np.int32),
-                     _view(mesh, faces.value, (len(triangles),), np.int32),
-                     _view(mesh, beyond.value, (len(triangles),), np.int32))
+        ends, faces, beyond = told([c_void_p] * 3, load().pw_mesh_origins, mesh)
+        return Solid(vertices, triangles, _view(mesh, ends, (len(vertices), 2), np.int32),
+                     *(_view(mesh, each, (len(triangles),), np.int32) for each in (faces, beyond)))
 
     def rest(self, node):
         """The Solid around all tetrahedra but a node's. Raises PartwheelError (EMPTY) where nothing is left."""
@@ -314,11 +312,9 @@ class Hierarchy:
         """What a function makes of a slice of the tetrahedra: (its handle, vertices, triangles)."""
         given = self._handle, _number(tet_first), _number(tet_last), *arguments
         mesh = Handle(load().pw_mesh_free, made(function, *given))
-        vertices, triangles, vertex_count, triangle_count = c_void_p(), c_void_p(), c_size_t(), c_size_t()
-        check(load().pw_mesh_arrays(mesh, byref(vertices), byref(vertex_count), byref(triangles),
-                                    byref(triangle_count)))
-        return (mesh, _view(mesh, vertices.value, (vertex_count.value, 3), np.float64),
-                _view(mesh, triangles.value, (triangle_count.value, 3), np.int32))
+        vertices, vertex_count, triangles, triangle_count = told([c_void_p, c_size_t] * 2, load().pw_mesh_arrays, mesh)
+        return (mesh, _view(mesh, vertices, (vertex_count, 3), np.float64),
+                _view(mesh, triangles, (triangle_count, 3), np.int32))
 
     def _ask(self, function, dtype, *arguments, after=()):
         """Calls a function that fills an array, first to learn the size, then to get it."""

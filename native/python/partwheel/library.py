@@ -215,11 +215,16 @@ def check(status, seconds=dict):
         raise PartwheelError(status, load().pw_error_message().decode(), seconds())
 
 
+def told(types, function, *arguments):
+    """What a function of the library tells: the list of what its last arguments, pointers to these types, point to."""
+    values = [each() for each in types]
+    check(function(*arguments, *map(ctypes.byref, values)))
+    return [each.value for each in values]
+
+
 def made(create, *arguments):
     """The address of the native object that this function makes."""
-    address = c_void_p()
-    check(create(*arguments, ctypes.byref(address)))
-    return address.value
+    return told([c_void_p], create, *arguments)[0]
 
 
 class Handle:
@@ -245,9 +250,8 @@ class Context(Handle):
 
     def progress(self):
         """(fraction, stage name)"""
-        fraction, stage = c_double(), c_int()
-        check(load().pw_context_progress(self, ctypes.byref(fraction), ctypes.byref(stage)))
-        return fraction.value, load().pw_stage_name(stage.value).decode()
+        fraction, stage = told([c_double, c_int], load().pw_context_progress, self)
+        return fraction, load().pw_stage_name(stage).decode()
 
     def seconds(self):
         """Stage name -> seconds of the last build."""

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Polygons of any number of corners: as triangles that have an area wherever that can be; whether they are a solid."""
 
-import ctypes
+from ctypes import c_size_t
 from typing import NamedTuple
 
 import numpy as np
 
-from .library import check, load
+from .library import load, told
 
 
 class Faults(NamedTuple):
@@ -23,9 +23,8 @@ def polygon_faults(corners, begin, vertex_count):
     """The Faults of polygons: corners (L,) their vertices, one after the other, begin (F,) the first corner of each.
     Raises PartwheelError (INDEX)."""
     corners, begin = (np.ascontiguousarray(each, np.int32) for each in (corners, begin))
-    counts = [ctypes.c_size_t() for _ in Faults._fields]
-    check(load().pw_polygon_faults(corners, len(corners), begin, len(begin), vertex_count, *map(ctypes.byref, counts)))
-    return Faults(*(count.value for count in counts))
+    given = corners, len(corners), begin, len(begin), vertex_count
+    return Faults(*told([c_size_t] * 3, load().pw_polygon_faults, *given))
 
 
 def triangulate(points, names):

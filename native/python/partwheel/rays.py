@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The first triangle of a surface that a ray meets. Native, with numpy."""
 
-from ctypes import byref, c_double, c_int32
+from ctypes import c_double, c_int32
 
 from .hierarchy import surface
-from .library import Handle, check, load, made
+from .library import Handle, load, made, told
 
 
 class RayTarget:
@@ -21,6 +21,6 @@ class RayTarget:
         """(triangle, distance) of the first hit farther than beyond, or None. origin, direction (3,); distances are in
         lengths of the direction. Raises PartwheelError for a ray that has none."""
         origin, direction = ((c_double * 3)(*each) for each in (origin, direction))
-        triangle, distance = c_int32(), c_double()
-        check(load().pw_ray_target_first(self._handle, origin, direction, beyond, byref(triangle), byref(distance)))
-        return None if triangle.value < 0 else (triangle.value, distance.value)
+        ray = origin, direction, beyond
+        triangle, distance = told([c_int32, c_double], load().pw_ray_target_first, self._handle, *ray)
+        return None if triangle < 0 else (triangle, distance)

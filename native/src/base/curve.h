@@ -1,7 +1,11 @@
 // Morton's space-filling curve: what is near along it is near in space.
 #pragma once
 
+#include "base/geometry.h"
+
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace partwheel {
@@ -20,6 +24,12 @@ inline uint64_t place_on_curve(const std::array<uint64_t, 3>& cell) {
         place = place << 1 | n;
     }
     return place;
+}
+
+// The same of a point of the unit cube, in a grid of 2^bits cells a side.
+inline uint64_t place_in_cube(const Point& p, int bits) {
+    const auto cell = [&](size_t k) { return static_cast<uint64_t>(std::ldexp(std::max(p[k], 0.0), bits)); };
+    return place_on_curve({cell(0), cell(1), cell(2)});
 }
 
 }  // namespace partwheel

@@ -1,10 +1,12 @@
 // Points, index tuples and the signed volume: the words that all rooms share.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace partwheel {
@@ -36,6 +38,24 @@ inline Point cross(const Point& a, const Point& b) {
 inline double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 inline double length(const Point& p) { return std::sqrt(dot(p, p)); }
+
+// Along the axes, about points; about none its corners are the wrong way round.
+struct Box {
+    Point low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+
+    void add(const Point& p) {
+        for (size_t k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], p[k]);
+            high[k] = std::max(high[k], p[k]);
+        }
+    }
+    static Box around(std::span<const Point> points) {
+        Box box;
+        for (const Point& p : points) box.add(p);
+        return box;
+    }
+    double diagonal() const { return length(high - low); }
+};
 
 // Six times the signed volume of the tetrahedron a, b, c, d: positive if d sees a, b, c counter-clockwise. Rounded;
 // use orientation() of predicates.h where the sign decides.

@@ -66,6 +66,16 @@ void for_edges(size_t vertices, size_t sides, const Ends& ends, const Meet& meet
     }
 }
 
+// The same for triangles: side 3 t + k goes from corner k of triangle t to the next.
+template <class Meet>
+void for_edges(size_t vertices, std::span<const Triangle> triangles, const Meet& meet) {
+    const auto ends = [&](size_t side) {
+        const Triangle& t = triangles[side / 3];
+        return std::pair(t[side % 3], t[(side + 1) % 3]);
+    };
+    for_edges(vertices, 3 * triangles.size(), ends, meet);
+}
+
 // Numbers that are joined with each other, each set known by its lowest: union-find.
 class Joined {
 public:

@@ -1,8 +1,10 @@
-// The exact side-of-plane test: a floating-point filter, then expansions of the rounded differences, then of all.
+// The exact side-of-plane test: a floating-point filter, then expansions of the rounded differences, then CGAL's test.
 //
 // An expansion is a sum of doubles that don't overlap, smallest first; sums and products of expansions are exact.
 // The build must not fuse multiplications and additions (-ffp-contract=off).
 #include "base/predicates.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <cmath>
 
@@ -42,15 +44,6 @@ inline void two_product(double a, double b, double& product, double& error) {
     error = al * bl - (((product - ah * bh) - al * bh) - ah * bl);
 }
 
-inline Expansion<2> difference(double a, double b) {
-    double sum, error;
-    two_sum(a, -b, sum, error);
-    Expansion<2> e;
-    e.push(error);
-    e.push(sum);
-    return e;
-}
-
 // Shewchuk's linear-time merge, dropping zeros.
 template <int N, int M>
 Expansion<N + M> sum(const Expansion<N>& e, const Expansion<M>& f) {
@@ -84,20 +77,6 @@ Expansion<2 * N> scaled(const Expansion<N>& e, double b) {
     return h;
 }
 
-template <int N>
-Expansion<4 * N> product(const Expansion<N>& e, const Expansion<2>& f) {
-    Expansion<2 * N> zero;
-    const Expansion<2 * N> low = f.size > 0 ? scaled(e, f.part[0]) : zero;
-    const Expansion<2 * N> high = f.size > 1 ? scaled(e, f.part[1]) : zero;
-    return sum(low, high);
-}
-
-template <int N>
-Expansion<N> negated(Expansion<N> e) {
-    for (int i = 0; i < e.size; ++i) e.part[i] = -e.part[i];
-    return e;
-}
-
 // The product of two numbers.
 inline Expansion<2> product(double a, double b) {
     double high, low;
@@ -112,7 +91,7 @@ inline Expansion<2> product(double a, double b) {
 // where the differences are exact. 2 if it doesn't tell (Shewchuk 1997, the second stage of his adaptive predicate).
 int rounded_orientation(const Point& u, const Point& v, const Point& w, double permanent, bool exact) {
     const auto term = [](double p, double q, double r, double s, double t) {
-        return scaled(sum(product(p, q), negated(product(r, s))), t);
+        return scaled(sum(product(p, q), product(-r, s)), t);
     };
     const auto det = sum(sum(term(u[1], v[2], u[2], v[1], w[0]), term(u[2], v[0], u[0], v[2], w[1])),
                          term(u[0], v[1], u[1], v[0], w[2]));
@@ -135,19 +114,12 @@ bool exact_difference(const Point& p, const Point& a) {
     return lost == 0;
 }
 
+// Seldom asked: it takes longer.
 int exact_orientation(const Point& a, const Point& b, const Point& c, const Point& d) {
-    const Expansion<2> bx = difference(b[0], a[0]), by = difference(b[1], a[1]), bz = difference(b[2], a[2]);
-    const Expansion<2> cx = difference(c[0], a[0]), cy = difference(c[1], a[1]), cz = difference(c[2], a[2]);
-    const Expansion<2> dx = difference(d[0], a[0]), dy = difference(d[1], a[1]), dz = difference(d[2], a[2]);
-    const auto minor = [](const Expansion<2>& p, const Expansion<2>& q, const Expansion<2>& r, const Expansion<2>& s) {
-        return sum(product(p, q), negated(product(r, s)));
+    const auto point = [](const Point& p) {
+        return CGAL::Exact_predicates_inexact_constructions_kernel::Point_3(p[0], p[1], p[2]);
     };
-    const auto x = product(minor(by, cz, bz, cy), dx);
-    const auto y = product(minor(bz, cx, bx, cz), dy);
-    const auto z = product(minor(bx, cy, by, cx), dz);
-    const auto det = sum(sum(x, y), z);
-    if (det.size == 0) return 0;
-    return det.part[det.size - 1] > 0 ? 1 : -1;
+    return CGAL::orientation(point(a), point(b), point(c), point(d));
 }
 
 }  // namespace

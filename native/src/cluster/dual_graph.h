@@ -62,8 +62,8 @@ public:
         if (!at(c).hull) set_hull(c, hulls_.build(corners(c)));
     }
 
-    // The lower and upper corner of the box around a cluster that has its hull.
-    std::pair<Point, Point> bounds(int32_t c) const { return hulls_.bounds(at(c).hull); }
+    // The box around a cluster that has its hull.
+    Box bounds(int32_t c) const { return hulls_.bounds(at(c).hull); }
 
     // What the edge costs as far as its hull volume is known.
     Price price(int32_t edge) const {

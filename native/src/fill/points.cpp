@@ -99,7 +99,6 @@ public:
     double volume() const;  // inside
     double unsure() const;  // how far the winding numbers inside are from 1, on average over the volume
 
-
 private:
     enum Side : uint8_t { out, in, open };
 
@@ -242,6 +241,15 @@ Solid kept(const Surface& source, const Sides& sides, Progress& progress) {
     std::vector<int32_t> number(all.vertices.size(), -1), given, behind, name(all.tetrahedra.size(), -1);
     std::vector<Point> vertices;
     std::vector<Triangle> triangles;
+    const auto named = [&](int32_t v) {
+        int32_t& n = number[at(v)];
+        if (n < 0) {
+            n = static_cast<int32_t>(vertices.size());
+            vertices.push_back(all.vertices[at(v)]);
+            given.push_back(v);
+        }
+        return n;
+    };
     int32_t count = 0;
     for (size_t t = 0; t < all.tetrahedra.size(); ++t) {
         if (!sides.inside(static_cast<int32_t>(t))) continue;
@@ -249,15 +257,7 @@ Solid kept(const Surface& source, const Sides& sides, Progress& progress) {
         for (size_t k = 0; k < 4; ++k) {
             if (sides.inside(all.neighbours[t][k])) continue;
             Triangle f = facet(all.tetrahedra[t], k);
-            for (int32_t& v : f) {
-                int32_t& n = number[at(v)];
-                if (n < 0) {
-                    n = static_cast<int32_t>(vertices.size());
-                    vertices.push_back(all.vertices[at(v)]);
-                    given.push_back(v);
-                }
-                v = n;
-            }
+            for (int32_t& v : f) v = named(v);
             triangles.push_back(f);
             behind.push_back(name[t]);
         }
@@ -273,12 +273,8 @@ Solid kept(const Surface& source, const Sides& sides, Progress& progress) {
         if (name[t] < 0) continue;
         std::array<Corner, 4>& c = corners.emplace_back();
         for (size_t k = 0; k < 4; ++k) {
-            const int32_t v = all.tetrahedra[t][k], next = all.neighbours[t][k];
-            if (number[at(v)] < 0) {
-                number[at(v)] = static_cast<int32_t>(vertices.size());
-                vertices.push_back(all.vertices[at(v)]);
-            }
-            c[k] = {number[at(v)], next < 0 ? -1 : name[at(next)]};
+            const int32_t next = all.neighbours[t][k];
+            c[k] = {named(all.tetrahedra[t][k]), next < 0 ? -1 : name[at(next)]};
         }
     }
     std::vector<int32_t> place;

@@ -2,6 +2,7 @@
 #include "fill/winding.h"
 
 #include "base/curve.h"
+#include "surface/surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,19 +56,11 @@ WindingNumber::WindingNumber(std::span<const Point> vertices, std::span<const Tr
     : vertices_(vertices), triangles_(triangles.begin(), triangles.end()) {
     if (triangles.empty()) return;
     const auto point = [&](int32_t v) -> const Point& { return vertices_[partwheel::at(v)]; };
-    Point low = vertices[0], high = low;
-    for (const Point& p : vertices)
-        for (size_t k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
-    double longest = 0;
-    for (size_t k = 0; k < 3; ++k) longest = std::max(longest, high[k] - low[k]);
+    const Frame frame = Frame::around(vertices);
     std::vector<std::pair<uint64_t, Triangle>> order;
     for (const Triangle& t : triangles) {
-        std::array<uint64_t, 3> cell{};
-        for (size_t k = 0; k < 3 && longest > 0; ++k) {
-            const double middle = (point(t[0])[k] + point(t[1])[k] + point(t[2])[k]) / 3 - low[k];
-            cell[k] = static_cast<uint64_t>(std::ldexp(std::max(middle, 0.0) / longest, curve_bits - 1));
-        }
-        order.push_back({place_on_curve(cell), t});
+        const auto [x, y, z] = point(t[0]) + point(t[1]) + point(t[2]);
+        order.push_back({place_in_cube(frame.in_cube({x / 3, y / 3, z / 3}), curve_bits - 1), t});
     }
     std::sort(order.begin(), order.end());
     for (size_t t = 0; t < order.size(); ++t) triangles_[t] = order[t].second;

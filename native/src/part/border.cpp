@@ -43,7 +43,9 @@ constexpr double most_cost = static_cast<double>(int64_t{1} << 36);
 constexpr double same_depth = 1e-9;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-size_t face_of(const MeshView& mesh, size_t triangle) { return mesh.faces ? at(mesh.faces[triangle]) : triangle; }
+size_t face_of(const MeshView& mesh, size_t triangle) {
+    return mesh.faces.empty() ? triangle : at(mesh.faces[triangle]);
+}
 
 }  // namespace
 
@@ -51,9 +53,10 @@ Creases::Creases(const MeshView& mesh) {
     check_arrays(mesh);
     centre_.resize(mesh.face_count), normal_.resize(mesh.face_count), area_.resize(mesh.face_count);
     // A frame around the vertices in use, so that others have no say in how these are rounded.
-    const std::span<const Point> given(reinterpret_cast<const Point*>(mesh.vertices), mesh.vertex_count);
+    const std::span<const Point> given = mesh.vertices;
     std::vector<uint8_t> used(given.size(), 0);
-    for (size_t i = 0; i < 3 * mesh.triangle_count; ++i) used[at(mesh.triangles[i])] = 1;
+    for (const Triangle& t : mesh.triangles)
+        for (const int32_t v : t) used[at(v)] = 1;
     std::vector<Point> in_use;
     in_use.reserve(given.size());
     for (size_t v = 0; v < given.size(); ++v)
@@ -85,9 +88,9 @@ double Creases::cost(size_t face, const Neighbour& edge) const {
 
 void Creases::measure(const MeshView& mesh) {
     std::vector<int32_t> triangles(count(), 0);
-    for (size_t t = 0; t < mesh.triangle_count; ++t) {
+    for (size_t t = 0; t < mesh.triangles.size(); ++t) {
         const size_t face = face_of(mesh, t);
-        const int32_t *v = mesh.triangles + 3 * t, i = v[0], j = v[1], k = v[2];
+        const auto [i, j, k] = mesh.triangles[t];
         const Point &a = points_[at(i)], &b = points_[at(j)], &c = points_[at(k)];
         const Point twice = cross(b - a, c - a);
         normal_[face] = normal_[face] + twice;
@@ -109,13 +112,9 @@ void Creases::join(const MeshView& mesh) {
         Neighbour edge;  // as seen from one
     };
     std::vector<Pair> pairs;
-    pairs.reserve(3 * mesh.triangle_count / 2);
+    pairs.reserve(3 * mesh.triangles.size() / 2);
     bool closed = true;
-    const auto ends = [&](size_t side) {
-        const int32_t* const t = mesh.triangles + side / 3 * 3;
-        return std::pair(t[side % 3], t[(side + 1) % 3]);
-    };
-    for_edges(mesh.vertex_count, 3 * mesh.triangle_count, ends, [&](int32_t low, std::span<const Side> sides) {
+    for_edges(mesh.vertices.size(), mesh.triangles, [&](int32_t low, std::span<const Side> sides) {
         const bool plain = sides.size() == 2 && sides[0].upwards != sides[1].upwards;
         closed = closed && plain;
         for (size_t i = 0; i + 1 < sides.size(); ++i) {  // where more than two meet, each with the next

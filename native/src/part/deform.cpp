@@ -141,18 +141,18 @@ std::array<double, 3> cotangents(const Point& a, const Point& b, const Point& c)
 void check(std::span<const Point> vertices, std::span<const Triangle> triangles) {
     if (vertices.empty() || triangles.empty())
         throw Error(PW_ERROR_EMPTY, "There are no triangles: select a part with faces.");
-    check_arrays({vertices.front().data(), vertices.size(), triangles.front().data(), triangles.size(), nullptr,
-                  triangles.size()});
+    check_arrays({vertices, triangles, {}, triangles.size()});
 }
 
 // Vertices along a space-filling curve (Morton's) through the box of a grid of 2^21 cells a side.
-std::vector<int32_t> along_curve(std::span<const Point> points, const Point& low, const Point& high) {
-    const double longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+std::vector<int32_t> along_curve(std::span<const Point> points, const Box& box) {
+    const auto [x, y, z] = box.high - box.low;
+    const double longest = std::max({x, y, z});
     const double cells = longest > 0 ? 2097151 / longest : 0;
     std::vector<std::pair<uint64_t, int32_t>> keys;
     keys.reserve(points.size());
     for (size_t v = 0; v < points.size(); ++v) {
-        const auto cell = [&](size_t k) { return static_cast<uint64_t>((points[v][k] - low[k]) * cells); };
+        const auto cell = [&](size_t k) { return static_cast<uint64_t>((points[v][k] - box.low[k]) * cells); };
         keys.push_back({place_on_curve({cell(2), cell(1), cell(0)}), static_cast<int32_t>(v)});
     }
     std::sort(keys.begin(), keys.end());
@@ -168,11 +168,9 @@ Deformation::Deformation(std::span<const Point> vertices, std::span<const Triang
                          std::span<const int32_t> roles, size_t threads)
     : threads_(threads, vertices.size() < worth_sharing ? 1 : vertices.size() / vertices_a_piece) {
     check(vertices, given_triangles);
-    Point low = vertices[0], high = vertices[0];
-    for (const Point& p : vertices)
-        for (size_t k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
-    origin_ = 0.5 * (low + high);
-    place_in_given_ = along_curve(vertices, low, high);
+    const Box box = Box::around(vertices);
+    origin_ = 0.5 * (box.low + box.high);
+    place_in_given_ = along_curve(vertices, box);
     std::vector<int32_t> ours(vertices.size());
     for (size_t v = 0; v < vertices.size(); ++v) {
         const int32_t given = place_in_given_[v];
@@ -453,18 +451,14 @@ void surface_distances(std::span<const Point> vertices, std::span<const Triangle
         told.push_back({a, {b, length}});
         told.push_back({b, {a, length}});
     };
-    const auto ends = [&](size_t side) {
-        const Triangle& t = triangles[side / 3];
-        return std::pair(t[(side + 1) % 3], t[(side + 2) % 3]);
-    };
-    for_edges(vertices.size(), 3 * triangles.size(), ends, [&](int32_t low, std::span<const Side> sides) {
+    for_edges(vertices.size(), triangles, [&](int32_t low, std::span<const Side> sides) {
         const int32_t high = sides[0].high;
         const Point along = vertices[high] - vertices[low];
         const double length = partwheel::length(along);
         add(low, high, length);
         if (sides.size() != 2 || !(length > 0)) return;
         // Both opposite corners laid flat: along the edge from its low end, and away from it on either side.
-        const auto opposite = [&](size_t i) { return triangles[sides[i].number / 3][sides[i].number % 3]; };
+        const auto opposite = [&](size_t i) { return triangles[sides[i].number / 3][(sides[i].number + 2) % 3]; };
         const Point one = vertices[opposite(0)] - vertices[low], other = vertices[opposite(1)] - vertices[low];
         const double x = dot(one, along) / length, u = dot(other, along) / length;
         const double y = std::sqrt(std::max(dot(one, one) - x * x, 0.0));

@@ -41,45 +41,30 @@ struct RayTarget::Ray {
 };
 
 RayTarget::RayTarget(const MeshView& mesh) {
-    if (mesh.triangle_count == 0) return;
+    if (mesh.triangles.empty()) return;
     check_arrays(mesh);
-    const auto* vertices = reinterpret_cast<const Point*>(mesh.vertices);
-    const auto* triangles = reinterpret_cast<const Triangle*>(mesh.triangles);
-    vertices_.assign(vertices, vertices + mesh.vertex_count);
+    vertices_.assign(mesh.vertices.begin(), mesh.vertices.end());
     const Frame frame = Frame::around(vertices_);
     std::vector<uint64_t> order;  // the place on the curve, as far as 32 bits tell, and the number
-    order.reserve(mesh.triangle_count);
-    for (size_t t = 0; t < mesh.triangle_count; ++t) {
-        std::array<uint64_t, 3> cell{};
-        for (size_t k = 0; k < 3 && frame.longest > 0; ++k) {
-            const double low = vertices_[at(triangles[t][0])][k] - frame.origin[k];
-            cell[k] = static_cast<uint64_t>(std::ldexp(low / frame.longest, cell_bits));
-        }
-        order.push_back(place_on_curve(cell) >> 31 << 32 | t);
-    }
+    order.reserve(mesh.triangles.size());
+    for (const Triangle& t : mesh.triangles)
+        order.push_back(place_in_cube(frame.in_cube(vertices_[at(t[0])]), cell_bits) >> 31 << 32 | order.size());
     std::sort(order.begin(), order.end());
     for (const uint64_t place : order) {
         numbers_.push_back(static_cast<int32_t>(place & 0xffffffff));
-        triangles_.push_back(triangles[numbers_.back()]);
+        triangles_.push_back(mesh.triangles[numbers_.back()]);
     }
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     const auto add_level = [&](size_t count, const auto& extend) {
-        std::vector<Box> boxes((count + run - 1) / run, {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}});
+        std::vector<Box> boxes((count + run - 1) / run);
         for (size_t i = 0; i < count; ++i) extend(boxes[i / run], i);
         levels_.push_back(std::move(boxes));
     };
-    const auto include = [](Box& box, const Point& low, const Point& high) {
-        for (size_t k = 0; k < 3; ++k) {
-            box.low[k] = std::min(box.low[k], low[k]);
-            box.high[k] = std::max(box.high[k], high[k]);
-        }
-    };
     add_level(triangles_.size(), [&](Box& box, size_t t) {
-        for (const int32_t v : triangles_[t]) include(box, vertices_[at(v)], vertices_[at(v)]);
+        for (const int32_t v : triangles_[t]) box.add(vertices_[at(v)]);
     });
     while (levels_.back().size() > 1) {
         const std::vector<Box> below = levels_.back();
-        add_level(below.size(), [&](Box& box, size_t b) { include(box, below[b].low, below[b].high); });
+        add_level(below.size(), [&](Box& box, size_t b) { box.add(below[b].low), box.add(below[b].high); });
     }
 }
 

@@ -26,9 +26,6 @@ public:
     RayHit first(const Point& origin, const Point& direction, double beyond) const;
 
 private:
-    struct Box {
-        Point low, high;
-    };
     struct Ray;
     void search(const Ray& ray, size_t level, size_t index, RayHit& best) const;
 

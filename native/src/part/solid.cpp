@@ -103,22 +103,12 @@ std::vector<int32_t> Facets::at_home(size_t first, size_t last) const {
 }
 
 std::vector<int32_t> Facets::pieces(std::span<const uint8_t> in) const {
-    std::vector<int32_t> piece(in.size(), -1), open;
-    int32_t count = 0;
-    for (size_t start = 0; start < in.size(); ++start) {
-        if (piece[start] >= 0) continue;
-        piece[start] = count++;
-        open.assign(1, static_cast<int32_t>(start));
-        while (!open.empty()) {
-            const size_t t = at(open.back());
-            open.pop_back();
-            for (int32_t n : neighbours_[t]) {
-                if (n < 0 || in[at(n)] != in[t] || piece[at(n)] >= 0) continue;
-                piece[at(n)] = piece[t];
-                open.push_back(n);
-            }
-        }
-    }
+    Joined joined(in.size());
+    for (size_t t = 0; t < in.size(); ++t)
+        for (int32_t n : neighbours_[t])
+            if (n >= 0 && in[at(n)] == in[t]) joined.join(t, at(n));
+    std::vector<int32_t> piece;
+    for (size_t t = 0; t < in.size(); ++t) piece.push_back(static_cast<int32_t>(joined.find(t)));
     return piece;
 }
 
@@ -150,8 +140,7 @@ std::vector<int32_t> Facets::with_faces(std::span<const Tetrahedron> tetrahedra,
     };
 
     std::vector<uint8_t> within(tetrahedra.size(), 1);
-    Point low{}, high{};  // a box around those that change sides
-    bool changed = false;
+    Box changed;  // around those that change sides
     for (size_t t = 0; t < tetrahedra.size(); ++t) {
         double more = 0;  // on the surface: area of the part's faces, less that of others
         for (size_t c = 0; c < 4; ++c) {
@@ -163,15 +152,10 @@ std::vector<int32_t> Facets::with_faces(std::span<const Tetrahedron> tetrahedra,
         const uint8_t wanted = more > 0 ? 1 : more < 0 ? 0 : in[t];
         if (wanted == in[t]) continue;
         in[t] = wanted;
-        for (int32_t v : tetrahedra[t])
-            for (size_t i = 0; i < 3; ++i) {
-                const double x = vertices[at(v)][i];
-                low[i] = changed ? std::min(low[i], x) : x;
-                high[i] = changed ? std::max(high[i], x) : x;
-                changed = true;
-            }
+        for (int32_t v : tetrahedra[t]) changed.add(vertices[at(v)]);
     }
-    if (const double size = length(high - low); changed && size > 0) {
+    const auto& [low, high] = changed;
+    if (const double size = changed.diagonal(); low[0] <= high[0] && size > 0) {
         // Edges of the surface, by the faces of which they are: of the part's, and of all.
         struct Edge {
             std::pair<int32_t, int32_t> ends;

@@ -37,7 +37,7 @@ public:
                        std::span<const int32_t> tets, std::span<const std::array<int32_t, 2>> middles) const;
 
 private:
-    // Of each tetrahedron the number of the piece it is in: joined across facets, all on one side.
+    // Of each tetrahedron the lowest of the piece it is in: joined across facets, all on one side.
     std::vector<int32_t> pieces(std::span<const uint8_t> in) const;
     // Pieces that only touch the others, and were joined with them before, change sides.
     void drop_splinters(std::span<const uint8_t> before, std::vector<uint8_t>& in) const;

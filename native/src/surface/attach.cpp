@@ -38,13 +38,6 @@ Triangles to_cgal(std::span<const Point> vertices, std::span<const Triangle> tri
     return result;
 }
 
-// By the parity of crossings along a ray in a direction that no model is likely to be built along. Not exact: it is
-// asked of many samples, and only of those far from the surface.
-bool is_outside(const Tree& tree, const Point& p) {
-    const Kernel::Ray_3 ray(to_cgal(p), Kernel::Vector_3(0.5377, 0.3141, 0.7823));
-    return tree.number_of_intersected_primitives(ray) % 2 == 0;
-}
-
 // A triangle of the source: from `corner` its longest side goes along `u`, `v` goes to the corner opposite.
 struct Sampled {
     Point corner, u, v;
@@ -88,10 +81,7 @@ double least_spacing(double area, double lengths) {
 }  // namespace
 
 Attached attach(const Surface& source, Surface& surface, Progress& progress) {
-    Triangles triangles = to_cgal(surface.vertices, surface.triangles);
-    Tree tree(triangles.begin(), triangles.end());
-    tree.build();
-
+    NearestTriangle nearest(surface.vertices, surface.triangles);
     double area = 0, lengths = 0;
     for (size_t t = 0; t < source.triangles.size(); ++t) {
         const Sampled sampled(source, t);
@@ -100,17 +90,16 @@ Attached attach(const Surface& source, Surface& surface, Progress& progress) {
     }
     const double size = diagonal(source);
     const double spacing = std::max(size * sample_spacing, least_spacing(area, lengths));
-    Tree::Point_and_primitive_id nearest(triangles[0].vertex(0), triangles.begin());
     double farthest = 0, outside = near_enough * size, distance = 0, hidden = 0;
     size_t samples = 0, t = 0;
     const auto find = [&](const Point& p) {
         if (samples++ % samples_between_polls == 0)
             progress.advance(0.9 + 0.1 * static_cast<double>(t) / static_cast<double>(source.triangles.size()));
-        nearest = tree.closest_point_and_primitive(to_cgal(p), nearest);
-        distance = std::sqrt(CGAL::squared_distance(nearest.first, to_cgal(p)));
+        const Near near = nearest(p);
+        distance = std::sqrt(near.squared);
         farthest = std::max(farthest, distance);
-        if (distance > outside && is_outside(tree, p)) outside = distance;
-        return static_cast<int32_t>(nearest.second - triangles.begin());
+        if (distance > outside && nearest.outside(p)) outside = distance;
+        return near.triangle;
     };
 
     for (const Point& p : source.vertices) find(p);
@@ -149,23 +138,12 @@ Near NearestTriangle::operator()(const Point& p) {
             {near.x(), near.y(), near.z()}};
 }
 
-std::vector<Near> nearest(const Surface& surface, std::span<const Point> points, Progress& progress) {
-    if (points.empty()) return {};
-    NearestTriangle nearest_triangle(surface.vertices, surface.triangles);
-    std::vector<Near> found;
-    for (const Point& p : points) {
-        if (found.size() % samples_between_polls == 0) progress.advance(0);
-        found.push_back(nearest_triangle(p));
-    }
-    return found;
+bool NearestTriangle::outside(const Point& p) const {
+    const Kernel::Ray_3 ray(to_cgal(p), Kernel::Vector_3(0.5377, 0.3141, 0.7823));
+    return boxes_->tree.number_of_intersected_primitives(ray) % 2 == 0;
 }
 
-double diagonal(const Surface& source) {
-    Point high{};
-    for (const Point& p : source.vertices)
-        for (size_t k = 0; k < 3; ++k) high[k] = std::max(high[k], p[k]);
-    return length(high);
-}
+double diagonal(const Surface& source) { return length(Box::around(source.vertices).high); }
 
 std::string percent(double share) {
     char text[32];  // printf would write a comma where the host's locale has one

@@ -45,13 +45,14 @@ public:
     NearestTriangle(std::span<const Point> vertices, std::span<const Triangle> triangles);
     ~NearestTriangle();
     Near operator()(const Point& p);
+    // By the parity of crossings along a ray in a direction that no model is likely to be built along. Not exact: it is
+    // asked of many samples, and only of those far from the surface.
+    bool outside(const Point& p) const;
 
 private:
     struct Boxes;
     std::unique_ptr<Boxes> boxes_;
 };
-
-std::vector<Near> nearest(const Surface& surface, std::span<const Point> points, Progress& progress);
 
 // Of the bounding box of a surface in working coordinates, whose lower corner is the origin.
 double diagonal(const Surface& source);

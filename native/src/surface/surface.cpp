@@ -39,9 +39,9 @@ std::string counted(size_t n, const char* one, const char* many) {
 }
 
 void check_all_faces_used(const MeshView& mesh) {
-    if (!mesh.faces) return;
+    if (mesh.faces.empty()) return;
     std::vector<bool> used(mesh.face_count, false);
-    for (size_t t = 0; t < mesh.triangle_count; ++t) used[at(mesh.faces[t])] = true;
+    for (const int32_t face : mesh.faces) used[at(face)] = true;
     const auto unused = std::find(used.begin(), used.end(), false);
     if (unused != used.end())
         throw Error(PW_ERROR_INDEX, "Face " + std::to_string(unused - used.begin()) +
@@ -79,11 +79,7 @@ void check_manifold(const Surface& surface) {
     const size_t count = surface.triangles.size();
     Finding open, crowded, turned;
     std::vector<int32_t> twin(3 * count);  // sides: 3 * triangle + k goes from corner k to corner k + 1
-    const auto ends = [&](size_t side) {
-        const Triangle& t = surface.triangles[side / 3];
-        return std::pair(t[side % 3], t[(side + 1) % 3]);
-    };
-    for_edges(surface.vertices.size(), 3 * count, ends, [&](int32_t, std::span<const Side> sides) {
+    for_edges(surface.vertices.size(), surface.triangles, [&](int32_t, std::span<const Side> sides) {
         const int32_t face = surface.pieces[at(sides[0].number) / 3].face;
         if (sides.size() == 1)
             open.add(face);
@@ -262,40 +258,35 @@ std::vector<int32_t> order_on_curve(std::span<const Point> vertices) {
 }  // namespace
 
 void check_arrays(const MeshView& mesh) {
-    if (mesh.vertex_count == 0 || mesh.triangle_count == 0 || mesh.face_count == 0)
+    if (mesh.vertices.empty() || mesh.triangles.empty() || mesh.face_count == 0)
         throw Error(PW_ERROR_EMPTY, "The mesh has no faces. Choose a mesh object that has some.");
-    if (!mesh.faces && mesh.face_count != mesh.triangle_count)
+    if (mesh.faces.empty() && mesh.face_count != mesh.triangles.size())
         throw Error(PW_ERROR_ARGUMENT, "Without source faces, face_count must equal triangle_count.");
 
-    for (size_t i = 0; i < 3 * mesh.vertex_count; ++i)
-        if (!(std::fabs(mesh.vertices[i]) <= largest_coordinate))
-            throw Error(PW_ERROR_NOT_FINITE, "Vertex " + std::to_string(i / 3) +
-                                                 " has a coordinate that is not a number, or is too large. Delete or "
-                                                 "move that vertex.");
+    for (size_t v = 0; v < mesh.vertices.size(); ++v)
+        for (const double x : mesh.vertices[v])
+            if (!(std::fabs(x) <= largest_coordinate))
+                throw Error(PW_ERROR_NOT_FINITE, "Vertex " + std::to_string(v) +
+                                                     " has a coordinate that is not a number, or is too large. Delete "
+                                                     "or move that vertex.");
 
-    const auto vertex_count = static_cast<int64_t>(mesh.vertex_count);
-    for (size_t i = 0; i < 3 * mesh.triangle_count; ++i)
-        if (mesh.triangles[i] < 0 || mesh.triangles[i] >= vertex_count)
-            throw Error(PW_ERROR_INDEX, "Triangle " + std::to_string(i / 3) + " names vertex " +
-                                            std::to_string(mesh.triangles[i]) + ", but there are " +
-                                            std::to_string(vertex_count) + ". The mesh data are damaged.");
-    const auto face_count = static_cast<int64_t>(mesh.face_count);
-    for (size_t t = 0; mesh.faces && t < mesh.triangle_count; ++t)
-        if (mesh.faces[t] < 0 || mesh.faces[t] >= face_count)
-            throw Error(PW_ERROR_INDEX, "Triangle " + std::to_string(t) + " names face " +
-                                            std::to_string(mesh.faces[t]) + ", but there are " +
-                                            std::to_string(face_count) + ". The mesh data are damaged.");
+    const auto check_index = [](size_t triangle, const char* what, int32_t index, size_t count) {
+        if (index < 0 || at(index) >= count)
+            throw Error(PW_ERROR_INDEX, "Triangle " + std::to_string(triangle) + " names " + what + " " +
+                                            std::to_string(index) + ", but there are " + std::to_string(count) +
+                                            ". The mesh data are damaged.");
+    };
+    for (size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (const int32_t v : mesh.triangles[t]) check_index(t, "vertex", v, mesh.vertices.size());
+    for (size_t t = 0; t < mesh.faces.size(); ++t) check_index(t, "face", mesh.faces[t], mesh.face_count);
 }
 
 Frame Frame::around(std::span<const Point> points) {
     Frame frame{.longest = 0, .scale = 0};
     if (points.empty()) return frame;
-    for (size_t k = 0; k < 3; ++k) {
-        const auto [low, high] = std::minmax_element(points.begin(), points.end(),
-                                                     [k](const Point& a, const Point& b) { return a[k] < b[k]; });
-        frame.origin[k] = (*low)[k];
-        frame.longest = std::max(frame.longest, (*high)[k] - (*low)[k]);
-    }
+    const Box box = Box::around(points);
+    frame.origin = box.low;
+    for (const double side : box.high - box.low) frame.longest = std::max(frame.longest, side);
     frame.scale = frame.longest > 0 ? std::ldexp(1.0, std::ilogb(frame.longest)) : 0;
     return frame;
 }
@@ -308,6 +299,11 @@ Point Frame::to_working(const Point& p) const {
     return {working(0), working(1), working(2)};
 }
 
+Point Frame::in_cube(const Point& p) const {
+    if (longest == 0) return {};
+    return {(p[0] - origin[0]) / longest, (p[1] - origin[1]) / longest, (p[2] - origin[2]) / longest};
+}
+
 Point Frame::to_caller(const Point& p) const {
     return {p[0] * scale + origin[0], p[1] * scale + origin[1], p[2] * scale + origin[2]};
 }
@@ -315,19 +311,16 @@ Point Frame::to_caller(const Point& p) const {
 Surface read_mesh(const MeshView& mesh) {
     check_arrays(mesh);
     check_all_faces_used(mesh);
-    const auto point = [&](int32_t v) {
-        const double* p = mesh.vertices + 3 * static_cast<size_t>(v);
-        return Point{p[0], p[1], p[2]};
-    };
-    std::vector<bool> in_use(mesh.vertex_count, false);
-    for (size_t i = 0; i < 3 * mesh.triangle_count; ++i) in_use[at(mesh.triangles[i])] = true;
-    std::vector<int32_t> used, number(mesh.vertex_count, -1);
+    std::vector<bool> in_use(mesh.vertices.size(), false);
+    for (const Triangle& t : mesh.triangles)
+        for (const int32_t v : t) in_use[at(v)] = true;
+    std::vector<int32_t> used, number(mesh.vertices.size(), -1);
     std::vector<Point> points;
-    for (size_t v = 0; v < mesh.vertex_count; ++v) {
+    for (size_t v = 0; v < mesh.vertices.size(); ++v) {
         if (!in_use[v]) continue;
         number[v] = static_cast<int32_t>(points.size());
         used.push_back(static_cast<int32_t>(v));
-        points.push_back(point(static_cast<int32_t>(v)));
+        points.push_back(mesh.vertices[v]);
     }
     const Frame frame = Frame::around(points);
     if (frame.longest == 0)
@@ -335,11 +328,11 @@ Surface read_mesh(const MeshView& mesh) {
     if (frame.longest < smallest_model)
         throw Error(PW_ERROR_NOT_FINITE, "The model is too small to be measured. Scale it up.");
     for (Point& p : points) p = frame.to_working(p);
-    std::vector<Triangle> triangles(mesh.triangle_count);
-    for (size_t t = 0; t < mesh.triangle_count; ++t)
-        for (size_t k = 0; k < 3; ++k) triangles[t][k] = number[static_cast<size_t>(mesh.triangles[3 * t + k])];
+    std::vector<Triangle> triangles(mesh.triangles.begin(), mesh.triangles.end());
+    for (Triangle& t : triangles)
+        for (int32_t& v : t) v = number[at(v)];
     Surface surface = canonical(frame, points, used, triangles);
-    if (mesh.faces)
+    if (!mesh.faces.empty())
         for (Piece& piece : surface.pieces) piece.face = mesh.faces[piece.face];
     surface.face_count = mesh.face_count;
     return surface;
@@ -349,14 +342,7 @@ std::vector<uint64_t> places_on_curve(std::span<const Point> vertices) {
     const Frame frame = Frame::around(vertices);
     std::vector<uint64_t> places;
     places.reserve(vertices.size());
-    for (const Point& p : vertices) {
-        std::array<uint64_t, 3> cell{};
-        for (size_t k = 0; k < 3 && frame.longest > 0; ++k) {
-            const double along = (p[k] - frame.origin[k]) / frame.longest * part_of_grid;
-            cell[k] = static_cast<uint64_t>(std::ldexp(along, curve_bits));
-        }
-        places.push_back(place_on_curve(cell));
-    }
+    for (const Point& p : vertices) places.push_back(place_in_cube(part_of_grid * frame.in_cube(p), curve_bits));
     return places;
 }
 
@@ -411,6 +397,16 @@ void check_surface(const Surface& surface, Progress& progress) {
     progress.advance(0.5);
     check_self_intersection(surface, progress);
     progress.advance(1);
+}
+
+pw_status verdict(const Surface& surface, Progress& progress) {
+    try {
+        check_surface(surface, progress);
+        return PW_OK;
+    } catch (const Error& error) {
+        if (error.status() == PW_ERROR_CANCELLED) throw;
+        return error.status();
+    }
 }
 
 Surface check_surface(const MeshView& mesh, Progress& progress) {

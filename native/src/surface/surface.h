@@ -13,11 +13,9 @@ namespace partwheel {
 
 // The caller's arrays, as pw_build documents them.
 struct MeshView {
-    const double* vertices = nullptr;
-    size_t vertex_count = 0;
-    const int32_t* triangles = nullptr;
-    size_t triangle_count = 0;
-    const int32_t* faces = nullptr;  // null: triangle i is face i
+    std::span<const Point> vertices;
+    std::span<const Triangle> triangles;
+    std::span<const int32_t> faces;  // of the triangles; none: triangle i is face i
     size_t face_count = 0;
 };
 
@@ -32,6 +30,7 @@ struct Frame {
     static Frame around(std::span<const Point> points);
 
     Point to_working(const Point& p) const;
+    Point in_cube(const Point& p) const;  // of that side, from the origin: 0 to 1
     Point to_caller(const Point& p) const;
     double volume_to_caller(double v) const { return v * scale * scale * scale; }
     double area_to_caller(double a) const { return a * scale * scale; }
@@ -83,6 +82,9 @@ Surface canonical(const Frame& frame, std::span<const Point> vertices, std::span
 // Checks what pw_build documents of the exact rung, in the order of pw_status; throws an Error that names the first
 // thing that fails.
 void check_surface(const Surface& surface, Progress& progress);
+
+// Its verdict: the status of that Error, or PW_OK. Throws if cancelled.
+pw_status verdict(const Surface& surface, Progress& progress);
 
 // Both in one.
 Surface check_surface(const MeshView& mesh, Progress& progress);

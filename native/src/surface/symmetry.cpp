@@ -52,13 +52,7 @@ class Search {
 public:
     Search(std::span<const Point> vertices, std::span<const Triangle> triangles, Progress& progress)
         : vertices_(vertices), triangles_(triangles), progress_(progress), nearest_(vertices, triangles) {
-        Point low = vertices[0], high = low;
-        for (const Point& p : vertices)
-            for (size_t k = 0; k < 3; ++k) {
-                low[k] = std::min(low[k], p[k]);
-                high[k] = std::max(high[k], p[k]);
-            }
-        diagonal_ = length(high - low);
+        diagonal_ = Box::around(vertices).diagonal();
         few_ = spread(few_samples);
         many_ = spread(many_samples);
     }

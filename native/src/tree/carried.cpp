@@ -17,16 +17,6 @@ namespace {
 // Passes of smoothing, as a multiple of the noise: a surface that is only measured may lose more than one that is used.
 constexpr double smoothing_passes = 90;
 
-bool sound(const Surface& surface, Progress& progress) {
-    try {
-        check_surface(surface, progress);
-        return true;
-    } catch (const Error& error) {
-        if (error.status() == PW_ERROR_CANCELLED) throw;
-        return false;
-    }
-}
-
 // Numbers: the parts' in depth-first order, as their scores are, then those of the merges that join them.
 struct Numbers {
     std::vector<int32_t> of_tetrahedron;
@@ -58,7 +48,7 @@ std::optional<TetMesh> plain_filling(const Solid& solid, bool points_inside, Pro
     bool smooth = false;
     if (noise > 0) {
         surface.vertices = smoothed(surface.vertices, surface.triangles, smoothing_passes * noise);
-        smooth = sound(surface, progress);
+        smooth = verdict(surface, progress) == PW_OK;
         if (!smooth) surface.vertices = solid.surface.vertices;
     }
     if (!smooth && !points_inside) return {};

@@ -76,16 +76,14 @@ std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh
 }  // namespace
 
 Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const Regrouped& regrouped,
-                     const double* caller_vertices)
+                     std::span<const Point> caller_vertices)
     : scores_(regrouped.scores) {
     const BinaryTree& tree = regrouped.tree;
     const Frame& frame = surface.frame;
     source_ = surface.source_vertex;
     source_.resize(mesh.vertices.size(), -1);
-    for (size_t v = 0; v < source_.size(); ++v) {
-        const double* p = source_[v] < 0 ? nullptr : caller_vertices + 3 * at(source_[v]);
-        vertices_.push_back(p ? Point{p[0], p[1], p[2]} : frame.to_caller(mesh.vertices[v]));
-    }
+    for (size_t v = 0; v < source_.size(); ++v)
+        vertices_.push_back(source_[v] < 0 ? frame.to_caller(mesh.vertices[v]) : caller_vertices[at(source_[v])]);
 
     const size_t leaves = mesh.tetrahedra.size();
     const std::vector<int32_t> order = cut_undoing_last(tree.merges, leaves);  // depth first

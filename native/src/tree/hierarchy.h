@@ -18,7 +18,8 @@ class Hierarchy {
 public:
     // From what the rooms before it made: regroup()'s tree and scores, or the paper's tree and no scores.
     // caller_vertices are the caller's own.
-    Hierarchy(const Surface& surface, const TetMesh& mesh, const Regrouped& regrouped, const double* caller_vertices);
+    Hierarchy(const Surface& surface, const TetMesh& mesh, const Regrouped& regrouped,
+              std::span<const Point> caller_vertices);
 
     // Throws Error(PW_ERROR_DATA) for anything but what save() makes.
     static Hierarchy load(std::span<const uint8_t> bytes);

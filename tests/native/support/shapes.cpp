@@ -14,7 +14,7 @@
 namespace partwheel::test {
 
 MeshView TriMesh::view() const {
-    return {vertex_data(), vertices.size(), triangle_data(), triangles.size(), face_data(), face_count};
+    return {vertices, triangles, faces, face_count};
 }
 
 double enclosed_volume(const TriMesh& mesh) {

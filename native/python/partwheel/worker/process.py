@@ -15,11 +15,11 @@ import struct
 import sys
 import threading
 import time
-from ctypes import byref, c_int, c_size_t, c_uint8
+from ctypes import c_int, c_size_t, c_uint8
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
-from library import Build, BuildOptions, Context, PartwheelError, Status, check, load  # noqa: E402
+from library import Build, BuildOptions, Context, PartwheelError, Status, load, told  # noqa: E402
 
 MESSAGE = struct.Struct("<cQ")
 TICK = 0.05  # seconds between reports of progress
@@ -121,9 +121,7 @@ def build(header, arrays, answers):
 
 
 def report(context, answers):
-    rung = c_int()
-    load().pw_context_rung(context, byref(rung))
-    send(answers, b"P", [*context.progress(), rung.value, work()])
+    send(answers, b"P", [*context.progress(), *told([c_int], load().pw_context_rung, context), work()])
 
 
 def work():
@@ -132,10 +130,9 @@ def work():
 
 
 def saved(hierarchy):
-    count = c_size_t()
-    check(load().pw_hierarchy_save(hierarchy, None, 0, byref(count)))
-    buffer = (c_uint8 * count.value)()
-    check(load().pw_hierarchy_save(hierarchy, buffer, count.value, byref(count)))
+    size, = told([c_size_t], load().pw_hierarchy_save, hierarchy, None, 0)
+    buffer = (c_uint8 * size)()
+    told([c_size_t], load().pw_hierarchy_save, hierarchy, buffer, size)
     return memoryview(buffer).cast("B")
 
 

@@ -97,8 +97,7 @@ public:
         for (const int32_t v : points.first(std::min(points.size(), size_t{8}))) prefetch_line(&at(v));
     }
 
-    // The lower and upper corner of the hull's bounding box.
-    std::pair<Point, Point> bounds(const Hull& hull) const;
+    Box bounds(const Hull& hull) const;
 
 private:
     // A point that may be outside.

@@ -136,14 +136,10 @@ Hull HullKernel::unite(const Hull& hull, std::span<const int32_t> points) {
     return unload(hull.vertices(), vertices_);
 }
 
-std::pair<Point, Point> HullKernel::bounds(const Hull& hull) const {
-    Point low = at(hull.vertices().front()), high = low;
-    for (const int32_t v : hull.vertices())
-        for (size_t k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], at(v)[k]);
-            high[k] = std::max(high[k], at(v)[k]);
-        }
-    return {low, high};
+Box HullKernel::bounds(const Hull& hull) const {
+    Box box;
+    for (const int32_t v : hull.vertices()) box.add(at(v));
+    return box;
 }
 
 }  // namespace partwheel

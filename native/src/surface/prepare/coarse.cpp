@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -156,11 +157,7 @@ private:
     void join_borders() {
         if (std::adjacent_find(vertices_.begin(), vertices_.end()) == vertices_.end()) return;
         std::vector<bool> open(vertices_.size(), false);
-        const auto ends = [&](size_t side) {
-            const Triangle& t = triangles_[side / 3];
-            return std::pair(t[side % 3], t[(side + 1) % 3]);
-        };
-        for_edges(vertices_.size(), 3 * triangles_.size(), ends, [&](int32_t low, std::span<const Side> sides) {
+        for_edges(vertices_.size(), triangles_, [&](int32_t low, std::span<const Side> sides) {
             if (sides.size() == 1) open[at(low)] = open[at(sides[0].high)] = true;
         });
         for (size_t v = 0, first = 0; v < vertices_.size(); ++v) {
@@ -417,15 +414,13 @@ double find_pieces(const Surface& source, const Surface& coarse, std::span<const
     });
     // Where no steps lead near, all triangles are asked.
     const double far = diagonal(source) * near_enough;
-    std::vector<size_t> lost;
-    std::vector<Point> where;
-    for (size_t v = 0; v < places.size(); ++v)
-        if (places[v].squared > far * far) {
-            lost.push_back(v);
-            where.push_back(source.vertices[v]);
-        }
-    const std::vector<Near> found = nearest(coarse, where, progress);
-    for (size_t i = 0; i < lost.size(); ++i) places[lost[i]] = found[i];
+    std::optional<NearestTriangle> nearest;
+    for (size_t v = 0, asked = 0; v < places.size(); ++v) {
+        if (places[v].squared <= far * far) continue;
+        if (asked++ % piece == 0) progress.advance(0);
+        if (!nearest) nearest.emplace(coarse.vertices, coarse.triangles);
+        places[v] = (*nearest)(source.vertices[v]);
+    }
     double farthest = 0;
     for (const Near& near : places) farthest = std::max(farthest, near.squared);
     threads.parallel_for(pieces.size(), piece, [&](size_t first, size_t last) {

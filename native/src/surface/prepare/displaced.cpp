@@ -1,7 +1,6 @@
 // The gentlest repair: some vertices set apart, or all smoothed.
 #include "surface/prepare/displaced.h"
 
-#include "base/error.h"
 #include "surface/attach.h"
 #include "surface/prepare/rough.h"
 
@@ -55,37 +54,26 @@ std::vector<Point> set_apart(const Surface& source, const std::vector<size_t>& t
     return result;
 }
 
-enum class Outcome { sound, crosses, fails };
-
-Outcome check(const Surface& surface, Progress& progress) {
-    try {
-        check_surface(surface, progress);
-        return Outcome::sound;
-    } catch (const Error& error) {
-        if (error.status() == PW_ERROR_CANCELLED) throw;
-        return error.status() == PW_ERROR_SELF_INTERSECTION ? Outcome::crosses : Outcome::fails;
-    }
-}
-
 }  // namespace
 
 std::optional<Surface> displaced(const Surface& source, Progress& progress) {
     Surface surface = source;
-    Outcome outcome = Outcome::crosses;
+    pw_status status = PW_ERROR_SELF_INTERSECTION;
     const auto attempt = [&](std::vector<Point> vertices) {
         surface.vertices = std::move(vertices);
-        return outcome = check(surface, progress);
+        return status = verdict(surface, progress);
     };
     std::string account;
     const std::vector<size_t> touching = at_one_place(source.vertices);
-    if (!touching.empty() && attempt(set_apart(source, touching)) == Outcome::sound)
+    if (!touching.empty() && attempt(set_apart(source, touching)) == PW_OK)
         account = "Repaired: " + std::to_string(touching.size()) + " touching vertices set apart.";
-    const double noise = outcome == Outcome::crosses ? roughness(source.vertices, source.triangles) : 0;
+    const bool crosses = status == PW_ERROR_SELF_INTERSECTION;
+    const double noise = crosses ? roughness(source.vertices, source.triangles) : 0;
     for (const double passes : uncrossing_passes)
-        if (noise > 0 && outcome == Outcome::crosses &&
-            attempt(smoothed(source.vertices, source.triangles, passes * noise)) == Outcome::sound)
+        if (noise > 0 && status == PW_ERROR_SELF_INTERSECTION &&
+            attempt(smoothed(source.vertices, source.triangles, passes * noise)) == PW_OK)
             account = "Repaired: the surface is so rough that it passes through itself, and was smoothed.";
-    if (outcome != Outcome::sound) return {};
+    if (status != PW_OK) return {};
 
     double farthest = 0;
     for (size_t v = 0; v < source.vertices.size(); ++v) {

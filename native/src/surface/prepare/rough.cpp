@@ -26,10 +26,8 @@ std::vector<Point> middles(std::span<const Point> vertices, std::span<const Tria
     std::vector<int32_t> count(vertices.size(), 0);
     for (const Triangle& t : triangles)
         for (size_t k = 0; k < 3; ++k) {
-            const auto v = static_cast<size_t>(t[k]);
-            const Point &a = vertices[static_cast<size_t>(t[(k + 1) % 3])],
-                        &b = vertices[static_cast<size_t>(t[(k + 2) % 3])];
-            for (size_t i = 0; i < 3; ++i) sum[v][i] += a[i] + b[i];
+            const size_t v = at(t[k]);
+            sum[v] = sum[v] + (vertices[at(t[(k + 1) % 3])] + vertices[at(t[(k + 2) % 3])]);
             count[v] += 2;
         }
     for (size_t v = 0; v < vertices.size(); ++v)
@@ -46,8 +44,7 @@ std::vector<Point> difference(const std::vector<Point>& a, const std::vector<Poi
 std::vector<Point> blurred(std::vector<Point> vertices, std::span<const Triangle> triangles, int times) {
     for (int pass = 0; pass < times; ++pass) {
         const std::vector<Point> middle = middles(vertices, triangles);
-        for (size_t v = 0; v < vertices.size(); ++v)
-            for (size_t i = 0; i < 3; ++i) vertices[v][i] = (vertices[v][i] + middle[v][i]) / 2;
+        for (size_t v = 0; v < vertices.size(); ++v) vertices[v] = 0.5 * (vertices[v] + middle[v]);
     }
     return vertices;
 }
@@ -97,8 +94,7 @@ std::vector<Point> smoothed(const std::vector<Point>& vertices, std::span<const 
     const int times = static_cast<int>(std::ceil(passes));
     std::vector<Point> result = blurred(vertices, triangles, times);
     const std::vector<Point> lost = blurred(difference(vertices, result), triangles, times);
-    for (size_t v = 0; v < result.size(); ++v)
-        for (size_t i = 0; i < 3; ++i) result[v][i] += lost[v][i];
+    for (size_t v = 0; v < result.size(); ++v) result[v] = result[v] + lost[v];
     return result;
 }
 

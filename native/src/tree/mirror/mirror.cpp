@@ -184,10 +184,7 @@ private:
             if (!near_[t]) part_[t] = unsettled;
         std::vector<Claim> claims;
         if (!facets.empty()) {
-            Point low = mesh_.vertices[0], high = low;
-            for (const Point& p : mesh_.vertices)
-                for (size_t k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
-            const double tolerance = 2 * mirror_tolerance * length(high - low);
+            const double tolerance = 2 * mirror_tolerance * Box::around(mesh_.vertices).diagonal();
             NearestTriangle nearest(mesh_.vertices, facets);
             for (const Far& f : far) {
                 const Near found = nearest(plane_.mirrored(f.middle));

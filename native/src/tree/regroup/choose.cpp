@@ -1,5 +1,6 @@
 // Which clusters of the paper's tree are the parts: it is cut where most surface lies in what is least convex,
 // components first.
+#include "tree/mirror/spread.h"
 #include "tree/regroup/parts.h"
 
 #include <algorithm>
@@ -12,11 +13,8 @@ std::vector<int32_t> choose_parts(const TetMesh& mesh, const BinaryTree& tree) {
     const size_t leaves = mesh.tetrahedra.size(), merges = tree.merges.size();
     std::vector<double> area(leaves + merges, 0);
     for (size_t t = 0; t < leaves; ++t)
-        for (size_t k = 0; k < 4; ++k) {
-            if (mesh.neighbours[t][k] >= 0) continue;
-            const Triangle f = facet(mesh.tetrahedra[t], k);
-            area[t] += partwheel::area(mesh.vertices[at(f[0])], mesh.vertices[at(f[1])], mesh.vertices[at(f[2])]);
-        }
+        for (size_t k = 0; k < 4; ++k)
+            if (mesh.neighbours[t][k] < 0) area[t] += facet_area(mesh, t, k);
     for (size_t m = 0; m < merges; ++m)
         area[leaves + m] = area[at(tree.merges[m].left)] + area[at(tree.merges[m].right)];
     std::priority_queue<std::pair<float, int32_t>> queue;  // the lower number first where they tie

@@ -87,11 +87,7 @@ Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_
         double length, bend;  // bend: the sine of half the angle, below 0 where concave
     };
     std::vector<Fold> folds;
-    const auto ends = [&](size_t side) {
-        const Triangle& t = outer[side / 3];
-        return std::pair(t[side % 3], t[(side + 1) % 3]);
-    };
-    for_edges(mesh.vertices.size(), 3 * outer.size(), ends, [&](int32_t low, std::span<const Side> sides) {
+    for_edges(mesh.vertices.size(), outer, [&](int32_t low, std::span<const Side> sides) {
         for (size_t i = 0; i + 1 < sides.size(); i += 2) {
             const int32_t high = sides[i].high, s = sides[i].number / 3, t = sides[i + 1].number / 3;
             const Point &m = normals[at(s)], &n = normals[at(t)];
