@@ -3,11 +3,10 @@
 the C++: parts, folds, borders, measures, both networks, the order of joining, scores. Hulls are scipy's."""
 
 import heapq
-import re
 from dataclasses import dataclass, field
 
 import numpy as np
-from regroup_names import NODE_NAMES, PAIR_NAMES, SOURCE
+from regroup_names import NODE_NAMES, PAIR_NAMES, fitted_numbers
 from scipy.spatial import ConvexHull
 
 MOST_PARTS = 600
@@ -16,12 +15,6 @@ CONCAVE_BEND = -0.02
 MIDDLING_CURVATURE = 4.0
 SMOOTHING = 4
 CONVEX = 1e-6  # of the hull's volume, see cluster.h
-
-
-def fitted_numbers(name):
-    text = (SOURCE / "fitted.h").read_text()
-    numbers = re.search(name + r" = \{(.*?)\};", text, re.DOTALL).group(1)
-    return np.array([float(number) for number in numbers.split(",") if number.strip()])
 
 
 class Network:
