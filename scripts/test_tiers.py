@@ -116,7 +116,7 @@ def reliability():
 def quality():
     """How well parts are selected: 24 models of the benchmark where it is, and mirror images, against floors."""
     build("quality", "release", "partwheel")
-    setup("quality", "setup_build", "setup_core")
+    build("quality", "bench", "quality_trace")
     if os.environ.get("PARTWHEEL_PSB") or BENCHMARK.exists():
         setup("quality", "setup_psb")
     else:

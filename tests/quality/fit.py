@@ -144,11 +144,10 @@ class People:
         self.labels, self.clicks = np.array(labels), np.array(clicks)
 
 
-class Trace:
-    """What regroup() did with a model, beside its people. Of each node: its area and its faces' number within each
-    label (inside, within), and the overlap with each (N, labels)."""
+class Traced:
+    """What regroup() did with a model, as quality_trace writes it."""
 
-    def __init__(self, path, people):
+    def __init__(self, path):
         data = path.read_bytes()
         faces, self.parts, pairs, merges, nodes = np.frombuffer(data, np.int32, 5)
         at = 20
@@ -159,17 +158,25 @@ class Trace:
             at += values.nbytes
             return values.reshape(count, columns)
 
-        self.people = people
         self.part_of_face = take(faces, np.int32, 1)[:, 0]
         self.pairs, self.merges = take(pairs, np.int32, 2), take(merges, np.int32, 2)
         self.pair_measures = take(pairs, np.float64, len(PAIR_NAMES))
         self.node_measures = take(nodes, np.float64, len(NODE_NAMES))
+
+
+class Trace(Traced):
+    """The same beside the model's people. Of each node: its area and its faces' number within each label (inside,
+    within), and the overlap with each (N, labels)."""
+
+    def __init__(self, path, people):
+        super().__init__(path)
+        self.people = people
         labels, annotators = people.ends[-1], len(people.labels)
         cell = (self.part_of_face * labels + people.labels).ravel()
         sums = [np.bincount(cell, w, self.parts * labels).reshape(self.parts, labels)
                 for w in (np.tile(people.area, annotators), None)]
-        self.inside, self.within = (np.vstack([s, np.zeros((merges, labels))]) for s in sums)
-        self.above = np.full(nodes, -1)
+        self.inside, self.within = (np.vstack([s, np.zeros((len(self.merges), labels))]) for s in sums)
+        self.above = np.full(len(self.node_measures), -1)
         for j, pair in enumerate(self.merges):
             for table in (self.inside, self.within):
                 table[self.parts + j] = table[pair].sum(axis=0)
