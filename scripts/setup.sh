@@ -171,7 +171,8 @@ fill_psb() {
 setup_psb() {
     [ -n "${PARTWHEEL_PSB:-}" ] && return
     benchmark=$root/../shared/psb/tune.tar.xz
-    [ -f "$benchmark" ] || fail "the benchmark is not here: neither $benchmark nor a folder named by PARTWHEEL_PSB" || return
+    [ -f "$benchmark" ] || fail "the benchmark is not here: neither $benchmark nor a folder that PARTWHEEL_PSB names" ||
+        return
     start_setup && into "$deps/psb" fill_psb
 }
 

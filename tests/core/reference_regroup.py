@@ -93,9 +93,9 @@ class Pair:
 
 class Regrouped:
     """The parts of a mesh joined: parts, first those of the tree given (mode PAPER's), then the joined ones; joined, of
-    which two each of these was made; scores, of each part and joined part. What the networks were told: at_first, (part,
-    part, measures) of each pair that is there at first and has surface; priced, likewise of each pair once its hull was
-    made, in order; node_measures."""
+    which two each of these was made; scores, of each part and joined part. What the networks were told: at_first,
+    (part, part, measures) of each pair that is there at first and has surface; priced, likewise of each pair once its
+    hull was made, in order; node_measures."""
 
     def __init__(self, vertices, tetrahedra, merges, components):
         low, high = vertices.min(axis=0), vertices.max(axis=0)

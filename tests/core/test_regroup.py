@@ -40,7 +40,7 @@ def shape_of(name):
 
 @functools.cache
 def compared(name):
-    """The reference, the sets of tetrahedra that its parts are, in numbers; the build, and those of any slices of it."""
+    """The reference, the sets of tetrahedra that its parts are, in numbers; the build, and those of slices of it."""
     shape = shape_of(name)
     paper = Hierarchy.build(*shape, mode=Mode.PAPER)
     reference = Regrouped(paper.vertices, paper.tetrahedra, paper.merges, paper.summary.components)
@@ -57,7 +57,7 @@ def compared(name):
 
 @functools.cache
 def both(name):
-    """({set of tetrahedra: score}, {set: the sets of the two that it was joined from}): the reference's, the build's."""
+    """({set of tetrahedra: score}, {set: sets of the two that it was joined from}): the reference's, the build's."""
     reference, sets, built, sets_of = compared(name)
     wanted = (dict(zip(sets, reference.scores)),
               {sets[reference.fine + j]: {sets[a], sets[b]} for j, (a, b) in enumerate(reference.joined)})

@@ -6,8 +6,8 @@ usage: fit.py MESH_DIR SEG_DIR WORK_DIR [--trees DIR] [--trace PROGRAM] [--round
               [--without GROUP] [--write]
 
 MESH_DIR/<id>.off, SEG_DIR/<id>/*.seg: of the Princeton Segmentation Benchmark, 20 ids a category. DIR/<id>.hierarchy:
-the paper's trees, which are built first where they are not there (default: WORK_DIR). PROGRAM: quality_trace, built by
-`scripts/build bench quality_trace`.
+the paper's trees; without --trees they are built first, into WORK_DIR. PROGRAM: quality_trace, built by `scripts/build
+bench quality_trace`.
 
 The pair cost is fitted to the likelihood that two faces, one of each part, lie in one part of a person's. Which pairs
 come up depends on the cost itself, so there are rounds: the first one with a cost by concavity and size alone, each
@@ -20,8 +20,8 @@ were fitted without it. A fit begins with weights by chance, and trees are greed
 finding. Beside that are scored, on all models, the numbers in fitted.h and those fitted to all now: each to what it has
 seen. What is written (--write) is, of the latter, what has the best sum of `best` and `click`.
 
---without: an ablation, the measures of one group are not told (GROUPS). One seed takes some two minutes on two idle cores,
-without the trees.
+--without: an ablation, the measures of one group are not told (GROUPS). One seed takes some two minutes on two idle
+cores, without the trees.
 """
 
 import argparse
@@ -49,17 +49,17 @@ DIGITS = 4
 PAIRS_A_MODEL = 1200
 ROUNDS_SEEN = 3
 MOST_OVERLAP = 0.85  # as in wheel_stops()
-# The measures in groups, by what they look at: --without leaves one out. OwnMeasures' names hold for pairs as well where
-# pairs have them.
+# The measures in groups, by what they look at: --without leaves one out. Some names are those of pairs and of nodes.
 GROUPS = {
     "size": "area_s area_both volume_s volume_both area_step area volume sibling_area parent_area sibling_volume",
     "convexity": "gap_both gap_s gap_l excess_to_s excess_to_all gap_added gap dents sibling_gap parent_gap gap_step",
-    "section": "face_to_volume_s face_to_volume_l face_to_area_s face_share_s face_share_l face_to_thick_s face_to_thick_l "
-               "outline face_to_volume face_to_area face_to_thick",
+    "section": "face_to_volume_s face_to_volume_l face_to_area_s face_share_s face_share_l face_to_thick_s "
+               "face_to_thick_l outline face_to_volume face_to_area face_to_thick",
     "length": "length_to_area_s length_share_s length_share_l length_to_area",
     "thickness": "thickness_step thickness_s thickness_l thickness sibling_thickness",
     "creases": "crease concave curvature parent_crease parent_concave parent_curvature",
-    "order": "own_cost worst_cost parent_cost cost_step root parts_when_made parts_when_joined cheapest_above dearest_above",
+    "order": "own_cost worst_cost parent_cost cost_step root parts_when_made parts_when_joined cheapest_above "
+             "dearest_above",
 }
 
 
@@ -294,6 +294,18 @@ def fit_nodes(data, without, seed=0):
     return fit(x, y, weight, told(NODE_NAMES, without), seed, NODE_RAMPS, likelihood_rational, 24, 1024, 4e-3)
 
 
+def build_tree(path, directory):
+    """Whether there is a paper's tree of it."""
+    mesh = meshes.read(path)
+    try:
+        hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, threads=1, mode=Mode.PAPER)
+    except PartwheelError as error:
+        print(f"{path.stem} is left out: {error}", flush=True)
+        return False
+    (directory / f"{path.stem}.hierarchy").write_bytes(hierarchy.save())
+    return True
+
+
 def traced(command):
     subprocess.run(command, check=True)
 
@@ -335,28 +347,23 @@ def main():
     parser.add_argument("--write", action="store_true", help=f"writes {HEADER.relative_to(ROOT)}")
     args = parser.parse_args()
     args.work.mkdir(parents=True, exist_ok=True)
+    paths = sorted(args.meshes.glob("*.off"), key=lambda path: int(path.stem))
     trees = args.trees or args.work
-
-    models = []
-    for path in sorted(args.meshes.glob("*.off"), key=lambda path: int(path.stem)):
-        saved = trees / f"{path.stem}.hierarchy"
-        if not saved.exists():
-            mesh = meshes.read(path)
-            try:
-                saved.write_bytes(Hierarchy.build(mesh.vertices, mesh.triangles, mode=Mode.PAPER).save())
-            except PartwheelError as error:
-                print(f"{path.stem} is left out: {error}", flush=True)
-                continue
-        models.append(int(path.stem))
+    if not args.trees:
+        with ProcessPoolExecutor(args.jobs) as pool:
+            left_out = [path for path, built in zip(paths, pool.map(build_tree, paths, repeat(trees))) if not built]
+        paths = [path for path in paths if path not in left_out]
+    models = [int(path.stem) for path in paths]
     category = {model: (model - 1) // 20 for model in models}
     dealt = {c: i % args.folds for i, c in enumerate(sorted(set(category.values())))}
     fold = {model: dealt[category[model]] for model in models}
 
     with ProcessPoolExecutor(args.jobs) as pool:
-        people = dict(zip(models, pool.map(People, models, repeat(args.meshes), repeat(args.segmentations), chunksize=8)))
+        people = pool.map(People, models, repeat(args.meshes), repeat(args.segmentations), chunksize=8)
+        people = dict(zip(models, people))
 
         def traces_of(name, numbers):
-            """The trace of each model with the pair cost of its fold; numbers: one for each fold, or "-", the library's."""
+            """The trace of each model with its fold's pair cost; numbers: one for each fold, or "-", the library's."""
             directory = args.work / name
             directory.mkdir(exist_ok=True)
             paths = ["-"] * args.folds
@@ -374,8 +381,9 @@ def main():
                                  + [[d for _, d in data]], repeat(args.without), repeat(seed)))
 
         def measured(traces, node_numbers):
-            return np.array([trace.measures(likelihood_rational(apply(node_numbers[fold[model]], trace.node_measures))[0])
-                             for model, trace in traces.items()])
+            scores = {model: likelihood_rational(apply(node_numbers[fold[model]], trace.node_measures))[0]
+                      for model, trace in traces.items()}
+            return np.array([trace.measures(scores[model]) for model, trace in traces.items()])
 
         def pair_data(traces):
             return [(model, trace.pair_data()) for model, trace in traces.items()]

@@ -12,12 +12,15 @@ CLICKS = 200
 SIZES = (0.01, 0.8)  # of the nodes that are looked at, in shares of the area
 
 
+def triangle_areas(mesh):
+    a, b, c = mesh.vertices[mesh.triangles].transpose(1, 0, 2)
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+
+
 def mirror_faces(mesh):
     """(F,) the face at the mirror image of each face's middle, in the plane in which most of the area has one; None if
     that is too little."""
-    corners = mesh.vertices[mesh.triangles]
-    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-    middles = corners.mean(axis=1)
+    areas, middles = triangle_areas(mesh), mesh.vertices[mesh.triangles].mean(axis=1)
     centre = np.average(middles, axis=0, weights=areas)
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     principal = np.linalg.eigh(((middles - centre) * areas[:, None]).T @ (middles - centre))[1].T
@@ -38,9 +41,7 @@ def mirror_faces(mesh):
 def images(hierarchy, mesh, image):
     """(clicks, nodes): the share of clicks (faces by area, seeded) whose part overlaps the mirror image of the mirrored
     click's part by ALIKE; and of the wheels' nodes that overlap the mirror image of any node so."""
-    corners = mesh.vertices[mesh.triangles]
-    area = np.bincount(mesh.faces, np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
-                                                  axis=1), mesh.face_count)
+    area = np.bincount(mesh.faces, triangle_areas(mesh), mesh.face_count)
     area /= area.sum()
     order, first, last = hierarchy.order, hierarchy.first, hierarchy.last
     sums = np.concatenate([[0], np.cumsum(area[order])])

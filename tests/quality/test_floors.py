@@ -2,8 +2,9 @@
 """The tier `quality`: how well parts are selected, and how alike the two sides of symmetric models are, against floors.
 
 Results are the same on every machine, so a figure moves only where a change moves it: floors stand close to what is
-measured, and a change that improves a figure raises its floor. Both are in FLOORS, and nowhere else. The benchmark's
-models and its score are not ours to pass on: where they are not, the mirror images of libcgal-demo's models are looked at.
+measured, and a change that improves a figure raises its floor. They are in FLOORS and DEMO_FLOORS, and nowhere else;
+`pytest -s` prints what was measured. The benchmark's models and its score are not ours to pass on: where they are not,
+only the mirror images of libcgal-demo's models are looked at.
 """
 
 import functools
