@@ -284,12 +284,12 @@ def told(names, without):
     return np.array([name not in left_out for name in names])
 
 
-def fit_pairs(data, without, seed=0):
+def fit_pairs(data, without, seed):
     x, y, weight = (np.concatenate(column) for column in zip(*data))
     return fit(x, 1 - y, weight, told(PAIR_NAMES, without), seed, PAIR_RAMPS, likelihood_logistic, 14, 2048)
 
 
-def fit_nodes(data, without, seed=0):
+def fit_nodes(data, without, seed):
     x, y, weight = (np.concatenate(column) for column in zip(*data))
     return fit(x, y, weight, told(NODE_NAMES, without), seed, NODE_RAMPS, likelihood_rational, 24, 1024, 4e-3)
 
@@ -346,6 +346,8 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--write", action="store_true", help=f"writes {HEADER.relative_to(ROOT)}")
     args = parser.parse_args()
+    if args.without and args.write:
+        parser.error("an ablation's numbers are not for use")
     args.work.mkdir(parents=True, exist_ok=True)
     paths = sorted(args.meshes.glob("*.off"), key=lambda path: int(path.stem))
     trees = args.trees or args.work
