@@ -7,8 +7,6 @@ measured, and a change that improves a figure raises its floor. They are in FLOO
 only the mirror images of libcgal-demo's models are looked at.
 """
 
-import functools
-import importlib.util
 import os
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -17,6 +15,7 @@ import numpy as np
 import pytest
 from mirror import images, mirror_faces
 from psb import ROOT, Mode, arrays, build
+from table import benchmark
 
 MODELS = os.environ.get("PARTWHEEL_PSB") or ROOT / "build" / "deps" / "psb"
 SCORE = ROOT.parent / "shared" / "psb" / "score.py"
@@ -41,22 +40,13 @@ DEMO_FLOORS = {
 }
 
 
-@functools.cache
-def benchmark_score():
-    spec = importlib.util.spec_from_file_location("psb_score", SCORE)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.score_model
-
-
 def figures(path, mode):
-    """What FLOORS has, of one model: {} what does not apply to it."""
+    """What FLOORS has, of one model, as far as it applies to it."""
     mesh, hierarchy = build(path, mode)
     found = {}
     if path.parent.name == "off":
-        segmentations = path.parents[1] / "seg"
-        clicks, cut, chosen = benchmark_score()(int(path.stem), path.parent, segmentations,
-                                                arrays(hierarchy, mesh.face_count))
+        clicks, cut, chosen = benchmark(SCORE).score_model(
+            int(path.stem), path.parent, path.parents[1] / "seg", arrays(hierarchy, mesh.face_count))
         best, click, within, _, notches = clicks.mean(axis=0)
         found |= {"best": best, "click": click, "within two": within, "notches": notches, "cut": cut.mean(),
                   "chosen": chosen.mean()}
@@ -67,7 +57,6 @@ def figures(path, mode):
     return found
 
 
-@functools.cache
 def means(paths, mode):
     with ProcessPoolExecutor() as pool:
         rows = list(pool.map(figures, paths, [mode] * len(paths)))
@@ -78,18 +67,18 @@ def means(paths, mode):
 def check(found, floors):
     print("", *(f"{name} {figure:.4f}" for name, figure in found.items()), sep="\n")  # what the next floors are made of
     assert found.keys() == floors.keys()
-    worse = {name: f"{figure:.4f}, floor {floors[name]}" for name, figure in found.items()
-             if (figure > floors[name] if name in HIGHER_IS_WORSE else figure < floors[name])}
-    assert worse == {}
+    worse = [f"{name} {figure:.4f}, floor {floors[name]}" for name, figure in found.items()
+             if (figure > floors[name] if name in HIGHER_IS_WORSE else figure < floors[name])]
+    assert not worse, "; ".join(worse)
 
 
-@pytest.mark.parametrize("mode", FLOORS)
+@pytest.mark.parametrize("mode", FLOORS, ids=lambda mode: mode.name.lower())
 def test_the_benchmarks_models(mode):
     if not Path(MODELS).is_dir() or not SCORE.exists():
         pytest.skip(f"the benchmark is not here: {MODELS} and {SCORE}")
-    check(means(tuple(Path(MODELS) / "off" / f"{model}.off" for model in BENCHMARK), mode), FLOORS[mode])
+    check(means([Path(MODELS) / "off" / f"{model}.off" for model in BENCHMARK], mode), FLOORS[mode])
 
 
-@pytest.mark.parametrize("mode", DEMO_FLOORS)
+@pytest.mark.parametrize("mode", DEMO_FLOORS, ids=lambda mode: mode.name.lower())
 def test_libcgal_demos_symmetric_models(mode):
-    check(means(tuple(ROOT / "build" / "deps" / "meshes" / name for name in SYMMETRIC), mode), DEMO_FLOORS[mode])
+    check(means([ROOT / "build" / "deps" / "meshes" / name for name in SYMMETRIC], mode), DEMO_FLOORS[mode])
