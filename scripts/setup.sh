@@ -4,6 +4,7 @@
 #
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
 #   setup_core      build/venv/core: Python with numpy, trimesh, pytest, libigl, pyfqmr, check-jsonschema; a locale for its tests
+#   setup_psb       build/deps/psb: the benchmark that parts are judged by, where it lies beside the project
 #   setup_package   build/venv/package: what makes and checks wheels
 #   setup_cross     build/venv/cross: zig, a compiler for all platforms that are shipped; what runs their programs here
 #   setup_bench     build/venv/bench: numpy, scipy, matplotlib for the benchmarks; build/venv/peers: what they compare with
@@ -160,6 +161,19 @@ setup_core() {
     start_setup && packages python3 python3-venv ca-certificates locales || return
     into "$deps/locales" fill_locales || return
     venv core /usr/bin/python3 numpy scipy trimesh pytest libigl manifold3d pyfqmr check-jsonschema
+}
+
+# Half of the Princeton Segmentation Benchmark, which is not ours to pass on; or PARTWHEEL_PSB names where it is.
+fill_psb() {
+    tar -xJf "$benchmark" -C "$1" --strip-components=1
+}
+
+setup_psb() {
+    [ -n "${PARTWHEEL_PSB:-}" ] && return
+    benchmark=$root/../shared/psb/tune.tar.xz
+    [ -f "$benchmark" ] || fail "the benchmark is not here: neither $benchmark nor a folder that PARTWHEEL_PSB names" ||
+        return
+    start_setup && into "$deps/psb" fill_psb
 }
 
 setup_package() {

@@ -21,6 +21,7 @@ import xml.etree.ElementTree
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 OUTPUT = ROOT / "build" / "test"
 VENV = ROOT / "build" / "venv"
+BENCHMARK = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # of which the tier quality scores a part
 TIME_LIMIT = 4 * 3600  # seconds for any one command, so that nothing hangs for ever; many times what any takes
 SHOWN = 60  # lines of a failed command's output
 # The scenarios that the newest Blender plays: those where Blenders differed, and each way of use once. With
@@ -112,6 +113,17 @@ def reliability():
     return pytest("reliability", "tests/reliability")
 
 
+def quality():
+    """How well parts are selected: 24 models of the benchmark where it is, and mirror images, against floors."""
+    build("quality", "release", "partwheel")
+    build("quality", "bench", "quality_trace")
+    if os.environ.get("PARTWHEEL_PSB") or BENCHMARK.exists():
+        setup("quality", "setup_psb")
+    else:
+        print(f"   SKIPPED all but libcgal-demo's symmetric models: {BENCHMARK} is not here")
+    return pytest("quality", "tests/quality")
+
+
 def addon():
     """The add-on as installed from the zip, without a window, in the distribution's Blender and in bpy from PyPI."""
     extension, legacy = make_packages()
@@ -187,7 +199,7 @@ def ship():
 
 
 TIERS = {function.__name__: function
-         for function in (native, sanitizers, threads, determinism, fuzz, core, reliability, addon, gui,
+         for function in (native, sanitizers, threads, determinism, fuzz, core, quality, reliability, addon, gui,
                           newest, ship)}
 
 

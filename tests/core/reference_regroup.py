@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What regroup computes, in Python, from the formulas in native/src/tree/regroup/regroup.h and measures.h, not from
-the C++: parts, folds, borders, measures, both networks, the order of joining, scores. Hulls are scipy's."""
+the C++: parts, folds, borders, measures, both networks, the order of joining, scores; and from what dendrogram.h says,
+cuts and the wheel. Hulls are scipy's."""
 
 import heapq
-import re
 from dataclasses import dataclass, field
 
 import numpy as np
-from regroup_names import NODE_NAMES, PAIR_NAMES, SOURCE
+from regroup_names import NODE_NAMES, PAIR_NAMES, fitted_numbers
 from scipy.spatial import ConvexHull
 
 MOST_PARTS = 600
@@ -16,12 +16,7 @@ CONCAVE_BEND = -0.02
 MIDDLING_CURVATURE = 4.0
 SMOOTHING = 4
 CONVEX = 1e-6  # of the hull's volume, see cluster.h
-
-
-def fitted_numbers(name):
-    text = (SOURCE / "fitted.h").read_text()
-    numbers = re.search(name + r" = \{(.*?)\};", text, re.DOTALL).group(1)
-    return np.array([float(number) for number in numbers.split(",") if number.strip()])
+MOST_OVERLAP = 0.85  # of two stops
 
 
 class Network:
@@ -98,7 +93,9 @@ class Pair:
 
 class Regrouped:
     """The parts of a mesh joined: parts, first those of the tree given (mode PAPER's), then the joined ones; joined, of
-    which two each of these was made; scores, of each part and joined part."""
+    which two each of these was made; scores, of each part and joined part. What the networks were told: at_first,
+    (part, part, measures) of each pair that is there at first and has surface; priced, likewise of each pair once its
+    hull was made, in order; node_measures."""
 
     def __init__(self, vertices, tetrahedra, merges, components):
         low, high = vertices.min(axis=0), vertices.max(axis=0)
@@ -244,6 +241,7 @@ class Regrouped:
     # ---- Joining
 
     def pair_measures(self, pair, hull):
+        """(28,) in the order of PAIR_NAMES."""
         one, other = self.parts[pair.a], self.parts[pair.b]
         s, l = sorted((one, other), key=lambda part: (np.float32(part.area), part.low))
         border, volume, area = pair.border, s.volume + l.volume, s.area + l.area
@@ -251,7 +249,7 @@ class Regrouped:
         gap = within(1 - volume / hull, 0.0, 1.0) if hull > 0 else 0.0
         face, length = log(border[INTERFACE]), log(border[LENGTH])
         size = log(self.volume) / 3
-        return dict(
+        measures = dict(
             area_s=log(s.area) - log(self.area), area_both=log(area) - log(self.area),
             volume_s=log(s.volume) - log(self.volume), volume_both=log(volume) - log(self.volume),
             gap_both=gap, gap_s=s.gap, gap_l=l.gap,
@@ -267,10 +265,10 @@ class Regrouped:
             outline=within(2 * length - face, -4, 8), face_to_volume_l=within(face - 2 / 3 * log(l.volume), -10, 4),
             gap_added=gap - max(s.gap, l.gap), area_step=log(l.area) - log(s.area),
             thickness_s=within(s.thick - size, -8, 2), thickness_l=within(l.thick - size, -8, 2))
+        return np.array([measures[name] for name in PAIR_NAMES])
 
-    def cost(self, pair, hull):
-        measures = self.pair_measures(pair, hull)
-        return float(np.float32(self.pair_cost(np.array([measures[name] for name in PAIR_NAMES]))))
+    def cost(self, measures):
+        return float(np.float32(self.pair_cost(measures)))
 
     def hull_of_both(self, pair):
         return self.hull(np.concatenate([self.parts[pair.a].corners, self.parts[pair.b].corners]))[0]
@@ -281,12 +279,16 @@ class Regrouped:
         if a.area == 0 or b.area == 0:
             pair.cost, pair.guessed = -1e6 - pair.border[INTERFACE] / self.area, False
         else:
-            pair.cost, pair.guessed = max(pair.cost, self.cost(pair, max(pair.hull, a.hull + b.hull))), True
+            least = self.pair_measures(pair, max(pair.hull, a.hull + b.hull))
+            pair.cost, pair.guessed = max(pair.cost, self.cost(least)), True
         heapq.heappush(self.queue, (pair.cost, number))
 
     def join_neighbours(self):
         for number in range(len(self.pairs)):
             self.enter(number)
+        self.at_first = [(pair.a, pair.b, self.pair_measures(pair, self.hull_of_both(pair)))
+                         for pair in self.pairs if pair.guessed]
+        self.priced = []
         while self.queue:
             cost, number = heapq.heappop(self.queue)
             pair = self.pairs[number]
@@ -296,7 +298,9 @@ class Regrouped:
                 self.join(pair.a, pair.b, cost)
                 continue
             pair.hull = self.hull_of_both(pair)
-            pair.cost, pair.guessed = self.cost(pair, pair.hull), False
+            measures = self.pair_measures(pair, pair.hull)
+            self.priced.append((pair.a, pair.b, measures))
+            pair.cost, pair.guessed = self.cost(measures), False
             heapq.heappush(self.queue, (pair.cost, number))
 
     def join(self, a, b, cost):
@@ -359,7 +363,7 @@ class Regrouped:
             parent[a] = parent[b] = self.fine + j
             sibling[a], sibling[b] = b, a
         own = [self.own_measures(part) for part in self.parts]
-        self.scores = []
+        self.scores, self.node_measures = [], []
         for n in range(len(self.parts)):
             ancestors, up = [], parent.get(n)
             while up is not None:
@@ -382,5 +386,47 @@ class Regrouped:
                 cheapest_above=min([DEAREST, *ancestors]),
                 dearest_above=DEAREST if root else max([-DEAREST, *ancestors]),
                 sibling_volume=abs(beside["volume"] - mine["volume"]))
-            z = self.node_score(np.array([measures[name] for name in NODE_NAMES]))
+            self.node_measures.append(np.array([measures[name] for name in NODE_NAMES]))
+            z = self.node_score(self.node_measures[-1])
             self.scores.append((1 + softsign(z)) / 2)
+
+    # ---- What is asked of it
+
+    def take_faces(self, leaves, corners):
+        """What cuts and wheels go by: the area of the source's faces in each part. leaves: of each triangle of theirs
+        the tetrahedron that its face goes with."""
+        a, b, c = corners.transpose(1, 0, 2)
+        areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+        self.face_area = list(np.bincount(self.part_of[leaves], areas, self.fine))
+        for one, other in self.joined:
+            self.face_area.append(self.face_area[one] + self.face_area[other])
+
+    def likeliest(self):
+        """The parts of the automatic cut."""
+        best, cut = [], []
+        for n in range(len(self.parts)):
+            best.append(self.face_area[n] * self.scores[n])
+            cut.append([n])
+            if n >= self.fine:
+                a, b = self.joined[n - self.fine]
+                if best[a] + best[b] > best[n]:
+                    best[n], cut[n] = best[a] + best[b], cut[a] + cut[b]
+        return cut[-1]
+
+    def wheel(self, part):
+        """(stops, from the part up; where a click lands)"""
+        path = [part]
+        for joined, pair in enumerate(self.joined, self.fine):
+            if path[-1] in pair:
+                path.append(joined)
+        stops = []
+        for n in sorted(path, key=lambda n: (-self.scores[n], n)):
+            areas = [sorted((self.face_area[n], self.face_area[stop])) for stop in stops]
+            if all(small <= MOST_OVERLAP * large for small, large in areas):
+                stops.append(n)
+        clicked, root = stops[0], path[-1]
+        if root not in stops:
+            same = [n for n in stops if self.face_area[n] == self.face_area[root]]
+            stops = [n for n in stops if n not in same] + [root]
+            clicked = root if clicked in same else clicked
+        return sorted(stops), clicked

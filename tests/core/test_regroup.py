@@ -34,22 +34,34 @@ def signatures(tetrahedra):
     return numbers
 
 
+def shape_of(name):
+    return OF_SEVERAL_PIECES[name]() if name in OF_SEVERAL_PIECES else shapes.off(name)
+
+
 @functools.cache
-def both(name):
-    """({set of tetrahedra: score}, {set: the sets of the two that it was joined from}): the reference's, the build's."""
-    shape = OF_SEVERAL_PIECES[name]() if name in OF_SEVERAL_PIECES else shapes.off(name)
+def compared(name):
+    """The reference, the sets of tetrahedra that its parts are, in numbers; the build, and those of slices of it."""
+    shape = shape_of(name)
     paper = Hierarchy.build(*shape, mode=Mode.PAPER)
     reference = Regrouped(paper.vertices, paper.tetrahedra, paper.merges, paper.summary.components)
     numbers = signatures(paper.tetrahedra)
     sets = [int(numbers[np.concatenate(part.tetrahedra)].sum()) for part in reference.parts]
-    wanted = (dict(zip(sets, reference.scores)),
-              {sets[reference.fine + j]: {sets[a], sets[b]} for j, (a, b) in enumerate(reference.joined)})
+    reference.take_faces(paper.leaf[shape.faces], shape.vertices[shape.triangles])
 
     built = Hierarchy.build(*shape)
     assert np.array_equal(built.vertices, paper.vertices)
     total = np.zeros(len(built.tetrahedra) + 1, np.uint64)
     np.cumsum(signatures(built.tetrahedra), out=total[1:])
-    sets = (total[built.tet_last] - total[built.tet_first]).tolist()
+    return reference, sets, built, lambda first, last: (total[last] - total[first]).tolist()
+
+
+@functools.cache
+def both(name):
+    """({set of tetrahedra: score}, {set: sets of the two that it was joined from}): the reference's, the build's."""
+    reference, sets, built, sets_of = compared(name)
+    wanted = (dict(zip(sets, reference.scores)),
+              {sets[reference.fine + j]: {sets[a], sets[b]} for j, (a, b) in enumerate(reference.joined)})
+    sets = sets_of(built.tet_first, built.tet_last)
     scored = np.flatnonzero(built.score)
     halves = {}
     for node in scored[scored != len(built.parent) - 1]:
@@ -75,3 +87,41 @@ def test_scores(name):
 
 def test_the_measures_are_all_named():
     assert len(set(PAIR_NAMES)) == 28 and len(set(NODE_NAMES)) == 32
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_cuts(name):
+    """With a number given, the last joins undone; without, the cut with the largest sum of area x score."""
+    reference, sets, built, sets_of = compared(name)
+
+    def found(bounds):
+        return set(sets_of(bounds[:-1], bounds[1:]))
+
+    parts = {len(reference.parts) - 1}
+    for count in range(1, min(30, reference.fine)):
+        assert found(built.cut_parts(count)) == {sets[part] for part in parts}
+        last = max(parts)
+        parts = parts - {last} | set(reference.joined[last - reference.fine])
+    assert found(built.cut_automatic()) == {sets[part] for part in reference.likeliest()}
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_wheels(name):
+    """What the wheel goes through at and above the parts, and where a click lands."""
+    reference, sets, built, sets_of = compared(name)
+    of_node = sets_of(built.tet_first, built.tet_last)
+    tetrahedra = np.zeros(len(built.tetrahedra), int)  # of each, its part
+    part_of = dict(zip(sets, range(reference.fine)))
+    for node in np.flatnonzero(built.score):
+        if of_node[node] in part_of:
+            tetrahedra[built.tet_first[node]:built.tet_last[node]] = part_of[of_node[node]]
+    parts = tetrahedra[built.leaf]
+    wheels = 0
+    for part, face in zip(*np.unique(parts, return_index=True)):
+        stops, start = built.wheel(int(face))
+        wanted, at = reference.wheel(part)
+        above = [of_node[stop] for stop in stops if built.score[stop]]
+        assert above == [sets[stop] for stop in wanted]
+        assert of_node[stops[start]] == sets[at]
+        wheels += 1
+    assert wheels > 5

@@ -62,15 +62,20 @@ def paths_as_tree(hierarchy, face_count):
     return np.array(parent), np.array(first), np.array(last), leaf, start
 
 
-def partwheel(path, mode, rungs):
+def build(path, mode, rungs=0):
+    """(mesh, hierarchy)"""
     mesh = meshes.read(path)
-    hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, threads=1,
-                                mode=mode, rungs=rungs)
-    parent, first, last, leaf, start = paths_as_tree(hierarchy, mesh.face_count)
+    return mesh, Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, threads=1, mode=mode,
+                                 rungs=rungs)
+
+
+def arrays(hierarchy, face_count):
+    """What the benchmark's score reads."""
+    parent, first, last, leaf, start = paths_as_tree(hierarchy, face_count)
     counts = COUNTS[COUNTS <= len(hierarchy.tetrahedra)]
     cuts = [hierarchy.face_labels(hierarchy.cut_parts(k)) for k in counts]
     return {"order": hierarchy.order, "first": first, "last": last, "parent": parent, "leaf": leaf, "start": start,
-            "counts": counts, "cuts": np.array(cuts, np.int16).reshape(len(counts), mesh.face_count),
+            "counts": counts, "cuts": np.array(cuts, np.int16).reshape(len(counts), face_count),
             "auto": hierarchy.face_labels(hierarchy.cut_automatic())}
 
 
@@ -91,9 +96,13 @@ def sdf(path, program):
 
 
 def write(path, target, program, mode, rungs):
-    arrays = sdf(path, program) if program else partwheel(path, mode, rungs)
+    if program:
+        written = sdf(path, program)
+    else:
+        mesh, hierarchy = build(path, mode, rungs)
+        written = arrays(hierarchy, mesh.face_count)
     partial = target.with_suffix(".partial.npz")
-    np.savez_compressed(partial, **arrays)
+    np.savez_compressed(partial, **written)
     partial.rename(target)
 
 

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws what is selected: the automatic cut in colours, from both sides, and what the wheel goes through after a click.
+
+usage: pictures.py OUT MODEL [--view X Y Z] [--up X Y Z] [--click X Y]... [--mode symmetric] [--size 360] [--columns 7]
+
+OUT: an image file. MODEL: a mesh file. --view: from where it is seen, --up: what is up there. --click: a place in the
+first picture, in shares of its width and height from the top left; the click's part is drawn, then what each notch
+takes. Needs numpy and Pillow.
+"""
+
+import argparse
+import colorsys
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+from psb import Mode, build
+
+FINER = 2  # drawn so many times larger, then averaged
+POINTS_A_PIXEL = 12
+GREY, PICKED = (0.80, 0.80, 0.80), (0.95, 0.45, 0.10)
+STOPS_SHOWN = 5
+
+
+class View:
+    """A mesh seen from afar: which face is in each pixel (-1: none), and how bright."""
+
+    def __init__(self, mesh, towards, up, size):
+        size *= FINER
+        back = np.array(towards, float) / np.linalg.norm(towards)
+        right = np.cross(up, back)
+        right /= np.linalg.norm(right)
+        axes = np.stack([right, np.cross(back, right), back])
+        corners = (mesh.vertices @ axes.T)[mesh.triangles]
+        low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+        corners = (corners - (low + high) / 2) * (0.94 * size / (high - low)[:2].max())
+        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        area = np.linalg.norm(across, axis=1)
+        rng = np.random.default_rng(0)
+        triangle = np.repeat(np.arange(len(area)), rng.poisson(area / 2 * POINTS_A_PIXEL) + 1)
+        u, v = rng.random((2, len(triangle)))
+        u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+        a, b, c = corners[triangle].transpose(1, 0, 2)
+        points = a + u[:, None] * (b - a) + v[:, None] * (c - a)
+        column, row = (points[:, 0] + size / 2).astype(int), (size / 2 - points[:, 1]).astype(int)
+        pixel = row * size + column
+        order = np.argsort(points[:, 2])  # the nearest is written last
+        seen = np.full(size * size, -1)
+        seen[pixel[order]] = triangle[order]
+        light = np.array([-0.35, 0.5, 0.8]) / np.linalg.norm([-0.35, 0.5, 0.8])
+        bright = np.abs(across @ light) / np.maximum(area, 1e-300)
+        self.face = np.where(seen >= 0, mesh.faces[seen], -1).reshape(size, size)
+        self.bright = np.where(seen >= 0, 0.35 + 0.65 * bright[seen], 0).reshape(size, size)
+
+    def at(self, x, y):
+        face = self.face[int(y * len(self.face)), int(x * len(self.face))]
+        assert face >= 0, "there is nothing at this place"
+        return int(face)
+
+    def painted(self, colours):
+        """colours: of each face, 0..1"""
+        picture = np.where(self.face[..., None] >= 0, colours[self.face] * self.bright[..., None], 1)
+        side = len(picture) // FINER
+        return picture.reshape(side, FINER, side, FINER, 3).mean(axis=(1, 3))
+
+
+def of_parts(labels):
+    """A colour a part, of neighbouring numbers unlike ones."""
+    hues = [colorsys.hsv_to_rgb(0.618034 * k % 1, 0.45 + 0.25 * (k % 3) / 2, 0.95) for k in range(labels.max() + 1)]
+    return np.array(hues)[labels]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("out", type=Path)
+    parser.add_argument("model", type=Path)
+    parser.add_argument("--view", type=float, nargs=3, default=(0, 0, 1))
+    parser.add_argument("--up", type=float, nargs=3, default=(0, 1, 0))
+    parser.add_argument("--click", type=float, nargs=2, action="append", default=[])
+    parser.add_argument("--mode", choices=[mode.name.lower() for mode in Mode], default=Mode(0).name.lower())
+    parser.add_argument("--size", type=int, default=360)
+    parser.add_argument("--columns", type=int, default=7)
+    args = parser.parse_args()
+    mesh, hierarchy = build(args.model, Mode[args.mode.upper()])
+    front, back = (View(mesh, sign * np.array(args.view), args.up, args.size) for sign in (1, -1))
+    labels = hierarchy.face_labels(hierarchy.cut_automatic())
+    cells = [view.painted(of_parts(labels)) for view in (front, back)]
+    for place in args.click:
+        stops, start = hierarchy.wheel(front.at(*place))
+        for node in stops[start:start + STOPS_SHOWN]:
+            colours = np.tile(GREY, (mesh.face_count, 1))
+            colours[hierarchy.faces(int(node))] = PICKED
+            cells.append(front.painted(colours))
+    columns = min(args.columns, len(cells))
+    cells += [np.ones_like(cells[0])] * (-len(cells) % columns)
+    rows = [np.concatenate(cells[i:i + columns], axis=1) for i in range(0, len(cells), columns)]
+    Image.fromarray((255 * np.concatenate(rows)).astype(np.uint8)).save(args.out, quality=88)
+
+
+if __name__ == "__main__":
+    main()

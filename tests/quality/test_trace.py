@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What fitting sees, by quality_trace, against the independent implementation of tests/core: what the networks are told
+of each pair and node, in the order in which pairs come up."""
+
+import functools
+import subprocess
+
+import numpy as np
+import pytest
+from fit import ROOT, Hierarchy, Mode, Traced
+from reference_regroup import NODE_NAMES, PAIR_NAMES, Regrouped
+from test_regroup import ALL, TOLERANCE, shape_of
+
+# A flat fold's bend is the root of a rounding error, and the logarithm of next to nothing makes one larger.
+WIDER = {name: 1e-8 for name in ("crease", "curvature", "excess_to_s", "excess_to_all")}
+PROGRAM = ROOT / "build" / "bench" / "quality_trace"
+
+
+@pytest.fixture(scope="module")
+def both(tmp_path_factory):
+    directory = tmp_path_factory.mktemp("traces")
+
+    @functools.cache
+    def build(name):
+        paper = Hierarchy.build(*shape_of(name), mode=Mode.PAPER)
+        (directory / "model.hierarchy").write_bytes(paper.save())
+        subprocess.run([PROGRAM, "-", directory, directory / "model.hierarchy"], check=True)
+        return (Regrouped(paper.vertices, paper.tetrahedra, paper.merges, paper.summary.components),
+                Traced(directory / "model.trace"))
+
+    return build
+
+
+def agree(found, wanted, names):
+    assert found.shape == (len(wanted), len(names))
+    furthest = np.abs(found - np.array(wanted)).max(axis=0)
+    assert {name: far for name, far in zip(names, furthest) if not far < WIDER.get(name, TOLERANCE)} == {}
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_pairs(name, both):
+    reference, traced = both(name)
+    pairs = reference.at_first + reference.priced
+    assert traced.pairs.tolist() == [[a, b] for a, b, _ in pairs]
+    agree(traced.pair_measures, [measures for _, _, measures in pairs], PAIR_NAMES)
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_nodes(name, both):
+    reference, traced = both(name)
+    assert traced.parts == reference.fine and traced.merges.tolist() == [list(pair) for pair in reference.joined]
+    agree(traced.node_measures, reference.node_measures, NODE_NAMES)
