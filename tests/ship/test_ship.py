@@ -16,6 +16,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 SHIP = ROOT / "build" / "ship"
 sys.path.append(str(ROOT / "scripts" / "package_parts"))
+import elsewhere  # noqa: E402
 import runs  # noqa: E402
 import zips  # noqa: E402
 from platforms import TAGS, library_of  # noqa: E402
@@ -113,6 +114,25 @@ def test_installed_and_updated_from_the_repository(blender, channel, tmp_path):
     folder = SHIP / "repository" / channel
     said = run_in(blender, tmp_path, "ship/in_blender.py", folder, files=[folder])
     assert "installed, used, updated in use, removed" in said
+
+
+@pytest.mark.skipif(HERE != "linux-x64", reason="wine runs programs of its own kind of machine only")
+def test_the_core_tests_on_windows(tmp_path):
+    """By a Python for Windows, under wine: those that need no compiler."""
+    packages = tmp_path / "packages"
+    with zipfile.ZipFile(wheel("windows-x64")) as archive:
+        archive.extractall(packages)
+    runner, prefix = runs.RUNNERS["windows-x64"]
+    on_windows = {"PYTHONPATH": seen_by_wine(WINDOWS / "packages"), "PARTWHEEL_PACKAGES": seen_by_wine(packages)}
+    done = subprocess.run([*runner, WINDOWS / "python/python.exe", "-m", "pytest", "-q", "-p", "no:cacheprovider",
+                           *(f"tests/core/test_{name}.py" for name in elsewhere.CORE)], cwd=ROOT, text=True,
+                          env={**os.environ, **prefix, **on_windows}, stdin=subprocess.DEVNULL, capture_output=True)
+    assert done.returncode == 0, done.stdout[-5000:] + done.stderr[-2000:]
+    assert int(re.search(r"(\d+) passed", done.stdout)[1]) > 100 and "failed" not in done.stdout
+
+
+def seen_by_wine(path):
+    return "Z:" + str(path).replace("/", "\\")
 
 
 def environment(place, python=sys.executable):
