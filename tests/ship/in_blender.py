@@ -20,7 +20,6 @@ import threading
 import zipfile
 from pathlib import Path
 
-import bl_pkg
 import bpy
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -91,6 +90,7 @@ def main_job():
 
 def newer(served):
     """Replaces all packages in the folder by the next version of this platform's, and the folder's index."""
+    import bl_pkg  # found once bpy is imported
     from test_registration import add_updated
 
     (package,) = served.glob(f"*-{HERE}.zip")
