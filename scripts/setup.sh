@@ -5,8 +5,8 @@
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
 #   setup_core      build/venv/core: Python with numpy, trimesh, pytest, libigl, pyfqmr, check-jsonschema; a locale for its tests
 #   setup_package   build/venv/package: what makes and checks wheels
-#   setup_cross     build/venv/cross: zig, a compiler for all platforms that are shipped; what runs their programs here, with
-#                   a Python for Windows in build/deps/windows-python
+#   setup_cross     build/venv/cross: zig, a compiler for all platforms that are shipped; what runs their programs here,
+#                   with a Python for Windows in build/deps/windows-python
 #   setup_bench     build/venv/bench: numpy, scipy, matplotlib for the benchmarks; build/venv/peers: what they compare with
 #   setup_bpy       build/venv/bpy-VERSION for each of $bpy_versions, or for those named
 #   setup_blender   the distribution's Blender
@@ -183,7 +183,8 @@ fill_windows_python() {
     say "setup: a Python $version for Windows"
     # numpy 2 calls functions that the wine of Debian 12 has not. What a package needs on Windows alone, colorama, pip
     # doesn't see from here.
-    set -- "$1" /usr/bin/python3 -m pip install --quiet --only-binary :all: --platform win_amd64 --python-version "$version"
+    set -- "$1" /usr/bin/python3 -m pip install --quiet --only-binary :all: --platform win_amd64 \
+        --python-version "$version"
     logged "${@:2}" --target "$1/packages" numpy==1.26.4 scipy==1.11.4 pytest colorama || return
     logged "${@:2}" --target "$1/panda3d" --no-deps panda3d==1.10.16 || return
     mv "$1/panda3d/deploy_libs" "$1/python" && rm -r "$1/panda3d" && rm "$1"/python/api-ms-win-* || return

@@ -45,8 +45,8 @@ def _same_each_time(path):
 
 def repository(wheels, packages, target):
     """A folder of two repositories that Blender installs and updates from, wherever it is served: the extensions and an
-    index.json each. stable has those in the directory packages; latest has the same under a version that says what is in
-    them: Blender updates what has another version than it has."""
+    index.json each. stable has those in the directory packages; latest has the same under a version that says what is
+    in them: Blender updates what has another version than it has."""
     stable, latest = target / "stable", target / "latest"
     stable.mkdir(parents=True)
     latest.mkdir()

@@ -1,4 +1,4 @@
-// What stands in for the standard library's in CGAL's headers: the same answers, and the same order whatever the library.
+// What stands in for the standard library's in CGAL's headers: the same answers.
 #include <gtest/gtest.h>
 
 #include <partwheel/steady.h>

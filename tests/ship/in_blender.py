@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs in a Blender with a HOME of its own: serves a copy of a repository's folder, adds it, installs Partwheel from it, does
-the main job, updates it while its library is in use, and removes it.
+"""Runs in a Blender with a HOME of its own: serves a copy of a repository's folder, adds it, installs Partwheel from it,
+does the main job, updates it while its library is in use, and removes it.
 
     PYTHON tests/ship/in_blender.py -- FOLDER
 """

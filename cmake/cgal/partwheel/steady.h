@@ -1,6 +1,6 @@
 // What CGAL leaves to the standard library and to the system, done in one way, so that its results are the same bits
-// everywhere. cmake/dependencies.cmake has CGAL's headers call this: where several are equally good the first is taken, and
-// which that is depends on a hash table's order, or on what nth_element does with equals.
+// everywhere. cmake/dependencies.cmake has CGAL's headers call this: where several are equally good the first is taken,
+// and which that is depends on a hash table's order, or on what nth_element does with equals.
 #pragma once
 
 #include <boost/unordered_map.hpp>

@@ -1,4 +1,4 @@
-"""The repository in the preferences of Blender 4.2 and later, and what is installed from it: a picture, for scripts/tour.
+"""The repository in the preferences of Blender 4.2 and later, and what is installed from it: pictures for scripts/tour.
 
 PARTWHEEL_REPOSITORY: the folder that is served.
 """
@@ -47,8 +47,8 @@ def play(stage):
     bpy.ops.screen.userpref_show()
     yield from stage.until("the preferences are open", lambda: len(bpy.context.window_manager.windows) == 2)
     window = bpy.context.window_manager.windows[-1]
-    subprocess.run(["xdotool", "search", "--sync", "--name", "Preferences", "windowsize", "900", "520", "windowmove", "10",
-                    "40"], check=True)
+    subprocess.run(["xdotool", "search", "--sync", "--name", "Preferences", "windowsize", "900", "520",
+                    "windowmove", "10", "40"], check=True)
     yield from stage.until("it is where it was moved to", lambda: (window.width, window.height) == (900, 520))
     yield from stage.until("Blender has looked for updates", lambda: not bl_extension_notify.update_in_progress())
     yield from seen(stage, window, "offered")
