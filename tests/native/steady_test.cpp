@@ -3,7 +3,9 @@
 
 #include <partwheel/steady.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <vector>
 
@@ -17,7 +19,7 @@ TEST(Steady, NthElementIsThatOfTheSortedRange) {
     for (const unsigned distinct : {1u, 2u, 7u, 1000000u})
         for (size_t size = 1; size < 300; size += 7) {
             std::vector<unsigned> given(size);
-            for (unsigned& value : given) value = random() % distinct;
+            for (unsigned& value : given) value = static_cast<unsigned>(random() % distinct);
             std::vector<unsigned> sorted = given;
             std::sort(sorted.begin(), sorted.end());
             const size_t n = random() % size;
