@@ -40,8 +40,21 @@ string(REGEX MATCHALL "[0-9]+" found "${lines}")
 list(JOIN found "." found)
 require_version(Eigen "${found}" 3.4 "${EIGEN_INCLUDE}")
 
+# CGAL's headers, changed where its results would depend on the standard library or the system: cmake/cgal says how.
+set(steady_cgal "${PROJECT_SOURCE_DIR}/build/cgal")
+file(GLOB_RECURSE headers RELATIVE "${CGAL_INCLUDE}" "${CGAL_INCLUDE}/CGAL/*.h")
+foreach(header IN LISTS headers)
+  file(READ "${CGAL_INCLUDE}/${header}" text)
+  string(REGEX REPLACE "std::unordered_(map|set)" "boost::unordered_\\1" steady "${text}")
+  string(REGEX REPLACE "std::(nth_element|atan2|acos)" "partwheel::steady::\\1" steady "${steady}")
+  if(NOT steady STREQUAL text)
+    file(CONFIGURE OUTPUT "${steady_cgal}/${header}" CONTENT "#include <partwheel/steady.h>\n${steady}" @ONLY)
+  endif()
+endforeach()
+
 add_library(partwheel_cgal INTERFACE)
-target_include_directories(partwheel_cgal SYSTEM INTERFACE "${CGAL_INCLUDE}" "${BOOST_INCLUDE}" "${EIGEN_INCLUDE}")
+target_include_directories(partwheel_cgal SYSTEM INTERFACE "${steady_cgal}" "${PROJECT_SOURCE_DIR}/cmake/cgal"
+                                                           "${CGAL_INCLUDE}" "${BOOST_INCLUDE}" "${EIGEN_INCLUDE}")
 # Without GMP and MPFR there is nothing to ship beside the library, and numbers are the same everywhere.
 # CGAL's own checks stay on in a release: broken meshes then end in an exception, not in a crash.
 target_compile_definitions(partwheel_cgal INTERFACE CGAL_DISABLE_GMP=1 CGAL_DISABLE_MPFR=1 CGAL_DEBUG=1

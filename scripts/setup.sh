@@ -6,7 +6,8 @@
 #   setup_core      build/venv/core: Python with numpy, trimesh, pytest, libigl, pyfqmr, check-jsonschema; a locale for its tests
 #   setup_psb       build/deps/psb: the benchmark that parts are judged by, where it lies beside the project
 #   setup_package   build/venv/package: what makes and checks wheels
-#   setup_cross     build/venv/cross: zig, a compiler for all platforms that are shipped; what runs their programs here
+#   setup_cross     build/venv/cross: zig, a compiler for all platforms that are shipped; what runs their programs here,
+#                   with a Python for Windows in build/deps/windows-python
 #   setup_bench     build/venv/bench: numpy, scipy, matplotlib for the benchmarks; build/venv/peers: what they compare with
 #   setup_bpy       build/venv/bpy-VERSION for each of $bpy_versions, or for those named
 #   setup_blender   the distribution's Blender
@@ -152,7 +153,7 @@ start_setup() {
 }
 
 setup_build() {
-    start_setup && packages g++ clang llvm cmake ninja-build pkg-config ccache libgtest-dev \
+    start_setup && packages g++ clang libc++-dev libc++abi-dev llvm cmake ninja-build pkg-config ccache libgtest-dev \
         python3 python3-venv python3-pip ca-certificates || return
     into "$deps/root" fill_headers && into "$deps/tetgen-0.8.0" fill_tetgen && into "$deps/meshes" fill_meshes
 }
@@ -183,7 +184,27 @@ setup_package() {
 
 # CGAL 5.5 does not compile with the clang of later ones. wine and qemu run what is made for other machines.
 setup_cross() {
-    setup_bpy 4.5 && packages wine64 qemu-user-static libc6-arm64-cross && venv cross /usr/bin/python3 ziglang==0.13.0.post1
+    setup_bpy 4.5 && packages wine64 qemu-user-static libc6-arm64-cross &&
+        venv cross /usr/bin/python3 ziglang==0.13.0.post1 && into "$deps/windows-python" fill_windows_python
+}
+
+# A Python for Windows, with what the core tests need: its interpreter and modules in C are in panda3d's wheel, what is
+# written in Python is this machine's own of the same version.
+fill_windows_python() {
+    local version library
+    version=$(/usr/bin/python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+    library=python${version/./}.dll
+    say "setup: a Python $version for Windows"
+    # numpy 2 calls functions that the wine of Debian 12 has not. What a package needs on Windows alone, colorama, pip
+    # doesn't see from here.
+    set -- "$1" /usr/bin/python3 -m pip install --quiet --only-binary :all: --platform win_amd64 \
+        --python-version "$version"
+    logged "${@:2}" --target "$1/packages" numpy==1.26.4 scipy==1.11.4 pytest colorama || return
+    logged "${@:2}" --target "$1/panda3d" --no-deps panda3d==1.10.16 || return
+    mv "$1/panda3d/deploy_libs" "$1/python" && rm -r "$1/panda3d" && rm "$1"/python/api-ms-win-* || return
+    ln -s "$(/usr/bin/python3 -c 'import os; print(os.path.dirname(os.__file__))')" "$1/python/Lib" || return
+    logged "$root"/build/venv/cross/lib/python3*/site-packages/ziglang/zig cc -target x86_64-windows-gnu -municode -O2 \
+        "-DPYTHON=L\"$library\"" "$root/tests/ship/windows_python.c" -o "$1/python/python.exe"
 }
 
 setup_bench() {

@@ -1,30 +1,34 @@
-"""Extensions and their repository, made and validated by Blender's own tool, which bpy from PyPI brings."""
+"""Extensions and their repositories, made and validated by Blender's own tool, which bpy from PyPI brings."""
 
+import hashlib
 import json
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import zipfile
 
 import zips
-from platforms import ROOT, TAGS, platform_of
+from platforms import ROOT, platform_of
 
 
-def extensions(wheels, target):
-    """A zip of the add-on for each of these wheels, in the directory target."""
+def extensions(wheels, target, version=None):
+    """A zip of the add-on for each of these wheels, in the directory target. version: another than the files' own."""
     with tempfile.TemporaryDirectory() as directory:
         place = pathlib.Path(directory) / "partwheel"
+        manifest = zips.manifest_for([platform_of(wheel) for wheel in wheels], [wheel.name for wheel in wheels])
+        if version:
+            manifest = re.sub(rb'^version = ".*"', f'version = "{version}"'.encode(), manifest, flags=re.M)
         files = {**zips.addon_files(), **{f"wheels/{wheel.name}": wheel.read_bytes() for wheel in wheels},
-                 zips.MANIFEST.name: zips.manifest_for([platform_of(wheel) for wheel in wheels],
-                                                       [wheel.name for wheel in wheels])}
+                 zips.MANIFEST.name: manifest}
         for name, data in files.items():
             path = place / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(data)
         _blender("build", "--split-platforms", "--source-dir", place, "--output-dir", target)
     for wheel in wheels:
-        name = f"partwheel-{zips.agreed_version()}-{platform_of(wheel)}.zip"
+        name = f"partwheel-{version or zips.agreed_version()}-{platform_of(wheel)}.zip"
         made = (target / name.replace(platform_of(wheel), platform_of(wheel).replace("-", "_"))).rename(target / name)
         _same_each_time(made)
         _blender("validate", made)
@@ -39,17 +43,24 @@ def _same_each_time(path):
             archive.writestr(zips.entry(name, 0o100644), files[name])
 
 
-def repository(packages, target):
-    """A folder that Blender installs and updates from, wherever it is served: the extensions and an index.json. A folder
-    beside it for what is newer than the last release is made the same way."""
-    target.mkdir()
-    for platform in TAGS:
-        for package in packages.glob(f"partwheel-*-{platform}.zip"):
-            os.link(package, target / package.name)
-    _blender("server-generate", "--html", "--repo-dir", target)
-    listed = json.loads((target / "index.json").read_text())["data"]
-    if len(listed) != len(list(target.glob("*.zip"))):
-        raise SystemExit(f"Blender lists {len(listed)} of the extensions in {target}.")
+def repository(wheels, packages, target):
+    """A folder of two repositories that Blender installs and updates from, wherever it is served: the extensions and an
+    index.json each. stable has those in the directory packages; latest has the same under a version that says what is
+    in them: Blender updates what has another version than it has."""
+    stable, latest = target / "stable", target / "latest"
+    stable.mkdir(parents=True)
+    latest.mkdir()
+    for package in packages.glob("partwheel-*.zip"):
+        if not package.stem.endswith("-legacy"):
+            os.link(package, stable / package.name)
+    parts = {**zips.addon_files(), **{wheel.name: wheel.read_bytes() for wheel in wheels}}
+    digest = hashlib.sha256(b"".join(hashlib.sha256(parts[name]).digest() for name in sorted(parts))).hexdigest()
+    extensions(wheels, latest, f"{zips.agreed_version()}-latest.x{digest[:8]}")
+    for channel in (stable, latest):
+        _blender("server-generate", "--html", "--repo-dir", channel)
+        listed = json.loads((channel / "index.json").read_text())["data"]
+        if len(listed) != len(wheels):
+            raise SystemExit(f"Blender lists {len(listed)} of {len(wheels)} extensions in {channel}.")
 
 
 def _blender(*command):

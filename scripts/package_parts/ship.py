@@ -45,11 +45,11 @@ def main():
     print("package: what the libraries make of a model, where they can be run", flush=True)
     for platform, told in runs.run(platforms).items():
         table[platform]["run"] = told
-    print("package: add-ons for Blender, and its repository", flush=True)
+    print("package: add-ons for Blender, and its repositories", flush=True)
     for wheel in wheels:
         zips.legacy(wheel)
     blender.extensions(wheels, SHIP)
-    blender.repository(SHIP, SHIP / "repository")
+    blender.repository(wheels, SHIP, SHIP / "repository")
     if "linux-x64" in platforms:
         print("package: the source distribution", flush=True)
         source.distribution(SHIP, [ROOT / "build" / platform for platform in platforms])

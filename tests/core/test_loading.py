@@ -55,7 +55,8 @@ def test_this_one_is_of_this_platform():
 @pytest.mark.parametrize("name", loading.FILE_NAMES.values())
 def test_of_another_platform(name, tmp_path, monkeypatch):
     """Be it a file of another name, or of the same."""
-    platform = {"libpartwheel.so": OTHER, "partwheel.dll": "windows-x64", "libpartwheel.dylib": "macos-arm64"}[name]
+    others = {"libpartwheel.so": "linux-x64", "partwheel.dll": "windows-x64", "libpartwheel.dylib": "macos-arm64"}
+    platform = OTHER if name == library.LIBRARY.name else others[name]
     (tmp_path / name).write_bytes(head_of(platform))
     said = refusal(tmp_path / library.LIBRARY.name, monkeypatch)
     assert f"This is Partwheel for {loading.in_words(platform)}" in said

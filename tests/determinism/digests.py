@@ -24,6 +24,7 @@ CASES = {  # name: file, options of the build
     "rotor in mode paper": ("rotor.off", {"mode": Mode.PAPER}),
     "head, repaired": ("head.off", {}),
     "pig, from points": ("pig.off", {}),
+    "elephant with holes, from points": ("elephant-with-holes.off", {}),
 }
 
 

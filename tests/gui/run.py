@@ -38,7 +38,8 @@ BLENDER = os.environ.get("PARTWHEEL_BLENDER", "blender")
 PROGRAMS = (BLENDER, "Xvfb", "xdotool", "import")
 TIME_LIMIT = 3600  # seconds a scenario, so that nothing hangs for ever: a hundred times what most take
 # Scenarios that run a second time with real input: X events made by xdotool instead of Blender's event_simulate.
-ONLY_BY_NAME = ("felt", "felt_million")  # measures, and takes long on a machine under load: scripts/bench_felt
+# Those that measure take long on a machine under load: scripts/bench_felt. The repository is for newer Blenders.
+ONLY_BY_NAME = ("felt", "felt_million", "repository")
 ALSO_WITH_XDOTOOL = ("pick_and_click", "empty_space", "navigate")
 
 sys.path.insert(0, str(HERE))

@@ -1,14 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs in a Blender with a HOME of its own: adds the repository at URL, installs Partwheel from it, does the main job, updates
-it while its library is in use, and removes it.
+"""Runs in a Blender with a HOME of its own: serves a copy of a repository's folder, adds it, installs Partwheel from it,
+does the main job, updates it while its library is in use, and removes it.
 
-    PYTHON tests/ship/in_blender.py URL SERVED    SERVED: the folder that URL serves, whose contents are replaced
+    PYTHON tests/ship/in_blender.py -- FOLDER
 """
 
+import contextlib
+import functools
+import http.server
 import importlib
 import json
+import os
+import re
+import shutil
 import subprocess
 import sys
+import tempfile
+import threading
 import zipfile
 from pathlib import Path
 
@@ -16,20 +24,39 @@ import bpy
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "addon"), str(ROOT / "tests" / "faults")]
-MODULE = "bl_ext.partwheel_stable.partwheel"
+MODULE = "bl_ext.partwheel.partwheel"
+HERE = "linux-arm64" if os.uname().machine == "aarch64" else "linux-x64"
 
 
-def main(url, served):
+def main(folder):
+    with tempfile.TemporaryDirectory() as directory:
+        served = Path(directory) / "served"
+        shutil.copytree(folder, served)
+        with serving(served) as url:
+            used(url, served)
+    print("installed, used, updated in use, removed")
+
+
+@contextlib.contextmanager
+def serving(folder):
+    """The folder's address, while it is served on this machine."""
+    handler = functools.partial(http.server.SimpleHTTPRequestHandler, directory=str(folder))
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}"
+        server.shutdown()
+
+
+def used(url, served):
     preferences = bpy.context.preferences
     preferences.system.use_online_access = True
-    repository = preferences.extensions.repos.new(name="Partwheel", module="partwheel_stable", remote_url=url)
+    repository = preferences.extensions.repos.new(name="Partwheel", module="partwheel", remote_url=f"{url}/index.json")
     index = list(preferences.extensions.repos).index(repository)
     bpy.ops.extensions.repo_sync(repo_index=index)
     bpy.ops.extensions.package_install(repo_index=index, pkg_id="partwheel", enable_on_install=True)
     before = main_job()
 
-    (package,) = served.glob("*.zip")
-    newer(package, served)
+    newer(served)
     bpy.ops.extensions.repo_sync(repo_index=index)
     bpy.ops.extensions.package_upgrade_all()
     updated = importlib.import_module(f"{MODULE}.parts.registry")
@@ -40,7 +67,6 @@ def main(url, served):
     bpy.ops.extensions.package_uninstall(repo_index=index, pkg_id="partwheel")
     assert MODULE not in preferences.addons and not Path(updated.__file__).parents[1].exists(), "it is still there"
     assert not hasattr(bpy.types, "MESH_OT_partwheel_select")
-    print("installed, used, updated in use, removed")
 
 
 def main_job():
@@ -62,23 +88,25 @@ def main_job():
     return selected
 
 
-def newer(package, served):
-    """Replaces the package in the folder by its next version, and the folder's index."""
+def newer(served):
+    """Replaces all packages in the folder by the next version of this platform's, and the folder's index."""
+    import bl_pkg  # found once bpy is imported
     from test_registration import add_updated
 
+    (package,) = served.glob(f"*-{HERE}.zip")
     partial = served / "partial"
     with zipfile.ZipFile(package) as old, zipfile.ZipFile(partial, "w") as new:
         add_updated(old, new)
-    update = served / package.name.replace("0.1.0", "0.1.1")
-    with zipfile.ZipFile(partial) as old, zipfile.ZipFile(update, "w") as new:
+    for old in served.glob("*.zip"):
+        old.unlink()
+    with zipfile.ZipFile(partial) as old, zipfile.ZipFile(served / f"partwheel-0.1.1-{HERE}.zip", "w") as new:
         for name in old.namelist():
             data = old.read(name)
             if name == "blender_manifest.toml":
-                data = data.replace(b'\nversion = "0.1.0"', b'\nversion = "0.1.1"')
+                data = re.sub(rb'^version = ".*"', b'version = "0.1.1"', data, flags=re.M)
             new.writestr(name, data)
     partial.unlink()
-    package.unlink()
-    (tool,) = Path(bpy.utils.resource_path("LOCAL")).glob("scripts/addons_core/bl_pkg/cli/blender_ext.py")
+    tool = Path(bl_pkg.__file__).parent / "cli" / "blender_ext.py"
     subprocess.run([sys.executable, tool, "server-generate", "--repo-dir", served], check=True)
     (entry,) = json.loads((served / "index.json").read_text())["data"]
     assert entry["version"] == "0.1.1"
@@ -91,4 +119,4 @@ def manifest(module):
 
 
 if __name__ == "__main__":
-    main(sys.argv[-2], Path(sys.argv[-1]))
+    main(sys.argv[-1])
