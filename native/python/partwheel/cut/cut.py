@@ -88,7 +88,7 @@ class Cut:
 
     @classmethod
     def of_labels(cls, hierarchy, labels):
-        """The cut with these parts: labels (F,) whole numbers, one for each source face. Where they divide what one
+        """The cut with these parts, in this order: labels (F,) whole numbers, one for each source face. Where they divide what one
         tetrahedron has behind it, most faces count. What is inside, without a face, goes with what it was joined to."""
         labels = np.unique(np.asarray(labels), return_inverse=True)[1].ravel()[hierarchy.order]
         tree = Tree(hierarchy)
@@ -103,7 +103,7 @@ class Cut:
                 continue
             values, counts = np.unique(labels[first:last], return_counts=True)
             found.setdefault(int(values[counts.argmax()]), []).append(cluster)
-        return cls(tree, *_complete(tree, found.values()))
+        return cls(tree, *_complete(tree, [found[label] for label in sorted(found)]))
 
     @classmethod
     def automatic(cls, hierarchy):

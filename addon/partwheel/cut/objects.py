@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The parts of a cut as objects: each turns about the middle of the border that it hangs on, and is the child of the part
+it hangs on. In Object Mode; the caller looks after undo."""
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+
+from ..mesh import arrays, pieces
+from ..mesh.refusing import Refused
+from ..solid import composition, fitting, solids
+from partwheel.cut import borders, links
+
+
+def made(obj, cut, names, options=solids.Options(), closed=True, origins=True):
+    """[object, ...], one for each part that has anything left, in a new collection; the object itself stays as it is.
+
+    closed: as solids, that add up to the whole and fit each other exactly, unless options says smooth; a part of a broken
+    mesh that can't be closed stays open. Else their own polygons alone. origins: at the middle of the border, of a loose
+    piece in its own; else all where the object's is."""
+    composition.update_matrices()
+    mesh = arrays.up_to_date(obj)
+    meshes = _closed(obj, cut, options) if closed else [_open(mesh, cut, part) for part in range(len(cut))]
+    tree, places = _tree(mesh, cut)
+    collection = bpy.data.collections.new(f"{obj.name} parts")
+    composition.home(obj).children.link(collection)
+    new = {part: composition.beside(obj, each, names[part], collection) for part, each in enumerate(meshes) if each}
+    if origins:
+        for part, each in new.items():
+            if tree[part].parent >= 0:
+                each.data.transform(Matrix.Translation(-places[part]), shape_keys=True)
+                each.matrix_world = obj.matrix_world @ Matrix.Translation(places[part])
+    composition.update_matrices()
+    for part, each in new.items():
+        parent = new.get(tree[part].parent)
+        if parent:
+            each.parent = parent
+            each.matrix_parent_inverse = parent.matrix_world.inverted_safe()
+    composition.update_matrices()
+    return list(new.values())
+
+
+def _closed(obj, cut, options):
+    slices = [cut.slices(part) for part in range(len(cut))]
+    try:
+        return solids.parts(obj, cut.hierarchy, slices, options)
+    except Refused:
+        found = []
+        for part, each in enumerate(slices):
+            try:
+                found += solids.parts(obj, cut.hierarchy, [each], options)
+            except Refused:
+                found.append(_open(obj.data, cut, part))
+        return found
+
+
+def _open(mesh, cut, part):
+    """The part's polygons."""
+    plan = fitting.of_faces(mesh, cut.hierarchy, 0, 1, cut.labels == part, alone=True)
+    new, loops = pieces.assembled(mesh, plan, f"{mesh.name} part", False), plan.loops.first
+    normals = arrays.custom_normals(mesh)
+    if normals is not None:
+        arrays.set_custom_normals(new, normals[loops])
+    return new
+
+
+def _tree(mesh, cut):
+    """(the parts' Links, where each hangs on the other or else its middle)."""
+    surface = arrays.surface(mesh)
+    labels = cut.labels[surface.faces]
+    low, high = (np.array([end(surface.vertices[surface.triangles[labels == part]], axis=(0, 1))
+                           for part in range(len(cut))]) for end in (np.min, np.max))
+    middles = (low + high) / 2
+    tree = links(cut, borders(surface.vertices, surface.triangles, labels), middles)
+    return tree, [Vector(link.border.center if link.border else middle) for link, middle in zip(tree, middles)]

@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The whole model in parts: what is written is read back, on five real models, three of them broken."""
+
+import json
+
+import bmesh
+import bpy
+import numpy
+from common import part, read_off
+from mathutils import Vector
+from partwheel.cut import Cut
+from solid_case import SolidTest, arrays, caps
+
+EXACT, BROKEN = ("homer", "elephant"), ("mushroom", "cow", "pig")
+RUNGS = {"homer": "exact", "elephant": "exact", "mushroom": "repaired", "cow": "points", "pig": "points"}
+_saved = {}  # of each model its saved hierarchy: found once a process
+
+
+def read(data, field, kind, width=1):
+    values = numpy.empty(len(data) * width, kind)
+    data.foreach_get(field, values)
+    return values
+
+
+def volume64(obj, about):
+    """In doubles, about the same point for all parts; of triangles alone."""
+    vertices, polygons = arrays(obj.data)
+    a, b, c = (vertices - about)[numpy.array(polygons)].transpose(1, 0, 2)
+    return numpy.einsum("ij,ij->", a, numpy.cross(b, c)) / 6
+
+
+class PartsTo(SolidTest):
+    def model(self, name):
+        """(a new object, its cut)"""
+        obj = self.add(*read_off(name), name)
+        registry = part("parts.registry")
+        if name not in _saved:
+            _saved[name] = part("api").build(obj)
+        now = part("mesh.arrays").fingerprint(obj.data)
+        registry.keep(obj.data, registry.Entry(now, (len(obj.data.vertices), len(obj.data.polygons)), _saved[name]), now)
+        self.assertEqual(_saved[name].summary.rung, RUNGS[name])
+        return obj, part("api").parts(obj)
+
+    def each(self, names=EXACT + BROKEN):
+        for name in names:
+            yield name, *self.model(name)
+
+    def test_parts_are_the_automatic_cut_or_as_many_as_asked(self):
+        for _, obj, cut in self.each():
+            automatic = part("api").cut(obj, automatic=True)
+            self.assertEqual(len({*zip(cut.labels.tolist(), automatic.tolist())}), len(cut))
+            self.assertEqual(len(part("api").parts(obj, 5)), 5)
+
+    def test_is_kept_in_the_mesh_and_found_again(self):
+        for name, obj, cut in self.each():
+            cut = cut.split(1).merge(0, 2)
+            names = part("api").write(obj, cut).names
+            attribute = obj.data.attributes["partwheel_part"]
+            self.assertEqual((attribute.domain, attribute.data_type), ("FACE", "INT"))
+            self.assertTrue((read(attribute.data, "value", numpy.int32) == cut.labels).all())
+            self.assertEqual(json.loads(obj.data["partwheel_parts"]), {str(k): n for k, n in enumerate(names)})
+            found, known = part("api").kept_parts(obj)
+            self.assertEqual(found, cut)
+            self.assertEqual(known, names)
+            # Gone on with: what stays as it is keeps its name, also one that the user gave.
+            part("api").write(obj, found, names=["Nose", *names[1:]])
+            more = part("api").kept_parts(obj)[0].split(1)
+            after = part("api").write(obj, more).names
+            self.assertEqual(len(set(after)), len(more))
+            self.assertEqual(after[0], "Nose")
+            self.assertEqual([after[k] for k in range(2, len(found))], names[2:])
+
+    def test_the_kept_cut_outlives_a_file(self):
+        obj, cut = self.model("homer")
+        names = part("api").write(obj, cut.merge(0, 3)).names
+        again = self.linked(obj)
+        found, known = part("api").kept_parts(again)
+        self.assertEqual(len({*zip(found.labels.tolist(), cut.merge(0, 3).labels.tolist())}), len(found))
+        self.assertEqual(known, names)
+
+    def test_names_of_other_add_ons_data_do_no_harm(self):
+        obj, cut = self.model("pig")
+        obj.data["partwheel_parts"] = "no JSON"
+        obj.data.attributes.new("partwheel_part", "FLOAT", "POINT")
+        self.assertIsNone(part("api").kept_parts(obj))
+        part("api").write(obj, cut)
+        self.assertEqual(part("api").kept_parts(obj)[0], cut)
+
+    def test_face_sets(self):
+        for _, obj, cut in self.each():
+            part("api").write(obj, cut, {"FACE_SETS"})
+            sets = read(obj.data.attributes[".sculpt_face_set"].data, "value", numpy.int32)
+            self.assertTrue((sets == cut.labels + 1).all())
+
+    def test_vertex_groups_add_up_to_one(self):
+        for _, obj, cut in self.each():
+            other = obj.vertex_groups.new(name="mine")
+            other.add([0, 1], 0.25, "REPLACE")
+            for _ in range(2):  # the second time in place of the first
+                names = part("api").write(obj, cut, {"VERTEX_GROUPS"}).names
+            self.assertEqual({group.name for group in obj.vertex_groups}, {"mine", *names})
+            number = {group.index: names.index(group.name) for group in obj.vertex_groups if group.name != "mine"}
+            weights = numpy.zeros((len(obj.data.vertices), len(cut)))
+            for vertex in obj.data.vertices:
+                for group in vertex.groups:
+                    if group.group in number:
+                        weights[vertex.index, number[group.group]] = group.weight
+            used = numpy.unique([vertex for polygon in obj.data.polygons for vertex in polygon.vertices])
+            self.assertLess(abs(weights[used].sum(axis=1) - 1).max(), 1e-6)
+            # Of a part's own vertices the part has the most.
+            labels = {}
+            for polygon in obj.data.polygons:
+                for vertex in polygon.vertices:
+                    labels.setdefault(tuple(obj.data.vertices[vertex].co), set()).add(cut.labels[polygon.index])
+            for vertex in used.tolist():
+                own = labels[tuple(obj.data.vertices[vertex].co)]
+                if len(own) == 1:
+                    self.assertAlmostEqual(weights[vertex, min(own)], weights[vertex].max(), 5)
+            between = ((weights > 0.001) & (weights < 0.999)).any(axis=1)
+            self.assertTrue(0 < between[used].mean() < 0.95, between.mean())
+            self.assertAlmostEqual(other.weight(0), 0.25)
+
+    def test_materials_of_own_colours(self):
+        for _, obj, cut in self.each(("elephant", "cow")):
+            obj.data.materials.append(bpy.data.materials.new("old"))
+            names = part("api").write(obj, cut, {"COLORS"}).names
+            self.assertEqual([material.name for material in obj.data.materials],
+                             [f"{obj.name} {name}" for name in names])
+            self.assertTrue((read(obj.data.polygons, "material_index", numpy.int32) == cut.labels).all())
+            self.assertEqual(len({tuple(material.diffuse_color) for material in obj.data.materials}), len(cut))
+
+    def test_the_models_materials_with_a_slot_for_each_part(self):
+        obj, cut = self.model("elephant")
+        old = [bpy.data.materials.new(name) for name in ("skin", "toe")]
+        for material in old:
+            obj.data.materials.append(material)
+        toes = numpy.flatnonzero(cut.labels == 2)[::2]
+        before = numpy.zeros(len(cut.labels), numpy.int32)
+        before[toes] = 1
+        obj.data.polygons.foreach_set("material_index", before)
+        part("api").write(obj, cut, {"MATERIALS"})
+        index = read(obj.data.polygons, "material_index", numpy.int32)
+        self.assertEqual(len(obj.data.materials), len(cut) + 1)
+        self.assertTrue(all(obj.data.materials[slot] == old[was] for slot, was in zip(index, before)))
+        self.assertTrue(all(len({*cut.labels[index == slot]}) == 1 for slot in range(len(cut) + 1)))
+
+    def test_objects_are_closed_and_make_the_whole(self):
+        for name, obj, cut in self.each():
+            for each in (cut, cut.merge(0, len(cut) - 1)):
+                names, made = part("api").write(obj, each, {"OBJECTS"}, origins=False)
+                self.assertEqual([new.name for new in made], names)
+                for new in made:
+                    self.assertSolid(new.data)
+                    self.assertGreater(caps(new.data).sum(), 0)
+                    self.assertLess(abs(numpy.array(new.matrix_world) - numpy.array(obj.matrix_world)).max(), 1e-6)
+                if name in EXACT:
+                    about = arrays(obj.data)[0].mean(axis=0)
+                    whole = volume64(obj, about)
+                    total = sum(volume64(new, about) for new in made)
+                    self.assertLess(abs(total - whole), 1e-9 * whole)
+                    own = sum((~caps(new.data)).sum() for new in made)
+                    self.assertGreaterEqual(own, len(obj.data.polygons))
+                for new in made:
+                    bpy.data.objects.remove(new)
+
+    def test_objects_hang_on_each_other_by_their_borders(self):
+        for name, obj, cut in self.each():
+            obj.location, obj.rotation_euler, obj.scale = (3, 1, 2), (0.3, 0.2, 1), (2, 2, 2)
+            bpy.context.view_layer.update()
+            names, made = part("api").write(obj, cut, {"OBJECTS"})
+            collection, = {new.users_collection[0] for new in made}
+            self.assertTrue(collection.name.startswith(f"{name} parts"))
+            self.assertEqual(sum(new.parent is None for new in made), 1)
+            self.assertTrue(all(new.parent in [None, *made] for new in made))
+            places = {tuple(round(x, 4) for x in obj.matrix_world @ vertex.co) for vertex in obj.data.vertices}
+            for new in made:
+                marks = caps(new.data)
+                own = {v for polygon in new.data.polygons if not marks[polygon.index] for v in polygon.vertices}
+                seen = [tuple(round(x, 4) for x in new.matrix_world @ new.data.vertices[v].co) for v in own]
+                near = sum(place in places for place in seen)
+                self.assertGreater(near, 0.4 * len(seen), (name, new.name))  # but for rounding, and what was repaired
+
+    def test_origins_are_the_middles_of_the_borders(self):
+        # Two boxes on a third: the borders are known.
+        bm = bmesh.new()
+        bmesh.ops.create_cube(bm, size=2)
+        bmesh.ops.subdivide_edges(bm, edges=bm.edges[:], cuts=2, use_grid_fill=True)
+        for sign in (-1, 1):
+            face = next(face for face in bm.faces if face.calc_center_median().length < 1.001
+                        and face.normal.x * sign > 0.9)
+            for _ in range(3):
+                extruded = bmesh.ops.extrude_discrete_faces(bm, faces=[face])["faces"][0]
+                for vertex in extruded.verts:
+                    vertex.co.x += sign
+                face = extruded
+        mesh = bpy.data.meshes.new("jack")
+        bm.to_mesh(mesh)
+        bm.free()
+        obj = self.link(bpy.data.objects.new("jack", mesh))
+        built = part("api").hierarchy(obj)
+        centers = numpy.array([polygon.center[0] for polygon in mesh.polygons])
+        labels = numpy.where(centers > 1.001, 1, numpy.where(centers < -1.001, 2, 0))
+        names, made = part("api").write(obj, Cut.of_labels(built, labels), {"OBJECTS"})
+        self.assertEqual(len(made), 3)
+        root, = [new for new in made if not new.parent]
+        self.assertEqual(root.location.length, 0)
+        self.assertEqual({new.name for new in made} - {root.name}, {"Part 2.L", "Part 2.R"})
+        for new in made:
+            if new.parent:
+                side = 1 if new.name.endswith(".L") else -1
+                self.assertLess((new.matrix_world.translation - Vector((side, 0, 0))).length, 1e-5)
+        before = made[1].matrix_world.translation.copy()
+        root.location.z += 5
+        bpy.context.view_layer.update()
+        self.assertAlmostEqual(made[1].matrix_world.translation.z, before.z + 5, 4)  # it goes along
+
+    def test_layers_come_along(self):
+        obj, cut = self.model("homer")
+        mesh = obj.data
+        random = numpy.random.default_rng(3)
+        mesh.uv_layers.new(name="map").data.foreach_set("uv", random.random(2 * len(mesh.loops)).astype(numpy.float32))
+        mesh.attributes.new("heat", "FLOAT", "POINT").data.foreach_set("value", random.random(len(mesh.vertices)))
+        uv = {}
+        for polygon in mesh.polygons:
+            corners = {tuple(mesh.vertices[mesh.loops[loop].vertex_index].co):
+                       tuple(mesh.uv_layers["map"].data[loop].uv) for loop in polygon.loop_indices}
+            uv[frozenset(corners)] = corners
+        heat = {tuple(vertex.co): mesh.attributes["heat"].data[vertex.index].value for vertex in mesh.vertices}
+        compared = 0
+        for closed in (True, False):
+            for new in part("api").write(obj, cut, {"OBJECTS"}, closed=closed, origins=False).objects:
+                marks = caps(new.data) if closed else numpy.zeros(len(new.data.polygons), bool)
+                for polygon in new.data.polygons:
+                    places = [tuple(new.data.vertices[v].co) for v in polygon.vertices]
+                    old = uv.get(frozenset(places))
+                    if marks[polygon.index] or old is None:
+                        continue
+                    compared += 1
+                    for place, loop, v in zip(places, polygon.loop_indices, polygon.vertices):
+                        self.assertEqual(tuple(new.data.uv_layers["map"].data[loop].uv), old[place])
+                        self.assertEqual(new.data.attributes["heat"].data[v].value, heat[place])
+        self.assertGreaterEqual(compared, 1.9 * len(mesh.polygons))
+
+    def test_open_objects_are_the_parts_polygons(self):
+        for _, obj, cut in self.each():
+            made = part("api").write(obj, cut, {"OBJECTS"}, closed=False).objects
+            self.assertEqual([len(new.data.polygons) for new in made], numpy.bincount(cut.labels).tolist())
+            self.assertFalse(any("partwheel_cap" in new.data.attributes for new in made))
+
+    def test_errors_change_nothing(self):
+        obj, cut = self.model("pig")
+        other, _ = self.model("elephant")
+        for call in (lambda: part("api").write(obj, cut, "OBJECTS"), lambda: part("api").write(obj, cut, {"BONES"}),
+                     lambda: part("api").write(obj, cut, names=["one"]),
+                     lambda: part("api").write(other, cut, {"COLORS"})):
+            with self.assertRaises(ValueError):
+                call()
+        bpy.context.view_layer.objects.active = obj
+        self.edit(obj)
+        with self.assertRaises(ValueError):
+            part("api").write(obj, cut)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertNotIn("partwheel_part", obj.data.attributes)
+        self.assertEqual(len(other.data.materials), 0)
