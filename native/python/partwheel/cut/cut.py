@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A cut: the whole model in parts, as a value. What edits it gives a new one."""
 
+import heapq
 from functools import cached_property
 
 import numpy as np
@@ -116,6 +117,20 @@ class Cut:
         most = min(max(count, 1), len(hierarchy.tetrahedra), 4096)
         return cls.of_labels(hierarchy, hierarchy.face_labels(hierarchy.cut_parts(most))).sized(count)
 
+    @classmethod
+    def of_parts(cls, hierarchy, parts):
+        """The cut whose parts are these lists of clusters, as another one's parts tell. ValueError: they don't make the
+        whole."""
+        tree, labels = Tree(hierarchy), np.full(len(hierarchy.order), -1)
+        for number, clusters in enumerate(parts):
+            for cluster in clusters:
+                if not 0 <= cluster <= tree.root:
+                    raise ValueError(f"There is no cluster {cluster}: the tree has {tree.root + 1}.")
+                labels[hierarchy.order[slice(*tree.run(cluster))]] = number
+        if (labels < 0).any():
+            raise ValueError("These parts don't make the whole.")
+        return cls.of_labels(hierarchy, labels)
+
     # ---- Seen
 
     @cached_property
@@ -192,11 +207,7 @@ class Cut:
 
     def more(self):
         """One part more: of all that were not merged by hand the last merge is undone."""
-        for _, part in sorted(((self._seen(part), part) for part in range(len(self)) if len(self._seen(part)) == 1),
-                              reverse=True):
-            if (cut := self.split(part)) is not self:
-                return cut
-        return self
+        return self.sized(len(self) + 1)
 
     def fewer(self):
         """One part less: the first merge that is still to be done is done."""
@@ -211,11 +222,29 @@ class Cut:
     def sized(self, count):
         """With so many parts, as far as more() and fewer() lead there."""
         cut = self
-        while len(cut) < count and (more := cut.more()) is not cut:
-            cut = more
         while len(cut) > max(count, 1):
             cut = cut.fewer()
-        return cut
+        if len(cut) >= count:
+            return cut
+        changes, new = {}, []
+        last = [(-seen[0], part) for part in range(len(cut)) if len(seen := cut._seen(part)) == 1]
+        heapq.heapify(last)
+        while last and len(cut) + len(new) < count:
+            cluster, part = heapq.heappop(last)
+            halves = self._halves(-cluster)
+            if not halves:
+                continue
+            own = changes.get(part) or list(cut.parts[part]) if part < len(cut) else new[part - len(cut)]
+            own.remove(-cluster)
+            kept = own + halves[0]
+            if part < len(cut):
+                changes[part] = kept
+            else:
+                new[part - len(cut)] = kept
+            new.append(halves[1])
+            heapq.heappush(last, (-halves[0][0], part))
+            heapq.heappush(last, (-halves[1][0], len(cut) + len(new) - 1))
+        return cut._with(changes, new) if new else cut
 
     def _seen(self, part):
         """The part's clusters with faces; several were merged by hand."""
