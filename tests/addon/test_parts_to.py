@@ -29,7 +29,7 @@ def volume64(obj, about):
     return numpy.einsum("ij,ij->", a, numpy.cross(b, c)) / 6
 
 
-class PartsTo(SolidTest):
+class PartsCase(SolidTest):
     def model(self, name):
         """(a new object, its cut)"""
         obj = self.add(*read_off(name), name)
@@ -45,6 +45,8 @@ class PartsTo(SolidTest):
         for name in names:
             yield name, *self.model(name)
 
+
+class Written(PartsCase):
     def test_parts_are_the_automatic_cut_or_as_many_as_asked(self):
         for _, obj, cut in self.each():
             automatic = part("api").cut(obj, automatic=True)
@@ -262,3 +264,87 @@ class PartsTo(SolidTest):
         bpy.ops.object.mode_set(mode="OBJECT")
         self.assertNotIn("partwheel_part", obj.data.attributes)
         self.assertEqual(len(other.data.materials), 0)
+
+
+class Operator(PartsCase):
+    """Without a window; with one: tests/gui/scenarios/parts_to.py."""
+
+    def run_parts(self, obj, **options):
+        bpy.context.view_layer.objects.active = obj
+        return bpy.ops.mesh.partwheel_parts(**options)
+
+    def test_makes_what_is_usual_in_each_mode(self):
+        obj, cut = self.model("pig")
+        self.assertEqual(self.run_parts(obj), {"FINISHED"})
+        made = [new for new in bpy.data.objects if new != obj]
+        self.assertEqual(len(made), len(cut))
+        self.assertTrue(obj.hide_get() and all(new.select_get() for new in made))
+        obj.hide_set(False)
+        bpy.context.view_layer.objects.active = obj
+        bpy.ops.object.mode_set(mode="EDIT")
+        self.assertEqual(self.run_parts(obj), {"FINISHED"})
+        self.assertEqual((obj.mode, len(obj.vertex_groups)), ("EDIT", len(cut)))
+        bpy.ops.object.mode_set(mode="SCULPT")
+        self.assertEqual(self.run_parts(obj), {"FINISHED"})
+        self.assertEqual(obj.mode, "SCULPT")
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertEqual(len({*read(obj.data.attributes[".sculpt_face_set"].data, "value", numpy.int32)}), len(cut))
+
+    def test_several_at_once_and_so_many(self):
+        obj, _ = self.model("elephant")
+        self.run_parts(obj, to={"VERTEX_GROUPS", "COLORS", "FACE_SETS"}, count=5)
+        self.assertEqual((len(obj.vertex_groups), len(obj.data.materials), len(bpy.data.objects)), (5, 5, 1))
+        self.assertEqual(part("api").kept_parts(obj)[0], Cut.into(part("api").hierarchy(obj), 5))
+
+    def test_goes_on_with_what_is_kept_in_every_mode(self):
+        obj, cut = self.model("elephant")
+        edited = cut.merge(0, 4).split(2)
+        part("api").write(obj, edited)
+        for mode in ("OBJECT", "EDIT", "SCULPT"):
+            bpy.ops.object.mode_set(mode=mode)
+            self.run_parts(obj, to=set())
+            bpy.ops.object.mode_set(mode="OBJECT")
+            self.assertEqual(part("api").kept_parts(obj)[0], edited)
+
+    def test_repeats_with_other_options(self):
+        # What the panel of the last operation and Repeat Last give it: the parts as they were, or so many of them.
+        obj, cut = self.model("elephant")
+        edited = cut.merge(0, 4)
+        self.run_parts(obj, to=set(), clusters=json.dumps(edited.parts), count=len(edited))
+        self.assertEqual(part("api").kept_parts(obj)[0], edited)
+        self.run_parts(obj, to=set(), clusters=json.dumps(edited.parts), count=len(edited) + 3)
+        self.assertEqual(part("api").kept_parts(obj)[0], edited.sized(len(edited) + 3))
+        for wrong in ("no JSON", "[[1]]", "[[-5]]", "5", '[["a"]]', "[[99999999]]"):
+            with self.assertRaises(RuntimeError):
+                self.run_parts(obj, clusters=wrong)
+        self.assertEqual(part("api").kept_parts(obj)[0], edited.sized(len(edited) + 3))
+
+    def test_states_come_back_by_the_way_they_went(self):
+        _, cut = self.model("homer")
+        states = part("cut.states")
+        start = states.Cutting(cut)
+        for state in (start, *(start.clicked(int(numpy.flatnonzero(cut.labels == each)[0])) for each in range(4))):
+            for notches in (1, 2, 5, -1, -3):
+                steps = [state]
+                for _ in range(abs(notches)):
+                    steps.append(steps[-1].turned(notches // abs(notches)))
+                for step in steps[::-1][1:]:
+                    if steps[-1] is not step:
+                        steps.append(steps[-1].turned(-notches // abs(notches)))
+                self.assertEqual(steps[-1].cut, cut)
+        face = int(numpy.flatnonzero(cut.labels == 2)[0])
+        one = start.clicked(face)
+        self.assertEqual((one.part, one.clicked(face).part, one.clicked(None).part), (2, None, None))
+        self.assertEqual(one.turned(-1).cut, cut.split(2))
+        self.assertEqual(one.turned(1).cut, cut.join(2))
+        self.assertEqual(start.with_digit("1").with_digit("2").cut, cut.sized(12))
+        self.assertEqual(len(start.with_digit("1").with_digit("2").without_digit().cut), 1)
+        self.assertEqual(len(start.with_digit("0").cut), 1)
+        other = int(numpy.flatnonzero(cut.labels == 5)[0])
+        self.assertEqual(one.merged(other, face).cut, cut.merge(5, 2))
+        smallest = start.clicked(face)
+        for _ in range(2000):
+            before, smallest = smallest, smallest.turned(-1)
+            if before is smallest:
+                break
+        self.assertLess((smallest.cut.labels == smallest.part).sum(), 4)  # those of one tetrahedron

@@ -4,6 +4,7 @@ through edits, and the parts' names. So it can be gone on with, also where the h
 
 import json
 
+import bmesh
 import numpy as np
 
 from ..mesh import arrays
@@ -26,13 +27,12 @@ def keep(mesh, labels, names):
 
 
 def found(obj, hierarchy):
-    """(the Cut that is kept in the object's mesh, {its clusters: name}), or None. In Edit Mode the mesh must be up to
-    date."""
+    """(the Cut that is kept in the object's mesh, {its clusters: name}), or None. The hierarchy is that of the mesh as it
+    is now."""
     mesh = obj.data
-    number = mesh.attributes.get(ATTRIBUTE)
-    if not number or (number.domain, number.data_type) != ("FACE", "INT"):
+    labels = _labels(mesh)
+    if labels is None:
         return None
-    labels = arrays.read(number.data, "value", np.int32)
     try:
         known = {int(number): str(name) for number, name in json.loads(mesh.get(NAMES, "{}")).items()}
     except (ValueError, AttributeError):  # somebody else's
@@ -43,6 +43,18 @@ def found(obj, hierarchy):
         if (name := known.get(int(values[counts.argmax()]))) and name not in names.values():
             names[clusters] = name
     return cut, names
+
+
+def _labels(mesh):
+    """(F,) or None."""
+    if mesh.is_editmode:  # Blender shows no attribute's values then
+        faces = bmesh.from_edit_mesh(mesh).faces
+        layer = faces.layers.int.get(ATTRIBUTE)
+        return None if layer is None else np.array([face[layer] for face in faces], np.int32)
+    number = mesh.attributes.get(ATTRIBUTE)
+    if not number or (number.domain, number.data_type) != ("FACE", "INT"):
+        return None
+    return arrays.read(number.data, "value", np.int32)
 
 
 def names_of(obj, cut, known):

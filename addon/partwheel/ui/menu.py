@@ -18,8 +18,9 @@ def _entries(*operators, write=None, **label):
 
 ENTRIES = (
     ("VIEW3D_MT_edit_mesh", _entries("mesh.partwheel_deform", "mesh.partwheel_copy", "mesh.partwheel_remove",
-                                     "mesh.partwheel_split", "mesh.partwheel_swap")),
-    ("VIEW3D_MT_object", _entries("mesh.partwheel_split", "mesh.partwheel_swap", "object.partwheel_place",
+                                     "mesh.partwheel_parts", "mesh.partwheel_split", "mesh.partwheel_swap")),
+    ("VIEW3D_MT_sculpt", _entries("mesh.partwheel_parts")),
+    ("VIEW3D_MT_object", _entries("mesh.partwheel_parts", "mesh.partwheel_split", "mesh.partwheel_swap", "object.partwheel_place",
                                   "object.partwheel_unite")),
     ("VIEW3D_MT_select_edit_mesh", _entries("mesh.partwheel_select")),
     ("VIEW3D_MT_select_object", _entries("object.partwheel_select")),
