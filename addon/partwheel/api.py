@@ -174,8 +174,8 @@ def cut(obj, parts=None, height=None, least_concavity=None, automatic=False):
 
 
 def parts(obj, count=None):
-    """The whole model in parts, a partwheel.cut.Cut: into so many, or as people would most likely take them. It is a value:
-    cut.split(3), cut.join(3), cut.merge(0, 2) give others. cut.labels (F,): the part of each polygon."""
+    """The whole model in parts, a partwheel.cut.Cut: into so many, or as people would most likely take them. It is a
+    value: cut.split(3), cut.join(3), cut.merge(0, 2) give others. cut.labels (F,): the part of each polygon."""
     built = hierarchy(obj)
     return Cut.automatic(built) if count is None else Cut.into(built, count)
 
@@ -188,15 +188,15 @@ def kept_parts(obj):
 
 
 def write(obj, cut, to=(), names=None, closed=True, origins=True, smooth=False, material=False):
-    """Keeps a cut in the object's mesh, as the face attribute "partwheel_part" and the parts' names, and writes it to any
-    of these: "FACE_SETS"; "VERTEX_GROUPS", for an armature: 1 within a part, falling smoothly across its borders, adding
-    up to 1; "COLORS", a material of its own for each part; "MATERIALS", the mesh's own with a slot for each part;
+    """Keeps a cut in the object's mesh, as the face attribute "partwheel_part" and the parts' names, and writes it to
+    any of these: "FACE_SETS"; "VERTEX_GROUPS", for an armature: 1 within a part, falling smoothly across its borders,
+    adding up to 1; "COLORS", a material of its own for each part; "MATERIALS", the mesh's own with a slot for each part;
     "OBJECTS", in a new collection, each the child of the part that it hangs on.
 
-    names: one for each part; None: those that are kept, or such as say what is left, right and alike. Objects: closed: as
-    solids that make the whole, else their own polygons alone. origins: in the middle of the border, else all where the
-    object's is. smooth, material: of caps, as for copy_part(). Returns (names, objects). partwheel.Error: the cut is of
-    another mesh, or it can't be done; nothing has changed then. Outside Edit Mode only."""
+    names: one for each part; None: those that are kept, or such as say what is left, right and alike. Objects: closed:
+    as solids that make the whole, else their own polygons alone. origins: in the middle of the border, else all where
+    the object's is. smooth, material: of caps, as for copy_part(). Returns (names, objects). partwheel.Error: the cut is
+    of another mesh, or it can't be done; nothing has changed then. Outside Edit Mode only."""
     _mesh(obj, edited=False, changes=True)
     if isinstance(to, str) or not set(to) <= set(writing.TO):
         raise ValueError(f"to is to be some of {', '.join(writing.TO)}.")

@@ -37,7 +37,8 @@ class PartsCase(SolidTest):
         if name not in _saved:
             _saved[name] = part("api").build(obj)
         now = part("mesh.arrays").fingerprint(obj.data)
-        registry.keep(obj.data, registry.Entry(now, (len(obj.data.vertices), len(obj.data.polygons)), _saved[name]), now)
+        counts = len(obj.data.vertices), len(obj.data.polygons)
+        registry.keep(obj.data, registry.Entry(now, counts, _saved[name]), now)
         self.assertEqual(_saved[name].summary.rung, RUNGS[name])
         return obj, part("api").parts(obj)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A cut written into the mesh: as face sets, vertex groups, materials. Outside Edit Mode; the caller looks after undo."""
+"""A cut written into the mesh: as face sets, vertex groups, materials. Outside Edit Mode; undo is the caller's."""
 
 import bpy
 import numpy as np
@@ -17,8 +17,8 @@ def face_sets(obj, cut, _names):
 
 
 def vertex_groups(obj, cut, names):
-    """One for each part, in place of groups of the same names: 1 within, falling smoothly across the borders. A vertex's
-    weights in them add up to 1."""
+    """One for each part, in place of groups of the same names: 1 within, falling smoothly across the borders. A
+    vertex's weights in them add up to 1."""
     surface = arrays.surface(obj.data)
     found = weights(surface.vertices, surface.triangles, cut.labels[surface.faces], len(cut))
     for name, (vertices, values) in zip(names, found):

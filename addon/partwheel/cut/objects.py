@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The parts of a cut as objects: each turns about the middle of the border that it hangs on, and is the child of the part
-it hangs on. In Object Mode; the caller looks after undo."""
+"""The parts of a cut as objects: each turns about the middle of the border by which it hangs on another, and is the
+child of that. In Object Mode; undo is the caller's."""
 
 import bpy
 import numpy as np
@@ -15,9 +15,9 @@ from partwheel.cut import borders, links
 def made(obj, cut, names, options=solids.Options(), closed=True, origins=True):
     """[object, ...], one for each part that has anything left, in a new collection; the object itself stays as it is.
 
-    closed: as solids, that add up to the whole and fit each other exactly, unless options says smooth; a part of a broken
-    mesh that can't be closed stays open. Else their own polygons alone. origins: at the middle of the border, of a loose
-    piece in its own; else all where the object's is."""
+    closed: as solids, that add up to the whole and fit each other exactly, unless options says smooth; a part of a
+    broken mesh that can't be closed stays open. Else their own polygons alone. origins: at the middle of the border, of
+    a loose piece in its own; else all where the object's is."""
     composition.update_matrices()
     mesh = arrays.up_to_date(obj)
     meshes = _closed(obj, cut, options) if closed else [_open(mesh, cut, part) for part in range(len(cut))]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_parts: the whole model in parts, seen in colours, edited with wheel, clicks and drags, and written to face
-sets, vertex groups, materials, objects. Nothing changes before it is confirmed."""
+"""mesh.partwheel_parts: the whole model in parts, seen in colours, edited with wheel, clicks and drags, and written to
+face sets, vertex groups, materials, objects. Nothing changes before it is confirmed."""
 
 import json
 
@@ -31,7 +31,7 @@ STRONG, WEAK = 0.85, 0.4  # how far the part that was clicked covers the model, 
 
 
 class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
-    """Divide the whole model into parts: the wheel changes how many, a click and the wheel one of them, a drag merges"""
+    """Divide the whole model into parts: the wheel changes how many, a click and the wheel one, a drag merges"""
 
     bl_idname = "mesh.partwheel_parts"
     bl_label = "Parts to..."
@@ -41,8 +41,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         name="Make Them", description="What the parts become; none: they are only kept in the mesh",
         items=[(name, *LABELS[name]) for name in writing.TO], options={"ENUM_FLAG", "SKIP_SAVE"}, default=set())
     count: bpy.props.IntProperty(
-        name="Parts", description="How many; 0: those that are kept in the mesh, or as people would most likely take them",
-        default=0, min=0, soft_max=64, max=999, options={"SKIP_SAVE"})
+        name="Parts", description="How many; 0: those that are kept in the mesh, or as people would most likely take "
+        "them", default=0, min=0, soft_max=64, max=999, options={"SKIP_SAVE"})
     clusters: bpy.props.StringProperty(
         name="Clusters", description="The parts, as lists of clusters of the tree", options={"HIDDEN", "SKIP_SAVE"})
     closed: bpy.props.BoolProperty(
@@ -119,8 +119,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             bpy.ops.ed.undo_push(message="Leave Edit Mode")
         made = []
         try:
-            made = writing.write(obj, cut, self.to, known[1] if known else {}, solids.Options(self.smooth, self.material),
-                                 self.closed, self.origins).objects
+            made = writing.write(obj, cut, self.to, known[1] if known else {},
+                                 solids.Options(self.smooth, self.material), self.closed, self.origins).objects
         finally:
             if mode != "OBJECT" and not made:
                 bpy.ops.object.mode_set(mode=mode)

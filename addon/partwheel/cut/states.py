@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The states while a cut is edited, and how a click, a notch, a drag or a digit leads from one to the next. No bpy here."""
+"""The states while a cut is edited, and how a click, a notch, a drag or a digit leads on. No bpy here."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -11,8 +11,8 @@ DIGITS = 3
 
 @dataclass(frozen=True)
 class Cutting:
-    """A cut, some notches away from another one: those of the part with a face that was clicked, or else of the number of
-    parts. So the wheel comes back by the way that it went."""
+    """A cut, some notches away from another one: those of the part with a face that was clicked, or else of the number
+    of parts. So the wheel comes back by the way that it went."""
 
     base: Cut
     face: int = None  # the one that was clicked, if any

@@ -27,8 +27,8 @@ def keep(mesh, labels, names):
 
 
 def found(obj, hierarchy):
-    """(the Cut that is kept in the object's mesh, {its clusters: name}), or None. The hierarchy is that of the mesh as it
-    is now."""
+    """(the Cut that is kept in the object's mesh, {its clusters: name}), or None. The hierarchy is that of the mesh as
+    it is now."""
     mesh = obj.data
     labels = _labels(mesh)
     if labels is None:
@@ -58,8 +58,8 @@ def _labels(mesh):
 
 
 def names_of(obj, cut, known):
-    """[name, ...] of a cut's parts: those that are known, {clusters: name}, and for the others such as say what is alike
-    and what is left and right."""
+    """[name, ...] of a cut's parts: those that are known, {clusters: name}, and for the others such as say what is
+    alike and what is left and right."""
     names = [known.get(clusters) for clusters in cut.parts]
     if None not in names:
         return names

@@ -1,5 +1,5 @@
-"""The whole model in parts, with real events: the wheel changes how many, a click and the wheel split and join one, a drag
-merges two; Esc leaves all as it was, Enter writes, as one undo step. In Object, Edit and Sculpt Mode."""
+"""The whole model in parts, with real events: the wheel changes how many, a click and the wheel split and join one, a
+drag merges two; Esc leaves all as it was, Enter writes, as one undo step. In Object, Edit and Sculpt Mode."""
 import bpy
 import numpy
 
@@ -21,7 +21,7 @@ def play(stage):
     stages._show = shown
     start = everything(model)
     yield from mode(stage, "OBJECT")
-    arm, belly, head = (stage.spot(*place, above=3) for place in ((0.95, 0.6), (0.5, 0.5), (0.5, 0.95)))
+    arm, belly, head = (stage.spot(*place) for place in ((0.95, 0.6), (0.5, 0.5), (0.5, 0.95)))
 
     def begun(where):
         seen.clear()
