@@ -123,6 +123,17 @@ class Written(PartsCase):
             self.assertTrue(0 < between[used].mean() < 0.95, between.mean())
             self.assertAlmostEqual(other.weight(0), 0.25)
 
+    def test_locked_groups_are_left_alone(self):
+        obj, cut = self.model("pig")
+        names = part("api").write(obj, cut, {"VERTEX_GROUPS"}).names
+        obj.vertex_groups[names[1]].lock_weight = True
+        before = [group.name for group in obj.vertex_groups]
+        with self.assertRaises(ValueError):
+            part("api").write(obj, cut.split(0), {"VERTEX_GROUPS", "COLORS", "OBJECTS"})
+        self.assertEqual([group.name for group in obj.vertex_groups], before)
+        self.assertEqual((len(obj.data.materials), len(bpy.data.objects)), (0, 1))
+        self.assertEqual(part("api").kept_parts(obj)[0], cut)
+
     def test_materials_of_own_colours(self):
         for _, obj, cut in self.each(("elephant", "cow")):
             obj.data.materials.append(bpy.data.materials.new("old"))

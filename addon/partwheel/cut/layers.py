@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays
+from ..mesh.refusing import Refused
 from ..pick.writers import FACE_SET
 from partwheel.cut import colors, weights
 
@@ -30,6 +31,13 @@ def vertex_groups(obj, cut, names):
         group.add(vertices[whole].tolist(), 1.0, "REPLACE")
         for vertex, value in zip(vertices[~whole].tolist(), values[~whole].tolist()):
             group.add((vertex,), value, "REPLACE")
+
+
+def check_locks(obj, names):
+    """Raises Refused where vertex_groups() would replace a group that the user has locked."""
+    for name in names:
+        if name in obj.vertex_groups and obj.vertex_groups[name].lock_weight:
+            raise Refused(f"The vertex group {name} is locked. Unlock it, or give it another name.")
 
 
 def own_materials(obj, cut, names):

@@ -20,8 +20,8 @@ def made(obj, cut, names, options=solids.Options(), closed=True, origins=True):
     a loose piece in its own; else all where the object's is."""
     composition.update_matrices()
     mesh = arrays.up_to_date(obj)
-    meshes = _closed(obj, cut, options) if closed else [_open(mesh, cut, part) for part in range(len(cut))]
     tree, places = _tree(mesh, cut)
+    meshes = _closed(obj, cut, options) if closed else [_open(mesh, cut, part) for part in range(len(cut))]
     collection = bpy.data.collections.new(f"{obj.name} parts")
     composition.home(obj).children.link(collection)
     new = {part: composition.beside(obj, each, names[part], collection) for part, each in enumerate(meshes) if each}

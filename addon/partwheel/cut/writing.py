@@ -24,6 +24,8 @@ def write(obj, cut, to=(), known=None, options=solids.Options(), closed=True, or
     options, closed, origins: as for objects.made(). Nothing has changed where it raises an Error. Outside Edit Mode."""
     arrays.up_to_date(obj)
     names = stored.names_of(obj, cut, known or {})
+    if "VERTEX_GROUPS" in to:
+        layers.check_locks(obj, names)
     made = objects.made(obj, cut, names, options, closed, origins) if "OBJECTS" in to else []
     stored.keep(obj.data, cut.labels, names)
     for layer in LAYERS:
