@@ -35,6 +35,7 @@ from .compose import placement, swapping, union
 from .deform import methods
 from .deform.pen import Pen
 from .deform.region import Region
+from .cut import objects as parts_as_objects
 from .cut import stored, writing
 from .mesh import arrays, selection
 from .mesh.refusing import Refused, read_only
@@ -187,7 +188,8 @@ def kept_parts(obj):
     return found and (found[0], stored.names_of(obj, *found))
 
 
-def write(obj, cut, to=(), names=None, closed=True, origins=True, smooth=False, material=False):
+def write(obj, cut, to=(), names=None, closed=True, origins=True, explode=0.0, shell=0.0, smooth=False,
+          material=False):
     """Keeps a cut in the object's mesh, as the face attribute "partwheel_part" and the parts' names, and writes it to
     any of these: "FACE_SETS"; "VERTEX_GROUPS", for an armature: 1 within a part, falling smoothly across its borders,
     adding up to 1; "COLORS", a material of its own for each part; "MATERIALS", the mesh's own with a slot for each part;
@@ -195,8 +197,10 @@ def write(obj, cut, to=(), names=None, closed=True, origins=True, smooth=False, 
 
     names: one for each part; None: those that are kept, or such as say what is left, right and alike. Objects: closed:
     as solids that make the whole, else their own polygons alone. origins: in the middle of the border, else all where
-    the object's is. smooth, material: of caps, as for copy_part(). Returns (names, objects). partwheel.Error: the cut is
-    of another mesh, or it can't be done; nothing has changed then. Outside Edit Mode only."""
+    the object's is. explode: moved apart by so many times the distance of their middles, by drivers: the root's property
+    "explode" changes it. shell: so thick, by a modifier. smooth, material: of caps, as for copy_part(). Returns (names,
+    objects). partwheel.Error: the cut is of another mesh, or it can't be done; nothing has changed then. Outside Edit
+    Mode only."""
     _mesh(obj, edited=False, changes=True)
     if isinstance(to, str) or not set(to) <= set(writing.TO):
         raise ValueError(f"to is to be some of {', '.join(writing.TO)}.")
@@ -207,7 +211,8 @@ def write(obj, cut, to=(), names=None, closed=True, origins=True, smooth=False, 
         raise ValueError(f"There are {len(cut)} parts; as many names are needed, each another one.")
     kept = stored.found(obj, built)
     known = dict(zip(cut.parts, names)) if names is not None else kept[1] if kept else {}
-    return writing.write(obj, cut, to, known, solids.Options(smooth, material), closed, origins)
+    return writing.write(obj, cut, to, known, parts_as_objects.Options(solids.Options(smooth, material), closed,
+                                                                       origins, explode, shell))
 
 
 # ---- Solids. smooth: caps that go on as the surface does, not the flat facets inside the solid. material: caps get a

@@ -9,7 +9,7 @@ import numpy
 from common import part, read_off
 from mathutils import Vector
 from partwheel.cut import Cut
-from solid_case import SolidTest, arrays, caps
+from solid_case import SolidTest, arrays, caps, volume
 
 EXACT, BROKEN = ("homer", "elephant"), ("mushroom", "cow", "pig")
 RUNGS = {"homer": "exact", "elephant": "exact", "mushroom": "repaired", "cow": "points", "pig": "points"}
@@ -254,6 +254,48 @@ class Written(PartsCase):
                         self.assertEqual(tuple(new.data.uv_layers["map"].data[loop].uv), old[place])
                         self.assertEqual(new.data.attributes["heat"].data[v].value, heat[place])
         self.assertGreaterEqual(compared, 1.9 * len(mesh.polygons))
+
+    def test_explode_stays_adjustable(self):
+        obj, cut = self.model("homer")
+        obj.location, obj.scale = (3, 1, 2), (2, 2, 2)
+        bpy.context.view_layer.update()
+        still = part("api").write(obj, cut, {"OBJECTS"}).objects
+        made = part("api").write(obj, cut, {"OBJECTS"}, explode=0.5).objects
+        root, = [new for new in made if not new.parent]
+        low, high = ({new.name: function([obj.matrix_world @ obj.data.vertices[v].co for polygon in
+                                          numpy.flatnonzero(cut.labels == number) for v in
+                                          obj.data.polygons[polygon].vertices], axis=0)
+                      for number, new in enumerate(made)} for function in (numpy.min, numpy.max))
+        middle = {name: Vector((low[name] + high[name]) / 2) for name in low}
+        at = {new: each.matrix_world.translation.copy() for new, each in zip(made, still)}
+
+        def away(new):  # along all that it hangs on
+            return middle[new.name] - middle[new.parent.name] + away(new.parent) if new.parent else Vector()
+
+        for factor in (0.5, 0, 2):
+            root["explode"] = float(factor)
+            root.update_tag()
+            bpy.context.view_layer.update()
+            for new in made:
+                moved = new.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world.translation - at[new]
+                self.assertLess((moved - factor * away(new)).length, 1e-4, (factor, new.name))
+            if factor == 0.5:
+                self.assertGreater(max(away(new).length for new in made), 0.1)
+
+    def test_shells_are_closed_and_so_thick(self):
+        obj, cut = self.model("homer")
+        thick = 0.004 * max(obj.dimensions)
+        for new in part("api").write(obj, cut, {"OBJECTS"}, shell=thick).objects:
+            mesh = new.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+            directed = [pair for polygon in mesh.polygons
+                        for pair in zip(polygon.vertices, [*polygon.vertices[1:], polygon.vertices[0]])]
+            self.assertEqual(set(directed), {(b, a) for a, b in directed})
+            area = sum(polygon.area for polygon in new.data.polygons)
+            hollow = volume(new.data) > area * thick
+            self.assertEqual(len(new.modifiers), hollow)  # thinner ones stay solid
+            if hollow:
+                self.assertAlmostEqual(volume(mesh) / (area * thick), 1, delta=0.25)
+                self.assertLess(volume(mesh), volume(new.data))
 
     def test_open_objects_are_the_parts_polygons(self):
         for _, obj, cut in self.each():

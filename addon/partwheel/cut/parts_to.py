@@ -17,7 +17,7 @@ from ..solid import copy_part, solids
 from ..view import keys, overlay, picking
 from ..view.in_view import InView, waiting
 from ..view.seen import NO_FACE
-from . import states, stored, writing
+from . import objects, states, stored, writing
 from partwheel import PartwheelError
 from partwheel.cut import Cut
 
@@ -54,6 +54,11 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         name="Cap Material", description="Give the caps a material of their own", default=False)
     origins: bpy.props.BoolProperty(
         name="Origins at Borders", description="Each object turns about the middle of its border", default=True)
+    explode: bpy.props.FloatProperty(
+        name="Explode", description="How far they are moved apart, by the distance of their middles. The largest one has "
+        "this as a custom property, too, which can be changed later", default=0, min=0, soft_max=2)
+    shell: bpy.props.FloatProperty(
+        name="Shell", description="How thick their walls are, by a modifier; 0: solid", default=0, min=0, unit="LENGTH")
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was divided", default=True)
 
     lost = "the mesh is no longer as it was, or in another mode"
@@ -75,7 +80,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         layout.prop(self, "count")
         layout.column().prop(self, "to")
         if "OBJECTS" in self.to:
-            for name in ("closed", "smooth", "material", "origins", "hide"):
+            for name in ("closed", "smooth", "material", "origins", "explode", "shell", "hide"):
                 layout.prop(self, name)
 
     # ---- Without a window, and once more with other options
@@ -119,8 +124,9 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             bpy.ops.ed.undo_push(message="Leave Edit Mode")
         made = []
         try:
-            made = writing.write(obj, cut, self.to, known[1] if known else {},
-                                 solids.Options(self.smooth, self.material), self.closed, self.origins).objects
+            options = objects.Options(solids.Options(self.smooth, self.material), self.closed, self.origins, self.explode,
+                                      self.shell)
+            made = writing.write(obj, cut, self.to, known[1] if known else {}, options).objects
         finally:
             if mode != "OBJECT" and not made:
                 bpy.ops.object.mode_set(mode=mode)

@@ -4,7 +4,6 @@
 from typing import NamedTuple
 
 from ..mesh import arrays
-from ..solid import solids
 from . import layers, objects, stored
 
 LAYERS = {"FACE_SETS": layers.face_sets, "VERTEX_GROUPS": layers.vertex_groups, "COLORS": layers.own_materials,
@@ -19,14 +18,14 @@ class Written(NamedTuple):
     objects: list
 
 
-def write(obj, cut, to=(), known=None, options=solids.Options(), closed=True, origins=True):
+def write(obj, cut, to=(), known=None, options=objects.Options()):
     """Keeps the cut in the object's mesh and writes it: to, some of TO. known: {clusters: name} of parts that have one.
-    options, closed, origins: as for objects.made(). Nothing has changed where it raises an Error. Outside Edit Mode."""
+    options: of objects. Nothing has changed where it raises an Error. Outside Edit Mode."""
     arrays.up_to_date(obj)
     names = stored.names_of(obj, cut, known or {})
     if "VERTEX_GROUPS" in to:
         layers.check_locks(obj, names)
-    made = objects.made(obj, cut, names, options, closed, origins) if "OBJECTS" in to else []
+    made = objects.made(obj, cut, names, options) if "OBJECTS" in to else []
     stored.keep(obj.data, cut.labels, names)
     for layer in LAYERS:
         if layer in to:
