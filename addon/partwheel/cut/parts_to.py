@@ -11,7 +11,7 @@ from ..mesh import kept
 from ..mesh.kept import counts
 from ..mesh.refusing import Refused, can, changeable
 from ..parts import builds, registry
-from ..pick.build import start
+from ..pick.build import start, waited_for
 from ..pick.prepared import current, prepared
 from ..solid import copy_part, solids
 from ..view import keys, overlay, picking
@@ -87,10 +87,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     def execute(self, context):
         obj = context.active_object
-        hierarchy = registry.hierarchy(obj)
-        if not hierarchy:
-            building = start(self, obj)
-            hierarchy = building and building.wait(context)
+        hierarchy = waited_for(self, context, obj)
         if not hierarchy:
             return {"CANCELLED"}
         try:

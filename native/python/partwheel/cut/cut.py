@@ -89,8 +89,9 @@ class Cut:
 
     @classmethod
     def of_labels(cls, hierarchy, labels):
-        """The cut with these parts, in this order: labels (F,) whole numbers, one for each source face. Where they divide what one
-        tetrahedron has behind it, most faces count. What is inside, without a face, goes with what it was joined to."""
+        """The cut with these parts, in this order: labels (F,) whole numbers, one for each source face. Where they
+        divide the faces of one tetrahedron, most of them count. What is inside, without a face, goes with what it was
+        joined to."""
         labels = np.unique(np.asarray(labels), return_inverse=True)[1].ravel()[hierarchy.order]
         tree = Tree(hierarchy)
         changes = np.concatenate([[0], np.cumsum(labels[1:] != labels[:-1])])
@@ -166,10 +167,10 @@ class Cut:
 
     @cached_property
     def _ways(self):
-        """Of each part the clusters that hold all of it, growing: keys of a dict, for their order."""
+        """Of each part the clusters that hold all of it that is seen, growing: keys of a dict, for their order."""
         ways = []
-        for clusters in self.parts:
-            first, *others = ([cluster, *self._tree.path(cluster)] for cluster in clusters)
+        for part in range(len(self)):
+            first, *others = ([cluster, *self._tree.path(cluster)] for cluster in self._seen(part))
             ways.append(dict.fromkeys(cluster for cluster in first if all(cluster in other for other in others)))
         return ways
 
@@ -188,7 +189,7 @@ class Cut:
         """The part and all that is in its sibling as one: the next larger node of the tree. Of parts that were merged
         by hand across that node, what is beyond it stays."""
         top = next(iter(self._ways[part]))
-        if self.parts[part] == (top,):
+        if self._seen(part) == [top]:
             top = int(self._tree.parent[top])
         if top < 0:
             return self
@@ -226,25 +227,22 @@ class Cut:
             cut = cut.fewer()
         if len(cut) >= count:
             return cut
-        changes, new = {}, []
+        parts, total = {}, len(cut)  # those that become others, and new ones from there on
         last = [(-seen[0], part) for part in range(len(cut)) if len(seen := cut._seen(part)) == 1]
         heapq.heapify(last)
-        while last and len(cut) + len(new) < count:
+        while last and total < count:
             cluster, part = heapq.heappop(last)
             halves = self._halves(-cluster)
             if not halves:
                 continue
-            own = changes.get(part) or list(cut.parts[part]) if part < len(cut) else new[part - len(cut)]
-            own.remove(-cluster)
-            kept = own + halves[0]
-            if part < len(cut):
-                changes[part] = kept
-            else:
-                new[part - len(cut)] = kept
-            new.append(halves[1])
+            before = parts[part] if part in parts else cut.parts[part]
+            parts[part] = halves[0] + [each for each in before if each != -cluster]
+            parts[total] = halves[1]
             heapq.heappush(last, (-halves[0][0], part))
-            heapq.heappush(last, (-halves[1][0], len(cut) + len(new) - 1))
-        return cut._with(changes, new) if new else cut
+            heapq.heappush(last, (-halves[1][0], total))
+            total += 1
+        new = [parts.pop(number) for number in range(len(cut), total)]
+        return cut._with(parts, new) if new else cut
 
     def _seen(self, part):
         """The part's clusters with faces; several were merged by hand."""
