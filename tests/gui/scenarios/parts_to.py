@@ -82,6 +82,16 @@ def play(stage):
                                                                      for obj in made), "closed, and hanging together")
     stage.check(bpy.data.objects["homer"].hide_get(), "the original is hidden")
     yield from stage.screenshot("6-objects")
+    last = bpy.data.window_managers[0].operators[-1]  # as the panel of the last operation does it
+    last.properties.count, last.properties.explode = 7, 0.25
+    with stage.override():
+        bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)
+    yield from stage.until("one more, apart", lambda: len(bpy.data.objects) == 8)
+    yield from stage.settle()
+    roots = [obj for obj in bpy.data.objects if obj.name != "homer" and not obj.parent]
+    stage.check(len(roots) == 1 and abs(roots[0]["explode"] - 0.25) < 1e-6, "by a property that stays")
+    stage.check(all(obj.delta_location.length > 0.01 for obj in bpy.data.objects if obj.parent), "all are moved")
+    yield from stage.screenshot("6-apart")
     yield from undone(stage)
     yield from stage.until("one undo step takes all away", lambda: len(bpy.data.objects) == 1)
     stage.check(everything(stage.object) == start, "as it was")
