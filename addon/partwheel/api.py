@@ -192,13 +192,13 @@ def write(obj, cut, to=(), names=None, closed=True, origins=True, explode=0.0, s
           material=False):
     """Keeps a cut in the object's mesh, as the face attribute "partwheel_part" and the parts' names, and writes it to
     any of these: "FACE_SETS"; "VERTEX_GROUPS", for an armature: 1 within a part, falling smoothly across its borders,
-    adding up to 1; "COLORS", a material of its own for each part; "MATERIALS", the mesh's own with a slot for each part;
-    "OBJECTS", in a new collection, each the child of the part that it hangs on.
+    adding up to 1; "COLORS", a material of its own for each part; "MATERIALS", the mesh's own, with a slot for each
+    part; "OBJECTS", in a new collection, each the child of the part that it hangs on.
 
     names: one for each part; None: those that are kept, or such as say what is left, right and alike. Objects: closed:
     as solids that make the whole, else their own polygons alone. origins: in the middle of the border, else all where
-    the object's is. explode: moved apart by so many times the distance of their middles, by drivers: the root's property
-    "explode" changes it. shell: so thick, by a modifier. smooth, material: of caps, as for copy_part(). Returns (names,
+    the object's is. explode: moved apart by so many times the distance of their middles, by drivers: the root's
+    property "explode" changes it. shell: so thick, by a modifier. smooth, material: of caps, as for copy_part(). Returns (names,
     objects). partwheel.Error: the cut is of another mesh, or it can't be done; nothing has changed then. Outside Edit
     Mode only."""
     _mesh(obj, edited=False, changes=True)

@@ -170,7 +170,8 @@ def test_mirror_images_are_left_and_right():
     names = named(cut, *mesh[:3])
     assert len(set(names)) == len(cut)
     (normal, offset), = mirror_planes(mesh.vertices, mesh.triangles)
-    middle = {name: mesh.vertices[mesh.triangles[cut.labels == part]].mean(axis=(0, 1)) for part, name in enumerate(names)}
+    middle = {name: mesh.vertices[mesh.triangles[cut.labels == part]].mean(axis=(0, 1))
+              for part, name in enumerate(names)}
     left = [name for name in names if ".L" in name]
     assert len(left) >= 2  # arms and legs
     for name in left:

@@ -18,8 +18,8 @@ EXPLODE = "explode"  # the property of the root by which the others are moved ap
 
 
 class Options(NamedTuple):
-    """caps: see solids.Options. closed: as solids, that add up to the whole and fit each other exactly, unless caps says
-    smooth; a part of a broken mesh that can't be closed stays open. Else their own polygons alone. origins: at the
+    """caps: see solids.Options. closed: as solids, that add up to the whole and fit each other exactly, unless caps
+    says smooth; a part of a broken mesh that can't be closed stays open. Else their own polygons alone. origins: at the
     middle of the border, of a loose piece in its own; else all where the object's is. explode: each is moved away from
     the one that it hangs on by so many times the distance of their middles; by drivers, so that the root's property
     changes it; 0: without. shell: so thick, inwards, by a modifier, where a part is thick enough; 0: solid."""
@@ -32,7 +32,7 @@ class Options(NamedTuple):
 
 
 def made(obj, cut, names, options=Options()):
-    """[object, ...], one for each part that has anything left, in a new collection; the object itself stays as it is."""
+    """[object, ...], one for each part that has anything left, in a new collection; the object itself stays."""
     composition.update_matrices()
     mesh = arrays.up_to_date(obj)
     tree, places, middles = _tree(mesh, cut)

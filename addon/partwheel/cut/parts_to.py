@@ -55,8 +55,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     origins: bpy.props.BoolProperty(
         name="Origins at Borders", description="Each object turns about the middle of its border", default=True)
     explode: bpy.props.FloatProperty(
-        name="Explode", description="How far they are moved apart, by the distance of their middles. The largest one has "
-        "this as a custom property, too, which can be changed later", default=0, min=0, soft_max=2)
+        name="Explode", description="How far they are moved apart, by the distance of their middles. The largest one "
+        "has this as a custom property, too, which can be changed later", default=0, min=0, soft_max=2)
     shell: bpy.props.FloatProperty(
         name="Shell", description="How thick their walls are, by a modifier; 0: solid", default=0, min=0, unit="LENGTH")
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was divided", default=True)
@@ -121,8 +121,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             bpy.ops.ed.undo_push(message="Leave Edit Mode")
         made = []
         try:
-            options = objects.Options(solids.Options(self.smooth, self.material), self.closed, self.origins, self.explode,
-                                      self.shell)
+            options = objects.Options(solids.Options(self.smooth, self.material), self.closed, self.origins,
+                                      self.explode, self.shell)
             made = writing.write(obj, cut, self.to, known[1] if known else {}, options).objects
         finally:
             if mode != "OBJECT" and not made:

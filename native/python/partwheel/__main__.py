@@ -37,8 +37,8 @@ def parse(arguments):
     parts.add_argument("--parts", type=int, default=0, metavar="N",
                        help="how many (default: as people would most likely take)")
     parts.add_argument("--formats", default="glb,ply", type=formats, metavar="F,...",
-                       help="glb and 3mf: all parts as objects of one file; stl: a file for each; ply: the model itself, "
-                            "labelled and coloured (default: glb,ply)")
+                       help="glb and 3mf: all parts as objects of one file; stl: a file for each; ply: the model "
+                            "itself, labelled and coloured (default: glb,ply)")
     for command in (build, parts):
         _add_build_options(command)
     return parser.parse_args(arguments)

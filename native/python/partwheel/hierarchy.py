@@ -278,9 +278,9 @@ class Hierarchy:
         return self._solid(load().pw_hierarchy_solid_of_faces, tet_first, tet_last, inside, len(inside))
 
     def solids(self, slices):
-        """The Solids around slices (tet_first, tet_last), or several each, that have nothing in common, None for one that has no
-        tetrahedron left. A cap between two of them is the same triangle in both: where one has a vertex in the middle
-        of an edge, all have."""
+        """The Solids around slices (tet_first, tet_last), or several each, that have nothing in common, None for
+        one that has no tetrahedron left. A cap between two of them is the same triangle in both: where one has a
+        vertex in the middle of an edge, all have."""
         made = []
         for each in slices:
             try:
