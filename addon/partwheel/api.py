@@ -9,6 +9,7 @@ window. While the add-on is enabled, whatever its repository is called, and in B
     api.select(obj, arm)
     copy = api.copy_part(obj, arm)         # the part as a closed solid, a new object
     labels = api.cut(obj, parts=8)         # (F,) the part of each face, 0 to 7
+    api.write(obj, api.parts(obj), to={"OBJECTS", "VERTEX_GROUPS"})  # the whole model in parts
     api.swap(obj, arm, other)              # exchanged for the most compatible part of another object
 
 The object comes first, then the node: a number of the object's hierarchy, a partwheel.Hierarchy, or the Part that
@@ -34,12 +35,15 @@ from .compose import placement, swapping, union
 from .deform import methods
 from .deform.pen import Pen
 from .deform.region import Region
+from .cut import objects as parts_as_objects
+from .cut import stored, writing
 from .mesh import arrays, selection
-from .mesh.refusing import read_only
+from .mesh.refusing import Refused, read_only
 from .parts import builds, picks, registry
 from .pick import borders, states
 from .solid import composition, solids
 from partwheel import PartwheelError, Status
+from partwheel.cut import Cut
 from partwheel.deform import MOST_ITERATIONS
 from partwheel.joint import REACH
 
@@ -168,6 +172,47 @@ def cut(obj, parts=None, height=None, least_concavity=None, automatic=False):
     the solid has no face."""
     built = hierarchy(obj)
     return built.face_labels(_bounds(built, parts, height, least_concavity, automatic))
+
+
+def parts(obj, count=None):
+    """The whole model in parts, a partwheel.cut.Cut: into so many, or as people would most likely take them. It is a
+    value: cut.split(3), cut.join(3), cut.merge(0, 2) give others. cut.labels (F,): the part of each polygon."""
+    built = hierarchy(obj)
+    return Cut.automatic(built) if count is None else Cut.into(built, count)
+
+
+def kept_parts(obj):
+    """(the Cut that was written last and is kept in the object's mesh, its parts' names); None if there is none."""
+    built = hierarchy(obj)
+    found = stored.found(obj, built)
+    return found and (found[0], stored.names_of(obj, *found))
+
+
+def write(obj, cut, to=(), names=None, closed=True, origins=True, explode=0.0, shell=0.0, smooth=False,
+          material=False):
+    """Keeps a cut in the object's mesh, as the face attribute "partwheel_part" and the parts' names, and writes it to
+    any of these: "FACE_SETS"; "VERTEX_GROUPS", for an armature: 1 within a part, falling smoothly across its borders,
+    adding up to 1; "COLORS", a material of its own for each part; "MATERIALS", the mesh's own, with a slot for each
+    part; "OBJECTS", in a new collection, each the child of the part that it hangs on.
+
+    names: one for each part; None: those that are kept, or such as say what is left, right and alike. Objects: closed:
+    as solids that make the whole, else their own polygons alone. origins: in the middle of the border, else all where
+    the object's is. explode: moved apart by so many times the distance of their middles, by drivers: the root's
+    property "explode" changes it. shell: so thick, by a modifier. smooth, material: of caps, as for copy_part(). Returns (names,
+    objects). partwheel.Error: the cut is of another mesh, or it can't be done; nothing has changed then. Outside Edit
+    Mode only."""
+    _mesh(obj, edited=False, changes=True)
+    if isinstance(to, str) or not set(to) <= set(writing.TO):
+        raise ValueError(f"to is to be some of {', '.join(writing.TO)}.")
+    built = hierarchy(obj)
+    if cut.hierarchy is not built:
+        raise Refused(f"The cut is not of {obj.name} as it is now: ask for its parts again.")
+    if names is not None and (len(names) != len(cut) or len(set(names)) != len(cut)):
+        raise ValueError(f"There are {len(cut)} parts; as many names are needed, each another one.")
+    kept = stored.found(obj, built)
+    known = dict(zip(cut.parts, names)) if names is not None else kept[1] if kept else {}
+    return writing.write(obj, cut, to, known, parts_as_objects.Options(solids.Options(smooth, material), closed,
+                                                                       origins, explode, shell))
 
 
 # ---- Solids. smooth: caps that go on as the surface does, not the flat facets inside the solid. material: caps get a

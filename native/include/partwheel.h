@@ -321,6 +321,11 @@ PW_API pw_status pw_mesh_arrays(const pw_mesh *mesh, const double **vertices, si
 PW_API pw_status pw_hierarchy_solid(const pw_hierarchy *hierarchy, size_t tet_first, size_t tet_last,
                                     const int32_t *middles, size_t middle_count, pw_mesh **mesh);
 
+/* The same around several slices together, for parts that were joined by hand: slice_count x 2 tetrahedra, the first of
+ * each slice and the one after its last, none within another. Pieces that only touch are several components. */
+PW_API pw_status pw_hierarchy_solid_of_slices(const pw_hierarchy *hierarchy, const int32_t *slices, size_t slice_count,
+                                              const int32_t *middles, size_t middle_count, pw_mesh **mesh);
+
 /* The same for a part whose faces are others than its own, as after pw_creases_snap. Tetrahedra behind the surface go
  * with the faces that most of their area there is of: the others of such a face are cut, as above. Which of those inside
  * go with them, near the ones that change sides, is decided by a minimum cut, so that the caps have the least area.

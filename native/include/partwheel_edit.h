@@ -154,6 +154,18 @@ PW_API pw_status pw_polygon_faults(const int32_t *corners, size_t corner_count, 
 PW_API pw_status pw_faired(const double *vertices, size_t vertex_count, const int32_t *edges, size_t edge_count,
                            const uint8_t *free, double *result);
 
+/* ---- Symmetry ------------------------------------------------------------------------------------------------- */
+
+/* The planes in which a surface is its own mirror image: at least four fifths of its area have theirs on it, to 1 % of
+ * the bounding box's diagonal. The one in which most has comes first, then those perpendicular to it and each other.
+ *
+ * vertices, triangles  as in pw_build; any surface.
+ * planes               receives 12 doubles at most, 4 a plane: a normal of length 1, and the offset of the plane's
+ *                      points along it.
+ * count                receives how many planes there are, 3 at most. */
+PW_API pw_status pw_mirror_planes(const double *vertices, size_t vertex_count, const int32_t *triangles,
+                                  size_t triangle_count, double *planes, size_t *count);
+
 /* ---- Rays ----------------------------------------------------------------------------------------------------- */
 
 /* A surface that rays can be sent at, to find what is under the mouse. Making it takes some 0.2 s for a million

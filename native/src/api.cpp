@@ -397,6 +397,23 @@ pw_status pw_hierarchy_solid(const pw_hierarchy* hierarchy, size_t tet_first, si
     });
 }
 
+pw_status pw_hierarchy_solid_of_slices(const pw_hierarchy* hierarchy, const int32_t* slices, size_t slice_count,
+                                       const int32_t* middles, size_t middle_count, pw_mesh** mesh) {
+    return guarded({{"hierarchy", hierarchy}, {"mesh", mesh}}, [&] {
+        const auto given = items<std::array<int32_t, 2>>(slices, slice_count, "slices", "slice_count");
+        const auto edges = items<std::array<int32_t, 2>>(middles, middle_count, "middles", "middle_count");
+        std::vector<std::array<int32_t, 2>> sorted(given.begin(), given.end());
+        std::sort(sorted.begin(), sorted.end());
+        int64_t last = 0;
+        for (const auto& [from, to] : sorted) {
+            require(last <= from && from < to && static_cast<size_t>(to) <= hierarchy->tetrahedron_count(),
+                    "The slices must be apart and not empty: 0 <= first < last <= the number of tetrahedra.");
+            last = to;
+        }
+        *mesh = new pw_mesh{hierarchy->solids.solid(sorted, edges)};
+    });
+}
+
 pw_status pw_hierarchy_solid_of_faces(const pw_hierarchy* hierarchy, size_t tet_first, size_t tet_last,
                                       const uint8_t* inside, size_t face_count, pw_mesh** mesh) {
     return guarded({{"hierarchy", hierarchy}, {"inside", inside}, {"mesh", mesh}}, [&] {
@@ -539,6 +556,22 @@ pw_status pw_creases_snap(const pw_creases* creases, const uint8_t* inside, size
     return guarded({{"creases", creases}, {"inside", inside}, {"result", result}}, [&] {
         require(face_count == creases->count(), "face_count is not the number of the surface's faces.");
         snapped_border(*creases, {inside, face_count}, {result, face_count});
+    });
+}
+
+pw_status pw_mirror_planes(const double* vertices, size_t vertex_count, const int32_t* triangles,
+                           size_t triangle_count, double* planes, size_t* count) {
+    return guarded({{"planes", planes}, {"count", count}}, [&] {
+        const Surface surface =
+            read_mesh(as_mesh(vertices, vertex_count, triangles, triangle_count, nullptr, triangle_count));
+        Progress unwatched;
+        const std::vector<Plane> found = mirror_planes(surface.vertices, surface.triangles, unwatched);
+        for (const Plane& plane : found) {
+            const Point on_it = surface.frame.to_caller(plane.offset * plane.normal);
+            planes = std::copy(plane.normal.begin(), plane.normal.end(), planes);
+            *planes++ = dot(plane.normal, on_it);
+        }
+        *count = found.size();
     });
 }
 

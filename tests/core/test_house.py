@@ -15,8 +15,8 @@ NATIVE, PACKAGE, ADDON = ROOT / "native" / "src", ROOT / "native" / "python" / "
 FLOWS = {
     NATIVE: ["base", "surface", "surface/prepare", "fill", "cluster/hull", "cluster", "tree/mirror", "tree/regroup", "tree", "part",
              "api.cpp"],
-    ADDON: ["trouble.py", "preferences.py", "mesh", "view", "parts", "pick", "solid", "compose", "deform", "ui", "api.py",
-            "command.py", "__init__.py"],
+    ADDON: ["trouble.py", "preferences.py", "mesh", "view", "parts", "pick", "solid", "cut", "compose", "deform", "ui",
+            "api.py", "command.py", "__init__.py"],
 }
 CODE = {".c", ".cpp", ".h", ".py"}
 MOST_FILES = 12

@@ -139,6 +139,15 @@ def start(operator, obj, **options):
     return None
 
 
+def waited_for(operator, context, obj):
+    """The hierarchy of the object's mesh, found now if there is none; or None and a report."""
+    hierarchy = registry.hierarchy(obj)
+    if not hierarchy:
+        building = start(operator, obj)
+        hierarchy = building and building.wait(context)
+    return hierarchy
+
+
 class _Build(NeedsMesh, InView):
     """What building and finding have in common."""
 

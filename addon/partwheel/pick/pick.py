@@ -13,7 +13,7 @@ from . import borders, states
 from partwheel import PartwheelError
 from .prepared import prepared
 from ..view.seen import NO_FACE
-from .build import start
+from .build import start, waited_for
 from ..view.in_view import InView
 
 
@@ -71,10 +71,7 @@ class PartPicker(InView):
 
     def execute(self, context):
         obj = self._objects(context)[0]
-        hierarchy = registry.hierarchy(obj)
-        if not hierarchy:
-            building = start(self, obj)
-            hierarchy = building and building.wait(context)
+        hierarchy = waited_for(self, context, obj)
         if not hierarchy:
             return {"CANCELLED"}
         try:

@@ -16,7 +16,7 @@ def copied(obj, hierarchy, node, options=solids.Options(), snap=False, collectio
     update_matrices()
     first, last = _slice(hierarchy, node)
     mesh = solids.part(obj, hierarchy, first, last, options, moved_faces(obj, hierarchy, node, snap))
-    return _beside(obj, mesh, f"{obj.name} part", collection)
+    return beside(obj, mesh, f"{obj.name} part", collection)
 
 
 def removed(obj, hierarchy, node, options=solids.Options(), snap=False):
@@ -42,7 +42,7 @@ def split(obj, hierarchy, bounds, options=solids.Options(), explode=0.0):
     collection = bpy.data.collections.new(f"{obj.name} parts")
     home(obj).children.link(collection)
     for mesh in filter(None, meshes):
-        part = _beside(obj, mesh, f"{obj.name} part", collection)
+        part = beside(obj, mesh, f"{obj.name} part", collection)
         corners = arrays.read(mesh.vertices, "co", np.float32, 3)
         away = Vector((corners.min(axis=0) + corners.max(axis=0)) / 2) - middle
         part.matrix_world.translation += obj.matrix_world.to_3x3() @ away * explode
@@ -70,7 +70,8 @@ def _slice(hierarchy, node):
     return int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])
 
 
-def _beside(obj, mesh, name, collection=None):
+def beside(obj, mesh, name, collection=None):
+    """A new object with this mesh in the object's place; beside it, or in a collection."""
     new = bpy.data.objects.new(name, mesh)
     (collection or home(obj)).objects.link(new)
     new.matrix_world = obj.matrix_world

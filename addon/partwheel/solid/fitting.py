@@ -227,8 +227,11 @@ def of_faces(mesh, hierarchy, tet_first, tet_last, faces, alone):
 
 
 def _inside(hierarchy, tet_first, tet_last, faces=None):
-    """(F,) which faces are of a slice of the tetrahedra, or with the two exchanged of the rest, or are those (F,) bool."""
+    """(F,) which faces are of a slice of the tetrahedra, or of several, or with the two exchanged of the rest, or are
+    those (F,) bool."""
     leaf = hierarchy.leaf
+    if np.ndim(tet_first):
+        return np.any([(leaf >= first) & (leaf < last) for first, last in zip(tet_first, tet_last)], axis=0)
     if faces is not None:
         return faces if tet_first < tet_last else ~faces
     if tet_first < tet_last:

@@ -39,8 +39,9 @@ def part(obj, hierarchy, tet_first, tet_last, options=Options(), faces=None):
 
 
 def parts(obj, hierarchy, slices, options=Options(), faces=None):
-    """New meshes, one for each slice (tet_first, tet_last); with caps that match exactly, where they aren't smooth.
-    None for a slice that has no tetrahedron left, unless it is the only one. faces: as above, for a single slice."""
+    """New meshes, one for each slice (tet_first, tet_last), or several each as arrays (n,); with caps that match
+    exactly, where they aren't smooth. None for a slice that has no tetrahedron left, unless it is the only one.
+    faces: as above, for a single slice."""
     mesh = arrays.up_to_date(obj)
     exact = hierarchy.summary.rung == "exact"
     if not exact:

@@ -45,6 +45,9 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
             column.operator("mesh.duplicate_move", text="Duplicate Part")
             column.operator("mesh.partwheel_path")
             layout.separator()
+        row = layout.row()
+        row.operator_context = "INVOKE_REGION_WIN"
+        row.operator("mesh.partwheel_parts")
         state, entry = registry.state(context.active_object.data)
         if entry:
             self._describe(context, entry.hierarchy)

@@ -93,6 +93,20 @@ SWAPPING = (OFFER, TURN, SIZE._replace(names="Ctrl Wheel"), DEPTH, MIRROR._repla
             CLICK._replace(label="Swap"), NAVIGATE, CANCEL)
 PLACING = (SIZE, TURN, DEPTH, FIT, MIRROR, CLICK._replace(label="Confirm"), NAVIGATE, CANCEL)
 
+# While the whole model is divided into parts: the wheel does what it does to the part that was clicked, or to all.
+ONE = Key("ONE", CLICK.events, "A Part", ("MOUSE_LMB",))
+MERGE = Key("MERGE", frozenset(), "Merge", ("MOUSE_LMB_DRAG",))
+COUNT = Key("COUNT", frozenset(TURNS), "More, Fewer", names="Wheel")
+DIVIDE = Key("DIVIDE", frozenset(TURNS), "Join, Split", names="Wheel")
+ANEW = Key("ANEW", frozenset("A"), "Automatic", ("EVENT_A",))
+RESULTS = {"FACE_SETS": Key("FACE_SETS", frozenset("S"), "Face Sets", ("EVENT_S",)),
+           "VERTEX_GROUPS": Key("VERTEX_GROUPS", frozenset("G"), "Groups", ("EVENT_G",)),
+           "COLORS": Key("COLORS", frozenset("C"), "Colours", ("EVENT_C",)),
+           "MATERIALS": Key("MATERIALS", frozenset("M"), "Slots", ("EVENT_M",)),
+           "OBJECTS": Key("OBJECTS", frozenset("O"), "Objects", ("EVENT_O",))}
+DIVIDING = (COUNT, NUMBER, ANEW, ONE, MERGE, *RESULTS.values(), CONFIRM, CANCEL)
+ON_ONE = (DIVIDE, MERGE, ONE._replace(label="Another"), *RESULTS.values(), CONFIRM, CANCEL)
+
 SCROLL_STEP, DRAG_STEP = 30, 24  # pixels of a trackpad's scroll, and of a drag, that count as a notch
 
 

@@ -14,6 +14,7 @@ from mathutils import Matrix, Vector
 from ..mesh import arrays, kept
 from ..preferences import preferences
 from .seen import NO_FACE
+from partwheel.cut import colors
 
 HOVER = (1.0, 0.8, 0.25, 0.4)
 PART = (1.0, 0.55, 0.1, 0.3)
@@ -125,13 +126,16 @@ class Parts:
 
     def cut(self, node):
         """The same of all triangles, coloured by the parts of the dendrogram cut at the node's height."""
+        return self.painted(("cut", node), lambda: distinct(self.hierarchy.face_labels(
+            self.hierarchy.cut_height(self.hierarchy.height[node]))))
+
+    def painted(self, name, paint):
+        """The same of all triangles, kept under a name; paint(): (F,4) the colour of each face."""
         def make():
-            bounds = self.hierarchy.cut_height(self.hierarchy.height[node])
-            labels = self.hierarchy.face_labels(bounds)[self.hierarchy.order]
             corners = self.positions[self.triangles.ravel()]
-            colors = np.repeat(distinct(labels), 3 * np.diff(self._start), axis=0)
-            return gpu.types.GPUBatch(type="TRIS", buf=_vertices(pos=corners, color=colors))
-        return _shader(True), self._kept(("cut", node), make)
+            shades = np.repeat(paint()[self.hierarchy.order], 3 * np.diff(self._start), axis=0)
+            return gpu.types.GPUBatch(type="TRIS", buf=_vertices(pos=corners, color=shades))
+        return _shader(True), self._kept(name, make)
 
     @cached_property
     def _buffer(self):
@@ -150,12 +154,9 @@ def _batch(buffer, triangles):
     return gpu.types.GPUBatch(type="TRIS", buf=buffer, elem=gpu.types.GPUIndexBuf(type="TRIS", seq=triangles))
 
 
-def distinct(labels):
+def distinct(labels, opacity=CUT_OPACITY):
     """(n,4) a colour for each label, far from those of the labels next to it."""
-    hue = (labels * 0.6180339887) % 1
-    value = 0.75 + 0.25 * ((labels * 0.7548776662) % 1)
-    bow = np.clip(np.abs((hue[:, None] * 6 + [0, 4, 2]) % 6 - 3) - 1, 0, 1)
-    return np.column_stack([value[:, None] * (0.35 + 0.65 * bow), np.full(len(labels), CUT_OPACITY)])
+    return np.column_stack([colors(labels), np.broadcast_to(opacity, len(labels))])
 
 
 def draw_held(context, obj, parts, node, larger, snapped):
@@ -171,6 +172,11 @@ def draw_held(context, obj, parts, node, larger, snapped):
     if wanted.show_hull:
         layers.append((*parts.hull(node), GLASS, 1.0))
     _draw(context, obj, layers)
+
+
+def draw_painted(context, obj, parts, name, paint):
+    """All faces, each in its colour: see Parts.painted()."""
+    _draw(context, obj, [(*parts.painted(name, paint), PART, 0.0)])
 
 
 def draw_hover(context, obj, parts, node, snapped):

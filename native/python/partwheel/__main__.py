@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command line: python3 -m partwheel build MODEL [-o FILE] [--json] [options]
+                     python3 -m partwheel parts MODEL -o FOLDER [--parts N] [--formats glb,ply,stl,3mf] [options]
 
 Exit codes: 0 built, 1 a named error, 2 wrong usage (a file that can't be opened or written included)."""
 
@@ -9,6 +10,7 @@ import sys
 from pathlib import Path
 
 from . import meshes
+from .cut import Cut, files
 from .hierarchy import Hierarchy
 from .library import Error, Mode, Rung
 
@@ -29,8 +31,21 @@ def parse(arguments):
     parser = argparse.ArgumentParser(prog="partwheel", description="Partwheel without Blender.")
     commands = parser.add_subparsers(dest="command", required=True)
     build = commands.add_parser("build", help="build the hierarchy of parts of a surface")
-    build.add_argument("model", type=Path, help="a mesh file: OFF, or any other format that trimesh reads")
     build.add_argument("-o", "--output", type=Path, metavar="FILE", help="save the hierarchy here")
+    parts = commands.add_parser("parts", help="write the model in parts: closed objects, labels, colours")
+    parts.add_argument("-o", "--output", type=Path, metavar="FOLDER", required=True, help="write the files here")
+    parts.add_argument("--parts", type=int, default=0, metavar="N",
+                       help="how many (default: as people would most likely take)")
+    parts.add_argument("--formats", default="glb,ply", type=formats, metavar="F,...",
+                       help="glb and 3mf: all parts as objects of one file; stl: a file for each; ply: the model "
+                            "itself, labelled and coloured (default: glb,ply)")
+    for command in (build, parts):
+        _add_build_options(command)
+    return parser.parse_args(arguments)
+
+
+def _add_build_options(build):
+    build.add_argument("model", type=Path, help="a mesh file: OFF, or any other format that trimesh reads")
     build.add_argument("--json", action="store_true", help="print the report as JSON on one line")
     build.add_argument("--quality", type=float, default=0.0, metavar="Q",
                        help="0: no points are added inside (default); 1.1 or more: bound on circumradius to shortest "
@@ -46,7 +61,6 @@ def parse(arguments):
     build.add_argument("--exactly", action="store_true",
                        help="find the parts of a mesh of more than 200,000 triangles on all of it, instead of on a "
                             "coarser copy: some ten times the time and memory")
-    return parser.parse_args(arguments)
 
 
 def rungs(text):
@@ -55,6 +69,14 @@ def rungs(text):
         return sum({Rung[word.upper()] for word in text.split(",")})
     except KeyError as error:
         raise ValueError(f"{error} is no rung") from error
+
+
+def formats(text):
+    """For argparse: the formats named, each once."""
+    names = list(dict.fromkeys(text.split(",")))
+    if not set(names) <= set(files.FORMATS):
+        raise argparse.ArgumentTypeError(f"formats are {', '.join(files.FORMATS)}")
+    return names
 
 
 def show_progress(fraction, stage):
@@ -77,7 +99,11 @@ def build(options, report):
             print("\r" + " " * 20, end="\r", file=sys.stderr, flush=True)
     report.update(tets=len(hierarchy.tetrahedra), nodes=len(hierarchy.parent), seconds=hierarchy.seconds,
                   account=hierarchy.account, **hierarchy.summary._asdict())
-    if options.output:
+    if options.command == "parts":
+        cut = Cut.into(hierarchy, options.parts) if options.parts > 0 else Cut.automatic(hierarchy)
+        written = files.write(options.output, options.model.stem, mesh, cut, options.formats)
+        report.update(parts=len(cut), files=list(map(str, written)))
+    elif options.output:
         options.output.write_bytes(hierarchy.save())
 
 
@@ -91,6 +117,8 @@ def describe(report):
         lines.append(report["account"])
     if report["welded_vertices"]:
         lines.append(f"This format does not share vertices: {report['welded_vertices']} exact copies were joined.")
+    if report.get("files"):
+        lines += [f"{report['parts']} parts:", *(f"  {name}" for name in report["files"])]
     lines += [f"  {stage:<12} {seconds:9.3f} s" for stage, seconds in report["seconds"].items()]
     if report["peak_memory_bytes"] is not None:
         lines.append(f"  peak memory  {report['peak_memory_bytes'] / 2**20:9.1f} MiB")

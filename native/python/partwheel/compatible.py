@@ -110,7 +110,7 @@ class Shape:
         corners = moved(vertices, matrix)[triangles] - self.main.middle
         self.volume = abs(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
         cut = corners[caps]
-        self.cap_points = _spread_over(cut, np.linalg.norm(
+        self.cap_points = spread_over(cut, np.linalg.norm(
             np.cross(cut[:, 1] - cut[:, 0], cut[:, 2] - cut[:, 0]), axis=1), CAP_SAMPLES)[0] + self.main.middle
         outer = corners[~caps]
         normals = np.cross(outer[:, 1] - outer[:, 0], outer[:, 2] - outer[:, 0])
@@ -119,7 +119,7 @@ class Shape:
         lengths = np.linalg.norm(normals, axis=1)
         self.area = lengths.sum() / 2
         if self.area > 0:
-            self.points, chosen = _spread_over(outer, lengths, SAMPLES)
+            self.points, chosen = spread_over(outer, lengths, SAMPLES)
             self.points += self.main.middle
             self.normals = normals[chosen] / lengths[chosen, None]
         self.share = self.main.radius / size
@@ -173,7 +173,7 @@ class Shape:
         return self._features
 
 
-def _spread_over(corners, weights, count):
+def spread_over(corners, weights, count):
     """((count,3) points evenly on triangles (T,3,3), (count,) which triangle each is on): always the same ones."""
     total = np.cumsum(weights)
     number = np.arange(count)

@@ -250,7 +250,7 @@ class Hierarchy:
 
     def hull_of_slice(self, tet_first, tet_last):
         """The convex hull of tetrahedra[tet_first:tet_last], for a part of a cut: (vertices, triangles)."""
-        return self._mesh(load().pw_hierarchy_hull, tet_first, tet_last)[1:]
+        return self._mesh(load().pw_hierarchy_hull, _number(tet_first), _number(tet_last))[1:]
 
     def solid(self, node):
         """The closed, manifold surface around a node's tetrahedra: a Solid. Where polygons are not triangles,
@@ -260,9 +260,13 @@ class Hierarchy:
 
     def solid_of_slice(self, tet_first, tet_last, middles=()):
         """The same around tetrahedra[tet_first:tet_last], for a part of a cut. With the two exchanged, around the rest:
-        tetrahedra[tet_first:] and tetrahedra[:tet_last]. middles (m,2): edges, as their vertices, that get a vertex in
+        tetrahedra[tet_first:] and tetrahedra[:tet_last]. Both may be arrays (n,), of slices that are apart: around all
+        of them together. middles (m,2): edges, as their vertices, that get a vertex in
         their middle wherever they are on it."""
         middles = np.array(middles, np.int32).reshape(-1, 2)
+        if np.ndim(tet_first):
+            slices = np.array([tet_first, tet_last], np.int32).T.copy()
+            return self._solid_of(load().pw_hierarchy_solid_of_slices, slices, len(slices), middles, len(middles))
         return self._solid(load().pw_hierarchy_solid, tet_first, tet_last, middles, len(middles))
 
     def solid_of_faces(self, tet_first, tet_last, inside):
@@ -274,9 +278,9 @@ class Hierarchy:
         return self._solid(load().pw_hierarchy_solid_of_faces, tet_first, tet_last, inside, len(inside))
 
     def solids(self, slices):
-        """The Solids around slices (tet_first, tet_last) that have nothing in common, None for one that has no
-        tetrahedron left. A cap between two of them is the same triangle in both: where one has a vertex in the middle
-        of an edge, all have."""
+        """The Solids around slices (tet_first, tet_last), or several each, that have nothing in common, None for
+        one that has no tetrahedron left. A cap between two of them is the same triangle in both: where one has a
+        vertex in the middle of an edge, all have."""
         made = []
         for each in slices:
             try:
@@ -292,7 +296,10 @@ class Hierarchy:
         return [solid and self.solid_of_slice(*each, middles) for each, solid in zip(slices, made)]
 
     def _solid(self, function, tet_first, tet_last, *arguments):
-        mesh, vertices, triangles = self._mesh(function, tet_first, tet_last, *arguments)
+        return self._solid_of(function, _number(tet_first), _number(tet_last), *arguments)
+
+    def _solid_of(self, function, *arguments):
+        mesh, vertices, triangles = self._mesh(function, *arguments)
         ends, faces, beyond = told([c_void_p] * 3, load().pw_mesh_origins, mesh)
         return Solid(vertices, triangles, _view(mesh, ends, (len(vertices), 2), np.int32),
                      *(_view(mesh, each, (len(triangles),), np.int32) for each in (faces, beyond)))
@@ -308,10 +315,9 @@ class Hierarchy:
             raise PartwheelError(Status.ARGUMENT, f"There is no node {node}: the hierarchy has {len(self.parent)}.")
         return self.tet_first[node], self.tet_last[node]
 
-    def _mesh(self, function, tet_first, tet_last, *arguments):
-        """What a function makes of a slice of the tetrahedra: (its handle, vertices, triangles)."""
-        given = self._handle, _number(tet_first), _number(tet_last), *arguments
-        mesh = Handle(load().pw_mesh_free, made(function, *given))
+    def _mesh(self, function, *arguments):
+        """What a function makes of some of the tetrahedra: (its handle, vertices, triangles)."""
+        mesh = Handle(load().pw_mesh_free, made(function, self._handle, *arguments))
         vertices, vertex_count, triangles, triangle_count = told([c_void_p, c_size_t] * 2, load().pw_mesh_arrays, mesh)
         return (mesh, _view(mesh, vertices, (vertex_count, 3), np.float64),
                 _view(mesh, triangles, (triangle_count, 3), np.int32))

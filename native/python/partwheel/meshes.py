@@ -42,13 +42,7 @@ def read(path):
 
 
 def _read_with_trimesh(path):
-    try:
-        import trimesh
-    except ImportError as error:
-        raise MeshFileError(
-            f"Reading {path.suffix or 'this'} files needs the Python package trimesh, which is not installed: "
-            "pip install partwheel[meshes]. OFF files are read without it."
-        ) from error
+    trimesh = needed_trimesh(f"Reading {path.suffix or 'this'} files", " OFF files are read without it.")
     try:
         suffix = path.suffix.lower().lstrip(".")
         # Geometry alone: for pictures trimesh would need another package.
@@ -69,6 +63,16 @@ def _read_with_trimesh(path):
         vertices, triangles = unique, index.reshape(-1)[triangles]
     return Mesh(np.ascontiguousarray(vertices), np.ascontiguousarray(triangles, np.int32),
                 np.arange(len(triangles), dtype=np.int32), len(triangles), welded)
+
+
+def needed_trimesh(what, more=""):
+    """The module. Raises MeshFileError that says what needs it."""
+    try:
+        import trimesh
+    except ImportError as error:
+        raise MeshFileError(f"{what} needs the Python package trimesh, which is not installed: pip install "
+                            f"partwheel[meshes].{more}") from error
+    return trimesh
 
 
 def _placed(scene, matrix, name):

@@ -404,6 +404,17 @@ TriangleMesh Solids::solid(size_t tet_first, size_t tet_last,
                           middles);
 }
 
+TriangleMesh Solids::solid(std::span<const std::array<int32_t, 2>> slices,
+                           std::span<const std::array<int32_t, 2>> middles) const {
+    std::vector<int32_t> tets;
+    for (const auto& [first, last] : slices) {
+        // Homes outside the slice may be in another one: each tetrahedron has one home, so none comes twice.
+        const std::vector<int32_t> more = facets().at_home(at(first), at(last));
+        tets.insert(tets.end(), more.begin(), more.end());
+    }
+    return facets().solid(hierarchy_.tetrahedra(), hierarchy_.vertices(), tets, middles);
+}
+
 TriangleMesh Solids::solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside) const {
     const auto tetrahedra = hierarchy_.tetrahedra();
     const auto vertices = hierarchy_.vertices();

@@ -64,6 +64,9 @@ public:
     explicit Solids(const Hierarchy& hierarchy) : hierarchy_(hierarchy) {}
 
     TriangleMesh solid(size_t tet_first, size_t tet_last, std::span<const std::array<int32_t, 2>> middles) const;
+    // Around several slices that are apart.
+    TriangleMesh solid(std::span<const std::array<int32_t, 2>> slices,
+                       std::span<const std::array<int32_t, 2>> middles) const;
     // inside: of each source face, not 0 for those that the part is to have in place of its own.
     TriangleMesh solid_of_faces(size_t tet_first, size_t tet_last, std::span<const uint8_t> inside) const;
 

@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""mesh.partwheel_parts: the whole model in parts, seen in colours, edited with wheel, clicks and drags, and written to
+face sets, vertex groups, materials, objects. Nothing changes before it is confirmed."""
+
+import json
+
+import bpy
+import numpy as np
+
+from ..mesh import kept
+from ..mesh.kept import counts
+from ..mesh.refusing import Refused, can, changeable
+from ..parts import builds, registry
+from ..pick.build import start, waited_for
+from ..pick.prepared import current, prepared
+from ..solid import copy_part, solids
+from ..view import keys, overlay, picking
+from ..view.in_view import InView, waiting
+from ..view.seen import NO_FACE
+from . import objects, states, stored, writing
+from partwheel import PartwheelError
+from partwheel.cut import Cut
+
+USUAL = {"OBJECT": {"OBJECTS"}, "EDIT_MESH": {"VERTEX_GROUPS"}, "SCULPT": {"FACE_SETS"}}
+LABELS = {"FACE_SETS": ("Face Sets", "One for each part, in place of all that there are"),
+          "VERTEX_GROUPS": ("Vertex Groups", "For an armature: they fall smoothly across the borders and add up to 1"),
+          "COLORS": ("Materials in Colours", "A material of its own colour for each part"),
+          "MATERIALS": ("Material Slots", "The model's own materials, with a slot for each part"),
+          "OBJECTS": ("Objects", "Each part an object that hangs on the next one")}
+STRONG, WEAK = 0.85, 0.4  # how far the part that was clicked covers the model, and the others beside it
+
+
+class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
+    """Divide the whole model into parts: the wheel changes how many, a click and the wheel one, a drag merges"""
+
+    bl_idname = "mesh.partwheel_parts"
+    bl_label = "Parts to..."
+    bl_options = {"REGISTER", "UNDO"}
+
+    to: bpy.props.EnumProperty(
+        name="Make Them", description="What the parts become; none: they are only kept in the mesh",
+        items=[(name, *LABELS[name]) for name in writing.TO], options={"ENUM_FLAG", "SKIP_SAVE"}, default=set())
+    count: bpy.props.IntProperty(
+        name="Parts", description="How many; 0: those that are kept in the mesh, or as people would most likely take "
+        "them", default=0, min=0, soft_max=64, max=999, options={"SKIP_SAVE"})
+    clusters: bpy.props.StringProperty(
+        name="Clusters", description="The parts, as lists of clusters of the tree", options={"HIDDEN", "SKIP_SAVE"})
+    closed: bpy.props.BoolProperty(
+        name="Closed", description="Close the objects where they were cut: solids that make the whole", default=True)
+    smooth: bpy.props.BoolProperty(
+        name="Smooth Caps", description="Close them with a smooth surface, instead of the flat facets inside the solid "
+        "that divide it from the rest", default=False)
+    material: bpy.props.BoolProperty(
+        name="Cap Material", description="Give the caps a material of their own", default=False)
+    origins: bpy.props.BoolProperty(
+        name="Origins at Borders", description="Each object turns about the middle of its border", default=True)
+    explode: bpy.props.FloatProperty(
+        name="Explode", description="How far they are moved apart, by the distance of their middles. The largest one "
+        "has this as a custom property, too, which can be changed later", default=0, min=0, soft_max=2)
+    shell: bpy.props.FloatProperty(
+        name="Shell", description="How thick their walls are, by a modifier; 0: solid", default=0, min=0, unit="LENGTH")
+    hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was divided", default=True)
+
+    lost = "the mesh is no longer as it was, or in another mode"
+    state = building = pressed = shown = None
+    object_name, mode = "", ""
+
+    @classmethod
+    def poll(cls, context):
+        obj = context.active_object
+        return (can(cls, context.mode in USUAL and obj is not None and obj.type == "MESH",
+                    "Needs an active mesh object, in Object, Edit or Sculpt Mode")
+                and changeable(cls, obj)
+                and can(cls, not obj.use_dynamic_topology_sculpting,
+                        "Dynamic topology changes the faces all the time: switch it off first"))
+
+    def draw(self, _context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "count")
+        layout.column().prop(self, "to")
+        if "OBJECTS" in self.to:
+            for name in ("closed", "smooth", "material", "origins", "explode", "shell", "hide"):
+                layout.prop(self, name)
+
+    # ---- Without a window, and once more with other options
+
+    def execute(self, context):
+        obj = context.active_object
+        hierarchy = waited_for(self, context, obj)
+        if not hierarchy:
+            return {"CANCELLED"}
+        try:
+            return self._write(context, obj, self._wanted(obj, hierarchy))
+        except (Refused, PartwheelError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+
+    def _wanted(self, obj, hierarchy):
+        """The cut that the options name."""
+        if self.clusters:
+            try:
+                cut = Cut.of_parts(hierarchy, json.loads(self.clusters))
+            except (ValueError, TypeError) as error:
+                raise Refused(f"These are no parts of {obj.name}: {error}") from error
+        elif self.count:
+            return Cut.into(hierarchy, self.count)
+        else:
+            cut = _first(obj, hierarchy)
+        return cut.sized(self.count) if self.count else cut
+
+    def _write(self, context, obj, cut):
+        mode = obj.mode
+        if not self.properties.is_property_set("to"):
+            self.to = USUAL[context.mode]
+        known = stored.found(obj, cut.hierarchy)
+        if mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+        if mode == "EDIT":
+            # Undo steps of Edit Mode hold its mesh alone: without this one, undo would leave the rest.
+            bpy.ops.ed.undo_push(message="Leave Edit Mode")
+        made = []
+        try:
+            options = objects.Options(solids.Options(self.smooth, self.material), self.closed, self.origins,
+                                      self.explode, self.shell)
+            made = writing.write(obj, cut, self.to, known[1] if known else {}, options).objects
+        finally:
+            if mode != "OBJECT" and not made:
+                bpy.ops.object.mode_set(mode=mode)
+        if made:
+            copy_part.only(context, made)
+            if self.hide:
+                obj.hide_set(True)
+        self.count, self.clusters = len(cut), json.dumps(cut.parts)
+        self.report({"INFO"}, f"{obj.name} in {len(cut)} parts"
+                    + "".join(f", {LABELS[name][0]}" for name in writing.TO if name in self.to))
+        return {"FINISHED"}
+
+    # ---- With the mouse
+
+    def _begin(self, context, _event):
+        obj = context.active_object
+        self.object_name, self.mode = obj.name_full, context.mode
+        if not self.properties.is_property_set("to"):
+            self.to = USUAL[context.mode]
+        self.scroll = keys.Scroll(keys.SCROLL_STEP)
+        hierarchy = None if builds.being_built(obj) else registry.hierarchy(obj)
+        if hierarchy:
+            return self._hold(context, obj, hierarchy)
+        self.building = start(self, obj)
+        if not self.building:
+            return {"CANCELLED"}
+        self.building.watch(context)
+        return {"RUNNING_MODAL"}
+
+    def _hold(self, context, obj, hierarchy):
+        cut = Cut.into(hierarchy, self.count) if self.count else _first(obj, hierarchy)
+        self.state = states.Cutting(cut)
+        self.counts = counts(obj.data)
+        self._draw_with(self._draw)
+        return self._show(context, self.state)
+
+    def _handle(self, context, event):
+        if self.building:
+            return self._built_on(context, event)
+        if event.type in keys.SYSTEM:
+            return {"PASS_THROUGH"}
+        if event.type in keys.MOVES:
+            return {"RUNNING_MODAL"} if self.pressed is not None else {"PASS_THROUGH"}
+        over = picking.under_mouse(context, event)
+        plain = not (event.alt or event.oskey or event.ctrl or event.shift)
+        if event.type == "TRACKPADPAN" and over and plain:
+            return self._show(context, self.state.turned(self.scroll.notches(event.mouse_y - event.mouse_prev_y)))
+        if event.type in keys.NAVIGATE.events or not plain or not over and (
+                event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE", "LEFTMOUSE"}):
+            return {"PASS_THROUGH"}
+        if event.type == "LEFTMOUSE":
+            return self._clicked(context, event, over)
+        if event.value != "PRESS":
+            return {"RUNNING_MODAL"}
+        return self._key(context, event)
+
+    def _built_on(self, context, event):
+        """While the parts are being found all but Esc goes to Blender itself."""
+        if not self.building.step(context, event):
+            return {"PASS_THROUGH"}
+        hierarchy, self.building = self.building.hierarchy, None
+        obj = kept.named(self.object_name)
+        if not hierarchy or obj is None or context.area is None or context.mode != self.mode:
+            return {"CANCELLED"}
+        return self._hold(context, obj, hierarchy)
+
+    def _clicked(self, context, event, over):
+        """A click takes a part for the wheel; a drag from one to another merges them."""
+        face = self._face(over)
+        if event.value in {"PRESS", "DOUBLE_CLICK"}:
+            self.pressed = face
+        if event.value != "RELEASE" or self.pressed is None:  # None: it was pressed before all this
+            return {"RUNNING_MODAL"}
+        begun, self.pressed = self.pressed, None
+        if NO_FACE in (begun, face):
+            return self._show(context, self.state.clicked(None)) if begun == face else {"RUNNING_MODAL"}
+        labels = self.state.cut.labels
+        if labels[begun] == labels[face]:
+            return self._show(context, self.state.clicked(face))
+        return self._show(context, self.state.merged(face, begun))
+
+    def _face(self, over):
+        """The face of the object that is seen there, or NO_FACE."""
+        _, *pixel = over
+        _, face = picking.nearest([kept.named(self.object_name)], lambda each: prepared(each).tree, *pixel)
+        return NO_FACE if face is None else face
+
+    def _key(self, context, event):
+        if event.type in keys.CANCEL.events:
+            return {"CANCELLED"}
+        if event.type in keys.CONFIRM.events:
+            return self._confirmed(context)
+        if event.type in keys.TURNS:
+            return self._show(context, self.state.turned(keys.TURNS[event.type]))
+        if event.type in keys.DIGITS:
+            return self._show(context, self.state.with_digit(keys.DIGITS[event.type]))
+        if event.type in keys.ERASE.events:
+            return self._show(context, self.state.without_digit())
+        if event.type in keys.ANEW.events:
+            return self._show(context, states.Cutting(Cut.automatic(self.state.base.hierarchy)))
+        for name, key in keys.RESULTS.items():
+            if event.type in key.events:
+                self.to = self.to ^ {name}
+                return self._show(context, self.state)
+        return {"RUNNING_MODAL"}
+
+    def _show(self, context, state):
+        self.state = state
+        made = ", ".join(LABELS[name][0] for name in writing.TO if name in self.to) or "Kept in the Mesh"
+        number = state.typed + "_" if state.typed else len(state.cut)
+        one = ""
+        if state.part is not None:
+            labels = state.cut.labels
+            one = f", one of {np.count_nonzero(labels == state.part):,} faces"
+        self._tell(context, f"{number} parts{one}: {made}", keys.DIVIDING if state.part is None else keys.ON_ONE)
+        if not bpy.app.background:
+            obj = kept.named(self.object_name)
+            self.shown = prepared(obj).parts(obj)
+            overlay.redraw()
+        return {"RUNNING_MODAL"}
+
+    def _draw(self):
+        context, obj = bpy.context, kept.named(self.object_name)
+        if not obj or not overlay.visible(context, obj) or not current(obj, self.shown):
+            return
+        cut, part = self.state.cut, self.state.part
+
+        def paint():
+            opacity = overlay.CUT_OPACITY if part is None else np.where(cut.labels == part, STRONG, WEAK)
+            return overlay.distinct(np.array(cut.keys)[cut.labels], opacity)
+
+        overlay.draw_painted(context, obj, self.shown, ("whole", cut.parts, cut.keys, part), paint)
+
+    def _confirmed(self, context):
+        self.clusters, self.count = json.dumps(self.state.cut.parts), len(self.state.cut)
+        with waiting(context):
+            return self._write(context, kept.named(self.object_name), self.state.cut)
+
+    def _still_there(self, context):
+        if self.building:
+            return True
+        obj = context.active_object
+        return (obj is not None and obj.name_full == self.object_name and context.mode == self.mode
+                and registry.known(obj.data) is self.state.base.hierarchy and counts(obj.data) == self.counts)
+
+    def _take_back(self, context):
+        if self.building:
+            self.building.abandon(context)
+
+
+def _first(obj, hierarchy):
+    """The cut that is kept in the mesh, or as people would most likely divide it."""
+    found = stored.found(obj, hierarchy)
+    return found[0] if found else Cut.automatic(hierarchy)
+
+
+CLASSES = (MESH_OT_partwheel_parts,)

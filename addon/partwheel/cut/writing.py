@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A cut is kept in its mesh and written to whatever is wanted."""
+
+from typing import NamedTuple
+
+from ..mesh import arrays
+from . import layers, objects, stored
+
+LAYERS = {"FACE_SETS": layers.face_sets, "VERTEX_GROUPS": layers.vertex_groups, "COLORS": layers.own_materials,
+          "MATERIALS": layers.kept_materials}
+TO = *LAYERS, "OBJECTS"
+
+
+class Written(NamedTuple):
+    """names: of the parts, in order; objects: those that were made."""
+
+    names: list
+    objects: list
+
+
+def write(obj, cut, to=(), known=None, options=objects.Options()):
+    """Keeps the cut in the object's mesh and writes it: to, some of TO. known: {clusters: name} of parts that have one.
+    options: of objects. Nothing has changed where it raises an Error. Outside Edit Mode."""
+    arrays.up_to_date(obj)
+    names = stored.names_of(obj, cut, known or {})
+    if "VERTEX_GROUPS" in to:
+        layers.check_locks(obj, names)
+    made = objects.made(obj, cut, names, options) if "OBJECTS" in to else []
+    stored.keep(obj.data, cut.labels, names)
+    for layer in LAYERS:
+        if layer in to:
+            LAYERS[layer](obj, cut, names)
+    obj.data.update()
+    return Written(names, made)

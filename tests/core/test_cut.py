@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cuts as values, their borders, names and weights, and files of the parts: against the tree's own merges, scipy's
+graphs, mirror images and what trimesh reads."""
+
+import functools
+import json
+
+import numpy as np
+import pytest
+import trimesh
+from conftest import ROOT
+from partwheel import Hierarchy, Mode, PartwheelError, meshes
+from partwheel.cut import Cut, borders, files, links, mirror_planes, named, weights
+from partwheel.library import Status
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from test_command_line import run
+
+
+@functools.cache
+def model(name, mode=Mode.REGROUPED):
+    """(Mesh, Hierarchy): homer is used exactly, and symmetric but for his pose; of the elephant one part of the
+    automatic cut has no face; the other one has holes."""
+    mesh = meshes.read(ROOT / "build" / "deps" / "meshes" / f"{name}.off")
+    return mesh, Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, mode=mode)
+
+
+MODELS = "homer", "elephant", "elephant-with-holes"
+
+
+@pytest.fixture(params=MODELS)
+def cut(request):
+    return Cut.automatic(model(request.param)[1])
+
+
+def same_division(one, other):
+    return len({*zip(one.tolist(), other.tolist())}) == len({*one.tolist()}) == len({*other.tolist()})
+
+
+def volume(solid):
+    corners = solid.vertices[solid.triangles] - solid.vertices.mean(axis=0)
+    return np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
+
+
+def test_is_the_hierarchys_cut(cut):
+    h = cut.hierarchy
+    assert same_division(cut.labels, h.face_labels(h.cut_automatic()))
+    for count in (1, 2, 9, 40):
+        assert same_division(Cut.into(h, count).labels, h.face_labels(h.cut_parts(count))) or count > 9
+        assert len(Cut.into(h, count)) == count == len(np.unique(Cut.into(h, count).labels))
+    nine = Cut.into(h, 9)
+    assert nine.more() == Cut.into(h, 10) and nine.fewer() == Cut.into(h, 8)
+    assert nine.sized(30).sized(3) == Cut.into(h, 3)
+    assert Cut.of_labels(h, cut.labels) == cut
+
+
+def test_each_tetrahedron_is_in_one_part(cut):
+    for each in (cut, cut.merge(0, len(cut) - 1), cut.sized(25)):
+        count = np.zeros(len(cut.hierarchy.tetrahedra), int)
+        for part in range(len(each)):
+            for first, last in zip(*each.slices(part)):
+                count[first:last] += 1
+        assert (count == 1).all()
+
+
+def test_solids_are_closed_and_add_up_to_the_whole(cut):
+    for each in (cut, cut.merge(1, len(cut) - 1)):
+        solids = each.solids()
+        for part, solid in enumerate(solids):
+            directed = {*map(tuple, solid.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2).tolist())}
+            assert len(directed) == 3 * len(solid.triangles) and directed == {(b, a) for a, b in directed}
+            assert volume(solid) == pytest.approx(each.volume(part), rel=1e-9)
+        whole = cut.hierarchy.summary.volume
+        assert abs(sum(map(volume, solids)) - whole) < 1e-12 * whole
+
+
+def test_splits_along_the_tree_and_joins_back(cut):
+    h = cut.hierarchy
+    leaves = len(h.tetrahedra)
+
+    def under(cluster):
+        found, todo = [], [cluster]
+        while todo:
+            cluster = todo.pop()
+            todo += h.merges[cluster - leaves].tolist() if cluster >= leaves else []
+            found += [cluster] if cluster < leaves else []
+        return found
+
+    for part in range(len(cut)):
+        before = cut.labels == part
+        split = cut.split(part)
+        if len(cut.parts[part]) == 1:
+            # Down from the part's cluster to the first merge with faces on both sides.
+            (cluster,) = cut.parts[part]
+            while True:
+                sides = [np.isin(h.leaf, under(child)) for child in h.merges[cluster - leaves]]
+                if all(side.any() for side in sides):
+                    break
+                cluster = h.merges[cluster - leaves][int(sides[1].any())]
+            assert same_division(split.labels[before], sides[0][before].astype(int))
+        assert (split.labels[~before] == cut.labels[~before]).all() and set(split.labels[before]) == {part, len(cut)}
+        assert split.join(part) == cut and split.join(len(cut)) == cut
+        assert split.keys[:len(cut)] == cut.keys and split.keys[-1] not in cut.keys
+
+
+def test_joins_to_the_next_larger_node():
+    cut = Cut.automatic(model("homer")[1])
+    for part in range(len(cut)):
+        joined, h = cut.join(part), cut.hierarchy
+        own = cut.parts[part][0]
+        above = int(np.flatnonzero((h.merges == own).any(axis=1))[0]) + len(h.tetrahedra)
+        label = joined.labels[cut.labels == part][0]
+        assert joined.parts[label] == (above,) and len(joined) < len(cut)
+    assert Cut.into(cut.hierarchy, 1).join(0) == Cut.into(cut.hierarchy, 1)
+
+
+def test_merges_any_two_parts_and_parts_them_again(cut):
+    for one, other in ((0, len(cut) - 1), (2, 1)):
+        merged = cut.merge(one, other)
+        both = np.isin(cut.labels, [one, other])
+        assert len(merged) == len(cut) - 1 and len(np.unique(merged.labels[both])) == 1
+        assert same_division(merged.labels[~both], cut.labels[~both])
+        again = merged.split(merged.labels[both][0])
+        assert len(again) >= len(cut) and Cut.of_labels(cut.hierarchy, merged.labels) == merged
+    assert cut.merge(3, 3) is cut
+    # What was merged across a node that is joined keeps what lies beyond.
+    merged = cut.merge(0, len(cut) - 1)
+    joined = merged.join(1)
+    assert len(np.unique(joined.labels)) == len(joined)
+
+
+def test_labels_that_divide_a_tetrahedron():
+    shape, h = model("homer")
+    labels = np.arange(len(h.order)) % 2
+    assert len(Cut.of_labels(h, labels)) == 2
+    assert len(Cut.of_labels(h, labels * 0)) == 1
+
+
+def test_slices_of_a_solid_are_checked():
+    h = model("elephant")[1]
+    for slices in ([[0, 5], [4, 9]], [[3, 3]], [[-1, 2]], [[0, len(h.tetrahedra) + 1]]):
+        with pytest.raises(PartwheelError) as refused:
+            h.solid_of_slice(*np.array(slices).T)
+        assert refused.value.status == Status.ARGUMENT
+    one = h.solid_of_slice(10, 60)
+    for slices in ([[10, 60]], [[30, 60], [10, 30]]):
+        assert (h.solid_of_slice(*np.array(slices).T).vertices == one.vertices).all() or volume(one) == pytest.approx(
+            volume(h.solid_of_slice(*np.array(slices).T)))
+
+
+def test_mirror_planes():
+    mesh, _ = model("homer")
+    (normal, offset), = mirror_planes(mesh.vertices, mesh.triangles)
+    assert abs(normal[0]) > 0.999
+    turn = trimesh.transformations.rotation_matrix(0.7, (1, 2, 3))[:3, :3]
+    (turned, moved), = mirror_planes(300 * mesh.vertices @ turn.T + (5, 7, 9), mesh.triangles)
+    expected = turn @ normal
+    assert abs(abs(turned @ expected) - 1) < 1e-3
+    on_it = 300 * turn @ (normal * offset) + (5, 7, 9)
+    assert abs(turned @ on_it - moved) < 0.01 * 300 * np.ptp(mesh.vertices, axis=0).max()
+    planes = mirror_planes(*(np.array(each) for each in (trimesh.creation.box((1, 2, 3)).vertices,
+                                                         trimesh.creation.box((1, 2, 3)).faces)))
+    assert len(planes) == 3 and abs(np.linalg.det([normal for normal, _ in planes])) == pytest.approx(1)
+    assert mirror_planes(*model("elephant")[0][:2]) == []
+
+
+def test_mirror_images_are_left_and_right():
+    mesh, h = model("homer", Mode.SYMMETRIC)
+    cut = Cut.automatic(h)
+    names = named(cut, *mesh[:3])
+    assert len(set(names)) == len(cut)
+    (normal, offset), = mirror_planes(mesh.vertices, mesh.triangles)
+    middle = {name: mesh.vertices[mesh.triangles[cut.labels == part]].mean(axis=(0, 1))
+              for part, name in enumerate(names)}
+    left = [name for name in names if ".L" in name]
+    assert len(left) >= 2  # arms and legs
+    for name in left:
+        image = middle[name.replace(".L", ".R")]
+        image = image - 2 * (image @ normal - offset) * normal
+        assert np.linalg.norm(image - middle[name]) < 0.02 * np.linalg.norm(np.ptp(mesh.vertices, axis=0))
+        assert middle[name][0] > middle[name.replace(".L", ".R")][0]
+    assert not any(".R" in name and name.replace(".R", ".L") not in names for name in names)
+
+
+def test_parts_that_are_alike_are_numbered_in_order():
+    # Fingers on a bar: five boxes of one size, one twice as long.
+    bar = trimesh.creation.box((11, 1, 1))
+    boxes = [trimesh.creation.box((1, 1, 4 + 4 * (k == 2))) for k in range(6)]
+    along = np.array([-5, -3.9, -1, 1, 2.2, 5])
+    for k, box in enumerate(boxes):
+        box.apply_translation((along[k], 0, box.extents[2] / 2 + 0.4 - 0.01 * k))
+    whole = trimesh.boolean.union([bar, *boxes], engine="manifold")
+    h = Hierarchy.build(whole.vertices, whole.faces)
+    tall = whole.triangles_center[:, 2] > 0.55
+    labels = np.where(tall, 1 + abs(whole.triangles_center[:, :1] - along).argmin(axis=1), 0)
+    cut = Cut.of_labels(h, labels)
+    names = named(cut, whole.vertices, whole.faces, np.arange(len(whole.faces)), "finger")
+    of = {label: names[cut.labels[labels == label][0]] for label in range(7)}
+    alike = [of[label] for label in (1, 2, 4, 5, 6)]
+    assert len({name.split(".")[0] for name in alike}) == 1 and alike == sorted(alike), of
+    assert of[3].split(".")[0] not in {name.split(".")[0] for name in alike}
+
+
+def test_borders_are_where_two_parts_meet():
+    mesh, h = model("homer")
+    cut = Cut.automatic(h)
+    found = borders(mesh.vertices, mesh.triangles, cut.labels)
+    whole = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False)
+    pairs = cut.labels[whole.face_adjacency]
+    apart = pairs[:, 0] != pairs[:, 1]
+    lengths = np.linalg.norm(np.diff(whole.vertices[whole.face_adjacency_edges[apart]], axis=1)[:, 0], axis=1)
+    assert sum(border.length for border in found) == pytest.approx(lengths.sum())
+    assert {border.parts for border in found} == {tuple(sorted(pair)) for pair in pairs[apart].tolist()}
+    edges = whole.face_adjacency_edges[apart]
+    for pair in {border.parts for border in found}:
+        own = edges[(np.sort(pairs[apart], axis=1) == pair).all(axis=1)]
+        graph = coo_matrix((np.ones(len(own)), own.T), (len(whole.vertices),) * 2)
+        loops = connected_components(graph, directed=False)[0] - (len(whole.vertices) - len(np.unique(own)))
+        assert loops == sum(border.parts == pair for border in found)
+
+
+def test_the_tree_of_parts_reaches_all_of_them(cut):
+    name = next(name for name in MODELS if model(name)[1] is cut.hierarchy)
+    mesh = model(name)[0]
+    labels = cut.labels[mesh.faces]
+    middles = np.array([mesh.vertices[mesh.triangles[labels == part]].mean(axis=(0, 1)) for part in range(len(cut))])
+    tree = links(cut, borders(mesh.vertices, mesh.triangles, labels), middles)
+    root, = [part for part, link in enumerate(tree) if link.parent < 0]
+    assert cut.volume(root) == max(map(cut.volume, range(len(cut))))
+    for part, link in enumerate(tree):
+        steps = 0
+        while part != root:
+            part, steps = tree[part].parent, steps + 1
+            assert steps < len(cut)
+        if link.border:
+            assert set(link.border.parts) == {tree.index(link), link.parent}
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_weights_add_up_and_fall_across_borders(name):
+    mesh, h = model(name)
+    cut = Cut.automatic(h)
+    labels = cut.labels[mesh.faces]
+    dense = np.zeros((len(cut), len(mesh.vertices)))
+    for part, (vertices, values) in enumerate(weights(mesh.vertices, mesh.triangles, labels, len(cut))):
+        assert (values > 0).all() and (values <= 1).all() and len(np.unique(vertices)) == len(vertices)
+        dense[part, vertices] = values
+    assert abs(dense.sum(axis=0) - 1).max() < 1e-12
+    places = np.unique(mesh.vertices, axis=0, return_index=True, return_inverse=True)[1:]
+    triangles = places[0][places[1].ravel()][mesh.triangles]  # the broken one has several vertices at a place
+    own = [np.unique(triangles[labels == part]) for part in range(len(cut))]
+    parts_at = np.bincount(np.concatenate(own), minlength=len(mesh.vertices))
+    found = borders(mesh.vertices, mesh.triangles, labels)
+    for part in range(len(cut)):
+        inside = own[part][parts_at[own[part]] == 1]
+        assert (dense[part, inside] >= dense[:, inside].max(axis=0)).all()
+    assert dense.max() == 1
+    for border in found:
+        two = border.vertices[parts_at[border.vertices] == 2]
+        assert abs(dense[border.parts[0], two] - dense[border.parts[1], two]).max(initial=0) < 1e-9
+
+
+def test_weights_of_pieces_that_touch_nothing_are_whole():
+    boxes = trimesh.util.concatenate([trimesh.creation.box(), trimesh.creation.box().apply_translation((3, 0, 0))])
+    labels = np.repeat([0, 1], 12)
+    for part, (vertices, values) in enumerate(weights(boxes.vertices, boxes.faces, labels, 2)):
+        assert (values == 1).all() and set(vertices) == set(boxes.faces[labels == part].ravel())
+    assert borders(boxes.vertices, boxes.faces, labels) == []
+
+
+def test_files_hold_the_parts(tmp_path):
+    mesh, h = model("homer", Mode.SYMMETRIC)
+    cut = Cut.automatic(h)
+    files.write(tmp_path, "homer", mesh, cut, files.FORMATS)
+    told = json.loads((tmp_path / "homer.json").read_text())
+    names = [part["name"] for part in told["parts"]]
+    assert names == named(cut, *mesh[:3]) and told["labels"] == cut.labels.tolist()
+    assert sum(part["parent"] is None for part in told["parts"]) == 1
+    for suffix in ("glb", "3mf"):
+        scene = trimesh.load(tmp_path / f"homer.{suffix}", process=False)
+        assert set(scene.geometry) == set(names)
+        for part, name in enumerate(names):
+            assert scene.geometry[name].is_watertight
+            assert scene.geometry[name].volume == pytest.approx(cut.volume(part), rel=1e-4)
+    parents = trimesh.load(tmp_path / "homer.glb").graph.transforms.parents
+    assert all(parents[part["name"]] == (part["parent"] or "world") for part in told["parts"])
+    for part, name in enumerate(names):
+        assert trimesh.load(tmp_path / f"{name}.stl").volume == pytest.approx(cut.volume(part), rel=1e-4)
+    whole = trimesh.load(tmp_path / "homer.ply", process=False)
+    assert whole.metadata["_ply_raw"]["face"]["data"]["part"].tolist() == cut.labels.tolist()
+    assert len(np.unique(whole.visual.face_colors, axis=0)) == len(cut)
+    assert same_division(np.unique(whole.visual.face_colors, axis=0, return_inverse=True)[1].ravel(), cut.labels)
+
+
+def test_the_command_parts(tmp_path, meshes_directory):
+    source = trimesh.load(meshes_directory / "elephant.off", process=False)
+    source.export(tmp_path / "elephant.glb")
+    result = run("parts", tmp_path / "elephant.glb", "-o", tmp_path / "out", "--parts", 7, "--json")
+    assert result.returncode == 0, result.stderr
+    report = json.loads(result.stdout)
+    assert report["parts"] == 7 and sorted(report["files"]) == sorted(
+        str(tmp_path / "out" / f"elephant.{suffix}") for suffix in ("glb", "json", "ply"))
+    scene = trimesh.load(tmp_path / "out" / "elephant.glb")
+    assert len(scene.geometry) == 7
+    assert sum(each.volume for each in scene.geometry.values()) == pytest.approx(report["volume"], rel=1e-4)
+    assert run("parts", tmp_path / "elephant.glb").returncode == 2
+    assert run("parts", tmp_path / "elephant.glb", "-o", tmp_path, "--formats", "glb,obj").returncode == 2
