@@ -47,6 +47,9 @@ foreach(header IN LISTS headers)
   file(READ "${CGAL_INCLUDE}/${header}" text)
   string(REGEX REPLACE "std::unordered_(map|set)" "boost::unordered_\\1" steady "${text}")
   string(REGEX REPLACE "std::(nth_element|atan2|acos)" "partwheel::steady::\\1" steady "${steady}")
+  # Of triangles that close a hole equally well the one that comes first is taken, which is a matter of addresses.
+  string(REPLACE "if(m_min == -1 || w < w_min){" "if(m_min == -1 || w < w_min || (!(w_min < w) && v2 < m_min)){"
+                 steady "${steady}")
   if(NOT steady STREQUAL text)
     file(CONFIGURE OUTPUT "${steady_cgal}/${header}" CONTENT "#include <partwheel/steady.h>\n${steady}" @ONLY)
   endif()

@@ -18,6 +18,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace partwheel::test {
 namespace {
@@ -227,6 +228,18 @@ TriMesh sheet() {
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     return without_faces(mesh);
+}
+
+// Where a hole can be closed equally well in several ways, it is no matter of addresses which is taken.
+TEST(Ladder, HolesAreClosedAlikeWhereverMemoryIs) {
+    const TriMesh mesh = real_mesh("double-torus-3-holes.off");
+    const Solid first = climbed(mesh, PW_RUNG_REPAIRED);
+    ASSERT_EQ(first.surface.rung, PW_RUNG_REPAIRED);
+    std::vector<std::vector<char>> taken;
+    for (size_t i = 1; i < 12; ++i) {
+        taken.emplace_back(1000 * (7919 * i % 97));
+        EXPECT_EQ(climbed(mesh, PW_RUNG_REPAIRED).surface.triangles, first.surface.triangles);
+    }
 }
 
 TEST(Ladder, ASheetIsRefusedOrThickened) {
