@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Saved hierarchies are the same bits from every compiler and standard library, optimized or not, with wide vectors or
-narrow ones, in one thread or many.
+"""Saved hierarchies are the same bits from every compiler, optimized or not, with wide vectors or narrow ones, in
+one thread or many.
 
 The libraries are those of build/PRESET/libpartwheel.so, which scripts/test builds; each runs in a process of its own.
 """
@@ -20,7 +20,7 @@ from digests import CASES, ROOT
 CONFIGURATIONS = {
     "g++ -O2, one thread": ("release", 1),
     "g++ -O2, three threads": ("release", 3),
-    "clang++ -O2 with libc++": ("libcxx", 0),
+    "clang++ -O2": ("clang", 0),
     "g++ -O2 with AVX2": ("avx2", 0),
     "g++ -O0": ("unoptimized", 0),
 }
