@@ -20,12 +20,12 @@ from test_command_line import run
 @functools.cache
 def model(name, mode=Mode.REGROUPED):
     """(Mesh, Hierarchy): homer is used exactly, and symmetric but for his pose; of the elephant one part of the
-    automatic cut has no face; the other one has holes."""
+    automatic cut has no face; the cow is filled from points."""
     mesh = meshes.read(ROOT / "build" / "deps" / "meshes" / f"{name}.off")
     return mesh, Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, mode=mode)
 
 
-MODELS = "homer", "elephant", "elephant-with-holes"
+MODELS = "homer", "elephant", "cow"
 
 
 @pytest.fixture(params=MODELS)
