@@ -154,7 +154,7 @@ std::vector<int32_t> Facets::with_faces(std::span<const Tetrahedron> tetrahedra,
         in[t] = wanted;
         for (int32_t v : tetrahedra[t]) changed.add(vertices[at(v)]);
     }
-    const auto& [low, high] = changed;
+    const Point &low = changed.low, &high = changed.high;
     if (const double size = changed.diagonal(); low[0] <= high[0] && size > 0) {
         // Edges of the surface, by the faces of which they are: of the part's, and of all.
         struct Edge {
