@@ -114,7 +114,7 @@ def place_over(stage, part, target, fit=False, mirror=False):
         yield from stage.settle()
         fitted = module("compose.placement").border(part)
         stage.check(abs(fitted.radius / where.radius - 1) < 0.01, "it has the border's size")
-        stage.check((fitted.middle - where.middle).length < 0.1 * where.radius, "it is at the border")
+        stage.check(numpy.linalg.norm(fitted.middle - where.middle) < 0.1 * where.radius, "it is at the border")
     if mirror:
         stage.mouse.key("M")
     yield from stage.settle()
