@@ -198,9 +198,9 @@ def write(obj, cut, to=(), names=None, closed=True, origins=True, explode=0.0, s
     names: one for each part; None: those that are kept, or such as say what is left, right and alike. Objects: closed:
     as solids that make the whole, else their own polygons alone. origins: in the middle of the border, else all where
     the object's is. explode: moved apart by so many times the distance of their middles, by drivers: the root's
-    property "explode" changes it. shell: so thick, by a modifier. smooth, material: of caps, as for copy_part(). Returns (names,
-    objects). partwheel.Error: the cut is of another mesh, or it can't be done; nothing has changed then. Outside Edit
-    Mode only."""
+    property "explode" changes it. shell: so thick, by a modifier. smooth, material: of caps, as for copy_part().
+    Returns (names, objects). partwheel.Error: the cut is of another mesh, or it can't be done; nothing has changed then.
+    Outside Edit Mode only."""
     _mesh(obj, edited=False, changes=True)
     if isinstance(to, str) or not set(to) <= set(writing.TO):
         raise ValueError(f"to is to be some of {', '.join(writing.TO)}.")
@@ -209,8 +209,7 @@ def write(obj, cut, to=(), names=None, closed=True, origins=True, explode=0.0, s
         raise Refused(f"The cut is not of {obj.name} as it is now: ask for its parts again.")
     if names is not None and (len(names) != len(cut) or len(set(names)) != len(cut)):
         raise ValueError(f"There are {len(cut)} parts; as many names are needed, each another one.")
-    kept = stored.found(obj, built)
-    known = dict(zip(cut.parts, names)) if names is not None else kept[1] if kept else {}
+    known = None if names is None else dict(zip(cut.parts, names))
     return writing.write(obj, cut, to, known, parts_as_objects.Options(solids.Options(smooth, material), closed,
                                                                        origins, explode, shell))
 

@@ -98,22 +98,18 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     def _wanted(self, obj, hierarchy):
         """The cut that the options name."""
-        if self.clusters:
-            try:
-                cut = Cut.of_parts(hierarchy, json.loads(self.clusters))
-            except (ValueError, TypeError) as error:
-                raise Refused(f"These are no parts of {obj.name}: {error}") from error
-        elif self.count:
-            return Cut.into(hierarchy, self.count)
-        else:
-            cut = _first(obj, hierarchy)
+        if not self.clusters:
+            return _first(obj, hierarchy, self.count)
+        try:
+            cut = Cut.of_parts(hierarchy, json.loads(self.clusters))
+        except (ValueError, TypeError) as error:
+            raise Refused(f"These are no parts of {obj.name}: {error}") from error
         return cut.sized(self.count) if self.count else cut
 
     def _write(self, context, obj, cut):
         mode = obj.mode
         if not self.properties.is_property_set("to"):
             self.to = USUAL[context.mode]
-        known = stored.found(obj, cut.hierarchy)
         if mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
         if mode == "EDIT":
@@ -123,7 +119,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         try:
             options = objects.Options(solids.Options(self.smooth, self.material), self.closed, self.origins,
                                       self.explode, self.shell)
-            made = writing.write(obj, cut, self.to, known[1] if known else {}, options).objects
+            made = writing.write(obj, cut, self.to, options=options).objects
         finally:
             if mode != "OBJECT" and not made:
                 bpy.ops.object.mode_set(mode=mode)
@@ -154,8 +150,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def _hold(self, context, obj, hierarchy):
-        cut = Cut.into(hierarchy, self.count) if self.count else _first(obj, hierarchy)
-        self.state = states.Cutting(cut)
+        self.state = states.Cutting(_first(obj, hierarchy, self.count))
         self.counts = counts(obj.data)
         self._draw_with(self._draw)
         return self._show(context, self.state)
@@ -274,8 +269,10 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             self.building.abandon(context)
 
 
-def _first(obj, hierarchy):
-    """The cut that is kept in the mesh, or as people would most likely divide it."""
+def _first(obj, hierarchy, count):
+    """So many parts; 0: the cut that is kept in the mesh, or as people would most likely divide it."""
+    if count:
+        return Cut.into(hierarchy, count)
     found = stored.found(obj, hierarchy)
     return found[0] if found else Cut.automatic(hierarchy)
 

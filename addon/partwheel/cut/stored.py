@@ -18,7 +18,7 @@ WORD = "Part"
 def keep(mesh, labels, names):
     """labels (F,) the part of each face; names: one for each part."""
     number = mesh.attributes.get(ATTRIBUTE)
-    if number and (number.domain, number.data_type) != ("FACE", "INT"):
+    if number and not _is_ours(number):
         mesh.attributes.remove(number)
         number = None
     number = number or mesh.attributes.new(ATTRIBUTE, "INT", "FACE")
@@ -52,9 +52,11 @@ def _labels(mesh):
         layer = faces.layers.int.get(ATTRIBUTE)
         return None if layer is None else np.array([face[layer] for face in faces], np.int32)
     number = mesh.attributes.get(ATTRIBUTE)
-    if not number or (number.domain, number.data_type) != ("FACE", "INT"):
-        return None
-    return arrays.read(number.data, "value", np.int32)
+    return arrays.read(number.data, "value", np.int32) if number and _is_ours(number) else None
+
+
+def _is_ours(attribute):
+    return (attribute.domain, attribute.data_type) == ("FACE", "INT")
 
 
 def names_of(obj, cut, known):

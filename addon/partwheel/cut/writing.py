@@ -19,10 +19,14 @@ class Written(NamedTuple):
 
 
 def write(obj, cut, to=(), known=None, options=objects.Options()):
-    """Keeps the cut in the object's mesh and writes it: to, some of TO. known: {clusters: name} of parts that have one.
-    options: of objects. Nothing has changed where it raises an Error. Outside Edit Mode."""
+    """Keeps the cut in the object's mesh and writes it: to, some of TO. known: {clusters: name} of parts that have one;
+    None: those that are kept in the mesh. options: of objects. Nothing has changed where it raises an Error. Outside
+    Edit Mode."""
     arrays.up_to_date(obj)
-    names = stored.names_of(obj, cut, known or {})
+    if known is None:
+        kept = stored.found(obj, cut.hierarchy)
+        known = kept[1] if kept else {}
+    names = stored.names_of(obj, cut, known)
     if "VERTEX_GROUPS" in to:
         layers.check_locks(obj, names)
     made = objects.made(obj, cut, names, options) if "OBJECTS" in to else []
