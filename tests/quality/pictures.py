@@ -9,12 +9,13 @@ takes. Needs numpy and Pillow.
 """
 
 import argparse
-import colorsys
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 from psb import Mode, build
+
+from partwheel.cut import colors
 
 FINER = 2  # drawn so many times larger, then averaged
 POINTS_A_PIXEL = 12
@@ -64,12 +65,6 @@ class View:
         return picture.reshape(side, FINER, side, FINER, 3).mean(axis=(1, 3))
 
 
-def of_parts(labels):
-    """A colour a part, of neighbouring numbers unlike ones."""
-    hues = [colorsys.hsv_to_rgb(0.618034 * k % 1, 0.45 + 0.25 * (k % 3) / 2, 0.95) for k in range(labels.max() + 1)]
-    return np.array(hues)[labels]
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=Path)
@@ -84,7 +79,7 @@ def main():
     mesh, hierarchy = build(args.model, Mode[args.mode.upper()])
     front, back = (View(mesh, sign * np.array(args.view), args.up, args.size) for sign in (1, -1))
     labels = hierarchy.face_labels(hierarchy.cut_automatic())
-    cells = [view.painted(of_parts(labels)) for view in (front, back)]
+    cells = [view.painted(colors(labels)) for view in (front, back)]
     for place in args.click:
         stops, start = hierarchy.wheel(front.at(*place))
         for node in stops[start:start + STOPS_SHOWN]:
