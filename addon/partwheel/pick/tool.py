@@ -22,7 +22,8 @@ class SelectPart(bpy.types.WorkSpaceTool):
     bl_icon = ICON
     bl_widget = "VIEW3D_GGT_partwheel_hover"
     bl_keymap = tuple(
-        ("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "PRESS", **held}, {"properties": [("tool", True), *what]})
+        ("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "PRESS", **held},
+         {"properties": [("tool", True), *what]})
         for held, what in (({}, ()), ({"shift": True}, [("extend", True)]), ({"ctrl": True}, [("deselect", True)])))
 
     def draw_settings(context, layout, tool):

@@ -261,8 +261,8 @@ class Hierarchy:
     def solid_of_slice(self, tet_first, tet_last, middles=()):
         """The same around tetrahedra[tet_first:tet_last], for a part of a cut. With the two exchanged, around the rest:
         tetrahedra[tet_first:] and tetrahedra[:tet_last]. Both may be arrays (n,), of slices that are apart: around all
-        of them together. middles (m,2): edges, as their vertices, that get a vertex in
-        their middle wherever they are on it."""
+        of them together. middles (m,2): edges, as their vertices, that get a vertex in their middle wherever they are
+        on it."""
         middles = np.array(middles, np.int32).reshape(-1, 2)
         if np.ndim(tet_first):
             slices = np.array([tet_first, tet_last], np.int32).T.copy()

@@ -6,8 +6,8 @@
 namespace partwheel {
 
 // The exact sign (-1, 0, 1) of six_volumes(a, b, c, d), mostly by expansion arithmetic (Shewchuk 1997, "Adaptive
-// Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates"). Thread-safe: unlike TetGen's own predicates it
-// keeps no state. Exact as long as no product of three coordinate differences under- or overflows.
+// Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates"). Thread-safe: unlike TetGen's own
+// predicates it keeps no state. Exact as long as no product of three coordinate differences under- or overflows.
 int orientation(const Point& a, const Point& b, const Point& c, const Point& d);
 
 // Whether the three points are exactly on one line.
