@@ -189,16 +189,18 @@ def kept_parts(obj):
 
 
 def write(obj, cut, to=(), names=None, closed=True, origins=True, explode=0.0, shell=0.0, smooth=False,
-          material=False):
+          material=False, unwrap=False):
     """Keeps a cut in the object's mesh, as the face attribute "partwheel_part" and the parts' names, and writes it to
     any of these: "FACE_SETS"; "VERTEX_GROUPS", for an armature: 1 within a part, falling smoothly across its borders,
     adding up to 1; "COLORS", a material of its own for each part; "MATERIALS", the mesh's own, with a slot for each
-    part; "OBJECTS", in a new collection, each the child of the part that it hangs on.
+    part; "SEAMS", along the borders, in creases, and where a part would not lie flat otherwise, in place of the mesh's;
+    "OBJECTS", in a new collection, each the child of the part that it hangs on.
 
     names: one for each part; None: those that are kept, or such as say what is left, right and alike. Objects: closed:
     as solids that make the whole, else their own polygons alone. origins: in the middle of the border, else all where
     the object's is. explode: moved apart by so many times the distance of their middles, by drivers: the root's
     property "explode" changes it. shell: so thick, by a modifier. smooth, material: of caps, as for copy_part().
+    Seams: unwrap: by Blender, angle-based, as a UV map of its own, the active one; what is rendered by others stays.
     Returns (names, objects). partwheel.Error: the cut is of another mesh, or it can't be done; nothing has changed then.
     Outside Edit Mode only."""
     _mesh(obj, edited=False, changes=True)
@@ -211,7 +213,7 @@ def write(obj, cut, to=(), names=None, closed=True, origins=True, explode=0.0, s
         raise ValueError(f"There are {len(cut)} parts; as many names are needed, each another one.")
     known = None if names is None else dict(zip(cut.parts, names))
     return writing.write(obj, cut, to, known, parts_as_objects.Options(solids.Options(smooth, material), closed,
-                                                                       origins, explode, shell))
+                                                                       origins, explode, shell), unwrap)
 
 
 # ---- Solids. smooth: caps that go on as the surface does, not the flat facets inside the solid. material: caps get a

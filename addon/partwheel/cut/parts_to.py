@@ -26,6 +26,7 @@ LABELS = {"FACE_SETS": ("Face Sets", "One for each part, in place of all that th
           "VERTEX_GROUPS": ("Vertex Groups", "For an armature: they fall smoothly across the borders and add up to 1"),
           "COLORS": ("Materials in Colours", "A material of its own colour for each part"),
           "MATERIALS": ("Material Slots", "The model's own materials, with a slot for each part"),
+          "SEAMS": ("Seams", "For unwrapping: along the borders, in creases, and where a part would not lie flat"),
           "OBJECTS": ("Objects", "Each part an object that hangs on the next one")}
 STRONG, WEAK = 0.85, 0.4  # how far the part that was clicked covers the model, and the others beside it
 
@@ -59,6 +60,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         "has this as a custom property, too, which can be changed later", default=0, min=0, soft_max=2)
     shell: bpy.props.FloatProperty(
         name="Shell", description="How thick their walls are, by a modifier; 0: solid", default=0, min=0, unit="LENGTH")
+    unwrap: bpy.props.BoolProperty(
+        name="Unwrap", description="Unwrap the mesh along the seams, into a new UV map if it has others", default=True)
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was divided", default=True)
 
     lost = "the mesh is no longer as it was, or in another mode"
@@ -79,6 +82,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         layout.use_property_split = True
         layout.prop(self, "count")
         layout.column().prop(self, "to")
+        if "SEAMS" in self.to:
+            layout.prop(self, "unwrap")
         if "OBJECTS" in self.to:
             for name in ("closed", "smooth", "material", "origins", "explode", "shell", "hide"):
                 layout.prop(self, name)
@@ -119,7 +124,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         try:
             options = objects.Options(solids.Options(self.smooth, self.material), self.closed, self.origins,
                                       self.explode, self.shell)
-            made = writing.write(obj, cut, self.to, options=options).objects
+            made = writing.write(obj, cut, self.to, options=options, unwrap=self.unwrap).objects
         finally:
             if mode != "OBJECT" and not made:
                 bpy.ops.object.mode_set(mode=mode)

@@ -4,11 +4,11 @@
 from typing import NamedTuple
 
 from ..mesh import arrays
-from . import layers, objects, stored
+from . import layers, objects, stored, unwrapping
 
 LAYERS = {"FACE_SETS": layers.face_sets, "VERTEX_GROUPS": layers.vertex_groups, "COLORS": layers.own_materials,
           "MATERIALS": layers.kept_materials}
-TO = *LAYERS, "OBJECTS"
+TO = *LAYERS, "SEAMS", "OBJECTS"
 
 
 class Written(NamedTuple):
@@ -18,9 +18,9 @@ class Written(NamedTuple):
     objects: list
 
 
-def write(obj, cut, to=(), known=None, options=objects.Options()):
+def write(obj, cut, to=(), known=None, options=objects.Options(), unwrap=False):
     """Keeps the cut in the object's mesh and writes it: to, some of TO. known: {clusters: name} of parts that have one;
-    None: those that are kept in the mesh. options: of objects. Nothing has changed where it raises an Error. Outside
+    None: those that are kept in the mesh. options: of objects. unwrap: also by the seams. Nothing has changed where it raises an Error. Outside
     Edit Mode."""
     arrays.up_to_date(obj)
     if known is None:
@@ -29,7 +29,12 @@ def write(obj, cut, to=(), known=None, options=objects.Options()):
     names = stored.names_of(obj, cut, known)
     if "VERTEX_GROUPS" in to:
         layers.check_locks(obj, names)
-    made = objects.made(obj, cut, names, options) if "OBJECTS" in to else []
+    take_back = unwrapping.mark(obj, cut, unwrap) if "SEAMS" in to else lambda: None
+    try:
+        made = objects.made(obj, cut, names, options) if "OBJECTS" in to else []  # with the new UVs
+    except Exception:
+        take_back()
+        raise
     stored.keep(obj.data, cut.labels, names)
     for layer in LAYERS:
         if layer in to:

@@ -6,7 +6,9 @@ from functools import cached_property
 import numpy as np
 
 CREASE, HIDDEN = 4.0, 2.0  # how much less a cut costs along an edge at a right angle; in a hollow so much less again
-SHORTEST = 1e-6  # an edge counts as at least so long, times the mean: ways that cost nothing lead in circles
+DIGITS = 9  # of costs, after the point: beyond them processors differ
+RINGS = 4  # so many of the shortest are tried, where a surface without a border is cut open first
+SHORTEST = 1e-6  # an edge counts as so long at least, in means: ways that cost nothing lead in circles
 
 
 class Sheet:
@@ -45,8 +47,9 @@ class Sheet:
         sharp = np.sqrt(np.maximum(1 - np.einsum("ij,ij->i", normals[one], normals[other]), 0))  # 1 at a right angle
         hollow = np.einsum("ij,ij->i", normals[one], middles[other] - start) > 0
         length = np.linalg.norm(end - start, axis=1)
-        length = np.maximum(length, SHORTEST * length.mean()) if len(length) else length
-        return length / (1 + CREASE * sharp * np.where(hollow, HIDDEN, 1))
+        unit = 2.0 ** np.floor(np.log2(max(length.mean(), 1e-300))) if len(length) else 1.0
+        cost = np.maximum(length / unit, SHORTEST) / (1 + CREASE * sharp * np.where(hollow, HIDDEN, 1))
+        return np.round(cost, DIGITS) * unit
 
     def part(self, chosen):
         """The Sheet of some triangles (n,), numbered in this order; edges keep their numbers."""
@@ -143,17 +146,16 @@ def cut_back(patch, cut, by, before, vertex):
         vertex = before[vertex]
 
 
-def opened(sheet):
-    """cut (P,) bool that makes a connected Sheet a disk: a tube along a way from one end to the other, a sphere from one
-    of its farthest points to the other, a handle around and along."""
-    cut = np.zeros(len(sheet.edge), bool)
+def opened(sheet, cut=None):
+    """cut (P,) bool that makes a connected Sheet, that has these cuts, a disk: a tube along a way from one end to the
+    other, a sphere from one of its farthest points to the other, a handle around and along."""
+    cut = np.zeros(len(sheet.edge), bool) if cut is None else cut.copy()
     patch = Patch(sheet, cut)
     euler = patch.euler()
     if euler == 1:
         return cut
-    start = np.flatnonzero(patch.rim)
-    if not len(start):
-        start = np.array([_farthest(patch.ways([0])[0])])
+    closed = not patch.rim.any()
+    start = [_farthest(patch.ways([0])[0])] if closed else np.flatnonzero(patch.rim)
     distance, by, before = patch.ways(start)
     if euler == 2:
         cut_back(patch, cut, by, before, _farthest(distance))
@@ -173,15 +175,26 @@ def opened(sheet):
             group[triangle] = triangle = group[group[triangle]]
         return triangle
 
+    needed = []
     for number in others[np.argsort(-through, kind="stable")].tolist():
         one, other = map(find, sheet.pair[patch.kept[number]].tolist())
         if one != other:
             group[max(one, other)] = min(one, other)
-            continue
-        cut[patch.kept[number]] = True
-        for vertex in patch.joined[number].tolist():
-            cut_back(patch, cut, by, before, vertex)
-    return cut
+        else:
+            needed.append(number)
+
+    def through_all(numbers):
+        new = cut.copy()
+        for number in numbers:
+            new[patch.kept[number]] = True
+            for vertex in patch.joined[number].tolist():
+                cut_back(patch, new, by, before, vertex)
+        return new
+
+    if closed:  # all lead through one point: better from one of the rings on
+        rings = [opened(sheet, through_all([number])) for number in needed[-RINGS:]]
+        return min(rings, key=lambda each: sheet.cost[each].sum())
+    return through_all(needed)
 
 
 def _farthest(distance):

@@ -10,6 +10,7 @@ MOST_STEPS = 3000
 SMOOTHED = 3  # so many rounds: a peak is to be more than one sharp vertex
 SADDLE = 0.5  # a cut to a saddle makes its surroundings cover each other: not so soon
 NEXT, FAR = 0.5, 2.0  # peaks at a time: those half as high, so much farther apart than from the rim
+DIGITS = 6  # of heights: of what is the same on both sides of a model the lower number comes first
 FINE = 192  # pixels that an outline is wide or high
 
 
@@ -54,8 +55,8 @@ class Flat:
         return np.maximum(factor, 1 / np.maximum(factor, 1e-9)) @ area
 
     def peaks(self, away, most):
-        """[vertex, ...] at most so many that are scaled most, up or down, each farther from the others than they are from the rim:
-        away (vertices,). By what is around them, so that noise is none."""
+        """[vertex, ...] at most so many that are scaled most, up or down, each farther from the others than they are from
+        the rim: away (vertices,). By what is around them, so that noise is none."""
         patch, smooth = self.patch, self.scale
         a, b = patch.joined.T
         around = 1 + np.bincount(a, minlength=patch.count) + np.bincount(b, minlength=patch.count)
@@ -63,9 +64,10 @@ class Flat:
             smooth = np.where(patch.rim, 0, (smooth + np.bincount(a, smooth[b], patch.count)
                                              + np.bincount(b, smooth[a], patch.count)) / around)
         size = np.where(smooth < 0, -smooth, SADDLE * smooth)
+        size = np.round(size / max(size.max(initial=0), 1e-300), DIGITS)
         places = np.empty((patch.count, 3))
         places[patch.vertex] = patch.sheet.places[patch.sheet.triangles]
-        likely = np.flatnonzero((size > NEXT * size.max(initial=0)) & np.isfinite(away))
+        likely = np.flatnonzero((size > NEXT) & np.isfinite(away))
         likely, found = likely[np.argsort(-size[likely], kind="stable")], []
         while len(likely) and len(found) < most:
             found.append(int(likely[0]))

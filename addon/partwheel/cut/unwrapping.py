@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A cut as seams, and the mesh unwrapped along them by Blender. Outside Edit Mode; undo is the caller's."""
+
+import bpy
+import numpy as np
+
+from ..mesh import arrays
+from ..mesh.refusing import Refused
+from partwheel.cut import seams
+
+MOST_MAPS = 8  # UV maps that a mesh can have
+NAME, BESIDE = "UVMap", "Parts"  # of the first UV map; of ours, where there are others
+
+
+def mark(obj, cut, unwrap):
+    """Seams along the borders of the parts, in place of all that there were, and as many more as each part needs to lie
+    flat. unwrap: a UV map by them, the active one; others stay, also the one that is rendered. Returns a function that
+    takes it all back. Raises Refused if there are too many UV maps, and an Error; nothing has changed then."""
+    mesh = obj.data
+    own = mesh.uv_layers.get(BESIDE) if mesh.uv_layers else None
+    if unwrap and not own and len(mesh.uv_layers) == MOST_MAPS:
+        raise Refused(f"{obj.name} has {MOST_MAPS} UV maps, no more are possible: remove one.")
+    before = arrays.read(mesh.edges, "use_seam", bool)
+    ends, count = np.sort(arrays.edge_vertices(mesh), axis=1).astype(np.int64), len(mesh.vertices)
+    chosen = np.asarray(seams(*arrays.surface(mesh), cut), np.int64)
+    mesh.edges.foreach_set("use_seam", np.isin(ends @ [count, 1], chosen @ [count, 1]))
+    added, active, old = None, mesh.uv_layers.active_index, None
+    if unwrap:
+        places = _unwrapped(obj)
+        if own:
+            old = arrays.read(own.data, "uv", np.float32, 2).ravel()
+        else:
+            own = mesh.uv_layers.new(name=BESIDE if mesh.uv_layers else NAME, do_init=False)
+            added = own.name
+        own.data.foreach_set("uv", places)
+        mesh.uv_layers.active = own
+    mesh.update()
+
+    def take_back():
+        mesh.edges.foreach_set("use_seam", before)
+        if added:
+            mesh.uv_layers.remove(mesh.uv_layers[added])
+        elif old is not None:
+            mesh.uv_layers[BESIDE].data.foreach_set("uv", old)
+        mesh.uv_layers.active_index = active
+
+    return take_back
+
+
+def _unwrapped(original):
+    """(2 L,) UVs of an object's mesh by its seams: Blender's operator on a copy, in a scene of its own, so that neither what is
+    selected, hidden or edited nor the modifiers of an object matter."""
+    copy = bpy.data.meshes.new_from_object(original)  # mesh.copy() leaves shape keys behind
+    scene, obj = bpy.data.scenes.new("Unwrap"), bpy.data.objects.new("Unwrap", copy)
+    try:
+        while copy.uv_layers:
+            copy.uv_layers.remove(copy.uv_layers[0])
+        copy.uv_layers.new()
+        scene.collection.objects.link(obj)
+        layer = scene.view_layers[0]
+        layer.objects.active = obj
+        context = {"scene": scene, "view_layer": layer, "object": obj, "active_object": obj}
+        with bpy.context.temp_override(**context, edit_object=None, mode="OBJECT"):
+            bpy.ops.object.mode_set(mode="EDIT")
+        with bpy.context.temp_override(**context, edit_object=obj):
+            bpy.ops.mesh.reveal(select=False)
+            bpy.ops.mesh.select_all(action="SELECT")
+            bpy.ops.uv.unwrap(method="ANGLE_BASED")
+            bpy.ops.object.mode_set(mode="OBJECT")
+        return arrays.read(copy.uv_layers[0].data, "uv", np.float32, 2).ravel()
+    finally:
+        bpy.data.objects.remove(obj)
+        bpy.data.meshes.remove(copy)
+        bpy.data.scenes.remove(scene)

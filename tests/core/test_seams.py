@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Seams: what a surface falls into along them is counted here corner by corner, by scipy; scales and outlines are
+compared with shapes that are known."""
+
+import functools
+
+import numpy as np
+import pytest
+import trimesh
+from conftest import ROOT
+from partwheel import Hierarchy, meshes
+from partwheel.cut import Cut, seams
+from partwheel.cut.patches import Patch, Sheet, opened
+from partwheel.cut.stretch import Flat
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+
+@functools.cache
+def model(name):
+    """(Mesh, Cut): of homer and the elephant, which are used exactly, the cow, which is filled from points and has holes,
+    and the double torus."""
+    mesh = meshes.read(ROOT / "build" / "deps" / "meshes" / f"{name}.off")
+    hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count)
+    return mesh, Cut.automatic(hierarchy)
+
+
+MODELS = "homer", "elephant", "cow", "double-torus-example"
+found = functools.cache(lambda name: seams(*model(name)[0][:4], model(name)[1]))
+
+
+def groups(count, pairs):
+    pairs = np.array(pairs, int).reshape(-1, 2)
+    return connected_components(coo_matrix((np.ones(len(pairs)), pairs.T), (count, count)), directed=False)[1]
+
+
+def islands(triangles, cut):
+    """[Euler characteristic, ...] of what triangles fall into along edges; corners are joined across each other edge that
+    has two triangles."""
+    cut = {*map(tuple, np.sort(cut, axis=1).tolist())}
+    at = {}
+    for triangle, corners in enumerate(triangles.tolist()):
+        for k in range(3):
+            at.setdefault(tuple(sorted((corners[k], corners[(k + 1) % 3]))), []).append(triangle)
+    faces, joined, edges = [], [], []
+    for edge, sides in at.items():
+        kept = len(sides) == 2 and edge not in cut
+        if kept:
+            one, other = sides
+            faces.append((one, other))
+            joined += [(3 * one + triangles[one].tolist().index(end), 3 * other + triangles[other].tolist().index(end))
+                       for end in edge]
+        edges += sides[:1] if kept else sides
+    island, corner = groups(len(triangles), faces), groups(3 * len(triangles), joined)
+    vertices = np.unique(np.column_stack([corner, np.repeat(island, 3)]), axis=0)[:, 1]
+    return np.bincount(vertices) - np.bincount(island[edges]) + np.bincount(island)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_every_island_is_a_disk(name):
+    mesh, cut = model(name)
+    before = islands(mesh.triangles, np.zeros((0, 2), int))
+    after = islands(mesh.triangles, found(name))
+    assert (before != 1).any() and (after == 1).all()
+    assert len(before) <= len(after) < max(4 * len(cut), 2 * len(before))
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_seams_are_edges_of_the_mesh_each_once(name):
+    mesh, ends = model(name)[0], found(name)
+    edges = {*map(tuple, np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1).tolist())}
+    assert len({*map(tuple, ends.tolist())} & edges) == len(ends)
+
+
+def test_seams_are_the_same_again_and_prefer_creases():
+    mesh, cut = model("homer")
+    assert (seams(*mesh[:4], cut) == found("homer")).all()
+    whole = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False)
+    angle = dict(zip(map(tuple, np.sort(whole.face_adjacency_edges, axis=1).tolist()), whole.face_adjacency_angles))
+    plain = np.sort(whole.face_adjacency_edges[np.diff(cut.labels[whole.face_adjacency], axis=1)[:, 0] != 0], axis=1)
+    ours, borders, all_of_them = (np.mean([angle[tuple(edge)] for edge in edges]) for edges in (
+        found("homer").tolist(), plain.tolist(), list(angle)))
+    assert ours > 1.3 * all_of_them and ours > borders
+
+
+def test_less_stretch_takes_more_seams():
+    mesh, cut = model("elephant")
+    assert len(seams(*mesh[:4], cut, stretch=1.3)) < len(found("elephant")) < len(seams(*mesh[:4], cut, stretch=1.05))
+
+
+def test_parts_that_are_flat_get_no_other_seams_than_their_borders():
+    box = trimesh.creation.box((1, 1, 1)).subdivide().subdivide()
+    hierarchy = Hierarchy.build(box.vertices, box.faces)
+    sides = np.unique(box.face_normals.round(), axis=0, return_inverse=True)[1]
+    ends = seams(box.vertices, box.faces, np.arange(len(box.faces)), len(box.faces),
+                 Cut.of_labels(hierarchy, sides.ravel()))
+    places = box.vertices[ends]
+    assert ((abs(places) == 0.5).all(axis=1).sum(axis=1) >= 2).all()  # along the box's edges
+    assert len(islands(np.array(box.faces), ends)) in range(1, 7)
+
+
+def opened_shape(vertices, triangles, faces=None):
+    sheet = Sheet(vertices, triangles, np.arange(len(triangles)) if faces is None else faces)
+    return sheet, opened(sheet)
+
+
+def tube(height=3.0, around=24, rings=12, radius=1.0):
+    """Quads, as triangles, and the quad of each; without ends."""
+    angle, z = np.meshgrid(np.arange(around) * 2 * np.pi / around, np.linspace(0, height, rings + 1))
+    vertices = np.column_stack([radius * np.cos(angle).ravel(), radius * np.sin(angle).ravel(), z.ravel()])
+    a = (np.arange(rings)[:, None] * around + np.arange(around)).ravel()
+    b = (np.arange(rings)[:, None] * around + (np.arange(around) + 1) % around).ravel()
+    triangles = np.stack([np.column_stack([a, b, b + around]), np.column_stack([a, b + around, a + around])], axis=1)
+    return vertices, triangles.reshape(-1, 3), np.repeat(np.arange(len(a)), 2)
+
+
+def test_a_tube_is_cut_straight_along_sides_of_its_polygons():
+    vertices, triangles, faces = tube()
+    sheet, cut = opened_shape(vertices, triangles, faces)
+    ends = vertices[sheet.ends[sheet.edge[cut]]]
+    assert len(ends) == 12 and np.ptp(ends[..., :2].reshape(-1, 2), axis=0).max() == 0
+    assert not sheet.inner[cut].any() and (islands(triangles, sheet.ends[sheet.edge[cut]]) == 1).all()
+
+
+@pytest.mark.parametrize("shape, longest", [
+    (trimesh.creation.icosphere(3), 1.2 * np.pi),  # half way around
+    (trimesh.creation.torus(2, 0.7, 48, 24), 1.05 * 2 * np.pi * (0.7 + 1.3)),  # around it and around the hole
+    (trimesh.creation.annulus(1, 2, 0.5), 1.05 * (2 * np.pi * 1 + 3))])
+def test_closed_shapes_are_cut_to_disks_by_short_ways(shape, longest):
+    sheet, cut = opened_shape(shape.vertices, shape.faces)
+    ends = sheet.ends[sheet.edge[cut]]
+    assert islands(np.array(shape.faces), ends).tolist() == [1]
+    assert 0 < np.linalg.norm(np.diff(shape.vertices[ends], axis=1)[:, 0], axis=1).sum() < longest
+
+
+def test_a_band_with_one_side_becomes_a_disk_too():
+    turn = np.arange(40) * 2 * np.pi / 40
+    across = np.array([-0.3, 0, 0.3])[None, :] * np.cos(turn / 2)[:, None], \
+        np.array([-0.3, 0, 0.3])[None, :] * np.sin(turn / 2)[:, None]
+    vertices = np.stack([(1 + across[0]) * np.cos(turn)[:, None], (1 + across[0]) * np.sin(turn)[:, None], across[1]],
+                        axis=2).reshape(-1, 3)
+    triangles = []
+    for k in range(40):
+        here, there = [3 * k + j for j in range(3)], [3 * ((k + 1) % 40) + j for j in range(3)]
+        there = there if k < 39 else there[::-1]
+        triangles += [(here[j], here[j + 1], there[j]) for j in range(2)] + [
+            (here[j + 1], there[j + 1], there[j]) for j in range(2)]
+    sheet, cut = opened_shape(vertices, np.array(triangles))
+    assert islands(np.array(triangles), np.zeros((0, 2), int)).tolist() == [0]
+    assert islands(np.array(triangles), sheet.ends[sheet.edge[cut]]).tolist() == [1]
+
+
+def disk(place, rings=24, around=96, to=1.0, closed=True):
+    """A Patch of rings around a middle, or of a sector: place(radius 0..1, angle) -> (n,3)."""
+    count = around if closed else around + 1
+    radius, angle = np.meshgrid(np.linspace(0, 1, rings + 1), np.arange(count) * 2 * np.pi * to / around,
+                                indexing="ij")
+    vertices = place(radius.ravel(), angle.ravel())
+    step = np.arange(around)
+    a = (np.arange(rings)[:, None] * count + step).ravel()
+    b = (np.arange(rings)[:, None] * count + (step + 1) % count).ravel()
+    triangles = np.concatenate([np.column_stack([a, a + count, b + count]), np.column_stack([a, b + count, b])])
+    if closed:
+        triangles = np.where(triangles < count, 0, triangles)
+        triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
+    sheet = Sheet(vertices, triangles, np.arange(len(triangles)))
+    return Patch(sheet, np.zeros(len(sheet.edge), bool))
+
+
+@pytest.mark.parametrize("most", [0.4, 1.0, 1.5])
+def test_a_cap_of_a_sphere_is_scaled_as_the_stereographic_projection_does(most):
+    patch = disk(lambda radius, angle: np.column_stack([np.sin(most * radius) * np.cos(angle), np.sin(
+        most * radius) * np.sin(angle), np.cos(most * radius)]))
+    flat = Flat(patch)
+    places = np.empty((patch.count, 3))
+    places[patch.vertex] = patch.sheet.places[patch.sheet.triangles]
+    expected = np.cos(most / 2) ** 2 / np.cos(np.arccos(np.clip(places[:, 2], -1, 1)) / 2) ** 2
+    assert abs(np.exp(flat.scale) / expected - 1).max() < 0.01
+    # And so are areas: by the factor's square, in the mean over the cap.
+    at = np.linspace(0, most, 2001)
+    share, factor = np.sin(at), 1 / np.cos(at / 2) ** 4
+    factor /= np.average(factor, weights=share)
+    assert flat.stretch() == pytest.approx(np.average(np.maximum(factor, 1 / factor), weights=share), rel=0.01)
+    assert flat.covered() == 0
+
+
+@pytest.mark.parametrize("turns, expected", [(0.5, 0), (0.95, 0), (1.5, 0.5), (1.25, 0.25)])
+def test_a_ramp_that_goes_around_more_than_once_covers_itself(turns, expected):
+    patch = disk(lambda radius, angle: np.column_stack([(1 + radius) * np.cos(angle), (1 + radius) * np.sin(angle),
+                                                        1e-3 * angle]), to=turns, closed=False)
+    assert Flat(patch).covered() == pytest.approx(expected, abs=0.01)
