@@ -209,7 +209,7 @@ fill_windows_python() {
 }
 
 setup_bench() {
-    setup_build && venv bench /usr/bin/python3 numpy scipy matplotlib && venv peers /usr/bin/python3 coacd vhacdx numpy
+    setup_build && venv bench /usr/bin/python3 numpy scipy matplotlib && venv peers /usr/bin/python3 coacd vhacdx xatlas numpy
 }
 
 setup_bpy() {

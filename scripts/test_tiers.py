@@ -27,7 +27,7 @@ SHOWN = 60  # lines of a failed command's output
 # The scenarios that the newest Blender plays: those where Blenders differed, and each way of use once. With
 # PARTWHEEL_NEWEST=all these too: all but those that build large models, measure, or only make pictures.
 NEWEST = ("cage", "compose_finger", "deform_keys", "deform_more", "industry", "linked", "move", "navigate", "panel",
-          "parts_to", "seen", "tool", "ways", "windows")
+          "parts_to", "seen", "three_clicks", "tool", "ways", "windows")
 MORE_OF_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "confirm_enter", "creases", "deform",
                   "deform_within", "duplicate", "empty_space", "left_out", "limits", "menu", "open_mesh", "overlays",
                   "pick_and_click", "quad_view", "restore", "select_modes", "while_building")

@@ -191,13 +191,15 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         return self._hold(context, obj, hierarchy)
 
     def _clicked(self, context, event, over):
-        """A click takes a part for the wheel; a drag from one to another merges them."""
+        """A click takes a part for the wheel, one beside it none, and then all is made; a drag merges two."""
         face = self._face(over)
         if event.value in {"PRESS", "DOUBLE_CLICK"}:
             self.pressed = face
         if event.value != "RELEASE" or self.pressed is None:  # None: it was pressed before all this
             return {"RUNNING_MODAL"}
         begun, self.pressed = self.pressed, None
+        if begun == face == NO_FACE and self.state.part is None:
+            return self._confirmed(context)
         if NO_FACE in (begun, face):
             return self._show(context, self.state.clicked(None)) if begun == face else {"RUNNING_MODAL"}
         labels = self.state.cut.labels

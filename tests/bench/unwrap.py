@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What seams of parts are worth, beside Smart UV Project and xatlas: a table of islands, stretch and time. Called by
+scripts/bench_seams: in bpy's Python with the model files and the Python that has xatlas; by that with "xatlas" IN OUT."""
+
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "native" / "python"), str(ROOT / "tests" / "addon")]
+
+
+def by_xatlas(source, target):
+    """(T,3,2) UVs and the seconds, from and to .npz files."""
+    import xatlas
+
+    with np.load(source) as mesh:
+        vertices, triangles = mesh["vertices"].astype(np.float32), mesh["triangles"].astype(np.uint32)
+    began = time.process_time()
+    atlas = xatlas.Atlas()
+    atlas.add_mesh(vertices, triangles)
+    atlas.generate()
+    seconds = time.process_time() - began
+    _, indices, uv = atlas[0]
+    np.savez(target, uv=(uv * [atlas.width, atlas.height])[indices], seconds=seconds)  # pixels: the atlas is no square
+
+
+def main(python, names):
+    import bpy
+    from partwheel import Hierarchy, meshes
+    from partwheel.cut import Cut, seams
+    from uv_measures import measured
+
+    def unwrapped(vertices, triangles, ends, operator, **options):
+        mesh = bpy.data.meshes.new("model")
+        mesh.from_pydata(vertices.tolist(), [], triangles.tolist())
+        obj = bpy.data.objects.new("model", mesh)
+        bpy.context.scene.collection.objects.link(obj)
+        bpy.context.view_layer.objects.active = obj
+        edges = np.empty(2 * len(mesh.edges), np.int32)
+        mesh.edges.foreach_get("vertices", edges)
+        mesh.edges.foreach_set("use_seam", np.isin(np.sort(edges.reshape(-1, 2).astype(np.int64)) @ [len(vertices), 1],
+                                                   ends.astype(np.int64) @ [len(vertices), 1]))
+        mesh.uv_layers.new()
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="SELECT")
+        began = time.process_time()
+        operator(**options)
+        seconds = time.process_time() - began
+        bpy.ops.object.mode_set(mode="OBJECT")
+        uv = np.empty(6 * len(triangles), np.float32)
+        mesh.uv_layers.active.data.foreach_get("uv", uv)
+        bpy.data.objects.remove(obj)
+        bpy.data.meshes.remove(mesh)
+        return uv.reshape(-1, 3, 2).astype(float), seconds
+
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    print("| model | faces | islands: ours, Smart UV, xatlas | angles | areas | covered twice, % | seconds | holds |\n"
+          "| --- | --- | --- | --- | --- | --- | --- | --- |", flush=True)
+    held = 0
+    for path in map(Path, names):
+        model = meshes.read(path)
+        model = model._replace(vertices=model.vertices.astype(np.float32).astype(float))
+        cut = Cut.automatic(Hierarchy.build(*model[:4]))
+        began = time.process_time()
+        ends = seams(*model[:4], cut)
+        own = time.process_time() - began
+        uv, seconds = unwrapped(*model[:2], ends, bpy.ops.uv.unwrap, method="ANGLE_BASED")
+        maps = [(uv, own + seconds), unwrapped(*model[:2], ends[:0], bpy.ops.uv.smart_project)]
+        with tempfile.TemporaryDirectory() as folder:
+            source, target = Path(folder) / "in.npz", Path(folder) / "out.npz"
+            np.savez(source, vertices=model.vertices, triangles=model.triangles)
+            subprocess.run([python, __file__, "xatlas", source, target], check=True)
+            with np.load(target) as result:
+                maps.append((result["uv"], float(result["seconds"])))
+        ours, smart, atlas = found = [measured(*model[:2], uv) for uv, _ in maps]
+        holds = ours.islands < min(smart.islands, atlas.islands) and ours.angle <= smart.angle and ours.area <= smart.area
+        held += holds
+        cells = [", ".join(form % each for each in values) for form, values in (
+            ("%d", [each.islands for each in found]), ("%.3f", [each.angle for each in found]),
+            ("%.3f", [each.area for each in found]), ("%.2f", [100 * each.covered for each in found]),
+            ("%.1f", [seconds for _, seconds in maps]))]
+        print(f"| {path.stem} | {len(model.triangles):,} | {' | '.join(cells)} | {'yes' if holds else 'no'} |", flush=True)
+    print(f"\nFewer islands than both at no more stretch than Smart UV's, of angles and of areas: {held} of {len(names)}.")
+
+
+if sys.argv[1] == "xatlas":
+    by_xatlas(*sys.argv[2:])
+else:
+    main(sys.argv[1], sys.argv[2:])
