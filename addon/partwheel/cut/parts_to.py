@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """mesh.partwheel_parts: the whole model in parts, seen in colours, edited with wheel, clicks and drags, and written to
-face sets, vertex groups, materials, objects. Nothing changes before it is confirmed."""
+face sets, vertex groups, materials, seams, objects. Nothing changes before it is confirmed."""
 
 import json
 

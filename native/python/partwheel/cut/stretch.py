@@ -51,8 +51,8 @@ class Flat:
         """How much areas differ: the mean, by area, of by what factor a place is too large or too small."""
         area = self.patch.sheet.areas / max(self.patch.sheet.areas.sum(), 1e-300)
         factor = np.exp(np.clip(2 * self.scale[self.patch.vertex].mean(axis=1), -50, 50))
-        factor /= max(factor @ area, 1e-300)
-        return np.maximum(factor, 1 / np.maximum(factor, 1e-9)) @ area
+        factor /= max(_dot(factor, area), 1e-300)
+        return _dot(np.maximum(factor, 1 / np.maximum(factor, 1e-9)), area)
 
     def peaks(self, away, most):
         """[vertex, ...] at most so many that are scaled most, up or down, each farther from the others than they are from
@@ -106,19 +106,24 @@ def _covered_twice(outline):
 def _solved(applied, right, diagonal, begin):
     """Conjugate gradients."""
     found, rest = begin, right - applied(begin)
-    goal = EXACT * EXACT * (right @ (right / diagonal))
+    goal = EXACT * EXACT * _dot(right, right / diagonal)
     ready = rest / diagonal
-    way, size = ready, rest @ ready
+    way, size = ready, _dot(rest, ready)
     for _ in range(MOST_STEPS):
         if size <= goal:
             break
         image = applied(way)
-        down = way @ image
+        down = _dot(way, image)
         if down <= 0:
             break
         found = found + size / down * way
         rest = rest - size / down * image
         ready = rest / diagonal
-        size, before = rest @ ready, size
+        size, before = _dot(rest, ready), size
         way = ready + size / before * way
     return found
+
+
+def _dot(one, other):
+    """Without BLAS, which adds in another order on other processors, and waits for its threads."""
+    return float((one * other).sum())
