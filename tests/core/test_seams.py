@@ -104,9 +104,11 @@ def opened_shape(vertices, triangles, faces=None):
     return sheet, opened(sheet)
 
 
-def tube(height=3.0, around=24, rings=12, radius=1.0):
-    """Quads, as triangles, and the quad of each; without ends."""
+def tube(height=3.0, around=24, rings=12, radius=np.ones(24), twist=0):
+    """Quads, as triangles, and the quad of each; without ends. twist: each ring is turned by so many quads, back."""
     angle, z = np.meshgrid(np.arange(around) * 2 * np.pi / around, np.linspace(0, height, rings + 1))
+    angle -= twist * np.arange(rings + 1)[:, None] * 2 * np.pi / around
+    radius = np.tile(radius, rings + 1)
     vertices = np.column_stack([radius * np.cos(angle).ravel(), radius * np.sin(angle).ravel(), z.ravel()])
     a = (np.arange(rings)[:, None] * around + np.arange(around)).ravel()
     b = (np.arange(rings)[:, None] * around + (np.arange(around) + 1) % around).ravel()
@@ -120,6 +122,35 @@ def test_a_tube_is_cut_straight_along_sides_of_its_polygons():
     ends = vertices[sheet.ends[sheet.edge[cut]]]
     assert len(ends) == 12 and np.ptp(ends[..., :2].reshape(-1, 2), axis=0).max() == 0
     assert not sheet.inner[cut].any() and (islands(triangles, sheet.ends[sheet.edge[cut]]) == 1).all()
+
+
+def test_a_tube_that_is_twisted_is_not_cut_along_diagonals():
+    vertices, triangles, faces = tube(twist=1)  # these are straight, and the shortest way
+    sheet, cut = opened_shape(vertices, triangles, faces)
+    assert sheet.inner.any() and not sheet.inner[cut].any()
+    assert islands(triangles, sheet.ends[sheet.edge[cut]]).tolist() == [1]
+    sheet, cut = opened_shape(vertices, triangles)
+    assert np.ptp(vertices[sheet.ends[sheet.edge[cut]]][..., :2].reshape(-1, 2), axis=0).max() < 1e-9
+    # Of a closed one, a ring, neither.
+    ring = triangles.reshape(12, -1, 3)
+    joined = np.where(ring >= 12 * 24, ring - 12 * 24, ring).reshape(-1, 3)
+    turned = vertices.copy()
+    turned[:, 0], turned[:, 2] = (3 + vertices[:, 0]) * np.cos(vertices[:, 2] * 2 * np.pi / 3), (
+        3 + vertices[:, 0]) * np.sin(vertices[:, 2] * 2 * np.pi / 3)
+    sheet, cut = opened_shape(turned, joined, faces)
+    assert not sheet.inner[cut].any() and islands(joined, sheet.ends[sheet.edge[cut]]).tolist() == [1]
+
+
+@pytest.mark.parametrize("radius", [0.6, 1.4])
+def test_a_tube_is_cut_where_it_can_be_seen_least(radius):
+    profile = np.ones(24)
+    profile[7] = radius  # a groove, or a ridge, along it
+    profile[15] = 2 - radius
+    vertices, triangles, faces = tube(radius=profile)
+    sheet, cut = opened_shape(vertices, triangles, faces)
+    ends = sheet.ends[sheet.edge[cut]]
+    assert len(ends) == 12 and len({*(ends % 24).ravel().tolist()}) == 1
+    assert profile[ends[0, 0] % 24] < 1
 
 
 @pytest.mark.parametrize("shape, longest", [

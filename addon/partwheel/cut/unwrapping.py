@@ -48,8 +48,8 @@ def mark(obj, cut, unwrap):
 
 
 def _unwrapped(original):
-    """(2 L,) UVs of an object's mesh by its seams: Blender's operator on a copy, in a scene of its own, so that neither what is
-    selected, hidden or edited nor the modifiers of an object matter."""
+    """(2 L,) UVs of an object's mesh by its seams: Blender's operator on a copy, in a scene of its own, so that neither
+    what is selected, hidden or edited nor the modifiers of an object matter."""
     copy = bpy.data.meshes.new_from_object(original)  # mesh.copy() leaves shape keys behind
     scene, obj = bpy.data.scenes.new("Unwrap"), bpy.data.objects.new("Unwrap", copy)
     try:

@@ -20,8 +20,8 @@ class Written(NamedTuple):
 
 def write(obj, cut, to=(), known=None, options=objects.Options(), unwrap=False):
     """Keeps the cut in the object's mesh and writes it: to, some of TO. known: {clusters: name} of parts that have one;
-    None: those that are kept in the mesh. options: of objects. unwrap: also by the seams. Nothing has changed where it raises an Error. Outside
-    Edit Mode."""
+    None: those that are kept in the mesh. options: of objects. unwrap: also by the seams. Nothing has changed where it
+    raises an Error. Outside Edit Mode."""
     arrays.up_to_date(obj)
     if known is None:
         kept = stored.found(obj, cut.hierarchy)

@@ -1,5 +1,5 @@
-"""A fused, textured figure taken apart in three clicks: on the figure, on the panel's button, beside the figure. Before them
-nothing is known of its parts; after them there are named, closed, textured objects. The log has the time on the clock."""
+"""A fused, textured figure taken apart in three clicks: on the figure, on the panel's button, beside the figure. Before
+them nothing is known of its parts; after them there are named, closed, textured objects. The log has the time."""
 import time
 
 import bpy

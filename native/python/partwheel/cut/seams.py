@@ -114,7 +114,7 @@ class _Tree:
     def divided(self, sheet):
         """(T,) 1 on one side of a patch, else 0: of the nodes on the way to its largest piece, and those beside the way,
         the one with the shortest border for what it takes off. None if there is none."""
-        place, share = self.place[sheet.faces], sheet.areas / sheet.areas.sum()
+        place, share = self.place[sheet.faces], sheet.areas / max(sheet.areas.sum(), 1e-300)
         best, found, cluster = np.inf, None, self.tree.root
         while children := self.tree.children(cluster):
             sides = [(first <= place) & (place < last) for first, last in map(self.tree.run, children)]

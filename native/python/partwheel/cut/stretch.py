@@ -15,7 +15,7 @@ FINE = 192  # pixels that an outline is wide or high
 
 
 class Flat:
-    """Patches that are one disk, laid flat so that all angles stay and the rim keeps its length: of all ways to keep the
+    """A Patch that is a disk, laid flat so that all angles stay and the rim keeps its length: of all ways to keep the
     angles the one in which areas differ least.
 
     scale (vertices,) the natural logarithm of how much longer lengths get at each vertex: negative on bulges, positive
