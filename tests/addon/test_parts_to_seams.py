@@ -73,6 +73,18 @@ class Seams(PartsCase):
             part("api").write(obj, cut, {"SEAMS"})
             self.assertTrue((seams(obj.data) == before).all())
 
+    def test_polygons_of_more_corners(self):
+        for add in (bpy.ops.mesh.primitive_torus_add, bpy.ops.mesh.primitive_cylinder_add,
+                    bpy.ops.mesh.primitive_uv_sphere_add, bpy.ops.mesh.primitive_monkey_add):
+            add()
+            obj = bpy.context.active_object
+            self.assertGreater(max(len(polygon.vertices) for polygon in obj.data.polygons), 3)
+            for count in (1, 4):
+                part("api").write(obj, part("api").parts(obj, count), {"SEAMS"}, unwrap=True)
+                euler, own = islands_by_seams(obj.data)
+                self.assertEqual({*euler}, {1}, (obj.name, count))
+                self.assertGreaterEqual(len(euler), count)
+
     def test_unwrapped_as_the_seams_say_with_fewer_islands_than_smart_uv(self):
         for name, obj, cut in self.each():
             part("api").write(obj, cut, {"SEAMS"}, unwrap=True)
