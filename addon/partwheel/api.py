@@ -194,7 +194,8 @@ def write(obj, cut, to=(), names=None, closed=True, origins=True, explode=0.0, s
     any of these: "FACE_SETS"; "VERTEX_GROUPS", for an armature: 1 within a part, falling smoothly across its borders,
     adding up to 1; "COLORS", a material of its own for each part; "MATERIALS", the mesh's own, with a slot for each
     part; "SEAMS", along the borders, in creases, and where a part would not lie flat otherwise, in place of the mesh's;
-    "OBJECTS", in a new collection, each the child of the part that it hangs on.
+    "OBJECTS", in a new collection, each the child of the part that it hangs on; "BONES": the vertex groups, and an
+    armature with bones of their names, obj.find_armature(), that moves the object.
 
     names: one for each part; None: those that are kept, or such as say what is left, right and alike. Objects: closed:
     as solids that make the whole, else their own polygons alone. origins: in the middle of the border, else all where

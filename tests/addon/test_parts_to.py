@@ -306,7 +306,7 @@ class Written(PartsCase):
     def test_errors_change_nothing(self):
         obj, cut = self.model("pig")
         other, _ = self.model("elephant")
-        for call in (lambda: part("api").write(obj, cut, "OBJECTS"), lambda: part("api").write(obj, cut, {"BONES"}),
+        for call in (lambda: part("api").write(obj, cut, "OBJECTS"), lambda: part("api").write(obj, cut, {"WINGS"}),
                      lambda: part("api").write(obj, cut, names=["one"]),
                      lambda: part("api").write(other, cut, {"COLORS"})):
             with self.assertRaises(ValueError):

@@ -60,8 +60,19 @@ def crossings(solid):
     """How many pairs of triangles have more in common than corners and edges. Vertices made of the same one of the
     hierarchy, or of the same edge, are one: where a solid only touches itself there, it does not cross itself."""
     _, first, number = np.unique(np.sort(solid.ends, axis=1), axis=0, return_index=True, return_inverse=True)
-    vertices = np.ascontiguousarray(solid.vertices[first])
-    triangles = np.ascontiguousarray(number.reshape(-1)[solid.triangles], np.int32)
+    return _count(solid.vertices[first], number.reshape(-1)[solid.triangles])
+
+
+def count_crossings(vertices, triangles):
+    """The same of any mesh. Vertices at one place are one; triangles without area don't count."""
+    vertices, number = np.unique(vertices, axis=0, return_inverse=True)
+    triangles = number.ravel()[triangles]
+    a, b, c = vertices[triangles].transpose(1, 0, 2)
+    return _count(vertices, triangles[np.linalg.norm(np.cross(b - a, c - a), axis=1) > 0])
+
+
+def _count(vertices, triangles):
+    vertices, triangles = np.ascontiguousarray(vertices), np.ascontiguousarray(triangles, np.int32)
     function = _checks().crossings
     function.restype = ctypes.c_size_t
     function.argtypes = [ctypes.c_void_p, ctypes.c_size_t] * 2

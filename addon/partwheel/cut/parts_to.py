@@ -27,7 +27,8 @@ LABELS = {"FACE_SETS": ("Face Sets", "One for each part, in place of all that th
           "COLORS": ("Materials in Colours", "A material of its own colour for each part"),
           "MATERIALS": ("Material Slots", "The model's own materials, with a slot for each part"),
           "SEAMS": ("Seams", "For unwrapping: along the borders, in creases, and where a part would not lie flat"),
-          "OBJECTS": ("Objects", "Each part an object that hangs on the next one")}
+          "OBJECTS": ("Objects", "Each part an object that hangs on the next one"),
+          "BONES": ("Bones", "An armature with a bone for each part, and the vertex groups for it, ready to be posed")}
 STRONG, WEAK = 0.85, 0.4  # how far the part that was clicked covers the model, and the others beside it
 
 
@@ -132,6 +133,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             copy_part.only(context, made)
             if self.hide:
                 obj.hide_set(True)
+        elif "BONES" in self.to and mode == "OBJECT":
+            copy_part.only(context, [obj.find_armature()])
         self.count, self.clusters = len(cut), json.dumps(cut.parts)
         self.report({"INFO"}, f"{obj.name} in {len(cut)} parts"
                     + "".join(f", {LABELS[name][0]}" for name in writing.TO if name in self.to))

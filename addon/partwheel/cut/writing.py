@@ -4,11 +4,11 @@
 from typing import NamedTuple
 
 from ..mesh import arrays
-from . import layers, objects, stored, unwrapping
+from . import armature, layers, objects, stored, unwrapping
 
 LAYERS = {"FACE_SETS": layers.face_sets, "VERTEX_GROUPS": layers.vertex_groups, "COLORS": layers.own_materials,
           "MATERIALS": layers.kept_materials}
-TO = *LAYERS, "SEAMS", "OBJECTS"
+TO = *LAYERS, "SEAMS", "OBJECTS", "BONES"
 
 
 class Written(NamedTuple):
@@ -23,6 +23,7 @@ def write(obj, cut, to=(), known=None, options=objects.Options(), unwrap=False):
     None: those that are kept in the mesh. options: of objects. unwrap: also by the seams. Nothing has changed where it
     raises an Error. Outside Edit Mode."""
     arrays.up_to_date(obj)
+    to = {*to, "VERTEX_GROUPS"} if "BONES" in to else to
     if known is None:
         kept = stored.found(obj, cut.hierarchy)
         known = kept[1] if kept else {}
@@ -39,5 +40,7 @@ def write(obj, cut, to=(), known=None, options=objects.Options(), unwrap=False):
     for layer in LAYERS:
         if layer in to:
             LAYERS[layer](obj, cut, names)
+    if "BONES" in to:
+        armature.made(obj, cut, names)
     obj.data.update()
     return Written(names, made)

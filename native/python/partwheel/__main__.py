@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command line: python3 -m partwheel build MODEL [-o FILE] [--json] [options]
                      python3 -m partwheel parts MODEL -o FOLDER [--parts N] [--formats glb,ply,stl,3mf] [options]
+                         [--pegs MM or --flat, --wall MM, --size MM, --bed X,Y,Z]
 
 Exit codes: 0 built, 1 a named error, 2 wrong usage (a file that can't be opened or written included)."""
 
@@ -9,8 +10,10 @@ import json
 import sys
 from pathlib import Path
 
+import numpy as np
+
 from . import meshes
-from .cut import Cut, files
+from .cut import Cut, files, printing
 from .hierarchy import Hierarchy
 from .library import Error, Mode, Rung
 
@@ -36,12 +39,24 @@ def parse(arguments):
     parts.add_argument("-o", "--output", type=Path, metavar="FOLDER", required=True, help="write the files here")
     parts.add_argument("--parts", type=int, default=0, metavar="N",
                        help="how many (default: as people would most likely take)")
-    parts.add_argument("--formats", default="glb,ply", type=formats, metavar="F,...",
+    parts.add_argument("--formats", type=formats, metavar="F,...",
                        help="glb and 3mf: all parts as objects of one file; stl: a file for each; ply: the model "
-                            "itself, labelled and coloured (default: glb,ply)")
+                            "itself, labelled and coloured (default: glb,ply; for a printer 3mf,stl)")
+    _add_print_options(parts.add_argument_group("for a 3D printer", "needs pip install partwheel[printing]"))
     for command in (build, parts):
         _add_build_options(command)
     return parser.parse_args(arguments)
+
+
+def _add_print_options(printer):
+    printer.add_argument("--pegs", type=length, metavar="MM",
+                         help="cut flat, with a peg and a socket across each cut, and so much clearance; 0.2 is usual")
+    printer.add_argument("--flat", action="store_true", help="cut flat, without pegs")
+    printer.add_argument("--wall", type=length, default=1.2, metavar="MM",
+                         help="what stays around a socket; thinner walls are told of (default: 1.2)")
+    printer.add_argument("--size", type=length, metavar="MM",
+                         help="how long the model's longest side is to be (default: its unit is a millimetre)")
+    printer.add_argument("--bed", type=bed, metavar="X,Y,Z", help="split parts further that are larger, in millimetres")
 
 
 def _add_build_options(build):
@@ -79,6 +94,22 @@ def formats(text):
     return names
 
 
+def length(text):
+    """For argparse: millimetres, not below 0."""
+    value = float(text)
+    if not 0 <= value < float("inf"):
+        raise ValueError(f"{text} is no length")
+    return value
+
+
+def bed(text):
+    """For argparse: three lengths."""
+    sides = tuple(map(length, text.split(",")))
+    if len(sides) != 3 or not all(sides):
+        raise argparse.ArgumentTypeError("a bed has three lengths, as in 220,220,250")
+    return sides
+
+
 def show_progress(fraction, stage):
     print(f"\r{fraction:4.0%} {stage:<12}", end="", file=sys.stderr, flush=True)
 
@@ -101,10 +132,23 @@ def build(options, report):
                   account=hierarchy.account, **hierarchy.summary._asdict())
     if options.command == "parts":
         cut = Cut.into(hierarchy, options.parts) if options.parts > 0 else Cut.automatic(hierarchy)
-        written = files.write(options.output, options.model.stem, mesh, cut, options.formats)
+        solids, usual = None, ["glb", "ply"]
+        if options.pegs is not None or options.flat or options.bed or options.size:
+            cut, _, solids, pegs, notes = for_printer(options, mesh, cut)
+            usual = ["3mf", "stl"]
+            report.update(pegs=len(pegs), notes=notes)
+        written = files.write(options.output, options.model.stem, mesh, cut, options.formats or usual, printed=solids)
         report.update(parts=len(cut), files=list(map(str, written)))
     elif options.output:
         options.output.write_bytes(hierarchy.save())
+
+
+def for_printer(options, mesh, cut):
+    """The printing.Printable of a cut."""
+    longest = float(np.ptp(mesh.vertices, axis=0).max())
+    scale = options.size / longest if options.size and longest > 0 else 1.0
+    return printing.printable(cut, mesh.vertices, mesh.triangles, mesh.faces,
+                              printing.Options(scale, options.pegs, options.wall, options.bed))
 
 
 def describe(report):
@@ -119,6 +163,8 @@ def describe(report):
         lines.append(f"This format does not share vertices: {report['welded_vertices']} exact copies were joined.")
     if report.get("files"):
         lines += [f"{report['parts']} parts:", *(f"  {name}" for name in report["files"])]
+    if "pegs" in report:
+        lines += [f"Pegs: {report['pegs']}", *report["notes"]]
     lines += [f"  {stage:<12} {seconds:9.3f} s" for stage, seconds in report["seconds"].items()]
     if report["peak_memory_bytes"] is not None:
         lines.append(f"  peak memory  {report['peak_memory_bytes'] / 2**20:9.1f} MiB")

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The whole model in parts: a cut that can be edited, the parts' borders, seams and names, files of them."""
 
-from .borders import Border, Link, borders, links, weights
+from .bones import Bone, bones
+from .borders import Border, Link, borders, links, tree, weights
 from .colors import colors
 from .cut import Cut
 from .names import mirror_planes, named
 from .seams import seams
 
-__all__ = ["Border", "Cut", "Link", "borders", "colors", "links", "mirror_planes", "named", "seams", "weights"]
+__all__ = ["Bone", "Border", "Cut", "Link", "bones", "borders", "colors", "links", "mirror_planes", "named", "seams",
+           "tree", "weights"]

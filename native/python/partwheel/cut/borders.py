@@ -7,7 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..deform import surface_distances
-from ..joint import MOST, REACH, groups
+from ..joint import MOST, groups
+
+REACH = 1.0  # radii of a border in which weights fall, on either side: joints bend best so, see docs/bones.md
 
 
 class Border(NamedTuple):
@@ -60,6 +62,12 @@ def _border(vertices, pair, edges):
     return Border(tuple(pair.tolist()), np.unique(edges), center, float(radius), float(length.sum()))
 
 
+def tree(cut, vertices, triangles, labels):
+    """The Links of a cut's parts on the surface that it is of. labels (T,) the part of each triangle."""
+    middles = np.array([vertices[triangles[labels == part]].mean(axis=(0, 1)) for part in range(len(cut))])
+    return links(cut, borders(vertices, triangles, labels), middles)
+
+
 def links(cut, found, middles):
     """The tree of parts, a Link for each: what the cut's own tree joins first hangs together, by the longest of the
     Borders found there. The root is the part with the most volume. middles (parts,3): a loose piece goes with the
@@ -96,6 +104,14 @@ def links(cut, found, middles):
                 tree[other] = Link(part, border)
                 todo.append(other)
     return [tree[part] for part in range(len(cut))]
+
+
+def from_root(hung):
+    """The parts of a tree, each after what it hangs on."""
+    order = [part for part, link in enumerate(hung) if link.parent < 0]
+    for part in order:
+        order += [other for other, link in enumerate(hung) if link.parent == part]
+    return order
 
 
 def weights(vertices, triangles, labels, count, reach=REACH):

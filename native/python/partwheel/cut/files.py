@@ -6,25 +6,25 @@ import json
 import numpy as np
 
 from ..meshes import needed_trimesh
-from .borders import borders, links
+from .borders import from_root, tree
 from .colors import colors
 from .names import named
 
 FORMATS = "glb", "3mf", "stl", "ply"
 
 
-def write(folder, name, mesh, cut, formats=("glb", "ply"), word="Part"):
+def write(folder, name, mesh, cut, formats=("glb", "ply"), word="Part", printed=None):
     """Writes the parts of a cut into a folder, made if it is not there; [path, ...] what was written.
 
     glb, 3mf: NAME.glb, NAME.3mf: all parts as closed objects with names and colours, in glb parented as the parts hang
     together. stl: a file for each, PART.stl. ply: NAME.ply, the model itself in the parts' colours, the number of its
     part on each triangle. And always NAME.json: of each part its name, colour, faces, volume and what it hangs on; the
-    part of each face. mesh: a meshes.Mesh. Raises MeshFileError without trimesh, OSError."""
+    part of each face. mesh: a meshes.Mesh. printed: {part: (vertices, triangles)} to be written as objects instead of
+    the cut's own solids, see printing. Raises MeshFileError without trimesh, OSError."""
     trimesh = needed_trimesh("Writing parts")
     names = named(cut, mesh.vertices, mesh.triangles, mesh.faces, word)
     labels = cut.labels[mesh.faces]
-    middles = np.array([mesh.vertices[mesh.triangles[labels == part]].mean(axis=(0, 1)) for part in range(len(cut))])
-    tree = links(cut, borders(mesh.vertices, mesh.triangles, labels), middles)
+    hung = tree(cut, mesh.vertices, mesh.triangles, labels)
     paint = np.column_stack([colors(cut.keys), np.ones(len(cut))])
     folder.mkdir(parents=True, exist_ok=True)
     written = []
@@ -34,11 +34,11 @@ def write(folder, name, mesh, cut, formats=("glb", "ply"), word="Part"):
         path.write_bytes(data if isinstance(data, bytes) else data.encode())
         written.append(path)
 
-    solids = {}
-    for part, solid in enumerate(cut.solids()):
-        if solid is not None:
-            solids[part] = trimesh.Trimesh(solid.vertices, solid.triangles, process=False)
-            solids[part].visual.vertex_colors = np.tile(paint[part] * 255, (len(solid.vertices), 1)).astype(np.uint8)
+    if printed is None:
+        printed = {part: solid[:2] for part, solid in enumerate(cut.solids()) if solid is not None}
+    solids = {part: trimesh.Trimesh(*solid, process=False) for part, solid in printed.items()}
+    for part, solid in solids.items():
+        solid.visual.vertex_colors = np.tile(paint[part] * 255, (len(solid.vertices), 1)).astype(np.uint8)
     for form in formats:
         if form == "stl":
             for part, solid in solids.items():
@@ -50,23 +50,15 @@ def write(folder, name, mesh, cut, formats=("glb", "ply"), word="Part"):
             put(f"{name}.ply", whole.export(file_type=form, include_attributes=True))
         else:
             scene = trimesh.Scene()
-            for part in _from_root(tree):
+            for part in from_root(hung):
                 if part in solids:
-                    parent = tree[part].parent
+                    parent = hung[part].parent
                     scene.add_geometry(solids[part], node_name=names[part], geom_name=names[part],
                                        parent_node_name=names[parent] if form == "glb" and parent in solids else None)
             put(f"{name}.{form}", scene.export(file_type=form))
     put(f"{name}.json", json.dumps({
-        "parts": [{"name": names[part], "parent": None if tree[part].parent < 0 else names[tree[part].parent],
+        "parts": [{"name": names[part], "parent": None if hung[part].parent < 0 else names[hung[part].parent],
                    "faces": int((cut.labels == part).sum()), "volume": cut.volume(part),
                    "color": paint[part, :3].round(4).tolist()} for part in range(len(cut))],
         "labels": cut.labels.tolist()}))
     return written
-
-
-def _from_root(tree):
-    """The parts, each after what it hangs on."""
-    order = [part for part, link in enumerate(tree) if link.parent < 0]
-    for part in order:
-        order += [other for other, link in enumerate(tree) if link.parent == part]
-    return order

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The whole model in parts, as bones: what is written is read back and posed, on five real models, three of them
+broken."""
+
+import math
+
+import bpy
+import numpy
+from common import part
+from mathutils import Matrix, Vector
+from test_parts_to import BROKEN, EXACT, PartsCase
+
+
+def posed(obj):
+    """(V,3) where the modifiers have the vertices."""
+    bpy.context.view_layer.update()
+    mesh = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+    return numpy.array([vertex.co[:] for vertex in mesh.vertices])
+
+
+def at_rest(obj):
+    return numpy.array([vertex.co[:] for vertex in obj.data.vertices])
+
+
+def turn(rig, name, degrees):
+    bone = rig.pose.bones[name]
+    bone.rotation_mode = "XYZ"
+    bone.rotation_euler = math.radians(degrees), 0, 0
+
+
+class Bones(PartsCase):
+    def test_an_armature_of_the_parts(self):
+        for model, obj, cut in self.each():
+            obj.location, obj.rotation_euler = (3, 1, 2), (0.3, 0.2, 1)
+            bpy.context.view_layer.update()
+            before = obj.matrix_world.copy()
+            names, made = part("api").write(obj, cut, {"BONES"})
+            self.assertEqual(made, [])
+            rig = obj.find_armature()
+            self.assertEqual(set(rig.data.bones.keys()), set(names))
+            self.assertEqual({group.name for group in obj.vertex_groups}, set(names))
+            self.assertEqual(sum(bone.parent is None for bone in rig.data.bones), 1)
+            self.assertTrue(all(bone.use_deform and bone.length > 0 for bone in rig.data.bones))
+            bpy.context.view_layer.update()
+            for each in (obj, rig):
+                self.assertLess(abs(numpy.array(each.matrix_world) - numpy.array(before)).max(), 1e-6)
+            self.assertEqual(obj.parent, rig)
+            self.assertLess(abs(posed(obj) - at_rest(obj)).max(), 1e-5 * max(obj.dimensions), model)
+            self.assertEqual(bpy.context.view_layer.objects.active, obj)
+            self.assertEqual(bpy.context.mode, "OBJECT")
+
+    def test_posing_works_at_once(self):
+        for model, obj, cut in self.each():
+            names = part("api").write(obj, cut, {"BONES"}).names
+            rig, rest = obj.find_armature(), at_rest(obj)
+            weights = {name: numpy.zeros(len(rest)) for name in names}
+            for vertex in obj.data.vertices:
+                for group in vertex.groups:
+                    weights[obj.vertex_groups[group.group].name][vertex.index] = group.weight
+            whole = 0
+            for bone in rig.data.bones:
+                if not bone.parent:
+                    continue
+                turn(rig, bone.name, 60)
+                after = posed(obj)
+                # What hangs on the bone turns with it as one, the rest stays, and the head is what it turns about.
+                about = bone.matrix_local.copy()
+                matrix = numpy.array(about @ Matrix.Rotation(math.radians(60), 4, "X") @ about.inverted())
+                below = sum(weights[each.name] for each in [bone, *bone.children_recursive])
+                size = max(obj.dimensions)
+                self.assertLess((below - 1).max(), 1e-5)
+                moved = rest @ matrix[:3, :3].T + matrix[:3, 3]
+                inside, outside = below > 1 - 1e-6, below < 1e-6
+                self.assertTrue(outside.any(), (model, bone.name))
+                whole += inside.any()  # of some small ones all is joint
+                self.assertLess(abs(after - moved)[inside].max(initial=0), 1e-4 * size, (model, bone.name))
+                self.assertLess(abs(after - rest)[outside].max(), 1e-4 * size)
+                self.assertLess((Vector(matrix[:3, :3] @ bone.head_local) + Vector(matrix[:3, 3])
+                                 - bone.head_local).length, 1e-4 * size)
+                turn(rig, bone.name, 0)
+            self.assertGreater(whole, 0.6 * (len(rig.data.bones) - 1), model)
+            self.assertLess(abs(posed(obj) - rest).max(), 1e-5 * max(obj.dimensions))
+
+    def test_the_second_time_the_same_armature(self):
+        obj, cut = self.model("homer")
+        names = part("api").write(obj, cut, {"BONES"}).names
+        rig = obj.find_armature()
+        kept = names[-1]
+        rig.pose.bones[kept].constraints.new("LIMIT_ROTATION")
+        turn(rig, kept, 30)
+        split = cut.split(0)
+        names = part("api").write(obj, split, {"BONES", "COLORS"}).names
+        self.assertEqual(obj.find_armature(), rig)
+        self.assertEqual(len([each for each in obj.modifiers if each.type == "ARMATURE"]), 1)
+        self.assertEqual(set(rig.data.bones.keys()), set(names))
+        self.assertIn(kept, names)
+        self.assertEqual(len(rig.pose.bones[kept].constraints), 1)
+        self.assertAlmostEqual(rig.pose.bones[kept].rotation_euler.x, math.radians(30), 5)
+        self.assertEqual(len(obj.data.materials), len(split))
+        # The user's own armature is left alone.
+        own = bpy.data.objects.new("own", bpy.data.armatures.new("own"))
+        bpy.context.collection.objects.link(own)
+        other, cut = self.model("pig")
+        other.modifiers.new("mine", "ARMATURE").object = own
+        part("api").write(other, cut, {"BONES"})
+        self.assertEqual((len(own.data.bones), len(other.modifiers)), (0, 2))
+
+    def test_a_duplicate_gets_its_own(self):
+        obj, cut = self.model("pig")
+        part("api").write(obj, cut, {"BONES"})
+        rig, bones = obj.find_armature(), len(cut)
+        bpy.context.view_layer.objects.active = obj
+        obj.select_set(True)
+        bpy.ops.object.duplicate()
+        copy = bpy.context.view_layer.objects.active
+        self.assertEqual(copy.find_armature(), rig)
+        part("api").write(copy, part("api").parts(copy, 3), {"BONES"})
+        self.assertEqual((obj.find_armature(), len(rig.data.bones)), (rig, bones))
+        self.assertEqual((len(copy.modifiers), len(copy.find_armature().data.bones)), (1, 3))
+        # Likewise where it is hidden: Blender edits no bones then.
+        rig.hide_set(True)
+        part("api").write(obj, cut.split(0), {"BONES"})
+        self.assertNotEqual(obj.find_armature(), rig)
+        self.assertEqual((len(obj.modifiers), len(rig.data.bones), len(obj.find_armature().data.bones)),
+                         (1, bones, bones + 1))
+        self.assertLess(abs(posed(obj) - at_rest(obj)).max(), 1e-5 * max(obj.dimensions))
+
+    def test_hangs_where_the_object_hung(self):
+        obj, cut = self.model("pig")
+        empty = bpy.data.objects.new("empty", None)
+        bpy.context.collection.objects.link(empty)
+        obj.parent, obj.location, empty.location = empty, (1, 2, 3), (4, 5, 6)
+        bpy.context.view_layer.update()
+        part("api").write(obj, cut, {"BONES"})
+        rig = obj.find_armature()
+        self.assertEqual((obj.parent, rig.parent), (rig, empty))
+        empty.location.x += 10
+        bpy.context.view_layer.update()
+        for each in (obj, rig):
+            self.assertLess((each.matrix_world.translation - Vector((15, 7, 9))).length, 1e-5)
+
+    def test_locked_groups_are_left_alone(self):
+        obj, cut = self.model("pig")
+        names = part("api").write(obj, cut, {"VERTEX_GROUPS"}).names
+        obj.vertex_groups[names[1]].lock_weight = True
+        before = len(bpy.data.armatures)
+        with self.assertRaises(ValueError):
+            part("api").write(obj, cut, {"BONES"})
+        self.assertEqual((len(obj.modifiers), len(bpy.data.armatures)), (0, before))
+
+    def test_the_operator(self):
+        obj, cut = self.model("homer")
+        bpy.context.view_layer.objects.active = obj
+        bpy.ops.mesh.partwheel_parts(to={"BONES"})
+        rig = obj.find_armature()
+        self.assertEqual(bpy.context.view_layer.objects.active, rig)
+        self.assertTrue(rig.select_get() and not obj.select_get())
+        bpy.ops.object.mode_set(mode="POSE")  # where artists go next
+        bpy.ops.object.mode_set(mode="OBJECT")
+        bpy.context.view_layer.objects.active = obj
+        for mode in ("EDIT", "SCULPT"):
+            bpy.ops.object.mode_set(mode=mode)
+            bpy.ops.mesh.partwheel_parts(to={"BONES"}, count=6)
+            self.assertEqual((obj.mode, bpy.context.view_layer.objects.active), (mode, obj))
+            self.assertEqual((obj.find_armature(), len(rig.data.bones)), (rig, 6))
+            bpy.ops.object.mode_set(mode="OBJECT")
+        bpy.ops.object.mode_set(mode="SCULPT")
+        part("api").write(obj, cut, {"BONES"})
+        self.assertEqual((obj.mode, len(rig.data.bones)), ("SCULPT", len(cut)))

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bones of a cut, beside shapes whose bones are known."""
+
+import functools
+
+import numpy as np
+import pytest
+import trimesh
+from conftest import ROOT
+from partwheel import Hierarchy, Mode, meshes
+from partwheel.cut import Cut, bones, borders, links, mirror_planes, named, tree
+
+SIDES, RADIUS = 24, 0.5
+
+
+def tube(lengths, sides=SIDES, radius=RADIUS, step=0.25):
+    """(vertices, triangles, labels) of a closed cylinder along z, in parts of these lengths."""
+    ends = np.cumsum([0, *lengths])
+    heights = np.unique(np.concatenate([np.linspace(a, b, round((b - a) / step) + 1) for a, b in zip(ends, ends[1:])]))
+    angle = 2 * np.pi * np.arange(sides) / sides
+    rings = [np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(sides, z)]) for z in heights]
+    vertices = np.vstack([*rings, [[0, 0, ends[0]], [0, 0, ends[-1]]]])
+    triangles = []
+    for ring in range(len(heights) - 1):
+        for k in range(sides):
+            a, b = ring * sides + k, ring * sides + (k + 1) % sides
+            triangles += [(a, b, a + sides), (b, b + sides, a + sides)]
+    last = (len(heights) - 1) * sides
+    for k in range(sides):
+        triangles += [(len(vertices) - 2, (k + 1) % sides, k),
+                      (len(vertices) - 1, last + k, last + (k + 1) % sides)]
+    triangles = np.array(triangles)
+    z = vertices[triangles].mean(axis=1)[:, 2]
+    return vertices, triangles, np.searchsorted(ends[1:-1], z, side="right")
+
+
+class Volumes:
+    """What links() asks of a cut: parts in a row, joined from the first on."""
+
+    def __init__(self, volumes):
+        self.volumes = volumes
+
+    def __len__(self):
+        return len(self.volumes)
+
+    def volume(self, part):
+        return self.volumes[part]
+
+    def joined_at(self, one, other):
+        return max(one, other)
+
+
+def made(vertices, triangles, labels, volumes):
+    middles = np.array([vertices[triangles[labels == part]].mean(axis=(0, 1)) for part in range(len(volumes))])
+    return bones(vertices, triangles, labels, links(Volumes(volumes), borders(vertices, triangles, labels), middles))
+
+
+def assert_ends(bone, head, tail, close=1e-9):
+    assert abs(bone.head - head).max() < close and abs(bone.tail - tail).max() < close, bone
+
+
+@pytest.mark.parametrize("turn", [np.eye(3), trimesh.transformations.rotation_matrix(2, (1, 2, 3))[:3, :3]])
+def test_a_chain_of_cylinders(turn):
+    vertices, triangles, labels = tube((2, 4, 3, 1))
+    at = {z: turn @ (0, 0, z) for z in (0, 2, 6, 9, 10)}
+    chain = made(vertices @ turn.T, triangles, labels, (2, 4, 3, 1))
+    assert [bone.parent for bone in chain] == [1, -1, 1, 2]
+    up = at[10] if (turn @ (0, 0, 1))[abs(turn @ (0, 0, 1)).argmax()] > 0 else at[0]
+    head, tail = (at[2], at[6]) if (up == at[10]).all() else (at[6], at[2])
+    assert_ends(chain[1], head, tail)  # through it from end to end
+    assert_ends(chain[0], at[2], at[0])
+    assert_ends(chain[2], at[6], at[9])
+    assert_ends(chain[3], at[9], at[10])
+    assert chain[3].connected and not chain[1].connected
+    assert chain[2].connected == bool((tail == at[6]).all()) and chain[0].connected == bool((tail == at[2]).all())
+
+
+def test_the_largest_at_one_end():
+    chain = made(*tube((4, 3, 2)), (4, 3, 2))
+    assert [bone.parent for bone in chain] == [-1, 0, 1]
+    for bone, head, tail in zip(chain, (0, 4, 7), (4, 7, 9)):
+        assert_ends(bone, (0, 0, head), (0, 0, tail))
+    assert [bone.connected for bone in chain] == [False, True, True]
+
+
+def blocks(cells, label_of):
+    """(vertices, triangles, labels) of the surface of unit cubes, cells (X,Y,Z) bool. label_of(x, y): of a cube."""
+    quads, labels = [], []
+    for cell in np.argwhere(cells):
+        for axis in range(3):
+            for side in (0, 1):
+                beside = cell.copy()
+                beside[axis] += 2 * side - 1
+                inside = (beside >= 0).all() and (beside < cells.shape).all() and cells[tuple(beside)]
+                if not inside:
+                    corner = cell.copy()
+                    corner[axis] += side
+                    u, v = np.eye(3, dtype=int)[[(axis + 1) % 3, (axis + 2) % 3]]
+                    ring = [corner, corner + u, corner + u + v, corner + v]
+                    quads.append(ring if side else ring[::-1])
+                    labels.append(label_of(*cell[:2]))
+    vertices, index = np.unique(np.array(quads).reshape(-1, 3), axis=0, return_inverse=True)
+    index = index.reshape(-1, 4)
+    return vertices.astype(float), np.vstack([index[:, :3], index[:, [0, 2, 3]]]), np.tile(labels, 2)
+
+
+def hand():
+    """A forearm, a palm with three fingers at its far end and a thumb on its side."""
+    cells = np.zeros((9, 12, 2), bool)
+    cells[3:6, 0:4] = True  # the forearm
+    cells[2:7, 4:9] = True  # the palm
+    for x in (2, 4, 6):
+        cells[x, 9:12] = True
+    cells[0:2, 5] = True  # the thumb
+    return blocks(cells, lambda x, y: 0 if y < 4 else 2 if x < 2 else 1 if y < 9 else 3 + (x - 2) // 2)
+
+
+def test_a_leg_ends_at_its_toes():
+    cells = np.zeros((8, 14, 2), bool)
+    cells[0:2] = True
+    cells[2:8, 12:14] = True  # the foot
+    found = made(*blocks(cells, lambda x, y: int(y >= 5)), (50, 40))
+    assert_ends(found[0], (1, 0, 1), (1, 5, 1))
+    assert_ends(found[1], (1, 5, 1), (8, 13, 1), 1.5)
+
+
+def test_fingers_end_a_palm_and_a_thumb_does_not():
+    vertices, triangles, labels = hand()
+    found = made(vertices, triangles, labels, (100, 50, 1, 2, 2, 2))
+    assert [bone.parent for bone in found] == [-1, 0, 1, 1, 1, 1]
+    assert_ends(found[0], (4.5, 0, 1), (4.5, 4, 1))
+    assert_ends(found[1], (4.5, 4, 1), (4.5, 9, 1))  # the middle of the fingers' borders
+    assert_ends(found[2], (2, 5.5, 1), (0, 5.5, 1))
+    for finger, x in zip((3, 4, 5), (2.5, 4.5, 6.5)):
+        assert_ends(found[finger], (x, 9, 1), (x, 12, 1))
+    assert [bone.connected for bone in found] == [False, True, False, False, True, False]
+
+
+def test_the_roots_bone_lies_in_a_mirror_plane():
+    vertices, triangles, labels = tube((4,))
+    leaning = vertices + vertices[:, 2:] * (0.2, 0.1, 0)
+    root = links(Volumes((4,)), [], np.zeros((1, 3)))
+    free, = bones(leaning, triangles, labels, root)
+    assert (free.tail - free.head)[:2] == pytest.approx((0.8, 0.4), abs=0.15)
+    held, = bones(leaning, triangles, labels, root, [(np.array([1.0, 0, 0]), 0.35)])
+    assert (held.head[0], held.tail[0]) == pytest.approx((0.35, 0.35)) and (held.head[1:] == free.head[1:]).all()
+    far, = bones(leaning, triangles, labels, root, [(np.array([1.0, 0, 0]), 2.0), (np.array([0, 0, 1.0]), 2.0)])
+    assert (far.head == free.head).all() and (far.tail == free.tail).all()
+
+
+def test_loose_pieces_begin_in_their_middle():
+    ball = trimesh.creation.icosphere(3)
+    eye = trimesh.creation.icosphere(3, 0.25).apply_translation((0, 0, 3))
+    both = trimesh.util.concatenate([ball, eye])
+    found = made(both.vertices, both.faces, np.repeat([0, 1], [len(ball.faces), len(eye.faces)]), (4, 1))
+    assert [bone.parent for bone in found] == [-1, 0]
+    assert_ends(found[1], (0, 0, 3), (0, 0, 3.25), 1e-6)
+    assert np.linalg.norm(found[0].tail - found[0].head) == pytest.approx(2, abs=0.01)
+
+
+def test_no_bone_is_without_length():
+    flat = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 5, 5]], float)
+    triangles = np.array([[0, 1, 2], [2, 1, 0], [3, 3, 3]])
+    found = made(flat, triangles, np.array([0, 0, 1]), (1, 0))
+    assert all(np.linalg.norm(bone.tail - bone.head) > 1e-3 for bone in found)
+
+
+@functools.cache
+def real(name, mode=Mode.REGROUPED):
+    """(Mesh, Cut, its Links, its Bones)"""
+    mesh = meshes.read(ROOT / "build" / "deps" / "meshes" / f"{name}.off")
+    cut = Cut.automatic(Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, mode=mode))
+    labels = cut.labels[mesh.faces]
+    hung = tree(cut, mesh.vertices, mesh.triangles, labels)
+    return mesh, cut, hung, bones(mesh.vertices, mesh.triangles, labels, hung,
+                                  mirror_planes(mesh.vertices, mesh.triangles))
+
+
+@pytest.mark.parametrize("name", ["homer", "elephant", "cow", "pig"])
+def test_real_models(name):
+    mesh, _, hung, found = real(name)
+    assert [bone.parent for bone in found] == [link.parent for link in hung]
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    slack = 0.05 * np.linalg.norm(high - low)
+    for bone, link in zip(found, hung):
+        assert link.border is None or (bone.head == link.border.center).all()
+        assert (np.minimum(bone.head, bone.tail) > low - slack).all()
+        assert (np.maximum(bone.head, bone.tail) < high + slack).all()
+        assert np.linalg.norm(bone.tail - bone.head) > 1e-3 * np.linalg.norm(high - low)
+        assert not bone.connected or np.linalg.norm(found[bone.parent].tail - bone.head) < 0.01 * slack / 0.05
+
+
+def test_mirror_images_have_mirrored_bones():
+    mesh, cut, _, found = real("homer", Mode.SYMMETRIC)
+    names = named(cut, *mesh[:3])
+    (normal, offset), = mirror_planes(mesh.vertices, mesh.triangles)
+    size = np.linalg.norm(np.ptp(mesh.vertices, axis=0))
+    pairs = [(names.index(name), names.index(name.replace(".L", ".R"))) for name in names if ".L" in name]
+    assert len(pairs) >= 2  # arms and legs
+    for left, right in pairs:
+        for one, other in zip(found[left][:2], found[right][:2]):
+            assert np.linalg.norm(one - 2 * (one @ normal - offset) * normal - other) < 0.03 * size

@@ -1,0 +1,254 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Parts for a 3D printer: beside boxes whose pegs are known, and on real models by manifold3d and libigl."""
+
+import functools
+import json
+import sys
+
+import igl
+import manifold3d
+import numpy as np
+import pytest
+import trimesh
+from conftest import ROOT
+from partwheel import Hierarchy, meshes
+from partwheel.cut import Cut
+from partwheel.cut.printing import ROOT as DEEP
+from partwheel.cut.printing import SIDES, Options, PrintError, printable, thickness
+from solid_checks import count_crossings
+from test_command_line import run
+
+GAP, WALL = 0.2, 1.2
+COS = np.cos(np.pi / SIDES)
+MODELS = {"homer": 6, "elephant": 9, "man": 8, "cow": 8}  # into so many parts; the last two are broken
+ALL = {"homer", "elephant", "man"}  # in which each cut has a peg
+
+
+def bar(lengths, side=20.0):
+    """(vertices, triangles, labels): boxes in a row along x, whose tetrahedra end where they do."""
+    ends = np.cumsum([0, *lengths])
+    square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)]) * side
+    vertices = np.array([(x, y, z) for x in ends for y, z in square])
+    triangles, labels = [], []
+    for part in range(len(lengths)):
+        for k in range(4):
+            a, b = 4 * part + k, 4 * part + (k + 1) % 4
+            triangles += [(a, b, a + 4), (b, b + 4, a + 4)]
+            labels += [part, part]
+    last = 4 * len(lengths)
+    triangles += [(0, 2, 1), (0, 3, 2), (last, last + 1, last + 2), (last, last + 2, last + 3)]
+    labels += [0, 0, len(lengths) - 1, len(lengths) - 1]
+    return vertices, np.array(triangles), np.array(labels)
+
+
+def of_bar(lengths, options, side=20.0):
+    vertices, triangles, labels = bar(lengths, side)
+    cut = Cut.of_labels(Hierarchy.build(vertices, triangles), labels)
+    assert len(cut) == len(lengths)
+    return printable(cut, vertices, triangles, np.arange(len(triangles)), options)
+
+
+def volume(solid):
+    vertices, triangles = solid
+    a, b, c = (vertices - vertices.mean(axis=0))[triangles].transpose(1, 0, 2)
+    return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+
+
+def hexagon(radius):
+    return SIDES / 2 * np.sin(2 * np.pi / SIDES) * radius ** 2
+
+
+def body(solid):
+    made = manifold3d.Manifold(manifold3d.Mesh64(solid[0], solid[1].astype(np.uint64)))
+    assert made.status() == manifold3d.Error.NoError
+    return made
+
+
+def prism(peg, bottom, top, more):
+    """(n,3) corners of the peg, with sides that lie so much farther out."""
+    x = np.cross(np.eye(3)[abs(peg.direction).argmin()], peg.direction)
+    x /= np.linalg.norm(x)
+    axes = np.array([x, np.cross(peg.direction, x), peg.direction])
+    angle = 2 * np.pi * np.arange(SIDES) / SIDES
+    around = (peg.radius + more / COS) * np.column_stack([np.cos(angle), np.sin(angle)])
+    return peg.center + np.vstack([np.column_stack([around, np.full(SIDES, z)]) for z in (bottom, top)]) @ axes
+
+
+def assert_closed(solid):
+    directed = {*map(tuple, solid[1][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2).tolist())}
+    assert len(directed) == 3 * len(solid[1]) and directed == {(b, a) for a, b in directed}
+    assert volume(solid) > 0
+
+
+def test_a_bar_in_two():
+    made = of_bar((30, 20), Options(pegs=GAP))
+    assert made.notes == []
+    peg, = made.pegs
+    assert (peg.part, peg.into) == (1, 0)
+    assert peg.center == pytest.approx((30, 10, 10)) and peg.direction == pytest.approx((-1, 0, 0))
+    assert peg.radius == pytest.approx(5, rel=2e-3) and peg.length == pytest.approx(2 * peg.radius)
+    area = hexagon(peg.radius)
+    assert volume(made.solids[1]) == pytest.approx(20 * 400 + area * peg.length, rel=1e-6)
+    assert volume(made.solids[0]) == pytest.approx(
+        30 * 400 - hexagon(peg.radius + GAP / COS) * (peg.length + GAP), rel=1e-6)
+    gap = body(made.solids[1]).translate((1, 0, 0)).min_gap(body(made.solids[0]), 2)
+    assert gap == pytest.approx(GAP, abs=1e-6)  # drawn out by a millimetre only the sides are near
+
+
+def test_flat_cuts_alone_and_millimetres():
+    made = of_bar((30, 20), Options(scale=2.5))
+    assert made.pegs == [] and made.notes == []
+    assert [volume(made.solids[part]) for part in (0, 1)] == pytest.approx([30 * 400 * 2.5 ** 3, 20 * 400 * 2.5 ** 3])
+
+
+def test_the_wall_decides():
+    # As thick a wall as leaves 3 mm of the 10, or nothing.
+    peg, = of_bar((30, 20), Options(pegs=GAP, wall=6.8)).pegs
+    assert peg.radius == pytest.approx(10 - 6.8 - GAP / COS, rel=0.02)
+    made = of_bar((30, 20), Options(pegs=GAP, wall=9.5))
+    assert made.pegs == [] and any("no room for a peg" in note for note in made.notes)
+    # A part that is short takes a short peg, or none.
+    peg, = of_bar((10, 30), Options(pegs=GAP)).pegs
+    assert peg.length == pytest.approx(2 * peg.radius)  # it goes into the longer one
+    pegs = of_bar((9, 5, 8.5), Options(pegs=GAP), 10).pegs
+    assert len(pegs) == 2 and all(peg.length + GAP + WALL < 9 for peg in pegs)
+
+
+def test_a_bed():
+    lengths = (30, 30, 30, 30)
+    vertices, triangles, labels = bar(lengths)
+    hierarchy = Hierarchy.build(vertices, triangles)
+    options = Options(bed=(61, 25, 25))
+    made = printable(Cut.into(hierarchy, 1), vertices, triangles, np.arange(len(triangles)), options)
+    assert len(made.cut) > 1
+    for solid in made.solids.values():
+        assert (np.sort(np.ptp(solid[0], axis=0)) <= (25, 25, 61)).all()
+    assert sum(map(volume, made.solids.values())) == pytest.approx(120 * 400)
+    made = printable(Cut.into(hierarchy, 1), vertices, triangles, np.arange(len(triangles)), Options(bed=(5, 5, 5)))
+    assert any("too large for the bed" in note for note in made.notes)
+
+
+def test_hollows_stay():
+    outer, inner = trimesh.creation.box((40, 20, 20)), trimesh.creation.box((30, 10, 10))
+    inner.invert()
+    hollow = trimesh.util.concatenate([outer.subdivide(), inner.subdivide()])
+    cut = Cut.into(Hierarchy.build(hollow.vertices, hollow.faces), 1)
+    made = printable(cut, hollow.vertices, hollow.faces, np.arange(len(hollow.faces)), Options(wall=4.0))
+    assert volume(made.solids[0]) == pytest.approx(40 * 400 - 30 * 100)
+    assert made.notes == []
+    made = printable(cut, hollow.vertices, hollow.faces, np.arange(len(hollow.faces)), Options(wall=6.0))
+    assert any("walls thinner than 6 mm" in note and "5.00 mm" in note for note in made.notes)
+
+
+def test_a_hollow_beside_a_cut_stays():
+    vertices, triangles, labels = bar((30, 20))
+    inner = trimesh.creation.box((10, 10, 10)).apply_translation((10, 10, 10))
+    inner.invert()
+    whole = np.vstack([vertices, inner.vertices]), np.vstack([triangles, inner.faces + len(vertices)])
+    cut = Cut.of_labels(Hierarchy.build(*whole), np.concatenate([labels, np.zeros(len(inner.faces), int)]))
+    made = printable(cut, *whole, np.arange(len(whole[1])))
+    assert sum(map(volume, made.solids.values())) == pytest.approx(50 * 400 - 1000)
+
+
+def test_thickness():
+    plate = trimesh.creation.box((40, 30, 2)).subdivide().subdivide()
+    walls = thickness(plate.vertices, plate.faces)
+    assert np.unique(walls.round(9)).tolist() == [2, 30, 40]
+    ball = trimesh.creation.icosphere(4, 10)
+    walls = thickness(ball.vertices, ball.faces)
+    assert len(walls) == 1000 and walls.min() > 19 and walls.max() <= 20.0001
+
+
+@functools.cache
+def printed(name):
+    """(Mesh in millimetres, Cut as it was, Printable)"""
+    mesh = meshes.read(ROOT / "build" / "deps" / "meshes" / f"{name}.off")
+    cut = Cut.into(Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count), MODELS[name])
+    scale = 200 / np.ptp(mesh.vertices, axis=0).max()
+    made = printable(cut, mesh.vertices, mesh.triangles, mesh.faces, Options(scale=scale, pegs=GAP, wall=WALL))
+    return scale, cut, made
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_solids_are_closed_and_make_the_whole(name):
+    scale, cut, made = printed(name)
+    assert len(made.pegs) >= (1 if name in ALL else 0.6) * (len(cut) - 1), made.notes
+    assert set(made.solids) == set(range(len(cut)))
+    total = 0
+    for part, solid in made.solids.items():
+        assert_closed(solid)
+        total += volume(solid)
+    for peg in made.pegs:  # what it adds, and what its socket takes
+        total += hexagon(peg.radius + GAP / COS) * (peg.length + GAP) - hexagon(peg.radius) * peg.length
+    assert total == pytest.approx(sum(map(cut.volume, range(len(cut)))) * scale ** 3, rel=1e-5)
+    told = " ".join(made.notes)
+    for part in range(len(cut)):  # each that hangs on another has a peg, or a word on why not
+        assert part in {peg.part for peg in made.pegs} or made.names[part] in told or cut.volume(part) == max(
+            map(cut.volume, range(len(cut))))
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_no_two_solids_have_anything_in_common(name):
+    _, _, made = printed(name)
+    bodies = {part: body(solid) for part, solid in made.solids.items()}
+    for part in bodies:
+        for other in range(part):
+            assert abs((bodies[part] ^ bodies[other]).volume()) < 1e-6 * bodies[other].volume(), (part, other)
+    for peg in made.pegs:
+        grown = manifold3d.Manifold.hull_points(prism(peg, 0, peg.length + GAP - 1e-6, GAP - 1e-6))
+        assert abs((grown ^ bodies[peg.into]).volume()) < 1e-6 * grown.volume()
+        thick = manifold3d.Manifold.hull_points(prism(peg, 0, peg.length + GAP + 0.01, GAP + 0.01))
+        assert (thick ^ bodies[peg.into]).volume() > 1e-4 * thick.volume()  # but no more than that
+        own = manifold3d.Manifold.hull_points(prism(peg, -DEEP * peg.radius, peg.length, 0))
+        assert abs((own - bodies[peg.part]).volume()) < 1e-3 * own.volume()
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_next_to_nothing_crosses(name):
+    """By CGAL, exactly. A corner that is new is rounded, which may do it where two sheets lie on each other: for a few
+    pairs of some thousand triangles."""
+    _, _, made = printed(name)
+    crossed = [count_crossings(*solid) for solid in made.solids.values()]
+    assert sum(crossed) <= 0.002 * sum(len(triangles) for _, triangles in made.solids.values()), crossed
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_walls_stay_around_every_socket(name):
+    """By libigl: whatever is nearer to a socket than the wall is thick, beyond the cut, is of the part."""
+    _, _, made = printed(name)
+    random = np.random.default_rng(5)
+    for peg in made.pegs:
+        socket = trimesh.convex.convex_hull(prism(peg, 0, peg.length + GAP, GAP))
+        points = np.vstack([socket.sample(500, seed=1), np.repeat(socket.vertices, 20, axis=0)])
+        away = random.normal(size=points.shape)
+        points += 0.99 * WALL * away / np.linalg.norm(away, axis=1)[:, None]
+        points = points[(points - peg.center) @ peg.direction > 0.01]
+        solid = made.solids[peg.into]
+        walls = igl.winding_number(np.ascontiguousarray(solid[0]), np.ascontiguousarray(solid[1], np.int64), points)
+        inside = igl.winding_number(np.array(socket.vertices), np.array(socket.faces, np.int64), points)
+        assert (abs(walls) + abs(inside) > 0.5).all(), peg
+
+
+def test_manifold3d_is_asked_for(monkeypatch):
+    monkeypatch.setitem(sys.modules, "manifold3d", None)
+    with pytest.raises(PrintError, match=r"pip install partwheel\[printing\]"):
+        of_bar((30, 20), Options())
+
+
+def test_the_command(tmp_path, meshes_directory):
+    result = run("parts", meshes_directory / "homer.off", "-o", tmp_path, "--parts", 6, "--pegs", GAP, "--size", 200,
+                 "--bed", "150,150,150", "--json")
+    assert result.returncode == 0, result.stderr
+    report = json.loads(result.stdout)
+    assert report["pegs"] >= 4 and report["parts"] >= 6 and isinstance(report["notes"], list)
+    scene = trimesh.load(tmp_path / "homer.3mf", process=False)
+    assert len(scene.geometry) == report["parts"] == len(list(tmp_path.glob("*.stl")))
+    low, high = scene.bounds
+    assert (high - low).max() == pytest.approx(200, rel=0.01) and scene.units == "millimeter"
+    for name, solid in scene.geometry.items():
+        assert solid.is_watertight and (np.sort(solid.extents) <= 150).all()
+        alone = trimesh.load(tmp_path / f"{name}.stl")
+        assert (np.unique(alone.edges_sorted, axis=0, return_counts=True)[1] % 2 == 0).all()  # it may touch itself
+        assert alone.volume == pytest.approx(solid.volume, rel=1e-4)
+    for wrong in (("--bed", "1,2"), ("--pegs", "-1"), ("--wall", "thick")):
+        assert run("parts", meshes_directory / "homer.off", "-o", tmp_path, *wrong).returncode == 2
