@@ -185,7 +185,7 @@ setup_package() {
 
 # CGAL 5.5 does not compile with the clang of later ones. wine and qemu run what is made for other machines.
 setup_cross() {
-    setup_bpy 4.5 && packages wine64 qemu-user-static libc6-arm64-cross &&
+    setup_bpy 4.5 && packages wine64 qemu-user-static libc6-arm64-cross googletest &&
         venv cross /usr/bin/python3 ziglang==0.13.0.post1 && into "$deps/windows-python" fill_windows_python
 }
 

@@ -15,7 +15,6 @@ from platforms import ROOT
 LINUX = {"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2", "librt.so.1", "ld-linux-x86-64.so.2",
          "ld-linux-aarch64.so.1"}
 WINDOWS = re.compile(r"(kernel32|ntdll|advapi32|ucrtbase|api-ms-win-crt-[a-z0-9-]+)\.dll", re.I)
-UNWINDER = re.compile("_Unwind_|unw_|_GCC_specific_handler$")
 MACOS = {"/usr/lib/libSystem.B.dylib"}
 GLIBC, MACOS_LEAST = (2, 28), (11, 0)
 
@@ -58,8 +57,7 @@ def _elf(library):
 
 def _pe(library):
     text = _said("llvm-readobj", "--coff-exports", "--coff-imports", library)
-    # zig's unwinder says that its own functions are exported. Here no library's names ever bind into another's.
-    symbols = {name for name in re.findall(r"Export \{[^}]*?Name: (\S+)", text) if not UNWINDER.match(name)}
+    symbols = set(re.findall(r"Export \{[^}]*?Name: (\S+)", text))
     needed = set(re.findall(r"Import \{\s*Name: (\S+)", text))
     _only(library, needed, {name for name in needed if not WINDOWS.fullmatch(name)})
     needed = {re.sub(r"api-ms-win-crt-.*", "Universal C Runtime", name, flags=re.I) for name in needed}

