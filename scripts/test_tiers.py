@@ -190,12 +190,19 @@ def in_suite(suite, package):
 
 
 def ship():
-    """The packages for all platforms, made, run where they can be, and installed as strangers do. An hour of compiling:
-    only when it is named."""
+    """The packages for all platforms, made, run where they can be, and installed as strangers do; and the native tests of
+    the two that are for other machines, by wine and qemu. An hour of compiling: only when it is named."""
     require("ship-package", "scripts/package", "all")
     print((OUTPUT / "ship-package.log").read_text().split("distribution\n")[-1], end="")
     setup("ship", "setup_bpy")
-    return pytest("ship", "tests/ship")
+    result = pytest("ship", "tests/ship")
+    for preset in ("windows-x64", "linux-arm64"):
+        build(f"ship-{preset}", preset)
+        began = time.monotonic()
+        native = ctest(f"ship-{preset}", preset)
+        print(f"   {preset}: {native.passed} native tests passed in {time.monotonic() - began:.0f} s")
+        result += native
+    return result
 
 
 TIERS = {function.__name__: function
