@@ -32,8 +32,8 @@ def check(library, platform):
         raise Refused(f"{library} exports {sorted(symbols - wanted)} too many, {sorted(wanted - symbols)} too few.")
     found = {"exports": f"{len(symbols)} pw_*", "least": least, "needs": ", ".join(sorted(needed))}
     if system == "macos":
-        found["signed"] = _signed(library.read_bytes())
-        if not found["signed"] and platform == "macos-arm64":
+        found["signed"] = _signed(library.read_bytes()) or "no, Intel's ask for none"
+        if found["signed"] != "ad hoc" and platform == "macos-arm64":
             raise Refused(f"{library} has no signature, which Apple's own processors ask for.")
     return found
 

@@ -31,15 +31,16 @@ def run(platforms):
             continue
         program = example(platform)
         runner, environment = RUNNERS[platform]
-        sums, began = [], time.monotonic()
-        for model in MODELS:
+        sums, seconds = [], 0
+        for model in (MODELS[0], *MODELS):  # at its first start wine sets itself up
             saved = program.parent / "saved"
             saved.unlink(missing_ok=True)
+            began = time.monotonic()
             subprocess.run([*runner, program, MESHES / model, str(FACE), saved], check=True, cwd=program.parent,
                            env={**os.environ, **environment, "LD_LIBRARY_PATH": str(program.parent)},
                            stdout=subprocess.DEVNULL)
+            seconds = seconds + time.monotonic() - began if sums else 0
             sums.append(hashlib.sha256(saved.read_bytes()).hexdigest())
-        seconds = time.monotonic() - began
         first = first or (platform, sums)
         if sums != first[1]:
             raise SystemExit(f"{platform} saves other trees than {first[0]}: {sums} {first[1]}")
