@@ -62,6 +62,9 @@ target_include_directories(partwheel_cgal SYSTEM INTERFACE "${steady_cgal}" "${P
 # CGAL's own checks stay on in a release: broken meshes then end in an exception, not in a crash.
 target_compile_definitions(partwheel_cgal INTERFACE CGAL_DISABLE_GMP=1 CGAL_DISABLE_MPFR=1 CGAL_DEBUG=1
                                                    CGAL_NO_WARNINGS=1)
+if(APPLE)  # whose linker is told no list of what to export
+  target_compile_definitions(partwheel_cgal INTERFACE BOOST_DISABLE_EXPLICIT_SYMBOL_VISIBILITY)
+endif()
 
 if(PARTWHEEL_SYSTEM_TETGEN)
   find_path(TETGEN_INCLUDE tetgen.h)
