@@ -18,9 +18,8 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
     parts: bpy.props.EnumProperty(
         name="Parts", description="How small parts are joined to larger ones in builds from now on",
         items=[("REGROUPED", "As People See Them", "By what people took for parts on some hundred models: a click alone "
-                "finds the part that was meant more often"),
-               ("SYMMETRIC", "The Same on Both Sides", "As people see them; and a model that is its own mirror image gets "
-                "the same parts on its left and its right. Finding them takes up to half as long again"),
+                "finds the part that was meant more often. Borders lie in creases, and the two sides of a model that is "
+                "its own mirror image are alike"),
                ("PAPER", "Nearly Convex", "By convexity alone, the most regular and the quickest: a click takes the "
                 "smallest piece there is, and each notch of the wheel one more step of the tree")],
         default="REGROUPED",

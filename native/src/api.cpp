@@ -148,10 +148,9 @@ Hierarchy build(const MeshView& mesh, const LadderOptions& options, int32_t mode
     Regrouped regrouped{cluster(mesh_of_parts, progress, options.threads), {}};
     progress.enter(PW_STAGE_DENDROGRAM);
     if (mode != PW_MODE_PAPER) {
-        std::vector<Plane> planes;
-        if (mode == PW_MODE_SYMMETRIC)
-            planes = mirror_planes(mesh_of_parts.vertices, outer_facets(mesh_of_parts), progress);
-        regrouped = regroup(mesh_of_parts, regrouped.tree, planes, progress, options.threads);
+        const std::vector<Plane> planes =
+            mirror_planes(mesh_of_parts.vertices, outer_facets(mesh_of_parts), progress);
+        regrouped = regroup(mesh_of_parts, regrouped.tree, planes, progress);
     }
     if (plain) regrouped = carried(*plain, regrouped, solid, progress, options.threads);
     progress.enter(PW_STAGE_HIERARCHY);
@@ -292,8 +291,8 @@ pw_status pw_build(pw_context* context, const double* vertices, size_t vertex_co
                 "rungs must be a sum of 1 (exact), 2 (repaired) and 4 (from points), or 0 for all.");
         require(given.open_surfaces == 0 || given.open_surfaces == 1, "open_surfaces must be 0 or 1.");
         require(given.threads >= 0, "threads must be 0 or more.");
-        require(given.mode >= PW_MODE_REGROUPED && given.mode <= PW_MODE_SYMMETRIC,
-                "mode must be 0 (regrouped), 1 (the paper's) or 2 (symmetric).");
+        require(given.mode == PW_MODE_REGROUPED || given.mode == PW_MODE_PAPER,
+                "mode must be 0 (regrouped) or 1 (the paper's).");
         Progress unwatched;
         Progress& progress = context ? context->progress : unwatched;
         const Watch watch(progress);

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import trimesh
 from conftest import ROOT
-from partwheel import Hierarchy, Mode, PartwheelError, meshes
+from partwheel import Hierarchy, PartwheelError, meshes
 from partwheel.cut import Cut, borders, files, links, mirror_planes, named, weights
 from partwheel.library import Status
 from scipy.sparse import coo_matrix
@@ -18,11 +18,11 @@ from test_command_line import run
 
 
 @functools.cache
-def model(name, mode=Mode.REGROUPED):
+def model(name):
     """(Mesh, Hierarchy): homer is used exactly, and symmetric but for his pose; of the elephant one part of the
     automatic cut has no face; the cow is filled from points."""
     mesh = meshes.read(ROOT / "build" / "deps" / "meshes" / f"{name}.off")
-    return mesh, Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, mode=mode)
+    return mesh, Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count)
 
 
 MODELS = "homer", "elephant", "cow"
@@ -165,7 +165,7 @@ def test_mirror_planes():
 
 
 def test_mirror_images_are_left_and_right():
-    mesh, h = model("homer", Mode.SYMMETRIC)
+    mesh, h = model("homer")
     cut = Cut.automatic(h)
     names = named(cut, *mesh[:3])
     assert len(set(names)) == len(cut)
@@ -269,7 +269,7 @@ def test_weights_of_pieces_that_touch_nothing_are_whole():
 
 
 def test_files_hold_the_parts(tmp_path):
-    mesh, h = model("homer", Mode.SYMMETRIC)
+    mesh, h = model("homer")
     cut = Cut.automatic(h)
     files.write(tmp_path, "homer", mesh, cut, files.FORMATS)
     told = json.loads((tmp_path / "homer.json").read_text())

@@ -13,8 +13,8 @@ NATIVE, PACKAGE, ADDON = ROOT / "native" / "src", ROOT / "native" / "python" / "
 # The order in which data flows: a file imports from its own room and from those before it. A room's sub-folder is a
 # room of its own; "x.py": that file alone.
 FLOWS = {
-    NATIVE: ["base", "surface", "surface/prepare", "fill", "cluster/hull", "cluster", "tree/mirror", "tree/regroup", "tree", "part",
-             "api.cpp"],
+    NATIVE: ["base", "surface", "surface/prepare", "fill", "cluster/hull", "cluster", "tree/mirror", "tree/snap",
+             "tree/regroup", "tree", "part", "api.cpp"],
     ADDON: ["trouble.py", "preferences.py", "mesh", "view", "parts", "pick", "solid", "cut", "compose", "deform", "ui",
             "api.py", "command.py", "__init__.py"],
 }

@@ -137,7 +137,7 @@ TEST(Border, CutsAreTheLeastOfAll) {
         }
         const auto cost = [&](uint32_t cut) {
             int64_t sum = 0;
-            for (const BandEdge& e : band.edges) sum += (cut >> e.one & 1) != (cut >> e.other & 1) ? e.cost : 0;
+            for (const CutEdge& e : band.edges) sum += (cut >> e.one & 1) != (cut >> e.other & 1) ? e.cost : 0;
             for (size_t n = 0; n < count; ++n) sum += cut >> n & 1 ? band.to_rest[n] : band.to_part[n];
             return sum;
         };
@@ -171,7 +171,7 @@ TEST(Border, CostsOnAMeshAreThoseDocumentedAndTheirCutTheLeast) {
             if (const auto [i, j, k] = mesh.triangles[t]; part[at(mesh.face_of(t))])
                 inside += partwheel::area(mesh.vertices[at(i)], mesh.vertices[at(j)], mesh.vertices[at(k)]);
         const double unit = (1 << 24) / (0.2 * std::sqrt(std::min(inside, area - inside)));
-        for (const BandEdge& edge : band.edges) {
+        for (const CutEdge& edge : band.edges) {
             const auto [one, other] = std::minmax(band.faces[at(edge.one)], band.faces[at(edge.other)]);
             const double ratio = static_cast<double>(edge.cost) / unit / plain.at({one, other});
             if (part[at(one)] != part[at(other)])
@@ -184,7 +184,7 @@ TEST(Border, CostsOnAMeshAreThoseDocumentedAndTheirCutTheLeast) {
         ++enumerated;
         const auto cost = [&](const std::function<bool(size_t)>& in_part) {
             int64_t sum = 0;
-            for (const BandEdge& e : band.edges) sum += in_part(at(e.one)) != in_part(at(e.other)) ? e.cost : 0;
+            for (const CutEdge& e : band.edges) sum += in_part(at(e.one)) != in_part(at(e.other)) ? e.cost : 0;
             for (size_t n = 0; n < band.faces.size(); ++n) sum += in_part(n) ? band.to_rest[n] : band.to_part[n];
             return sum;
         };

@@ -97,7 +97,7 @@ Result regrouped(const Bar& bar, const std::vector<size_t>& order) {
     Progress progress;
     progress.begin();
     Result result;
-    result.regrouped = regroup(mesh, tree_of(mesh, order), {}, progress, 1, {}, &result.trace);
+    result.regrouped = regroup(mesh, tree_of(mesh, order), {}, progress, {}, &result.trace);
     for (size_t piece = 0; piece < bar.pieces(); ++piece) {
         const auto at_piece = [&](const Tetrahedron& t) {
             return std::ranges::all_of(t, [&](int32_t v) {
@@ -107,7 +107,7 @@ Result regrouped(const Bar& bar, const std::vector<size_t>& order) {
         };
         const auto first = std::ranges::find_if(mesh.tetrahedra, at_piece) - mesh.tetrahedra.begin();
         result.part_of_piece.push_back(
-            static_cast<size_t>(result.trace.part_of_tetrahedron[static_cast<size_t>(first)]));
+            static_cast<size_t>(result.trace.first.of[static_cast<size_t>(first)]));
     }
     return result;
 }
@@ -241,9 +241,9 @@ TEST(Regroup, TheBorderThatIsNoneIsTakenAwayFirst) {
         for (const auto& [b, near, middle, far, waist_at, seam_at] :
              {std::tuple(bar, 2, 1, 0, 1, 2), std::tuple(back, 0, 1, 2, 2, 1)}) {
             const Result r = regrouped(b, order);
-            ASSERT_EQ(r.trace.merges.size(), 2U);
+            ASSERT_EQ(r.trace.last.joined.size(), 2U);
             using Parts = std::set<int32_t>;
-            const auto joined = [&](size_t j) { return Parts(r.trace.merges[j].begin(), r.trace.merges[j].end()); };
+            const auto joined = [&](size_t j) { return Parts(r.trace.last.joined[j].begin(), r.trace.last.joined[j].end()); };
             const auto part = [&](int piece) { return r.part(static_cast<size_t>(piece)); };
             EXPECT_EQ(joined(0), (Parts{part(near), part(middle)}));
             EXPECT_EQ(joined(1), (Parts{part(far), 3}));

@@ -76,15 +76,16 @@ TEST(Symmetry, PartsOfTheBetterSideAreCopied) {
         for (const int32_t v : mesh.tetrahedra[t]) x += mesh.vertices[static_cast<size_t>(v)][0] / 4;
         return static_cast<int>(x);
     };
-    PartsOfTetrahedra parts{{}, 0, {}, {}};  // fine on the left, one part on the right from the middle on
-    for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) parts.of.push_back(std::min(cube(t), length / 2));
-    parts.count = static_cast<size_t>(length / 2 + 1);
-    std::vector<double> worth(parts.count, 0.9);
-    worth.back() = 0.1;
+    std::vector<int32_t> part_of;  // fine on the left, one part on the right from the middle on
+    std::vector<double> worth;
+    for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+        part_of.push_back(std::min(cube(t), length / 2));
+        worth.push_back(cube(t) < length / 2 ? 0.9 : 0.1);
+    }
     Progress progress;
     progress.begin();
     const Plane middle{{1, 0, 0}, length / 2.0};
-    const PartsOfTetrahedra found = mirrored(mesh, std::vector<Plane>{middle}, parts, worth, progress);
+    const PartsOfTetrahedra found = mirrored(mesh, std::vector<Plane>{middle}, part_of, length / 2 + 1, worth, progress);
     ASSERT_EQ(found.count, static_cast<size_t>(length - 1));
     ASSERT_EQ(found.images.size(), 1U);
     std::map<int, int32_t> part;  // of each cube
@@ -98,20 +99,21 @@ TEST(Symmetry, PartsOfTheBetterSideAreCopied) {
 TEST(Symmetry, WhatLiesAcrossThePlaneIsItsOwnImage) {
     const int length = 9;  // the middle cube lies across
     const TetMesh mesh = tets_of(block({0, 0, 0}, {length, 2, 2}));
-    PartsOfTetrahedra parts{{}, 3, {}, {}};
+    std::vector<int32_t> part_of;
     for (const Tetrahedron& tet : mesh.tetrahedra) {
         double x = 0;
         for (const int32_t v : tet) x += mesh.vertices[static_cast<size_t>(v)][0] / 4;
-        parts.of.push_back(x < 3 ? 0 : x < 6 ? 1 : 2);
+        part_of.push_back(x < 3 ? 0 : x < 6 ? 1 : 2);
     }
     Progress progress;
     progress.begin();
     const PartsOfTetrahedra found =
-        mirrored(mesh, std::vector<Plane>{{{1, 0, 0}, length / 2.0}}, parts, std::vector<double>(3, 1), progress);
+        mirrored(mesh, std::vector<Plane>{{{1, 0, 0}, length / 2.0}}, part_of, 3, std::vector<double>(part_of.size(), 1),
+                 progress);
     ASSERT_EQ(found.count, 3U);  // the same parts, whatever their numbers
     std::vector<int32_t> number(3, -1);
-    for (size_t t = 0; t < parts.of.size(); ++t) {
-        int32_t& n = number[static_cast<size_t>(parts.of[t])];
+    for (size_t t = 0; t < part_of.size(); ++t) {
+        int32_t& n = number[static_cast<size_t>(part_of[t])];
         if (n < 0) n = found.of[t];
         EXPECT_EQ(n, found.of[t]);
     }
@@ -142,33 +144,36 @@ TEST(Symmetry, JoinsAlikeEndInOnePart) {
         for (size_t p = 0; p < count; ++p) areas.push_back(below(4) == 0 ? 0.001 : 1);
         const size_t before = 1 + random() % 12;
         for (size_t p = 0; p < before; ++p) parts.stands.push_back(below(count + 1) - 1);
-        std::vector<std::array<int32_t, 2>> joined;
+        Joins joins;
+        joins.count = before;
         std::vector<int32_t> tops;
         for (size_t p = 0; p < before; ++p) tops.push_back(static_cast<int32_t>(p));
         while (tops.size() > 1) {
             std::shuffle(tops.begin(), tops.end(), random);
-            joined.push_back({tops[0], tops[1]});
+            joins.joined.push_back({tops[0], tops[1]});
             tops.erase(tops.begin(), tops.begin() + 2);
-            tops.push_back(static_cast<int32_t>(before + joined.size() - 1));
+            tops.push_back(static_cast<int32_t>(before + joins.joined.size() - 1));
         }
-        const std::vector<double> costs(joined.size(), 0.5);
+        joins.costs.assign(joins.joined.size(), 0.5);
         for (const double scrap : {0.02, 0.0}) {
-            const Alike alike = joined_alike(parts, areas, joined, costs, scrap);
-            if (!alike.scraps.empty()) {
-                ASSERT_TRUE(alike.joins.empty() && scrap > 0);
+            std::vector<int32_t> scraps;
+            const Joins alike = joined_alike(parts, areas, joins, scrap, scraps);
+            if (!scraps.empty()) {
+                ASSERT_TRUE(alike.joined.empty() && scrap > 0);
                 ++scrapped;
                 continue;
             }
-            std::vector<int> used(count + alike.joins.size(), 0);
-            for (size_t j = 0; j < alike.joins.size(); ++j) {
-                ASSERT_GE(alike.joins[j].members.size(), 2U);
-                for (const int32_t member : alike.joins[j].members) {
-                    ASSERT_LT(static_cast<size_t>(member), count + j);
-                    ++used[static_cast<size_t>(member)];
+            ASSERT_EQ(alike.joined.size(), count - 1);
+            ASSERT_EQ(alike.steps.size(), count - 1);
+            std::vector<int> used(2 * count - 1, 0);
+            for (size_t j = 0; j < alike.joined.size(); ++j)
+                for (const int32_t half : alike.joined[j]) {
+                    ASSERT_LT(static_cast<size_t>(half), count + j);
+                    ++used[static_cast<size_t>(half)];
                 }
-            }
             ASSERT_EQ(used.back(), 0);
             ASSERT_EQ(std::count(used.begin(), used.end(), 1), static_cast<std::ptrdiff_t>(used.size()) - 1);
+            ASSERT_TRUE(alike.steps.empty() || !alike.steps.back());
             for (const std::vector<int32_t>& image : alike.images) ASSERT_EQ(image.size(), used.size());
             ++whole;
         }

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws what is selected: the automatic cut in colours, from both sides, and what the wheel goes through after a click.
 
-usage: pictures.py OUT MODEL [--view X Y Z] [--up X Y Z] [--click X Y]... [--mode symmetric] [--size 360] [--columns 7]
+usage: pictures.py OUT MODEL [--view X Y Z] [--up X Y Z] [--click X Y]... [--mode paper] [--size 360] [--columns 7]
 
 OUT: an image file. MODEL: a mesh file. --view: from where it is seen, --up: what is up there. --click: a place in the
 first picture, in shares of its width and height from the top left; the click's part is drawn, then what each notch

@@ -27,22 +27,14 @@ HIGHER_IS_WORSE = {"notches", "cut", "chosen"}
 # best, click, within two: overlap with what a person cut, on the wheel's path, at the click, within two notches of it;
 # notches from the click to the best; cut, chosen: 1 - Rand index, the number of parts given, and not. images of clicks
 # and nodes: see mirror.py; of those models that are symmetric.
-FLOORS = {
-    Mode.REGROUPED: {"best": 0.744, "click": 0.585, "within two": 0.714, "notches": 1.21, "cut": 0.107, "chosen": 0.122,
-                     "images of clicks": 0.85, "images of nodes": 0.07},
-    Mode.SYMMETRIC: {"best": 0.735, "click": 0.569, "within two": 0.706, "notches": 1.10, "cut": 0.112, "chosen": 0.137,
-                     "images of clicks": 0.95, "images of nodes": 0.465},
-}
-# Of libcgal-demo's models alone.
-DEMO_FLOORS = {
-    Mode.REGROUPED: {"images of clicks": 0.385, "images of nodes": 0.09},
-    Mode.SYMMETRIC: {"images of clicks": 0.965, "images of nodes": 0.61},
-}
+FLOORS = {"best": 0.744, "click": 0.585, "within two": 0.714, "notches": 1.21, "cut": 0.107, "chosen": 0.122,
+          "images of clicks": 0.85, "images of nodes": 0.07}
+DEMO_FLOORS = {"images of clicks": 0.965, "images of nodes": 0.61}  # of libcgal-demo's models alone
 
 
-def figures(path, mode):
+def figures(path):
     """What FLOORS has, of one model, as far as it applies to it."""
-    mesh, hierarchy = build(path, mode)
+    mesh, hierarchy = build(path, Mode.REGROUPED)
     found = {}
     if path.parent.name == "off":
         clicks, cut, chosen = benchmark(SCORE).score_model(
@@ -57,9 +49,9 @@ def figures(path, mode):
     return found
 
 
-def means(paths, mode):
+def means(paths):
     with ProcessPoolExecutor() as pool:
-        rows = list(pool.map(figures, paths, [mode] * len(paths)))
+        rows = list(pool.map(figures, paths))
     names = {name: None for row in rows for name in row}
     return {name: np.mean([row[name] for row in rows if name in row]) for name in names}
 
@@ -72,13 +64,11 @@ def check(found, floors):
     assert not worse, "; ".join(worse)
 
 
-@pytest.mark.parametrize("mode", FLOORS, ids=lambda mode: mode.name.lower())
-def test_the_benchmarks_models(mode):
+def test_the_benchmarks_models():
     if not Path(MODELS).is_dir() or not SCORE.exists():
         pytest.skip(f"the benchmark is not here: {MODELS} and {SCORE}")
-    check(means([Path(MODELS) / "off" / f"{model}.off" for model in BENCHMARK], mode), FLOORS[mode])
+    check(means([Path(MODELS) / "off" / f"{model}.off" for model in BENCHMARK]), FLOORS)
 
 
-@pytest.mark.parametrize("mode", DEMO_FLOORS, ids=lambda mode: mode.name.lower())
-def test_libcgal_demos_symmetric_models(mode):
-    check(means([ROOT / "build" / "deps" / "meshes" / name for name in SYMMETRIC], mode), DEMO_FLOORS[mode])
+def test_libcgal_demos_symmetric_models():
+    check(means([ROOT / "build" / "deps" / "meshes" / name for name in SYMMETRIC]), DEMO_FLOORS)

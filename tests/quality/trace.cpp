@@ -86,7 +86,7 @@ void trace(const std::filesystem::path& path, const std::vector<double>& numbers
     Progress progress;
     progress.begin();
     RegroupTrace seen;
-    regroup(b.mesh, b.tree, {}, progress, 1, numbers, &seen);
+    regroup(b.mesh, b.tree, {}, progress, numbers, &seen);
     const pw_arrays a = hierarchy.arrays();
     std::vector<int32_t> part_of_face;
     for (size_t f = 0; f < a.face_count; ++f)

@@ -162,8 +162,8 @@ class Hierarchy:
         rungs: the ways allowed to a surface that can be filled, a sum of Rung (0: all); the first that works is taken.
         open_surfaces: take a sheet (plane, cloth, car door) as a thin solid, instead of refusing it with NOT_SOLID.
         threads: 0 as many as help, else at most so many; the result is the same.
-        mode: Mode.REGROUPED, joined by what people take for parts; Mode.SYMMETRIC, the same on both sides of what is its
-        own mirror image; or Mode.PAPER, the paper's in every step.
+        mode: Mode.REGROUPED, joined by what people take for parts, with borders in creases, and the same on both sides
+        of what is its own mirror image; or Mode.PAPER, the paper's in every step.
         exactly: the parts of a large mesh are not found on a coarser copy of it, but on all of its triangles, which
         takes some ten times as long and as much memory. exact_triangles: meshes of more are large (0: 200,000).
         progress(fraction, stage): called in this thread about ten times a second while the build runs in another;

@@ -45,7 +45,6 @@ class Mode(enum.IntEnum):
 
     REGROUPED = 0
     PAPER = 1
-    SYMMETRIC = 2
 
 
 STAGE_COUNT = len(Stage)

@@ -57,4 +57,84 @@ Within cluster_within(const TetMesh& mesh, std::span<const int32_t> part, size_t
     return result;
 }
 
+Within kept_within(const TetMesh& mesh, std::span<const Merge> merges, std::span<const int32_t> part, size_t count,
+                   HullKernel& kernel) {
+    const size_t leaves = mesh.tetrahedra.size(), clusters = leaves + merges.size();
+    // Of each cluster: the part that it is in, or -1: several; its number here, volume and lowest tetrahedron.
+    std::vector<int32_t> home(part.begin(), part.end()), number(clusters, -1), low(clusters);
+    std::vector<double> volume(clusters);
+    home.resize(clusters, -1);
+    std::iota(number.begin(), number.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
+    std::iota(low.begin(), low.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
+    for (size_t t = 0; t < leaves; ++t) {
+        const auto corner = [&](size_t k) { return mesh.vertices[at(mesh.tetrahedra[t][k])]; };
+        volume[t] = std::max(0.0, six_volumes(corner(0), corner(1), corner(2), corner(3)) / 6);
+    }
+    Within result;
+    result.parts.resize(count);
+
+    // A cluster that is all in one part, with its hull.
+    const auto grown = [&](int32_t cluster) {
+        Grown g{number[at(cluster)], low[at(cluster)], volume[at(cluster)], {}, {}};
+        std::vector<int32_t> todo = {cluster}, corners;
+        while (!todo.empty()) {
+            const auto c = at(todo.back());
+            todo.pop_back();
+            if (c < leaves) {
+                corners.insert(corners.end(), mesh.tetrahedra[c].begin(), mesh.tetrahedra[c].end());
+                continue;
+            }
+            todo.push_back(merges[c - leaves].left);
+            todo.push_back(merges[c - leaves].right);
+        }
+        g.hull = kernel.build(corners);
+        return g;
+    };
+    // The shares of the clusters that are in several parts, until these are merged.
+    struct Share {
+        int32_t part;
+        Grown grown;
+    };
+    std::vector<std::vector<Share>> shares(clusters);
+    const auto shares_of = [&](int32_t cluster) {
+        if (home[at(cluster)] < 0) return std::move(shares[at(cluster)]);
+        std::vector<Share> one;
+        one.push_back({home[at(cluster)], grown(cluster)});
+        return one;
+    };
+    std::vector<uint8_t> merged(clusters, 0);
+    for (size_t m = 0; m < merges.size(); ++m) {
+        const auto& [left, right, concavity, hull_volume] = merges[m];
+        const size_t c = leaves + m;
+        merged[at(left)] = merged[at(right)] = 1;
+        low[c] = std::min(low[at(left)], low[at(right)]);
+        volume[c] = volume[at(left)] + volume[at(right)];
+        if (home[at(left)] >= 0 && home[at(left)] == home[at(right)]) {
+            home[c] = home[at(left)];
+            number[c] = static_cast<int32_t>(leaves + result.merges.size());
+            result.merges.push_back({number[at(left)], number[at(right)], concavity, hull_volume});
+            continue;
+        }
+        std::vector<Share> all = shares_of(left);
+        for (Share& share : shares_of(right)) {
+            const auto same = std::ranges::find(all, share.part, &Share::part);
+            if (same == all.end())
+                all.push_back(std::move(share));
+            else
+                same->grown = joined(std::move(same->grown), std::move(share.grown), kernel, leaves, result.merges);
+        }
+        shares[c] = std::move(all);
+    }
+    std::vector<Share> roots;
+    for (size_t c = 0; c < clusters; ++c)
+        if (!merged[c])
+            for (Share& share : shares_of(static_cast<int32_t>(c))) roots.push_back(std::move(share));
+    std::ranges::sort(roots, {}, [](const Share& share) { return std::pair(share.part, share.grown.low); });
+    for (Share& share : roots) {
+        Grown& whole = result.parts[at(share.part)];
+        whole = joined(std::move(whole), std::move(share.grown), kernel, leaves, result.merges);
+    }
+    return result;
+}
+
 }  // namespace partwheel

@@ -1,4 +1,4 @@
-// The paper's clusters within given parts: a tree for each of them.
+// The paper's clusters within given parts: a tree for each of them, made anew or what is left of one.
 #pragma once
 
 #include "cluster/cluster.h"
@@ -30,5 +30,11 @@ struct Within {
 // the lowest on. kernel: of the mesh's vertices; outlives what is returned. threads: as cluster() takes it.
 Within cluster_within(const TetMesh& mesh, std::span<const int32_t> part, size_t count, HullKernel& kernel,
                       Progress& progress, size_t threads);
+
+// The same from a tree that was made of parts before, with most of what it has: what is in one part stays as it was, of
+// what is in several each keeps its share; what came from elsewhere is joined last, the lowest first. merges: those of
+// the tree that join no two parts of before.
+Within kept_within(const TetMesh& mesh, std::span<const Merge> merges, std::span<const int32_t> part, size_t count,
+                   HullKernel& kernel);
 
 }  // namespace partwheel

@@ -1,20 +1,8 @@
 // A part of a surface -> the same part with its border in the creases nearby: a minimum cut in a band around it.
-//
-// People end parts where a surface is concave (the minima rule). So a border costs its length, times a weight that is 1
-// where the surface is flat, and falls with the angle a between the normals of the two faces:
-//
-//     w = (1 - sin(a / 2)) ^ p       p = 10 at a concave edge, 1 at a convex one
-//
-// After Golovinskiy and Funkhouser, "Randomized Cuts for 3D Mesh Analysis" (2008): length times (1 - a / pi) ^ 10, at
-// concave edges alone. sin(a / 2) in place of a / pi needs a square root only, the same on every machine. That convex
-// edges count too, a tenth, is from Katz and Tal, "Hierarchical Mesh Decomposition Using Fuzzy Clustering and Cuts"
-// (2003), as is the cut in a band with both sides of it held: with nothing concave near, a cut follows a box's edges.
 #include "part/border.h"
 
 #include "base/error.h"
-
-#include <boost/graph/boykov_kolmogorov_max_flow.hpp>
-#include <boost/graph/compressed_sparse_row_graph.hpp>
+#include "surface/crease.h"
 
 #include <algorithm>
 #include <cmath>
@@ -80,10 +68,7 @@ double Creases::cost(size_t face, const Neighbour& edge) const {
     const double turn = dot(cross(n, m), along);
     // Nobody knows the angle where faces wind against each other, more than two meet, or one has no area.
     if (edge.against || turn == 0 || dot(n, n) == 0 || dot(m, m) == 0) return length(along);
-    const double base = std::max(1 - length(n - m) / 2, 0.0);
-    if ((turn > 0) != inside_out_) return length(along) * base;
-    const double second = base * base, fourth = second * second;
-    return length(along) * fourth * fourth * second;
+    return length(along) * crease_weight(n, m, (turn > 0) != inside_out_);
 }
 
 void Creases::measure(const MeshView& mesh) {
@@ -282,67 +267,6 @@ BorderBand border_band(const Creases& faces, std::span<const uint8_t> inside) {
         }
     }
     return band;
-}
-
-std::vector<uint8_t> minimum_cut(const BorderBand& band) {
-    // Arcs of a flow from what stays in the part (source) to what stays in the rest (sink), sorted by their beginning.
-    const size_t count = band.faces.size(), source = count, sink = count + 1;
-    struct Arc {
-        size_t from, to;
-        int64_t there, back;
-    };
-    std::vector<Arc> arcs;
-    arcs.reserve(band.edges.size() + 2 * count);
-    for (const BandEdge& edge : band.edges) arcs.push_back({at(edge.one), at(edge.other), edge.cost, edge.cost});
-    for (size_t n = 0; n < count; ++n) {
-        if (band.to_part[n] > 0) arcs.push_back({source, n, band.to_part[n], 0});
-        if (band.to_rest[n] > 0) arcs.push_back({n, sink, band.to_rest[n], 0});
-    }
-    std::vector<size_t> place(count + 4, 0);
-    for (const Arc& arc : arcs) ++place[arc.from + 2], ++place[arc.to + 2];
-    std::partial_sum(place.begin(), place.end(), place.begin());
-    std::vector<std::pair<size_t, size_t>> ends(2 * arcs.size());
-    std::vector<int64_t> capacity(ends.size()), residual(ends.size());
-    std::vector<size_t> opposite(ends.size());
-    for (const auto& [from, to, there, back] : arcs) {
-        const size_t i = place[from + 1]++, j = place[to + 1]++;
-        ends[i] = {from, to}, ends[j] = {to, from};
-        capacity[i] = there, capacity[j] = back;
-        opposite[i] = j, opposite[j] = i;
-    }
-
-    using Graph = boost::compressed_sparse_row_graph<boost::directedS>;
-    using Edge = boost::graph_traits<Graph>::edge_descriptor;
-    const Graph graph(boost::edges_are_sorted, ends.begin(), ends.end(), count + 2);
-    std::vector<Edge> reverse(ends.size()), predecessor(count + 2);
-    for (size_t i = 0; i < ends.size(); ++i) reverse[i] = Edge(ends[i].second, opposite[i]);
-    std::vector<boost::default_color_type> tree(count + 2);
-    std::vector<int64_t> distance(count + 2);
-    const auto edge_index = get(boost::edge_index, graph);
-    const auto vertex_index = get(boost::vertex_index, graph);
-    boost::boykov_kolmogorov_max_flow(
-        graph, boost::make_iterator_property_map(capacity.begin(), edge_index),
-        boost::make_iterator_property_map(residual.begin(), edge_index),
-        boost::make_iterator_property_map(reverse.begin(), edge_index),
-        boost::make_iterator_property_map(predecessor.begin(), vertex_index),
-        boost::make_iterator_property_map(tree.begin(), vertex_index),
-        boost::make_iterator_property_map(distance.begin(), vertex_index), vertex_index, source, sink);
-
-    // What the source still reaches: the same for every greatest flow.
-    std::vector<uint8_t> reached(count + 2, 0);
-    std::vector<size_t> open(1, source);
-    reached[source] = 1;
-    while (!open.empty()) {
-        const size_t n = open.back();
-        open.pop_back();
-        for (size_t i = place[n]; i < place[n + 1]; ++i)
-            if (residual[i] > 0 && !reached[ends[i].second]) {
-                reached[ends[i].second] = 1;
-                open.push_back(ends[i].second);
-            }
-    }
-    reached.resize(count);
-    return reached;
 }
 
 void snapped_border(const Creases& creases, std::span<const uint8_t> inside, std::span<uint8_t> result) {

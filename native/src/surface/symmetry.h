@@ -23,7 +23,7 @@ inline constexpr double mirror_tolerance = 1.0 / 100;
 // most three, in each of which `least_mirrored` of the area has. Candidates are the planes through the middle of the
 // area and of the bounding box, normal to the principal and the coordinate axes, each then moved to where its two
 // sides meet best.
-inline constexpr double least_mirrored = 0.8;
+inline constexpr double least_mirrored = 0.95;
 std::vector<Plane> mirror_planes(std::span<const Point> vertices, std::span<const Triangle> triangles,
                                  Progress& progress);
 

@@ -24,9 +24,9 @@ struct Built {
 Built try_build(const TriMesh& mesh, double quality = 0, pw_context* context = nullptr,
                 uint32_t rungs = PW_RUNG_EXACT, int32_t mode = PW_MODE_REGROUPED);
 
-inline constexpr pw_mode all_modes[] = {PW_MODE_REGROUPED, PW_MODE_PAPER, PW_MODE_SYMMETRIC};
+inline constexpr pw_mode all_modes[] = {PW_MODE_REGROUPED, PW_MODE_PAPER};
 inline const char* mode_name(pw_mode mode) {
-    return mode == PW_MODE_PAPER ? "paper" : mode == PW_MODE_SYMMETRIC ? "symmetric" : "regrouped";
+    return mode == PW_MODE_PAPER ? "paper" : "regrouped";
 }
 
 // On the exact rung. Throws with the library's message if it can't be built.

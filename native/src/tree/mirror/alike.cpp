@@ -2,20 +2,27 @@
 #include "tree/mirror/alike.h"
 
 #include "base/groups.h"
+#include "tree/mirror/mirror.h"
+#include "tree/mirror/spread.h"
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <utility>
 
 namespace partwheel {
 
 namespace {
 
+// Parts copied from side to side may leave scraps that nothing joins: up to this share of the area.
+constexpr double largest_scrap = 0.02;
+
 class Joining {
 public:
     Joining(const PartsOfTetrahedra& parts, std::span<const double> areas)
-        : areas_(areas.begin(), areas.end()), above_(areas.size(), -1) {
-        result.images = parts.images;
+        : above_(areas.size(), -1) {
+        for (const double area : areas) areas_.push_back(static_cast<float>(area));
+        images = parts.images;
     }
 
     // What it has become.
@@ -27,7 +34,7 @@ public:
     // The two and their images, all at once.
     void join(int32_t a, int32_t b, double cost) {
         std::vector<std::array<int32_t, 2>> all = {{a, b}};
-        for (const std::vector<int32_t>& image : result.images)
+        for (const std::vector<int32_t>& image : images)
             for (size_t i = 0, n = all.size(); i < n; ++i) {
                 const std::array<int32_t, 2> there = {image[at(all[i][0])], image[at(all[i][1])]};
                 if (free(there[0]) && free(there[1]) && there[0] != there[1] &&
@@ -53,10 +60,10 @@ public:
                 area += areas_[at(member)];
             }
             above_.push_back(-1);
-            areas_.push_back(area);
-            result.joins.push_back({together, cost});
+            areas_.push_back(static_cast<float>(area));
+            joins.push_back({in_reach(together, all), cost});
         }
-        for (std::vector<int32_t>& image : result.images) {
+        for (std::vector<int32_t>& image : images) {
             image.resize(above_.size(), -1);
             for (const auto& [set, together] : of_set) find_image(image, together);
         }
@@ -73,9 +80,29 @@ public:
 
     double area(int32_t part) const { return areas_[at(part)]; }
 
-    Alike result;
+    // What is joined at once.
+    struct Together {
+        std::vector<int32_t> members;
+        double cost;
+    };
+    std::vector<Together> joins;  // join i makes number parts + i
+    std::vector<std::vector<int32_t>> images;  // by plane, of all numbers
 
 private:
+    // From the one that is paired most on, each is paired with one before it.
+    static std::vector<int32_t> in_reach(const std::vector<int32_t>& together,
+                                         std::span<const std::array<int32_t, 2>> pairs) {
+        const auto count = [&](int32_t member) {
+            return std::ranges::count_if(pairs, [&](const auto& two) { return two[0] == member || two[1] == member; });
+        };
+        std::vector<int32_t> order = {*std::ranges::max_element(together, {}, count)};
+        for (size_t i = 0; i < order.size(); ++i)
+            for (const auto& [one, other] : pairs)
+                for (const auto& [from, to] : {std::pair(one, other), std::pair(other, one)})
+                    if (from == order[i] && std::ranges::find(order, to) == order.end()) order.push_back(to);
+        return order;
+    }
+
     bool free(int32_t part) const { return part >= 0 && above_[at(part)] < 0; }
 
     // The image of what was made is what that of its largest member that has one has become.
@@ -91,35 +118,76 @@ private:
         if (largest >= 0) image[at(image[at(made)])] = made;
     }
 
-    std::vector<double> areas_;
+    std::vector<double> areas_;  // in single precision, so that those tie that do by symmetry
     std::vector<int32_t> above_;
 };
 
+// Two at a time.
+Joins in_steps(const Joining& joining, const PartsOfTetrahedra& parts) {
+    Joins result{parts.of, parts.count, {}, {}, {}, {}};
+    std::vector<int32_t> number(parts.count);  // of each number of the joining
+    std::iota(number.begin(), number.end(), 0);
+    for (const auto& [members, cost] : joining.joins) {
+        int32_t made = number[at(members[0])];
+        for (size_t i = 1; i < members.size(); ++i) {
+            result.joined.push_back({made, number[at(members[i])]});
+            result.costs.push_back(cost);
+            result.steps.push_back(i + 1 < members.size());
+            made = static_cast<int32_t>(parts.count + result.joined.size() - 1);
+        }
+        number.push_back(made);
+    }
+    for (const std::vector<int32_t>& image : joining.images) {
+        std::vector<int32_t> there(parts.count + result.joined.size(), -1);
+        for (size_t n = 0; n < number.size(); ++n)
+            if (image[n] >= 0) there[at(number[n])] = number[at(image[n])];
+        result.images.push_back(std::move(there));
+    }
+    return result;
+}
+
 }  // namespace
 
-Alike joined_alike(const PartsOfTetrahedra& parts, std::span<const double> areas,
-                   std::span<const std::array<int32_t, 2>> joined, std::span<const double> costs,
-                   double scrap) {
+Joins joined_alike(const PartsOfTetrahedra& parts, std::span<const double> areas, const Joins& before, double scrap,
+                   std::vector<int32_t>& scraps) {
     Joining joining(parts, areas);
-    double whole = 0;
-    for (const double area : areas) whole += area;
     std::vector<int32_t> stands = parts.stands;
-    for (size_t j = 0; j < joined.size(); ++j) {
-        const int32_t a = joining.now(stands[at(joined[j][0])]), b = joining.now(stands[at(joined[j][1])]);
-        if (a >= 0 && b >= 0 && a != b) joining.join(a, b, costs[j]);
+    for (size_t j = 0; j < before.joined.size(); ++j) {
+        const auto& [one, other] = before.joined[j];
+        const int32_t a = joining.now(stands[at(one)]), b = joining.now(stands[at(other)]);
+        if (a >= 0 && b >= 0 && a != b) joining.join(a, b, before.costs[j]);
         stands.push_back(a >= 0 ? a : b);
     }
     // Two sides that only meet in the plane are joined last; each time their images go along.
+    double whole = 0;
+    for (const double area : areas) whole += area;
     std::vector<int32_t> left = joining.left();
     while (left.size() > 1 && joining.area(left[1]) >= scrap * whole) {
-        joining.join(left[0], left[1], costs.empty() ? 0 : costs.back());
+        joining.join(left[0], left[1], before.costs.empty() ? 0 : before.costs.back());
         left = joining.left();
     }
-    if (left.size() == 1) return std::move(joining.result);
-    Alike none;
-    for (size_t p = 0; p < areas.size(); ++p)
-        if (joining.now(static_cast<int32_t>(p)) != left[0]) none.scraps.push_back(static_cast<int32_t>(p));
-    return none;
+    scraps.clear();
+    if (left.size() == 1) return in_steps(joining, parts);
+    for (size_t p = 0; p < parts.count; ++p)
+        if (joining.now(static_cast<int32_t>(p)) != left[0]) scraps.push_back(static_cast<int32_t>(p));
+    return {};
+}
+
+Joins alike(const TetMesh& mesh, std::span<const Plane> planes, const Joins& joins, std::span<const double> worth,
+            Progress& progress) {
+    PartsOfTetrahedra parts = mirrored(mesh, planes, joins.of, joins.count, worth, progress);
+    std::vector<int32_t> scraps;
+    for (double scrap = largest_scrap;;) {
+        std::vector<double> areas(parts.count, 0);
+        for (size_t t = 0; t < parts.of.size(); ++t)
+            for (size_t k = 0; k < 4; ++k)
+                if (mesh.neighbours[t][k] < 0) areas[at(parts.of[t])] += facet_area(mesh, t, k);
+        Joins joined = joined_alike(parts, areas, joins, scrap, scraps);
+        if (scraps.empty()) return joined;
+        const size_t before = parts.count;
+        parts = dissolved(mesh, std::move(parts), scraps, progress);
+        if (parts.count == before) scrap = 0;  // they have no neighbours
+    }
 }
 
 }  // namespace partwheel

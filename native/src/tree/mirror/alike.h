@@ -1,32 +1,20 @@
-// In which order parts and their mirror images are joined: as those were that stand for one side.
+// Parts and their mirror images, joined in the same order.
 #pragma once
 
+#include "tree/mirror/joins.h"
 #include "tree/mirror/mirror.h"
-
-#include <array>
-#include <span>
-#include <vector>
 
 namespace partwheel {
 
-// What is joined at once: two, or where an image meets what it is the image of more. Parts have the numbers 0 to
-// count - 1, what join i makes is number count + i.
-struct JoinedAlike {
-    std::vector<int32_t> members;
-    double cost = 0;
-};
+// The parts of the side that is worth more copied to the other side of each plane (mirror.h), and joined in the order in
+// which what they stand for was, each join with its images at once: two, or where an image meets what it is the image of
+// more; then each of these but the first is joined with one before it. worth: of each tetrahedron, for its area.
+Joins alike(const TetMesh& mesh, std::span<const Plane> planes, const Joins& joins, std::span<const double> worth,
+            Progress& progress);
 
-struct Alike {
-    std::vector<JoinedAlike> joins;
-    std::vector<std::vector<int32_t>> images;  // by plane, of all numbers: see PartsOfTetrahedra
-    // Scraps that nothing reaches; where there are some the joins are none. To be dissolved.
-    std::vector<int32_t> scraps;
-};
-
-// joined, costs: the joins of the parts that parts.stands tells of, in order, and what each cost. areas: of the parts.
-// scrap: what is left over with less than this share of the area is one.
-Alike joined_alike(const PartsOfTetrahedra& parts, std::span<const double> areas,
-                   std::span<const std::array<int32_t, 2>> joined, std::span<const double> costs,
-                   double scrap);
+// Its second half: the parts joined as those before were that stand for them, or nothing but the scraps, which are to be
+// dissolved: parts that nothing reaches, in all less than this share of the area. areas: of the parts.
+Joins joined_alike(const PartsOfTetrahedra& parts, std::span<const double> areas, const Joins& before, double scrap,
+                   std::vector<int32_t>& scraps);
 
 }  // namespace partwheel

@@ -15,7 +15,8 @@ struct Claim {
 };
 
 // Calls give(what, who) once for each that is claimed, in rising order: who claims most of it in all, of equals the
-// lowest. The order of the claims is no matter, not even to the rounding of the sums.
+// lowest. Sums are compared in single precision, so that those tie that do by symmetry; nor does the order of the claims
+// matter.
 template <class Give>
 void settle_claims(std::vector<Claim> claims, const Give& give) {
     std::sort(claims.begin(), claims.end(), [](const Claim& a, const Claim& b) {
@@ -29,8 +30,8 @@ void settle_claims(std::vector<Claim> claims, const Give& give) {
             const int32_t who = claims[i].who;
             double sum = 0;
             for (; i < claims.size() && claims[i].what == what && claims[i].who == who; ++i) sum += claims[i].area;
-            if (sum > most) {
-                most = sum;
+            if (const double rounded = static_cast<float>(sum); rounded > most) {
+                most = rounded;
                 winner = who;
             }
         }

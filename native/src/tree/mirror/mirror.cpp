@@ -45,7 +45,7 @@ void keep_largest_pieces(const TetMesh& mesh, size_t count, std::vector<int32_t>
     for (size_t t = 0; t < part.size(); ++t) {
         if (part[t] < 0 || pieces.find(t) != t) continue;
         int32_t& best = largest[at(part[t])];
-        if (best < 0 || size[t] > size[at(best)]) best = static_cast<int32_t>(t);
+        if (best < 0 || static_cast<float>(size[t]) > static_cast<float>(size[at(best)])) best = static_cast<int32_t>(t);
     }
     for (size_t t = 0; t < part.size(); ++t)
         if (part[t] >= 0 && at(largest[at(part[t])]) != pieces.find(t)) part[t] = unsettled;
@@ -247,13 +247,11 @@ private:
 
 }  // namespace
 
-PartsOfTetrahedra mirrored(const TetMesh& mesh, std::span<const Plane> planes, PartsOfTetrahedra parts,
-                           std::span<const double> worth, Progress& progress) {
-    std::vector<double> of_tetrahedra;
-    for (const int32_t p : parts.of) of_tetrahedra.push_back(worth[at(p)]);
-    parts.stands.resize(parts.count);
+PartsOfTetrahedra mirrored(const TetMesh& mesh, std::span<const Plane> planes, std::span<const int32_t> part,
+                           size_t count, std::span<const double> worth, Progress& progress) {
+    PartsOfTetrahedra parts{{part.begin(), part.end()}, count, {}, std::vector<int32_t>(count)};
     std::iota(parts.stands.begin(), parts.stands.end(), 0);
-    for (const Plane& plane : planes) parts = Copy(mesh, plane, std::move(parts), of_tetrahedra, progress).run();
+    for (const Plane& plane : planes) parts = Copy(mesh, plane, std::move(parts), worth, progress).run();
     return parts;
 }
 

@@ -1,10 +1,9 @@
 // The parts joined bottom-up, the likeliest pair first, then the components; and what that makes of the tree.
 #include "cluster/within.h"
 #include "tree/mirror/alike.h"
-#include "tree/mirror/mirror.h"
-#include "tree/mirror/spread.h"
 #include "tree/regroup/fitted.h"
 #include "tree/regroup/parts.h"
+#include "tree/snap/snap.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +16,6 @@ namespace partwheel {
 
 namespace {
 
-// Parts copied from side to side may leave scraps that nothing joins: up to this share of the area.
-constexpr double largest_scrap = 0.02;
-
 class Regrouping {
 public:
     Regrouping(const TetMesh& mesh, const BinaryTree& tree, Progress& progress, std::span<const double> pair_numbers,
@@ -27,15 +23,19 @@ public:
         : mesh_(mesh), tree_(tree), progress_(progress), pair_numbers_(pair_numbers), trace_(trace),
           kernel_(mesh.vertices) {}
 
-    PartsOfTetrahedra choose();
+    std::vector<int32_t> choose();
     void join_by_cost();
     std::vector<double> scores() const;
     std::vector<double> worth(const std::vector<double>& scores) const;
-    Regrouped alike(PartsOfTetrahedra parts, size_t threads) const;
+    Joins joins(std::vector<int32_t> part_of) const;
+    std::span<const Merge> below() const {  // the parts
+        return std::span(result_.tree.merges).first(mesh_.tetrahedra.size() - parts_.fine);
+    }
+    Regrouped planted(const Joins& joins, std::span<const Merge> below);
     Regrouped result(const std::vector<double>& scores);
 
 private:
-    void measure(const PartsOfTetrahedra& parts, std::span<const int32_t> numbers);
+    void measure(std::span<const int32_t> part_of, size_t count, std::span<const int32_t> numbers);
     std::vector<int32_t> keep_chosen(std::span<const int32_t> chosen, std::span<const int32_t> part_of);
     double hull_volume(const Pair& pair);
     double cost(const Pair& pair, double hull, bool exact);
@@ -44,7 +44,6 @@ private:
     int32_t join(int32_t a, int32_t b, double cost);
     void join_neighbours();
     void join_components();
-    void take(const PartsOfTetrahedra& parts, size_t threads);
 
     const TetMesh& mesh_;
     const BinaryTree& tree_;
@@ -61,7 +60,7 @@ private:
 };
 
 // Clusters of the paper's tree become parts.
-PartsOfTetrahedra Regrouping::choose() {
+std::vector<int32_t> Regrouping::choose() {
     const size_t leaves = mesh_.tetrahedra.size();
     const std::vector<int32_t> chosen = choose_parts(mesh_, tree_);
     std::vector<int32_t> part_of(leaves + tree_.merges.size(), -1);
@@ -69,15 +68,13 @@ PartsOfTetrahedra Regrouping::choose() {
     hand_down(tree_.merges, leaves, part_of);
     const std::vector<int32_t> numbers = keep_chosen(chosen, part_of);
     part_of.resize(leaves);
-    PartsOfTetrahedra parts{std::move(part_of), chosen.size(), {}, {}};
-    measure(parts, numbers);
-    return parts;
+    measure(part_of, chosen.size(), numbers);
+    return part_of;
 }
 
-void Regrouping::measure(const PartsOfTetrahedra& parts, std::span<const int32_t> numbers) {
-    parts_ = measure_parts(mesh_, parts.of, parts.count, tree_.merges.back().hull_volume, kernel_, progress_);
-    for (size_t p = 0; p < parts.count; ++p) parts_.all[p].number = numbers[p];
-    if (trace_) trace_->part_of_tetrahedron = parts.of;
+void Regrouping::measure(std::span<const int32_t> part_of, size_t count, std::span<const int32_t> numbers) {
+    parts_ = measure_parts(mesh_, part_of, count, tree_.merges.back().hull_volume, kernel_, progress_);
+    for (size_t p = 0; p < count; ++p) parts_.all[p].number = numbers[p];
     result_.tree.components = tree_.components;
     parts_.all.reserve(2 * parts_.fine - 1);  // join() holds references
     pair_with_.assign(2 * parts_.fine - 1, -1);
@@ -259,61 +256,40 @@ std::vector<double> Regrouping::worth(const std::vector<double>& scores) const {
     return value;
 }
 
-// Parts that are none of the paper's clusters, of which the tree below them is made anew.
-void Regrouping::take(const PartsOfTetrahedra& parts, size_t threads) {
-    Within within = cluster_within(mesh_, parts.of, parts.count, kernel_, progress_, threads);
+// What was joined, and in which order.
+Joins Regrouping::joins(std::vector<int32_t> part_of) const {
+    Joins joins{std::move(part_of), parts_.fine, joined_, {}, std::vector<uint8_t>(joined_.size(), 0), {}};
+    for (size_t j = 0; j < joined_.size(); ++j) joins.costs.push_back(parts_.all[parts_.fine + j].own_cost);
+    return joins;
+}
+
+// Other parts joined in a given order. below: the merges that made the parts at first, which stay as far as they can.
+Regrouped Regrouping::planted(const Joins& joins, std::span<const Merge> below) {
+    Within within = kept_within(mesh_, below, joins.of, joins.count, kernel_);
     result_.tree.merges = std::move(within.merges);
     std::vector<int32_t> numbers;
     for (const Grown& part : within.parts) numbers.push_back(part.cluster);
-    measure(parts, numbers);
-}
-
-// The same joins for parts that were copied from one side to the other, each with those of its images at once. The
-// steps to what is made of more than two are no nodes; images score the same.
-Regrouped Regrouping::alike(PartsOfTetrahedra parts, size_t threads) const {
-    std::vector<double> costs;
-    for (size_t j = 0; j < joined_.size(); ++j) costs.push_back(parts_.all[parts_.fine + j].own_cost);
-    Alike plan;
-    for (double scrap = largest_scrap;;) {
-        std::vector<double> areas(parts.count, 0);
-        for (size_t t = 0; t < parts.of.size(); ++t)
-            for (size_t k = 0; k < 4; ++k)
-                if (mesh_.neighbours[t][k] < 0) areas[at(parts.of[t])] += facet_area(mesh_, t, k);
-        plan = joined_alike(parts, areas, joined_, costs, scrap);
-        if (plan.scraps.empty()) break;
-        const size_t before = parts.count;
-        parts = dissolved(mesh_, std::move(parts), plan.scraps, progress_);
-        if (parts.count == before) scrap = 0;  // they have no neighbours
-    }
-    Regrouping copy(mesh_, tree_, progress_, pair_numbers_, trace_);
-    copy.take(parts, threads);
-    std::vector<int32_t> number(parts.count), steps;  // of what each number of the plan is
-    std::iota(number.begin(), number.end(), 0);
-    for (const JoinedAlike& join : plan.joins) {
-        int32_t made = number[at(join.members[0])];
-        for (size_t i = 1; i < join.members.size(); ++i) {
-            if (i > 1) steps.push_back(made);
-            made = copy.join(made, number[at(join.members[i])], join.cost);
-        }
-        for (const int32_t member : join.members) copy.parts_[number[at(member)]].above = made;
-        number.push_back(made);
-        progress_.advance(1);
-    }
-    std::vector<double> scores = copy.scores(), of_plan;
-    for (const int32_t n : number) of_plan.push_back(scores[at(n)]);
-    for (size_t n = 0; n < number.size(); ++n) {
+    measure(joins.of, joins.count, numbers);
+    for (size_t j = 0; j < joins.joined.size(); ++j) join(joins.joined[j][0], joins.joined[j][1], joins.costs[j]);
+    // What is beside or above a step is so to what it is a step to.
+    const auto step = [&](int32_t n) { return at(n) >= joins.count && joins.steps[at(n) - joins.count]; };
+    for (Part& part : parts_.all)
+        while (part.above >= 0 && step(part.above)) part.above = parts_[part.above].above;
+    // Images score the same.
+    const std::vector<double> own = scores();
+    std::vector<double> shared = own;
+    for (size_t n = 0; n < own.size(); ++n) {
         std::vector<int32_t> all = {static_cast<int32_t>(n)};
-        for (const std::vector<int32_t>& image : plan.images)
+        for (const std::vector<int32_t>& image : joins.images)
             for (size_t i = 0, before = all.size(); i < before; ++i)
                 if (const int32_t there = image[at(all[i])]; there >= 0 && std::ranges::find(all, there) == all.end())
                     all.push_back(there);
         std::ranges::sort(all);
         double sum = 0;
-        for (const int32_t each : all) sum += of_plan[at(each)];
-        scores[at(number[n])] = sum / static_cast<double>(all.size());
+        for (const int32_t each : all) sum += own[at(each)];
+        shared[n] = step(static_cast<int32_t>(n)) ? 0 : sum / static_cast<double>(all.size());
     }
-    for (const int32_t step : steps) scores[at(step)] = 0;
-    return copy.result(scores);
+    return result(shared);
 }
 
 Regrouped Regrouping::result(const std::vector<double>& scores) {
@@ -323,24 +299,29 @@ Regrouped Regrouping::result(const std::vector<double>& scores) {
         result_.scores.push_back(of_cluster[at(c)]);
     result_.scores.insert(result_.scores.end(), of_cluster.end() - static_cast<std::ptrdiff_t>(parts_.fine - 1),
                           of_cluster.end());
-    if (trace_) trace_->merges = joined_;
     return std::move(result_);
 }
 
 }  // namespace
 
 Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, std::span<const Plane> planes, Progress& progress,
-                  size_t threads, std::span<const double> pair_numbers, RegroupTrace* trace) {
+                  std::span<const double> pair_numbers, RegroupTrace* trace) {
     if (tree.merges.empty()) return {tree, {1.0}};
     const std::span<const double> numbers = pair_numbers.empty() ? fitted_pair_numbers : pair_numbers;
     Regrouping by_cost(mesh, tree, progress, numbers, trace);
-    const PartsOfTetrahedra chosen = by_cost.choose();
+    const std::vector<int32_t> part_of = by_cost.choose();
     by_cost.join_by_cost();
-    const std::vector<double> scores = by_cost.scores();
-    if (planes.empty()) return by_cost.result(scores);
-    PartsOfTetrahedra copied = mirrored(mesh, planes, chosen, by_cost.worth(scores), progress);
-    if (copied.of == chosen.of) return by_cost.result(scores);
-    return by_cost.alike(std::move(copied), threads);
+    const Joins first = by_cost.joins(part_of);
+    const std::vector<double> of_parts = by_cost.worth(by_cost.scores());
+    std::vector<double> worth;
+    for (const int32_t p : part_of) worth.push_back(of_parts[at(p)]);
+    const Joins last = alike(mesh, planes, snapped(mesh, first, progress), worth, progress);
+    if (trace) {
+        trace->first = first;
+        trace->last = last;
+        trace->nodes.clear();
+    }
+    return Regrouping(mesh, tree, progress, numbers, trace).planted(last, by_cost.below());
 }
 
 }  // namespace partwheel

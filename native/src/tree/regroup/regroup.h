@@ -47,6 +47,7 @@
 
 #include "cluster/cluster.h"
 #include "surface/symmetry.h"
+#include "tree/mirror/joins.h"
 #include "tree/regroup/measures.h"
 
 #include <array>
@@ -73,22 +74,20 @@ struct Regrouped {
     std::vector<double> scores;
 };
 
-// What fitting needs to see. Parts are numbered as their clusters in the paper's tree are; what merge j makes is
-// number parts + j.
+// What fitting needs to see. What join j makes is number parts + j.
 struct RegroupTrace {
     struct Pair {
-        int32_t a, b;
+        int32_t a, b;  // numbers of the parts at first
         std::array<double, pair_measures> measures;
     };
-    std::vector<int32_t> part_of_tetrahedron;
+    Joins first, last;  // parts of the paper's tree, numbered as their clusters are, joined by cost; those that are scored
     std::vector<Pair> pairs;
-    std::vector<std::array<int32_t, 2>> merges;
-    std::vector<std::array<double, node_measures>> nodes;
+    std::vector<std::array<double, node_measures>> nodes;  // of the last
 };
 
-// tree: the paper's of this mesh; planes: in which it is its own mirror image, see mirror_planes(). threads: as
-// cluster() takes it. pair_numbers: null, or another cost to be tried; trace: null, or what to fill.
+// tree: the paper's of this mesh; planes: in which it is its own mirror image, see mirror_planes(). pair_numbers: none,
+// or another cost to be tried; trace: null, or what to fill.
 Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, std::span<const Plane> planes, Progress& progress,
-                  size_t threads = 1, std::span<const double> pair_numbers = {}, RegroupTrace* trace = nullptr);
+                  std::span<const double> pair_numbers = {}, RegroupTrace* trace = nullptr);
 
 }  // namespace partwheel

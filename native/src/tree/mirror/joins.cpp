@@ -1,0 +1,31 @@
+// Joins of what is left of their parts.
+#include "tree/mirror/joins.h"
+
+namespace partwheel {
+
+Joins with_parts(const Joins& joins, std::span<const int32_t> of) {
+    std::vector<int32_t> number(joins.count + joins.joined.size(), -1);  // there, of each number here
+    for (const int32_t p : of) number[at(p)] = 0;
+    Joins left;
+    for (size_t p = 0; p < joins.count; ++p)
+        if (number[p] == 0) number[p] = static_cast<int32_t>(left.count++);
+    for (const int32_t p : of) left.of.push_back(number[at(p)]);
+    for (size_t j = 0; j < joins.joined.size(); ++j) {
+        const int32_t a = number[at(joins.joined[j][0])], b = number[at(joins.joined[j][1])];
+        number[joins.count + j] = a < 0 ? b : a;
+        if (a < 0 || b < 0) continue;
+        number[joins.count + j] = static_cast<int32_t>(left.count + left.joined.size());
+        left.joined.push_back({a, b});
+        left.costs.push_back(joins.costs[j]);
+        left.steps.push_back(joins.steps[j]);
+    }
+    for (const std::vector<int32_t>& image : joins.images) {
+        std::vector<int32_t> there(left.count + left.joined.size(), -1);
+        for (size_t n = 0; n < number.size(); ++n)
+            if (number[n] >= 0 && image[n] >= 0) there[at(number[n])] = number[at(image[n])];
+        left.images.push_back(std::move(there));
+    }
+    return left;
+}
+
+}  // namespace partwheel
