@@ -148,9 +148,14 @@ void expect_same(const Tree& x, const Tree& y, double scale, double rounding = 0
 
 constexpr double rounding_at_a_million = 0x1p-33;
 
-// In both modes that rounding leaves alone: see PW_MODE_SYMMETRIC.
 class Invariance : public testing::TestWithParam<pw_mode> {
 protected:
+    // Rounding may decide which of two triangles is the mirror image of a third, on what has one (partwheel.h).
+    static std::vector<TriMesh> of_mode(std::vector<TriMesh> meshes) {
+        if (GetParam() != PW_MODE_PAPER)
+            std::erase_if(meshes, [](const TriMesh& mesh) { return mesh.name == "couplingdown.off"; });
+        return meshes;
+    }
     static Handle build(const TriMesh& mesh, double quality = 0) { return test::build(mesh, quality, GetParam()); }
 };
 
@@ -159,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(Mode, Invariance, testing::Values(PW_MODE_REGROUPED, PW
 });
 
 TEST_P(Invariance, Scaled) {
-    for (const TriMesh& model : without_added_points()) {
+    for (const TriMesh& model : of_mode(without_added_points())) {
         SCOPED_TRACE(model.name);
         const TriMesh mesh = rounded(model), small = divided(mesh, 1e4), large = stretched(mesh, {1e4, 1e4, 1e4});
         ASSERT_EQ(stretched(small, {1e4, 1e4, 1e4}).vertices, mesh.vertices);
@@ -191,7 +196,7 @@ TEST_P(Invariance, ScaledWithAddedPoints) {
 }
 
 TEST_P(Invariance, Moved) {
-    for (const TriMesh& model : all_models()) {
+    for (const TriMesh& model : of_mode(all_models())) {
         SCOPED_TRACE(model.name);
         const TriMesh mesh = rounded(model);
         const Tree tree = tree_of(build(mesh));
@@ -211,7 +216,7 @@ TEST_P(Invariance, MovedWithPointsInside) {
 }
 
 TEST_P(Invariance, Shuffled) {
-    for (const TriMesh& mesh : all_models()) {
+    for (const TriMesh& mesh : of_mode(all_models())) {
         SCOPED_TRACE(mesh.name);
         const Tree tree = tree_of(build(mesh));
         for (unsigned seed = 0; seed < sized(3U, 1U); ++seed) {
@@ -222,7 +227,7 @@ TEST_P(Invariance, Shuffled) {
 }
 
 TEST_P(Invariance, AllAtOnce) {
-    for (const TriMesh& model : without_added_points()) {
+    for (const TriMesh& model : of_mode(without_added_points())) {
         SCOPED_TRACE(model.name);
         const TriMesh mesh = rounded(model);
         const Shuffled other = shuffled(mesh, 7);

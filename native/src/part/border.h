@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/groups.h"
-#include "base/minimum_cut.h"
+#include "tree/snap/minimum_cut.h"
 #include "surface/surface.h"
 
 #include <cstddef>

@@ -113,18 +113,21 @@ std::vector<int32_t> Facets::pieces(std::span<const uint8_t> in) const {
 }
 
 void Facets::drop_splinters(std::span<const uint8_t> before, std::vector<uint8_t>& in) const {
-    const std::vector<int32_t> old = pieces(before), now = pieces(in);
-    // What has most tetrahedra in common with a piece that there was goes on as that piece.
-    std::map<std::pair<int32_t, int32_t>, size_t> common;
-    for (size_t t = 0; t < in.size(); ++t)
-        if (in[t] == before[t]) ++common[{old[t], now[t]}];
-    std::map<int32_t, std::pair<size_t, int32_t>> most;
-    for (const auto& [pair, count] : common)
-        if (count > most[pair.first].first) most[pair.first] = {count, pair.second};
-    std::set<int32_t> kept;
-    for (const auto& [piece, best] : most) kept.insert(best.second);
-    for (size_t t = 0; t < in.size(); ++t)
-        if (!kept.contains(now[t])) in[t] = !in[t];
+    const std::vector<int32_t> old = pieces(before);
+    for (const bool side : {true, false}) {  // the one's splinters may have been what set apart the other's
+        const std::vector<int32_t> now = pieces(in);
+        // What has most tetrahedra in common with a piece that there was goes on as that piece.
+        std::map<std::pair<int32_t, int32_t>, size_t> common;
+        for (size_t t = 0; t < in.size(); ++t)
+            if (in[t] == before[t]) ++common[{old[t], now[t]}];
+        std::map<int32_t, std::pair<size_t, int32_t>> most;
+        for (const auto& [pair, count] : common)
+            if (count > most[pair.first].first) most[pair.first] = {count, pair.second};
+        std::set<int32_t> kept;
+        for (const auto& [piece, best] : most) kept.insert(best.second);
+        for (size_t t = 0; t < in.size(); ++t)
+            if ((in[t] != 0) == side && !kept.contains(now[t])) in[t] = !in[t];
+    }
 }
 
 std::vector<int32_t> Facets::with_faces(std::span<const Tetrahedron> tetrahedra, std::span<const Point> vertices,

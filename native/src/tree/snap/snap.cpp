@@ -2,7 +2,7 @@
 #include "tree/snap/snap.h"
 
 #include "base/groups.h"
-#include "base/minimum_cut.h"
+#include "tree/snap/minimum_cut.h"
 #include "surface/crease.h"
 
 #include <algorithm>

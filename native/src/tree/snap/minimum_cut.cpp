@@ -1,5 +1,5 @@
 // Minimum cuts: a greatest flow by Boykov and Kolmogorov's algorithm, and what it leaves the source to reach.
-#include "base/minimum_cut.h"
+#include "tree/snap/minimum_cut.h"
 
 #include "base/geometry.h"
 
