@@ -149,8 +149,8 @@ class Traced:
 
     def __init__(self, path):
         data = path.read_bytes()
-        faces, self.parts, pairs, merges, nodes = np.frombuffer(data, np.int32, 5)
-        at = 20
+        faces, first, last, pairs = np.frombuffer(data, np.int32, 4)
+        at = 16
 
         def take(count, dtype, columns):
             nonlocal at
@@ -158,10 +158,23 @@ class Traced:
             at += values.nbytes
             return values.reshape(count, columns)
 
-        self.part_of_face = take(faces, np.int32, 1)[:, 0]
-        self.pairs, self.merges = take(pairs, np.int32, 2), take(merges, np.int32, 2)
+        # The parts of each face, and what is joined from them: as they were joined by cost, and with their borders moved.
+        self.first, self.last = ((take(faces, np.int32, 1)[:, 0], parts, take(parts - 1, np.int32, 2))
+                                 for parts in (first, last))
+        self.pairs = take(pairs, np.int32, 2)
         self.pair_measures = take(pairs, np.float64, len(PAIR_NAMES))
-        self.node_measures = take(nodes, np.float64, len(NODE_NAMES))
+        self.node_measures = take(2 * last - 1, np.float64, len(NODE_NAMES))
+
+
+def within_labels(people, weight, part_of_face, parts, merges):
+    """(nodes, labels) the weight of the faces of each part, and of what is joined from them, within each label."""
+    labels = people.ends[-1]
+    cell = (part_of_face * labels + people.labels).ravel()
+    sums = np.bincount(cell, weight, parts * labels).reshape(parts, labels)
+    table = np.vstack([sums, np.zeros((len(merges), labels))])
+    for j, pair in enumerate(merges):
+        table[parts + j] = table[pair].sum(axis=0)
+    return table
 
 
 class Trace(Traced):
@@ -171,30 +184,28 @@ class Trace(Traced):
     def __init__(self, path, people):
         super().__init__(path)
         self.people = people
-        labels, annotators = people.ends[-1], len(people.labels)
-        cell = (self.part_of_face * labels + people.labels).ravel()
-        sums = [np.bincount(cell, w, self.parts * labels).reshape(self.parts, labels)
-                for w in (np.tile(people.area, annotators), None)]
-        self.inside, self.within = (np.vstack([s, np.zeros((len(self.merges), labels))]) for s in sums)
+        annotators = len(people.labels)
+        area = np.tile(people.area, annotators)
+        self.inside_at_first = within_labels(people, area, *self.first)
+        self.inside, self.within = (within_labels(people, weight, *self.last) for weight in (area, None))
+        self.part_of_face, self.parts, self.merges = self.last
         self.above = np.full(len(self.node_measures), -1)
         for j, pair in enumerate(self.merges):
-            for table in (self.inside, self.within):
-                table[self.parts + j] = table[pair].sum(axis=0)
             self.above[pair] = self.parts + j
-        self.area = self.inside.sum(axis=1) / annotators
+        self.area_at_first, self.area = (x.sum(axis=1) / annotators for x in (self.inside_at_first, self.inside))
         self.size = self.within.sum(axis=1) / annotators
         wanted = self.inside[-1]
         self.overlap = self.inside / (self.area[:, None] + wanted - self.inside)
 
     def one_part(self):
         """(pairs,) the likelihood that people put a face of one and a face of the other into one part."""
-        share = self.inside / np.maximum(self.area, 1e-300)[:, None]
+        share = self.inside_at_first / np.maximum(self.area_at_first, 1e-300)[:, None]
         return (share[self.pairs[:, 0]] * share[self.pairs[:, 1]]).sum(axis=1) / len(self.people.labels)
 
     def pair_data(self):
         """(measures, likelihood, weight) of a sample of the pairs, in which the heavy ones are all and the light ones
         stand for many."""
-        weight = np.sqrt(self.area[self.pairs].min(axis=1) / self.area[-1])
+        weight = np.sqrt(self.area_at_first[self.pairs].min(axis=1) / self.area_at_first[-1])
         weight /= weight.sum()
         taken = np.random.default_rng(len(weight)).random(len(weight)) < weight * PAIRS_A_MODEL
         return (self.pair_measures[taken].astype(np.float32), self.one_part()[taken],

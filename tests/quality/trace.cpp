@@ -88,18 +88,19 @@ void trace(const std::filesystem::path& path, const std::vector<double>& numbers
     RegroupTrace seen;
     regroup(b.mesh, b.tree, {}, progress, numbers, &seen);
     const pw_arrays a = hierarchy.arrays();
-    std::vector<int32_t> part_of_face;
-    for (size_t f = 0; f < a.face_count; ++f)
-        part_of_face.push_back(seen.part_of_tetrahedron[static_cast<size_t>(a.leaf[f])]);
-    const std::array<int32_t, 5> counts = {
-        static_cast<int32_t>(a.face_count), static_cast<int32_t>(seen.nodes.size() - seen.merges.size()),
-        static_cast<int32_t>(seen.pairs.size()), static_cast<int32_t>(seen.merges.size()),
-        static_cast<int32_t>(seen.nodes.size())};
+    const std::array<int32_t, 4> counts = {
+        static_cast<int32_t>(a.face_count), static_cast<int32_t>(seen.first.count),
+        static_cast<int32_t>(seen.last.count), static_cast<int32_t>(seen.pairs.size())};
     std::ofstream out(out_dir / path.stem().concat(".trace"), std::ios::binary);
     put(out, counts.data(), counts.size());
-    put(out, part_of_face.data(), part_of_face.size());
+    for (const Joins* joins : {&seen.first, &seen.last}) {
+        std::vector<int32_t> part_of_face;
+        for (size_t f = 0; f < a.face_count; ++f)
+            part_of_face.push_back(joins->of[static_cast<size_t>(a.leaf[f])]);
+        put(out, part_of_face.data(), part_of_face.size());
+        put(out, joins->joined.data(), joins->joined.size());
+    }
     for (const auto& pair : seen.pairs) put(out, std::array{pair.a, pair.b}.data(), 2);
-    put(out, seen.merges.data(), seen.merges.size());
     for (const auto& pair : seen.pairs) put(out, pair.measures.data(), pair.measures.size());
     put(out, seen.nodes.data(), seen.nodes.size());
     if (!out.flush()) throw std::runtime_error("can't write to " + out_dir.string());

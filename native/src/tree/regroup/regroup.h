@@ -1,5 +1,5 @@
 // The top of the tree built anew by two small neural networks: a few hundred parts of the paper's tree, joined in the
-// order that people would. choose.cpp says which parts, measure.cpp measures them, decide.cpp has the networks,
+// order that people would, with borders in creases. choose.cpp says which parts, measure.cpp measures them, decide.cpp has the networks,
 // join.cpp joins.
 //
 // Concavity alone joins a leg's two halves late and a cup's handle early. So the paper's tree is cut into some parts,
@@ -39,10 +39,13 @@
 // all.
 // Components are joined at last, as in the paper's tree. A mesh of one tetrahedron is one part, of score 1.
 //
-// Planes. Where the model is its own mirror image in given planes, all this is done first as above; then the parts of
-// the sides that score better are copied (tree/mirror/mirror.h), and the copies joined in the order in which what
-// they stand for was, each join with its images at once (tree/mirror/alike.h). What joins more than two at once has
-// steps, which are merges of score 0 and no nodes. A node's score is the mean of it and its images'.
+// Borders. Then each split is moved into the creases nearby (tree/snap/snap.h). The parts are measured again as they are
+// now, joined in the same order and at the same costs, and scored. Below them the paper's clusters keep what they have.
+//
+// Planes. Where the model is its own mirror image in given planes, the parts of the sides that scored better before their
+// borders were moved are then copied (tree/mirror/mirror.h), and the copies joined in the order in which what they stand
+// for was, each join with its images at once (tree/mirror/alike.h). What joins more than two at once has steps, which are
+// merges of score 0 and no nodes. A node's score is the mean of it and its images'.
 #pragma once
 
 #include "cluster/cluster.h"
