@@ -138,6 +138,10 @@ Near NearestTriangle::operator()(const Point& p) {
             {near.x(), near.y(), near.z()}};
 }
 
+bool NearestTriangle::within(const Point& p, double distance) const {
+    return boxes_->tree.do_intersect(Kernel::Sphere_3(to_cgal(p), distance * distance));
+}
+
 bool NearestTriangle::outside(const Point& p) const {
     const Kernel::Ray_3 ray(to_cgal(p), Kernel::Vector_3(0.5377, 0.3141, 0.7823));
     return boxes_->tree.number_of_intersected_primitives(ray) % 2 == 0;

@@ -47,6 +47,9 @@ public:
     Near operator()(const Point& p);
     // By the parity of crossings along a ray in a direction that no model is likely to be built along. Not exact: it is
     // asked of many samples, and only of those far from the surface.
+    // Whether some triangle is at most so far from p: quicker than to find the nearest.
+    bool within(const Point& p, double distance) const;
+
     bool outside(const Point& p) const;
 
 private:

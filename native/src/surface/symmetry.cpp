@@ -10,8 +10,8 @@ namespace partwheel {
 
 namespace {
 
-constexpr size_t few_samples = 256, many_samples = 1024;
-constexpr double promising = 0.4, doubt = 0.1;  // of the few: where a plane is worth moving; how far they err
+constexpr size_t fewest_samples = 64, few_samples = 256, many_samples = 1024;
+constexpr double promising = 0.4, doubt = 0.1;  // of the fewest: where a plane is worth moving; how far the few err
 constexpr int moves = 6;
 constexpr double reach = 1.0 / 20;  // relative to the diagonal: how far off a counterpart is when a plane is moved
 constexpr double perpendicular = 0.1;  // less than this is the cosine between planes that are
@@ -53,6 +53,7 @@ public:
     Search(std::span<const Point> vertices, std::span<const Triangle> triangles, Progress& progress)
         : vertices_(vertices), triangles_(triangles), progress_(progress), nearest_(vertices, triangles) {
         diagonal_ = Box::around(vertices).diagonal();
+        fewest_ = spread(fewest_samples);
         few_ = spread(few_samples);
         many_ = spread(many_samples);
     }
@@ -60,7 +61,7 @@ public:
     std::vector<Plane> planes() {
         std::vector<Candidate> found;
         for (const Plane& plane : candidates()) {
-            if (share(plane, few_) < promising) continue;
+            if (share(plane, fewest_) < promising) continue;
             for (const Plane& each : {plane, moved(plane)})
                 if (share(each, few_) > least_mirrored - doubt) found.push_back({each, share(each, many_)});
         }
@@ -135,7 +136,7 @@ private:
     double share(const Plane& plane, std::span<const Point> points) {
         const double tolerance = mirror_tolerance * diagonal_;
         size_t count = 0;
-        for (const Point& p : points) count += nearest_(plane.mirrored(p)).squared < tolerance * tolerance;
+        for (const Point& p : points) count += nearest_.within(plane.mirrored(p), tolerance);
         progress_.advance(0);
         return static_cast<double>(count) / static_cast<double>(points.size());
     }
@@ -170,7 +171,7 @@ private:
     NearestTriangle nearest_;
     Point middle_{};
     double diagonal_ = 0;
-    std::vector<Point> few_, many_;
+    std::vector<Point> fewest_, few_, many_;
 };
 
 }  // namespace

@@ -35,7 +35,7 @@ public:
     Regrouped result(const std::vector<double>& scores);
 
 private:
-    void measure(std::span<const int32_t> part_of, size_t count, std::span<const int32_t> numbers);
+    void measure(std::span<const int32_t> part_of, std::span<const int32_t> numbers, std::vector<Hull> hulls = {});
     std::vector<int32_t> keep_chosen(std::span<const int32_t> chosen, std::span<const int32_t> part_of);
     double hull_volume(const Pair& pair);
     double cost(const Pair& pair, double hull, bool exact);
@@ -68,13 +68,14 @@ std::vector<int32_t> Regrouping::choose() {
     hand_down(tree_.merges, leaves, part_of);
     const std::vector<int32_t> numbers = keep_chosen(chosen, part_of);
     part_of.resize(leaves);
-    measure(part_of, chosen.size(), numbers);
+    measure(part_of, numbers);
     return part_of;
 }
 
-void Regrouping::measure(std::span<const int32_t> part_of, size_t count, std::span<const int32_t> numbers) {
-    parts_ = measure_parts(mesh_, part_of, count, tree_.merges.back().hull_volume, kernel_, progress_);
-    for (size_t p = 0; p < count; ++p) parts_.all[p].number = numbers[p];
+void Regrouping::measure(std::span<const int32_t> part_of, std::span<const int32_t> numbers, std::vector<Hull> hulls) {
+    parts_ = measure_parts(mesh_, part_of, numbers.size(), tree_.merges.back().hull_volume, std::move(hulls), kernel_,
+                           progress_);
+    for (size_t p = 0; p < numbers.size(); ++p) parts_.all[p].number = numbers[p];
     result_.tree.components = tree_.components;
     parts_.all.reserve(2 * parts_.fine - 1);  // join() holds references
     pair_with_.assign(2 * parts_.fine - 1, -1);
@@ -268,8 +269,12 @@ Regrouped Regrouping::planted(const Joins& joins, std::span<const Merge> below) 
     Within within = kept_within(mesh_, below, joins.of, joins.count, kernel_);
     result_.tree.merges = std::move(within.merges);
     std::vector<int32_t> numbers;
-    for (const Grown& part : within.parts) numbers.push_back(part.cluster);
-    measure(joins.of, joins.count, numbers);
+    std::vector<Hull> hulls;
+    for (Grown& part : within.parts) {
+        numbers.push_back(part.cluster);
+        hulls.push_back(std::move(part.hull));
+    }
+    measure(joins.of, numbers, std::move(hulls));
     for (size_t j = 0; j < joins.joined.size(); ++j) join(joins.joined[j][0], joins.joined[j][1], joins.costs[j]);
     // What is beside or above a step is so to what it is a step to.
     const auto step = [&](int32_t n) { return at(n) >= joins.count && joins.steps[at(n) - joins.count]; };

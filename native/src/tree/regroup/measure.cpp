@@ -18,7 +18,7 @@ constexpr int smoothing_passes = 4;
 }  // namespace
 
 Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_t count, double hull_volume,
-                    HullKernel& kernel, Progress& progress) {
+                    std::vector<Hull> hulls, HullKernel& kernel, Progress& progress) {
     const double length_unit = Frame::around(mesh.vertices).longest, area_unit = length_unit * length_unit;
     Parts parts;
     parts.all.resize(count);
@@ -72,7 +72,7 @@ Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_
     for (size_t p = 0; p < count; ++p) {
         Part& part = parts.all[p];
         part.volume = std::max(0.0, part.volume);
-        part.hull = kernel.build(corners[p]);
+        part.hull = hulls.empty() ? kernel.build(corners[p]) : std::move(hulls[p]);
         part.hull_volume = part.hull.volume() / parts.volume_unit;
         part.take_logs();
         parts.whole.volume += part.volume;

@@ -73,9 +73,10 @@ struct Parts {
 // The clusters of the paper's tree that are the parts, in rising order.
 std::vector<int32_t> choose_parts(const TetMesh& mesh, const BinaryTree& tree);
 
-// The parts and the pairs of them. part_of: of each tetrahedron, and more; hull_volume: of all.
+// The parts and the pairs of them. part_of: of each tetrahedron, and more; hull_volume: of all. hulls: of the parts, where
+// they are known; else they are built.
 Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_t count, double hull_volume,
-                    HullKernel& kernel, Progress& progress);
+                    std::vector<Hull> hulls, HullKernel& kernel, Progress& progress);
 
 // What the networks are told of a pair, hull being the volume of the hull of both; and of a node, when all is joined.
 PairMeasures measures(const Parts& parts, const Pair& pair, double hull);
