@@ -177,9 +177,11 @@ private:
             for (const int8_t half : {left_half, right_half})
                 if (place >= first_[at(halves[at(half)])] && place < last_[at(halves[at(half)])]) side = half;
             side_[at(t)] = side;
-            if (side != unsettled) settled.push_back(t);
         }
-        for (size_t i = 0; i < settled.size(); ++i)  // what came from elsewhere goes with its neighbours
+        for (const int8_t half : {left_half, right_half})
+            for (const int32_t t : tetrahedra)
+                if (side_[at(t)] == half) settled.push_back(t);
+        for (size_t i = 0; i < settled.size(); ++i)  // what came from elsewhere goes with the nearest
             for (const int32_t n : mesh_.neighbours[at(settled[i])])
                 if (n >= 0 && side_[at(n)] == unsettled) {
                     side_[at(n)] = side_[at(settled[i])];
@@ -226,7 +228,9 @@ private:
             }
             for (const int32_t t : order) piece_[at(t)] = -1;
             // In single precision, so that those tie that do by symmetry.
-            const auto size = [](const Piece& piece) { return static_cast<float>(piece.area); };
+            const auto size = [](const Piece& piece) {
+                return std::pair(static_cast<float>(piece.area), piece.last - piece.first);
+            };
             const auto largest = std::ranges::max_element(pieces, {}, size);
             for (const Piece& piece : pieces) {
                 if (&piece == &*largest || !piece.beside) continue;
