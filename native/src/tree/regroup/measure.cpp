@@ -93,7 +93,7 @@ Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_
             const Point &m = normals[at(s)], &n = normals[at(t)];
             const Point along = point(high) - point(low);
             const double turn = dot(cross(m, n), along) * (sides[i].upwards ? 1 : -1);
-            const double bend = std::sqrt(std::max(0.0, (1 - dot(m, n)) / 2)) * (turn < 0 ? -1 : 1);
+            const double bend = partwheel::length(n - m) / 2 * (turn < 0 ? -1 : 1);
             const double length = partwheel::length(along) / length_unit;
             folds.push_back({low, high, s, t, length, bend});
         }
