@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What regroup computes, in Python, from the formulas in native/src/tree/regroup/regroup.h and measures.h, not from
 the C++: parts, folds, borders, measures, both networks, the order of joining, scores; and from what dendrogram.h says,
-cuts and the wheel. Hulls are scipy's."""
+cuts and the wheel. Splits are snapped in reference_snap.py. Hulls are scipy's."""
 
 import heapq
 from dataclasses import dataclass, field
 
 import numpy as np
+from reference_snap import crease_weight, snapped
 from regroup_names import NODE_NAMES, PAIR_NAMES, fitted_numbers
 from scipy.spatial import ConvexHull
 
@@ -92,10 +93,11 @@ class Pair:
 
 
 class Regrouped:
-    """The parts of a mesh joined: parts, first those of the tree given (mode PAPER's), then the joined ones; joined, of
-    which two each of these was made; scores, of each part and joined part. What the networks were told: at_first,
-    (part, part, measures) of each pair that is there at first and has surface; priced, likewise of each pair once its
-    hull was made, in order; node_measures."""
+    """The parts of a mesh without mirror planes joined: parts, first those of the tree given (mode PAPER's) with their
+    borders snapped, then the joined ones; joined, of which two each of these was made; scores, of each part and joined
+    part. What the networks were told: at_first, (part, part, measures) of each pair that is there at first and has
+    surface, before borders were snapped; priced, likewise of each pair once its hull was made, in order;
+    node_measures."""
 
     def __init__(self, vertices, tetrahedra, merges, components):
         low, high = vertices.min(axis=0), vertices.max(axis=0)
@@ -108,11 +110,10 @@ class Regrouped:
         self.volumes = np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6
         assert (self.volumes > -1e-15).all()
         self.find_surface()
-        self.choose_parts(merges, components)
-        self.find_borders()
-        self.joined, self.queue = [], []
+        self.measure(self.choose_parts(merges, components))
         self.join_neighbours()
         self.join_components(merges, components)
+        self.snap()
         self.score()
 
     def hull(self, vertices):
@@ -139,7 +140,8 @@ class Regrouped:
         a, b, c = (self.points[triangles[:, i]] for i in range(3))
         across = np.cross(b - a, c - a)
         length = np.linalg.norm(across, axis=1)
-        self.facets = [(int(owner[i]), int(owner[j]), length[i] / 2) for i, j in zip(one, other)]
+        self.facets = np.stack([owner[one], owner[other]], axis=1)
+        self.facet_corners, self.facet_area = triangles[one], length[one] / 2
         outer = np.ones(len(triangles), bool)
         outer[one] = outer[other] = False
         self.outer, self.outer_tet = triangles[outer], owner[outer]
@@ -165,6 +167,7 @@ class Regrouped:
     # ---- Parts
 
     def choose_parts(self, merges, components):
+        """(T,) the part of each tetrahedron."""
         below = [np.array([t]) for t in range(self.tets)]
         area = list(np.bincount(self.outer_tet, self.outer_area, self.tets))
         for left, right in merges.tolist():
@@ -190,16 +193,24 @@ class Regrouped:
             _, cluster = heapq.heappop(queue)
             for half in merges[cluster - self.tets].tolist():
                 offer(half)
-        chosen = sorted(chosen + [cluster for _, cluster in queue])
-        self.fine, self.parts, self.part_of = len(chosen), [], np.empty(self.tets, int)
-        for p, cluster in enumerate(chosen):
-            mine = below[cluster]
-            self.part_of[mine] = p
-            self.parts.append(Part(self.volumes[mine].sum(), area[cluster], *self.hull(self.tetrahedra[mine]),
-                                   int(mine.min()), [mine]))
+        part_of = np.empty(self.tets, int)
+        for p, cluster in enumerate(sorted(chosen + [cluster for _, cluster in queue])):
+            part_of[below[cluster]] = p
+        return part_of
+
+    def measure(self, part_of):
+        """Nothing is joined yet."""
+        self.fine, self.part_of, self.joined, self.queue = part_of.max() + 1, part_of, [], []
+        area = np.bincount(self.outer_tet, self.outer_area, self.tets)
+        self.parts = []
+        for p in range(self.fine):
+            mine = np.flatnonzero(part_of == p)
+            self.parts.append(Part(self.volumes[mine].sum(), area[mine].sum(), *self.hull(self.tetrahedra[mine]),
+                                   int(mine[0]), [mine]))
         self.volume = sum(part.volume for part in self.parts)
         self.area = sum(part.area for part in self.parts)
         self.whole_hull = self.hull(self.tetrahedra)[0]
+        self.find_borders()
 
     def find_borders(self):
         folds = list(self.folds())
@@ -217,8 +228,7 @@ class Regrouped:
         h = np.where(around > 0, bent / np.where(around > 0, around, 1), 0) * np.sqrt(self.area)
 
         borders = {}
-        for t, u, size in self.facets:
-            p, q = sorted((self.part_of[t], self.part_of[u]))
+        for (p, q), size in zip(np.sort(self.part_of[self.facets], axis=1).tolist(), self.facet_area):
             if p != q:
                 borders.setdefault((p, q), np.zeros(5))[INTERFACE] += size
         for v, w, t, s, length, bend in folds:
@@ -296,6 +306,8 @@ class Regrouped:
                 continue
             if not pair.guessed:
                 self.join(pair.a, pair.b, cost)
+                for grown in self.parts[-1].pairs:
+                    self.enter(grown)
                 continue
             pair.hull = self.hull_of_both(pair)
             measures = self.pair_measures(pair, pair.hull)
@@ -330,8 +342,6 @@ class Regrouped:
                     pair.alive = False
         union.pairs = list(kept.values())
         self.add_up_rim(union)
-        for number in union.pairs:
-            self.enter(number)
 
     def join_components(self, merges, components):
         last = len(merges) - (components - 1)
@@ -343,6 +353,38 @@ class Regrouped:
             if m >= last:
                 self.join(whole[one], whole[other], DEAREST)
                 whole[min(one, other)] = len(self.parts) - 1
+
+    # ---- Snapping
+
+    def snap(self):
+        """The parts with their borders in creases, joined as before; those that lost everything are gone."""
+        joined, costs = self.joined, [part.own_cost for part in self.parts[self.fine:]]
+        part_of = snapped(*self.sheets(), self.part_of, joined)
+        left, part_of = np.unique(part_of, return_inverse=True)
+        now = dict(zip(left.tolist(), range(len(left))))
+        fine = self.fine
+        self.measure(part_of)
+        for j, ((a, b), cost) in enumerate(zip(joined, costs)):
+            if a in now and b in now:
+                now[fine + j] = len(self.parts)
+                self.join(now[a], now[b], cost)
+            elif a in now or b in now:
+                now[fine + j] = now[a] if a in now else now[b]
+
+    def sheets(self):
+        """What sheets cost: facets, their areas and folds; areas and places of tetrahedra."""
+        at_edge = {(v, w): length * crease_weight(bend) for v, w, _, _, length, bend in self.folds()}
+        folds = np.zeros(len(self.facets))
+        for i in range(3):
+            edges = np.sort(self.facet_corners[:, [i, (i + 1) % 3]], axis=1).tolist()
+            folds += [at_edge.get((v, w), 0) for v, w in edges]
+        outer = np.bincount(self.outer_tet, minlength=self.tets)
+        place = self.points[self.tetrahedra].mean(axis=1)
+        on_surface = np.zeros_like(place)
+        np.add.at(on_surface, self.outer_tet, self.points[self.outer].mean(axis=1))
+        place[outer > 0] = on_surface[outer > 0] / outer[outer > 0, None]
+        area = np.bincount(self.outer_tet, self.outer_area, self.tets)
+        return self.facets, self.facet_area, folds, area, place
 
     # ---- Scores
 

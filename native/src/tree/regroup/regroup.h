@@ -39,13 +39,14 @@
 // all.
 // Components are joined at last, as in the paper's tree. A mesh of one tetrahedron is one part, of score 1.
 //
-// Borders. Then each split is moved into the creases nearby (tree/snap/snap.h). The parts are measured again as they are
-// now, joined in the same order and at the same costs, and scored. Below them the paper's clusters keep what they have.
+// Borders. Then each split is moved into the creases nearby (tree/snap/snap.h). The parts are measured again as they
+// are now, joined in the same order at the same costs, within -8 and 8, and scored; where one of two is gone, what both
+// became is the other. Below them the paper's clusters keep what they have.
 //
-// Planes. Where the model is its own mirror image in given planes, the parts of the sides that scored better before their
-// borders were moved are then copied (tree/mirror/mirror.h), and the copies joined in the order in which what they stand
-// for was, each join with its images at once (tree/mirror/alike.h). What joins more than two at once has steps, which are
-// merges of score 0 and no nodes. A node's score is the mean of it and its images'.
+// Planes. Where the model is its own mirror image in given planes, the parts of the sides that scored better before
+// their borders were moved are then copied (tree/mirror/mirror.h), and the copies joined in the order in which what they
+// stand for was, each join with its images at once (tree/mirror/alike.h). What joins more than two at once has steps,
+// which are merges of score 0 and no nodes. A node's score is the mean of it and its images'.
 #pragma once
 
 #include "cluster/cluster.h"
@@ -83,7 +84,8 @@ struct RegroupTrace {
         int32_t a, b;  // numbers of the parts at first
         std::array<double, pair_measures> measures;
     };
-    Joins first, last;  // parts of the paper's tree, numbered as their clusters are, joined by cost; those that are scored
+    Joins first;  // parts of the paper's tree, numbered as their clusters are, joined by cost
+    Joins last;   // those that are scored
     std::vector<Pair> pairs;
     std::vector<std::array<double, node_measures>> nodes;  // of the last
 };
