@@ -1,0 +1,252 @@
+// Splits of a tree of parts moved into grooves: where they land, what stays, and what is one piece before and after.
+// tests/core/test_regroup.py compares all of it with a second implementation, on real models.
+#include "tree/snap/snap.h"
+
+#include "support/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <random>
+#include <set>
+#include <tuple>
+
+namespace partwheel::test {
+namespace {
+
+using Of = std::vector<int32_t>;  // of each tetrahedron, its part
+
+size_t at(int32_t i) { return static_cast<size_t>(i); }
+
+Point middle(const TetMesh& mesh, size_t t) {
+    Point sum{};
+    for (const int32_t v : mesh.tetrahedra[t])
+        for (size_t k = 0; k < 3; ++k) sum[k] += mesh.vertices[at(v)][k] / 4;
+    return sum;
+}
+
+Of where(const TetMesh& mesh, const std::function<int(const Point&)>& part) {
+    Of of;
+    for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) of.push_back(part(middle(mesh, t)));
+    return of;
+}
+
+// A bar along x: cross-sections there, squares of these half widths, one piece of 2 x 2 cells from each to the next.
+struct Section {
+    double x, half;
+};
+TetMesh bar(const std::vector<Section>& sections) {
+    TetMesh mesh = tets_of(block({0, 0, 0}, {static_cast<int>(sections.size()) - 1, 2, 2}));
+    for (Point& p : mesh.vertices) {
+        const Section& section = sections[static_cast<size_t>(p[0])];
+        p = {section.x, (p[1] - 1) * section.half, (p[2] - 1) * section.half};
+    }
+    return tet_mesh(mesh.vertices, mesh.tetrahedra);
+}
+
+// Of this many pieces of length 1, with a groove.
+TetMesh grooved_bar(int pieces, int groove) {
+    std::vector<Section> sections;
+    for (int x = 0; x <= pieces; ++x) sections.push_back({1.0 * x, x == groove ? 0.7 : 1.0});
+    return bar(sections);
+}
+
+Joins joins_of(Of of, std::vector<std::array<int32_t, 2>> joined) {
+    Joins joins{std::move(of), joined.size() + 1, joined, {}, std::vector<uint8_t>(joined.size(), 0), {}};
+    for (size_t j = 0; j < joined.size(); ++j) joins.costs.push_back(static_cast<double>(j));
+    return joins;
+}
+
+Joins snap(const TetMesh& mesh, const Joins& joins) {
+    Progress progress;
+    progress.begin();
+    return partwheel::snapped(mesh, joins, progress);
+}
+Of snap_two(const TetMesh& mesh, const Of& of) { return snap(mesh, joins_of(of, {{0, 1}})).of; }
+
+std::vector<std::set<int32_t>> parts_below(const Joins& joins) {  // each number
+    std::vector<std::set<int32_t>> below;
+    for (size_t p = 0; p < joins.count; ++p) below.push_back({static_cast<int32_t>(p)});
+    for (const auto& [a, b] : joins.joined) {
+        below.push_back(below[at(a)]);
+        below.back().insert(below[at(b)].begin(), below[at(b)].end());
+    }
+    return below;
+}
+
+size_t pieces(const TetMesh& mesh, const std::vector<bool>& of) {
+    std::vector<bool> seen(of.size(), false);
+    size_t count = 0;
+    for (size_t start = 0; start < of.size(); ++start) {
+        if (!of[start] || seen[start]) continue;
+        ++count;
+        std::vector<size_t> todo = {start};
+        seen[start] = true;
+        while (!todo.empty()) {
+            const size_t t = todo.back();
+            todo.pop_back();
+            for (const int32_t n : mesh.neighbours[t])
+                if (n >= 0 && of[at(n)] && !seen[at(n)]) {
+                    seen[at(n)] = true;
+                    todo.push_back(at(n));
+                }
+        }
+    }
+    return count;
+}
+
+// Parts around random tetrahedra, joined in random order: neither parts nor what is joined need be of one piece.
+Joins random_joins(const TetMesh& mesh, size_t count, std::mt19937& random) {
+    std::vector<Point> seeds;
+    for (size_t p = 0; p < count; ++p) seeds.push_back(middle(mesh, random() % mesh.tetrahedra.size()));
+    Of of = where(mesh, [&](const Point& p) {
+        const auto way = [&](const Point& seed) {
+            return std::hypot(seed[0] - p[0], seed[1] - p[1], seed[2] - p[2]);
+        };
+        return static_cast<int>(std::ranges::min_element(seeds, {}, way) - seeds.begin());
+    });
+    std::vector<int32_t> left(count);
+    std::iota(left.begin(), left.end(), 0);
+    std::vector<std::array<int32_t, 2>> joined;
+    while (left.size() > 1) {
+        for (size_t i = left.size() - 1; i > 0; --i) std::swap(left[i], left[random() % (i + 1)]);
+        joined.push_back({left[left.size() - 2], left.back()});
+        left.pop_back();
+        left.back() = static_cast<int32_t>(count + joined.size() - 1);
+    }
+    return with_parts(joins_of(of, joined), of);
+}
+
+std::vector<TetMesh> random_meshes() {
+    const Cells u = block({0, 0, 0}, {9, 3, 3}) + block({0, 3, 0}, {3, 9, 3}) + block({6, 3, 0}, {9, 9, 3});
+    return {perturbed(tets_of(u), 0.1, 1), perturbed(grooved_bar(16, 8), 0.05, 2),
+            perturbed(tets_of(block({0, 0, 0}, {6, 6, 6}) - block({2, 2, 0}, {4, 4, 6})), 0.1, 3)};
+}
+
+TEST(Snap, LandsInTheGroove) {
+    const TetMesh mesh = grooved_bar(16, 8);
+    const Of wanted = where(mesh, [](const Point& p) { return p[0] > 8; });
+    for (const double x : {6.0, 7.0, 8.0, 9.0, 10.0}) {
+        EXPECT_EQ(snap_two(mesh, where(mesh, [&](const Point& p) { return p[0] > x; })), wanted) << x;
+        const auto beyond_wave = [&](const Point& p) { return p[0] > x + 0.8 * std::sin(7 * p[1] + 5 * p[2]); };
+        EXPECT_EQ(snap_two(mesh, where(mesh, beyond_wave)), wanted) << x;
+        const auto the_other_way = [&](const Point& p) { return p[0] < x; };
+        EXPECT_EQ(snap_two(mesh, where(mesh, the_other_way)), where(mesh, [](const Point& p) { return p[0] < 8; }));
+    }
+    // Beyond the band nothing draws it: an end of 1 has an area of 12, and so a reach of 2.1.
+    const Of far = where(mesh, [](const Point& p) { return p[0] > 1; });
+    EXPECT_EQ(snap_two(mesh, far), far);
+    // Of two grooves it takes the nearer one.
+    std::vector<Section> sections;
+    for (int x = 0; x <= 16; ++x) sections.push_back({1.0 * x, x == 6 || x == 11 ? 0.7 : 1.0});
+    const TetMesh two = bar(sections);
+    for (const double x : {7.0, 8.0})
+        EXPECT_EQ(snap_two(two, where(two, [&](const Point& p) { return p[0] > x; })),
+                  where(two, [](const Point& p) { return p[0] > 6; }));
+    for (const double x : {9.0, 10.0})
+        EXPECT_EQ(snap_two(two, where(two, [&](const Point& p) { return p[0] > x; })),
+                  where(two, [](const Point& p) { return p[0] > 11; }));
+}
+
+TEST(Snap, SmallSplitsStay) {
+    // A body, and a thin end of length 1 with a groove at 0.8. Only in the shorter one it has more than 0.01 of the area.
+    for (const double body : {4.0, 16.0}) {
+        std::vector<Section> sections;
+        for (int x = 0; x <= 16; ++x) sections.push_back({body * x / 16, 1});
+        for (int i = 0; i <= 10; ++i) sections.push_back({body + 0.1 + 0.1 * i, i == 8 ? 0.07 : 0.1});
+        const TetMesh mesh = bar(sections);
+        const auto split = [&](double x) {
+            return where(mesh, [&](const Point& p) { return p[0] < body + 0.1 ? 0 : p[0] < body + 0.1 + x ? 1 : 2; });
+        };
+        const Joins result = snap(mesh, joins_of(split(0.7), {{1, 2}, {0, 3}}));
+        EXPECT_EQ(result.of, split(body < 10 ? 0.8 : 0.7)) << body;
+    }
+}
+
+TEST(Snap, NewcomersGoWithTheirNeighbours) {
+    const TetMesh mesh = grooved_bar(16, 8);
+    const auto parts = [&](double x, double y) {
+        return where(mesh, [&](const Point& p) { return p[0] < x ? 0 : p[0] < y ? 1 : 2; });
+    };
+    EXPECT_EQ(snap(mesh, joins_of(parts(3, 6), {{0, 1}, {2, 3}})).of, parts(3, 8));
+    EXPECT_EQ(snap(mesh, joins_of(parts(10, 13), {{1, 2}, {0, 3}})).of, parts(8, 13));
+}
+
+TEST(Snap, APartThatLostEverythingIsGoneAndItsJoin) {
+    const TetMesh mesh = grooved_bar(16, 8);
+    const Of of = where(mesh, [](const Point& p) { return p[0] < 9 ? 0 : p[0] < 10 ? 1 : 2; });
+    const Joins result = snap(mesh, joins_of(of, {{0, 1}, {2, 3}}));
+    EXPECT_EQ(result.of, where(mesh, [](const Point& p) { return p[0] < 8 ? 0 : 1; }));
+    EXPECT_EQ(result.count, 2);
+    EXPECT_EQ(result.joined, (std::vector<std::array<int32_t, 2>>{{1, 0}}));
+    EXPECT_EQ(result.costs, std::vector<double>{1});
+}
+
+TEST(Snap, WhatIsJoinedIsOfOnePiece) {
+    std::mt19937 random(1);
+    size_t moved = 0, torn = 0;
+    for (const TetMesh& mesh : random_meshes())
+        for (int round = 0; round < 20; ++round) {
+            const Joins joins = random_joins(mesh, 2 + random() % 20, random), result = snap(mesh, joins);
+            moved += result.of != joins.of;
+            ASSERT_EQ(result.of.size(), mesh.tetrahedra.size());
+            ASSERT_EQ(std::set<int32_t>(result.of.begin(), result.of.end()).size(), result.count);
+            ASSERT_EQ(result.joined.size(), result.count - 1);
+            const auto pieces_of = [&](const Joins& each, const std::set<int32_t>& parts) {
+                std::vector<bool> in;
+                for (const int32_t p : each.of) in.push_back(parts.contains(p));
+                return pieces(mesh, in);
+            };
+            for (const std::set<int32_t>& parts : parts_below(joins)) torn += pieces_of(joins, parts) > 1;
+            for (const std::set<int32_t>& parts : parts_below(result)) ASSERT_EQ(pieces_of(result, parts), 1);
+        }
+    EXPECT_GE(moved, 50);
+    EXPECT_GE(torn, 50);
+}
+
+TEST(Snap, NeitherOrderNorUnitMatters) {
+    std::mt19937 random(2);
+    for (const TetMesh& mesh : random_meshes())
+        for (int round = 0; round < 10; ++round) {
+            const Joins joins = random_joins(mesh, 2 + random() % 20, random), result = snap(mesh, joins);
+            TetMesh other = mesh;
+            for (Point& p : other.vertices)
+                for (double& x : p) x *= 1 << 10;
+            EXPECT_EQ(snap(other, joins).of, result.of);
+
+            std::vector<size_t> order(mesh.tetrahedra.size());
+            std::iota(order.begin(), order.end(), 0);
+            std::shuffle(order.begin(), order.end(), random);
+            std::vector<Tetrahedron> tetrahedra;
+            Joins given = joins;
+            Of wanted;
+            for (size_t i = 0; i < order.size(); ++i) {
+                auto [a, b, c, d] = mesh.tetrahedra[order[i]];
+                for (size_t turns = random() % 3; turns-- > 0;) std::tie(a, b, c) = std::tuple(b, c, a);
+                tetrahedra.push_back({a, b, c, d});
+                given.of[i] = joins.of[order[i]];
+                wanted.push_back(result.of[order[i]]);
+            }
+            EXPECT_EQ(snap(tet_mesh(mesh.vertices, tetrahedra), given).of, wanted);
+        }
+}
+
+TEST(Snap, Anything) {
+    const TetMesh one = tet_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}});
+    EXPECT_EQ(snap(one, joins_of({0}, {})).of, Of{0});
+    // Two components, each a part: they share no facet.
+    const TetMesh apart = tets_of(block({0, 0, 0}, {2, 2, 2}) + block({5, 0, 0}, {6, 1, 1}));
+    const Of of = where(apart, [](const Point& p) { return p[0] > 4; });
+    EXPECT_EQ(snap_two(apart, of), of);
+    // No extent.
+    TetMesh flat = tets_of(block({0, 0, 0}, {3, 1, 1}));
+    const Of thirds = where(flat, [](const Point& p) { return static_cast<int>(p[0]); });
+    for (Point& p : flat.vertices) p = {1, 2, 3};
+    EXPECT_EQ(snap(flat, joins_of(thirds, {{0, 1}, {2, 3}})).of, thirds);
+}
+
+}  // namespace
+}  // namespace partwheel::test
