@@ -56,7 +56,7 @@ class Snapping:
             self.local[tets] = np.arange(len(tets))
             self.tets, self.within = tets, facets
             self.ends = self.local[self.facets[facets]]
-            side = self.cut(self.gathered(self.settled(home[self.part_of[tets]]))[0])
+            side = self.cut(self.gathered(self.settled(home[self.part_of[tets]])))
             of_facets = side[self.ends]
             for which, half in enumerate(halves):
                 if (side == which).any():
@@ -74,9 +74,9 @@ class Snapping:
                 side[side == NEITHER] = FIRST
         return side
 
-    def gathered(self, side, may_move=None):
-        """(sides; whether nothing moved that may not): what is apart from its half's largest piece goes over."""
-        side, stayed = side.copy(), True
+    def gathered(self, side):
+        """What is apart from its half's largest piece goes over."""
+        side = side.copy()
         for half in (FIRST, SECOND):
             mine = np.flatnonzero(side == half)
             if not len(mine):
@@ -88,10 +88,8 @@ class Snapping:
             names, lowest, number = np.unique(piece[mine], return_index=True, return_counts=True)
             areas = np.bincount(piece[mine], self.area[self.tets[mine]])[names].astype(np.float32)
             largest = names[np.lexsort([lowest, -number, -areas])[0]]
-            over = mine[[p != largest and p in beside for p in piece[mine].tolist()]]
-            side[over] = 1 - half
-            stayed = stayed and (may_move is None or may_move[over].all())
-        return side, stayed
+            side[mine[[p != largest and p in beside for p in piece[mine].tolist()]]] = 1 - half
+        return side
 
     def cut(self, side):
         areas = np.bincount(side, self.area[self.tets], 2)
@@ -113,8 +111,7 @@ class Snapping:
         moved = side.copy()
         moved[free] = np.where(reached(node[self.ends[some]], cost[some], count + 2, count, count + 1)[:count], FIRST,
                                SECOND)
-        moved, stayed = self.gathered(moved, free)
-        return moved if stayed else side
+        return moved if (self.gathered(moved) == moved).all() else side
 
     def depths(self, side, reach):
         """(ways to the split, infinite beyond the reach; the reach, less where too many are within)"""

@@ -34,15 +34,15 @@ Of where(const TetMesh& mesh, const std::function<int(const Point&)>& part) {
     return of;
 }
 
-// A bar along x: cross-sections there, squares of these half widths, one piece of 2 x 2 cells from each to the next.
+// A bar along x: cross-sections there, squares of these half widths, one piece of n x n cells from each to the next.
 struct Section {
     double x, half;
 };
-TetMesh bar(const std::vector<Section>& sections) {
-    TetMesh mesh = tets_of(block({0, 0, 0}, {static_cast<int>(sections.size()) - 1, 2, 2}));
+TetMesh bar(const std::vector<Section>& sections, int n = 2) {
+    TetMesh mesh = tets_of(block({0, 0, 0}, {static_cast<int>(sections.size()) - 1, n, n}));
     for (Point& p : mesh.vertices) {
         const Section& section = sections[static_cast<size_t>(p[0])];
-        p = {section.x, (p[1] - 1) * section.half, (p[2] - 1) * section.half};
+        p = {section.x, (2 * p[1] / n - 1) * section.half, (2 * p[2] / n - 1) * section.half};
     }
     return tet_mesh(mesh.vertices, mesh.tetrahedra);
 }
@@ -151,8 +151,22 @@ TEST(Snap, LandsInTheGroove) {
                   where(two, [](const Point& p) { return p[0] > 11; }));
 }
 
+TEST(Snap, BandsEndWhereTheyHaveManyTetrahedra) {
+    // 600 from each section to the next: 12000 are those of ten to either side. The reach is 24.
+    std::vector<Section> sections;
+    for (int x = 0; x <= 100; ++x) sections.push_back({1.0 * x, x == 50 ? 4.0 : 5.0});
+    const TetMesh mesh = bar(sections, 10);
+    const auto split = [&](double x) { return where(mesh, [&](const Point& p) { return p[0] > x; }); };
+    EXPECT_EQ(snap_two(mesh, split(56)), split(50));
+    EXPECT_EQ(snap_two(mesh, split(62)), split(62));
+    // Coarser ones reach it.
+    const TetMesh coarse = bar(sections, 7);
+    const auto coarse_split = [&](double x) { return where(coarse, [&](const Point& p) { return p[0] > x; }); };
+    EXPECT_EQ(snap_two(coarse, coarse_split(62)), coarse_split(50));
+}
+
 TEST(Snap, SmallSplitsStay) {
-    // A body, and a thin end of length 1 with a groove at 0.8. Only in the shorter one it has more than 0.01 of the area.
+    // A body, and a thin end of length 1 with a groove at 0.8: of the shorter body it is more than 0.01 of the area.
     for (const double body : {4.0, 16.0}) {
         std::vector<Section> sections;
         for (int x = 0; x <= 16; ++x) sections.push_back({body * x / 16, 1});

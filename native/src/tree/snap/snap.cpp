@@ -193,10 +193,9 @@ private:
         cut(tetrahedra);
     }
 
-    // What of a half is apart from its largest piece, and beside the other half, changes sides. Whether nothing did that
-    // was to stay.
+    // What of a half is apart from its largest piece, and beside the other half, changes sides. Whether anything did.
     bool gather(std::span<const int32_t> tetrahedra) {
-        bool all_stayed = true;
+        bool changed = false;
         for (const int8_t half : {left_half, right_half}) {
             struct Piece {
                 double area = 0;
@@ -234,13 +233,12 @@ private:
             const auto largest = std::ranges::max_element(pieces, {}, size);
             for (const Piece& piece : pieces) {
                 if (&piece == &*largest || !piece.beside) continue;
-                for (size_t i = piece.first; i < piece.last; ++i) {
+                changed = true;
+                for (size_t i = piece.first; i < piece.last; ++i)
                     side_[at(order[i])] = half == left_half ? right_half : left_half;
-                    all_stayed = all_stayed && node_[at(order[i])] >= 0;
-                }
             }
         }
-        return all_stayed;
+        return changed;
     }
 
     // Moves the border between the halves to where it costs least.
@@ -284,7 +282,7 @@ private:
         for (const int32_t t : tetrahedra) before.push_back(side_[at(t)]);
         const std::vector<uint8_t> left = minimum_cut(problem);
         for (size_t n = 0; n < free.size(); ++n) side_[at(free[n])] = left[n] ? left_half : right_half;
-        if (!gather(tetrahedra))
+        if (gather(tetrahedra))  // what holds a piece where it is was not free
             for (size_t i = 0; i < tetrahedra.size(); ++i) side_[at(tetrahedra[i])] = before[i];
         for (const int32_t t : band) {
             depth_[at(t)] = infinite;
@@ -292,8 +290,8 @@ private:
         }
     }
 
-    // How deep in its half each tetrahedron lies: the way to the split over places of tetrahedra; infinity beyond reach,
-    // which is made less where so many are within it. Returns those within, in rising order.
+    // How deep in its half each tetrahedron lies: the way to the split over places of tetrahedra; infinity beyond
+    // reach, which is made less where so many are within it. Returns those within, in rising order.
     std::vector<int32_t> measure_depths(std::span<const int32_t> tetrahedra, double& reach) {
         using Reached = std::pair<double, int32_t>;
         std::priority_queue<Reached, std::vector<Reached>, std::greater<>> front;
