@@ -161,6 +161,19 @@ TEST(KeptWithin, PartsTakeFromEachOther) {
                 for (const int32_t t : old) shares[part[at(t)]].insert(t);
                 for (const auto& [p, share] : shares) EXPECT_TRUE(share.size() == 1 || now.contains(share));
             }
+            // What was in several parts before is joined last, the lowest first.
+            for (const int32_t p : changed) {
+                std::map<int32_t, Set> from;
+                for (size_t t = 0; t < leaves; ++t)
+                    if (part[t] == p) from[before.of[t]].insert(static_cast<int32_t>(t));
+                std::map<int32_t, Set> by_lowest;
+                for (const auto& [old, share] : from) by_lowest[*share.begin()] = share;
+                Set whole;
+                for (const auto& [low, share] : by_lowest) {
+                    whole.insert(share.begin(), share.end());
+                    EXPECT_TRUE(whole.size() == 1 || now.contains(whole));
+                }
+            }
         }
     }
 }
