@@ -1,6 +1,6 @@
 // The top of the tree built anew by two small neural networks: a few hundred parts of the paper's tree, joined in the
-// order that people would, with borders in creases. choose.cpp says which parts, measure.cpp measures them, decide.cpp has the networks,
-// join.cpp joins.
+// order that people would, with borders in creases. choose.cpp says which parts, measure.cpp measures them, decide.cpp
+// has the networks, join.cpp joins.
 //
 // Concavity alone joins a leg's two halves late and a cup's handle early. So the paper's tree is cut into some parts,
 // which are joined again bottom-up; the cost is how unlikely it is that people put both into one part, told by a small
@@ -44,9 +44,9 @@
 // became is the other. Below them the paper's clusters keep what they have.
 //
 // Planes. Where the model is its own mirror image in given planes, the parts of the sides that scored better before
-// their borders were moved are then copied (tree/mirror/mirror.h), and the copies joined in the order in which what they
-// stand for was, each join with its images at once (tree/mirror/alike.h). What joins more than two at once has steps,
-// which are merges of score 0 and no nodes. A node's score is the mean of it and its images'.
+// their borders were moved are then copied (tree/mirror/mirror.h), and the copies joined in the order in which what
+// they stand for was, each join with its images at once (tree/mirror/alike.h). What joins more than two at once has
+// steps, which are merges of score 0 and no nodes. A node's score is the mean of it and its images'.
 #pragma once
 
 #include "cluster/cluster.h"
