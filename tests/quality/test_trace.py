@@ -11,8 +11,8 @@ from fit import ROOT, Hierarchy, Mode, Traced
 from reference_regroup import NODE_NAMES, PAIR_NAMES, Regrouped
 from test_regroup import ALL, TOLERANCE, shape_of
 
-# A flat fold's bend is the root of a rounding error, and the logarithm of next to nothing makes one larger.
-WIDER = {name: 1e-8 for name in ("crease", "curvature", "excess_to_s", "excess_to_all")}
+# The logarithm of next to nothing makes a rounding error larger.
+WIDER = {name: 1e-8 for name in ("excess_to_s", "excess_to_all")}
 PROGRAM = ROOT / "build" / "bench" / "quality_trace"
 
 
@@ -49,5 +49,5 @@ def test_pairs(name, both):
 def test_nodes(name, both):
     reference, traced = both(name)
     _, parts, joined = traced.last
-    assert parts == reference.fine and joined.tolist() == [list(pair) for pair in reference.joined]
+    assert parts == reference.fine and np.array_equal(np.sort(joined), np.sort(reference.joined))
     agree(traced.node_measures, reference.node_measures, NODE_NAMES)
