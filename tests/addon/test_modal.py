@@ -14,7 +14,7 @@ import bpy
 import common
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from common import BOX, SHEET, MeshTest, alive, flags, package, part, read_off, selected, until
+from common import BOX, SHEET, MeshTest, WritesBack, alive, flags, package, part, read_off, selected, until
 from gate import Gate
 from mathutils import Euler, Matrix, Vector
 
@@ -184,6 +184,17 @@ class Modal(ToolTest):
         self.expect(face, 0)
         self.assertEqual(self.send("RET"), {"FINISHED"})
         self.expect(face, 0)
+
+    def test_each_step_sees_what_happened_before_it(self):
+        """Even an edit that nobody told Blender of."""
+        self.assertEqual(self.start(), {"RUNNING_MODAL"})
+        point, _ = self.centre()
+        bm = bmesh.from_edit_mesh(self.obj.data)
+        edge = next(edge for edge in bm.edges if edge.calc_face_angle() < 0.1)
+        self.assertTrue(bmesh.ops.rotate_edges(bm, edges=[edge])["edges"])
+        self.send("LEFTMOUSE", point)
+        self.assertTrue(part("parts.builds").running())
+        self.send("ESC")
 
     def test_cancel_restores(self):
         for kind in ("ESC", "RIGHTMOUSE"):
@@ -502,6 +513,21 @@ class WhileBuilding(HeldWorkers):
         self.expect(self.face, 1)
         self.assertEqual(self.send("RET"), {"FINISHED"})
         self.assertIn({"INFO"}, [kind for kind, _ in self.tool.reports])
+
+    def test_blender_writes_its_edits_back_once_a_step(self):
+        self.begin("homer")
+        self.send("ESC")
+        point, _ = self.centre()
+        part("pick.prepared")._kept.clear()
+        self.tool, self.context = Tool(), FakeContext()
+        with WritesBack() as writes:
+            self.tool.invoke(self.context, event("W", point))
+            self.job = self.tool.building.build.job
+            self.assertEqual(writes.count, 1)
+            self.assertEqual(self.build_on(), {"RUNNING_MODAL"})
+            self.assertEqual(writes.count, 2)
+            self.send("WHEELUPMOUSE")
+            self.assertEqual(writes.count, 2)
 
     def test_beside_the_mesh_the_next_click_picks(self):
         self.begin(over=False)

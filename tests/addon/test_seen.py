@@ -256,7 +256,7 @@ class Seen(MeshTest):
         """The face picked at the pixel of a face's middle."""
         middle = obj.matrix_world @ Vector(places[list(obj.data.polygons[face].vertices)].mean(axis=0))
         point = location_3d_to_region_2d(region, region_view, middle)
-        found = part("pick.prepared").prepared(obj).tree.under(obj.matrix_world, region, region_view, point)
+        found = part("pick.prepared").prepared(obj).tree(obj).under(obj.matrix_world, region, region_view, point)
         return found and found[0]
 
     def test_kept_where_other_polygons_are_shown(self):

@@ -3,7 +3,7 @@
 
 import bmesh
 import bpy
-from common import BOX, MeshTest, part, read_off
+from common import BOX, MeshTest, WritesBack, part, read_off, selected
 
 
 class Staleness(MeshTest):
@@ -72,6 +72,90 @@ class Staleness(MeshTest):
         part("parts.registry").hierarchy(obj)
         self.assertNotEqual(part("parts.changes").revision(obj.data), revision)
         self.assertIsNot(prepared(obj), first)
+
+    def test_a_step_reads_the_mesh_once(self):
+        obj = self.built("hand")
+        self.edit(obj)
+        registry, one_reading = part("parts.registry"), part("mesh.arrays").one_reading
+
+        def asked():
+            with WritesBack() as writes:
+                registry.hierarchy(obj)
+                part("parts.builds").being_built(obj)
+                part("pick.prepared").prepared(obj).hierarchy(obj)
+                part("mesh.selection").Selection(obj)
+                registry.hierarchy(obj)
+            return writes.count
+
+        with one_reading():
+            with one_reading():
+                self.assertEqual(asked(), 1)
+            self.assertEqual(asked(), 0)
+        self.assertGreater(asked(), 1)  # each by itself, for in between anything may have happened
+        with one_reading():
+            self.assertEqual(asked(), 1)
+
+    def test_what_changes_in_a_step_is_seen(self):
+        """Told of by Blender, or by whoever changes it."""
+        obj = self.built("hand")
+        bm = self.edit(obj)
+        arrays = part("mesh.arrays")
+        bm.verts.ensure_lookup_table()
+
+        def moved():
+            bm.verts[0].co.x += 0.01
+
+        with arrays.one_reading():
+            seen = [arrays.present(obj)]
+            moved()
+            self.assertEqual(arrays.present(obj), seen[0])  # nobody said so
+            bmesh.update_edit_mesh(obj.data)
+            bpy.context.view_layer.update()
+            seen.append(arrays.present(obj))
+            moved()
+            arrays.changed()
+            seen.append(arrays.present(obj))
+            moved()
+        seen.append(arrays.present(obj))
+        self.assertEqual(len(set(seen)), 4)
+        self.assertEqual(len({each.topology for each in seen}), 1)
+        with arrays.one_reading():
+            arrays.present(obj)
+            edge = next(edge for edge in bm.edges if edge.calc_face_angle() < 0.1)
+            self.assertTrue(bmesh.ops.rotate_edges(bm, edges=[edge])["edges"])
+            bmesh.update_edit_mesh(obj.data)
+            bpy.context.view_layer.update()
+            self.assertIsNone(part("parts.registry").hierarchy(obj))
+
+    def test_undo_in_a_step_is_seen(self):
+        obj = self.built("hand")
+        name = obj.name
+        self.edit(obj)
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.ed.undo_push(message="before")
+        bpy.ops.transform.translate(value=(1, 0, 0))
+        bpy.ops.ed.undo_push(message="moved")
+        arrays = part("mesh.arrays")
+        with arrays.one_reading():
+            moved = arrays.present(obj)
+            bpy.ops.ed.undo()
+            obj = bpy.data.objects[name]
+            self.assertNotEqual(arrays.present(obj), moved)
+
+    def test_what_a_step_selects_is_seen(self):
+        obj = self.built("hand")
+        self.edit(obj)
+        Selection = part("mesh.selection").Selection
+        with part("mesh.arrays").one_reading():
+            first = Selection(obj)
+            first.select(obj, [3, 4, 5])
+            second = Selection(obj)
+            self.assertEqual(set(second.before["FACE"].nonzero()[0].tolist()), {3, 4, 5})
+            second.select(obj, [7])
+            second.restore(obj)
+            self.assertEqual(selected(obj), {3, 4, 5})
+            first.restore(obj)
+            self.assertFalse(Selection(obj).before["FACE"].any())
 
     def test_other_edits_do_not(self):
         obj = self.built("hand")

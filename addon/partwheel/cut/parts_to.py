@@ -213,7 +213,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     def _face(self, over):
         """The face of the object that is seen there, or NO_FACE."""
         _, *pixel = over
-        _, face = picking.nearest([kept.named(self.object_name)], lambda each: prepared(each).tree, *pixel)
+        _, face = picking.nearest([kept.named(self.object_name)], lambda each: prepared(each).tree(each), *pixel)
         return NO_FACE if face is None else face
 
     def _key(self, context, event):

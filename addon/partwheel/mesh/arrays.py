@@ -2,6 +2,7 @@
 """A Blender mesh as numpy arrays: as it is, without modifiers, in its object's own space. Only reads, but for normals.
 Where the cage shows it under modifiers is asked for by name."""
 
+import contextlib
 import hashlib
 from typing import NamedTuple
 
@@ -10,6 +11,7 @@ import bpy
 import numpy as np
 
 from partwheel.polygons import triangulate
+from .kept import key
 
 # Modifiers whose mesh begins with the vertices of the one that they are given, moved or not.
 KEEPING = {"ARRAY", "MIRROR", "MULTIRES", "SOLIDIFY", "SUBSURF",
@@ -29,13 +31,34 @@ class Surface(NamedTuple):
 
 
 writing_back = False  # while Blender tells of a change of geometry that is none: edits were written back into a mesh
+# Within one_reading(): the meshes that are up to date, by key and mode, and the Fingerprint of each, None if nobody asked.
+_reading = None
+
+
+@contextlib.contextmanager
+def one_reading():
+    """Within it Blender writes its edits back into each mesh only once, half a second for a million faces, and the mesh is
+    hashed only once, for all who ask. For a step of the add-on's in which nobody else runs: whatever changes a mesh
+    in it says changed(), as what Blender tells of does by itself."""
+    global _reading
+    before, _reading = _reading, {} if _reading is None else _reading
+    try:
+        yield
+    finally:
+        _reading = before
+
+
+def changed():
+    """What was read is not to be used any more, for a mesh, or what is selected in it, is another."""
+    if _reading:
+        _reading.clear()
 
 
 def up_to_date(obj):
     """The object's mesh; in Edit Mode after Blender wrote the edits back into it. Same order of elements in both. Not to
     be called while Blender draws."""
     global writing_back
-    if obj.mode == "EDIT":
+    if obj.mode == "EDIT" and not (_reading and (key(obj.data), obj.mode) in _reading):
         layer = bpy.context.view_layer
         layer.update()  # what was edited before is told of first
         obj.update_from_editmode()
@@ -44,6 +67,8 @@ def up_to_date(obj):
             layer.update()
         finally:
             writing_back = False
+        if _reading is not None:
+            _reading[key(obj.data), obj.mode] = None
     return obj.data
 
 
@@ -194,6 +219,15 @@ def fingerprint(mesh):
     topology.update(read(mesh.loops, "vertex_index", np.int32))
     positions = hashlib.blake2b(read(mesh.vertices, "co", np.float32, 3), digest_size=16)
     return Fingerprint(topology.digest(), positions.digest())
+
+
+def present(obj):
+    """The Fingerprint of the object's mesh, brought up to date."""
+    mesh = up_to_date(obj)
+    reading = {} if _reading is None else _reading
+    name = key(mesh), obj.mode
+    reading[name] = reading.get(name) or fingerprint(mesh)
+    return reading[name]
 
 
 def on_cage(obj):

@@ -93,6 +93,7 @@ class Selection:
             bm.select_history.clear()
             if self.kind == "FACE" and face.select:
                 bm.select_history.add(face)
+        arrays.changed()
         _redraw(obj)
 
     def restore(self, obj):
@@ -115,6 +116,7 @@ class Selection:
             bm.select_history.add(_sequence(bm, kind)[index])
         bm.faces.active = None if self.active_face is None else _sequence(bm, "FACE")[self.active_face]
         self.now = self.before[self.kind]
+        arrays.changed()
         _redraw(obj)
 
 

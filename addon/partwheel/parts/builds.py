@@ -28,7 +28,7 @@ def running():
 def being_built(obj):
     """Whether parts of the object's mesh as it is now are being found, or are to be."""
     build = _builds.get(key(obj.data))
-    return build is not None and build.serves(arrays.fingerprint(arrays.up_to_date(obj)))
+    return build is not None and build.serves(arrays.present(obj))
 
 
 def build(obj, **options):
@@ -37,7 +37,7 @@ def build(obj, **options):
     """
     former = _builds.get(key(obj.data))
     if former:
-        if former.serves(arrays.fingerprint(arrays.up_to_date(obj)), options):
+        if former.serves(arrays.present(obj), options):
             return former
         former.cancel()
     return Build(obj, **options)
@@ -53,9 +53,8 @@ class Build:
         """mode: a partwheel.Mode; limits and exactly: as Job has them; None: the preferences'. open_surfaces holds for
         later builds of the mesh too."""
         load()  # a missing library is better told here
-        mesh = arrays.up_to_date(obj)
-        self.name = mesh.name
-        self._key, self._counts, self._built = key(mesh), counts(mesh), arrays.fingerprint(mesh)
+        mesh, self._built = obj.data, arrays.present(obj)
+        self.name, self._key, self._counts = mesh.name, key(mesh), counts(mesh)
         former = registry.entry_of(mesh)
         self._open_surfaces = open_surfaces or (former is not None and former.open_surfaces)
         self._mode = Mode[preferences().parts] if mode is None else mode
@@ -148,8 +147,7 @@ class Build:
         obj = _user(self._key)
         if obj is None:
             raise Outdated(f"The mesh {self.name} is gone, so its parts were left aside.")
-        mesh = arrays.up_to_date(obj)
-        now = arrays.fingerprint(mesh)
+        mesh, now = obj.data, arrays.present(obj)
         if now.topology != self._built.topology:
             raise Outdated(f"{mesh.name} was edited while its parts were being built, so they were left aside. Build "
                            "them again when the mesh is as you want it.")
@@ -163,7 +161,7 @@ class Build:
     def outdated(self):
         """Whether its mesh is gone, or is another one by now, be it only by places of vertices."""
         obj = _user(self._key)
-        return obj is None or arrays.fingerprint(arrays.up_to_date(obj)) != self._built
+        return obj is None or arrays.present(obj) != self._built
 
 
 def _turn():

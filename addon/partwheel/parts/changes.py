@@ -29,6 +29,7 @@ def _edited(_scene, depsgraph):
     for update in depsgraph.updates:
         if not update.is_updated_geometry:
             continue
+        arrays.changed()
         if isinstance(update.id, bpy.types.Mesh):
             _count(_edits, update.id.original)
         elif (isinstance(update.id, bpy.types.Object) and update.id.type == "MESH"
@@ -43,6 +44,7 @@ def _count(table, mesh):
 @persistent
 def _undone(*_):
     global _undos
+    arrays.changed()
     _undos += 1
 
 

@@ -8,7 +8,7 @@ draws it in every 3D view, for as long as the tool is active and no longer. It n
 import bpy
 
 from .. import trouble
-from ..mesh import kept
+from ..mesh import arrays, kept
 from ..view import overlay, picking
 from . import borders, states
 from .prepared import current, prepared
@@ -23,7 +23,8 @@ class Hover:
 
     def move(self, context, point):
         """The mouse is at a point of the context's region. Redraws if that changes what is shown."""
-        found = self._found(context, point)
+        with arrays.one_reading():
+            found = self._found(context, point)
         if found is not self.what:
             self.what = found
             overlay.redraw()
@@ -31,7 +32,7 @@ class Hover:
     def _found(self, context, point):
         shown = [each for each in context.objects_in_mode_unique_data
                  if each.type == "MESH" and each.visible_get(viewport=context.space_data)]
-        obj, face = picking.nearest(shown, lambda each: prepared(each).tree, context.region, context.region_data, point)
+        obj, face = picking.nearest(shown, lambda each: prepared(each).tree(each), context.region, context.region_data, point)
         parts = prepared(obj).parts(obj) if obj else None
         if not parts:
             return None

@@ -7,6 +7,7 @@ What happens to the part meanwhile, and once it is confirmed, is the business of
 
 import bpy
 
+from ..mesh import arrays
 from ..parts import builds, picks, registry
 from ..view import keys, overlay, picking
 from . import borders, states
@@ -85,6 +86,11 @@ class PartPicker(InView):
 
     # ---- With the mouse: from nothing to a part
 
+    def _guarded(self, context, step):
+        """Nobody else runs during a step."""
+        with arrays.one_reading():
+            return InView._guarded(self, context, step)
+
     def _begin(self, context, event):
         PartPicker.begun += 1
         self.number = PartPicker.begun
@@ -110,7 +116,7 @@ class PartPicker(InView):
             return None, None
         area, *pixel = view
         shown = [each for each in self._objects(context) if each.visible_get(viewport=area.spaces.active)]
-        obj, face = picking.nearest(shown, lambda each: prepared(each).tree, *pixel)
+        obj, face = picking.nearest(shown, lambda each: prepared(each).tree(each), *pixel)
         if face == NO_FACE:
             self.report({"INFO"}, f"What is seen there was made by the modifiers of {obj.name} and belongs to no face "
                                   "of its mesh")
@@ -243,9 +249,10 @@ class PartPicker(InView):
         if (state.node, self.snap) != self.shown:
             self.shown = state.node, self.snap
             self.faces = borders.faces(obj, self.hierarchy, state.node, self.snap)
+            parts = None if bpy.app.background else prepared(obj).parts(obj)  # reads the mesh: before it changes
             self.target.select(obj, self.faces, state.face, self.extend, self.deselect)
-            if not bpy.app.background:
-                overlay.shown.show(self._drawing, obj, prepared(obj).parts(obj), state.node, state.next,
+            if parts:
+                overlay.shown.show(self._drawing, obj, parts, state.node, state.next,
                                    self.faces if self.snap else None)
         share = self.hierarchy.area[state.node] / self.hierarchy.area[-1]
         number = state.typed + "_" if state.typed else state.index + 1

@@ -10,15 +10,17 @@ _kept = PerMesh()  # Prepared
 
 
 class Prepared:
-    """tree: a picking.FaceTree."""
-
     def __init__(self, obj, stamp):
         self.stamp = stamp
         arrays.up_to_date(obj)
         self._seen = seen.seen(obj)
-        self.tree = picking.FaceTree(obj, self._seen)
-        self._hierarchy = self._parts = self._known = None
+        self._tree = self._hierarchy = self._parts = self._known = None
         self._asked = False
+
+    def tree(self, obj):
+        """A picking.FaceTree: made when it is asked for, which nobody does who has a face."""
+        self._tree = self._tree or picking.FaceTree(obj, self._seen)
+        return self._tree
 
     def hierarchy(self, obj):
         """registry.hierarchy(obj), asked again only when there is a new one."""

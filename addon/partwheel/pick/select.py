@@ -74,7 +74,7 @@ class OBJECT_OT_partwheel_select(bpy.types.Operator):
         if not obj:
             return {"CANCELLED"}
         # Edit Mode may show the mesh elsewhere, without its modifiers; meant is the face that is seen now.
-        found = hit and prepared(obj).tree.under(hit.matrix, *pixel)
+        found = hit and prepared(obj).tree(obj).under(hit.matrix, *pixel)
         if not obj.select_get():
             for other in context.selected_objects:
                 other.select_set(False)
