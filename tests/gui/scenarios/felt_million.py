@@ -27,9 +27,7 @@ def play(stage):
     draws, software = Clock(overlay, "draw_held"), watch_batches(overlay.Parts)
     written = Clock(stage.part("mesh.arrays"), "up_to_date")
     selecting = stage.part("pick.select")
-    first, look, tree = (Clock(*what) for what in (
-        (selecting.OBJECT_OT_partwheel_select, "invoke"), (selecting, "prepared"),
-        (stage.part("view.picking").FaceTree, "__init__")))
+    look, tree = Clock(selecting, "prepared"), Clock(stage.part("view.picking").FaceTree, "__init__")
     clocks = handle, begin, moves, draws, software, written
     stage.use_tool()
 
@@ -70,12 +68,13 @@ def play(stage):
     mode(stage, "OBJECT")
     stage.mouse.move(*spot)
     yield from stage.settle()
-    forget((*clocks, first, look, tree))
+    forget((*clocks, look, tree))
+    began = time.thread_time()
     with stage.override():
         bpy.ops.object.partwheel_select("INVOKE_DEFAULT")
-    yield from stage.until("a part is shown", lambda: stage.drawn_things() == 1)
-    measured["start in Object Mode, with Blender's entering Edit Mode"] = sum(first.take())
+    measured["start in Object Mode, with Blender's entering Edit Mode"] = time.thread_time() - began
     measured["of that the add-on's own"] = sum(begin.take() + look.take() + tree.take()[:1])
+    yield from stage.until("a part is shown", lambda: stage.drawn_things() == 1)
     measured |= yield from notched(stage, "Object Mode", handle, draws, software)  # which is in Edit Mode by then
     stage.mouse.key("ESC")
     yield from stage.settle()

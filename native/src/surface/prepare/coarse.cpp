@@ -90,7 +90,7 @@ class Collapses {
 public:
     Collapses(const Surface& source, Threads& threads)
         : vertices_(source.vertices), triangles_(source.triangles), threads_(threads), into_(vertices_.size()),
-          quadrics_(vertices_.size()) {
+          quadrics_(vertices_.size()), choices_(vertices_.size()), stale_(vertices_.size(), true) {
         std::iota(into_.begin(), into_.end(), 0);
         join_borders();
         sort_out();
@@ -147,6 +147,7 @@ public:
             quadrics_[best] = all;
         }
         sort_out();
+        std::fill(stale_.begin(), stale_.end(), true);
     }
 
 private:
@@ -287,22 +288,22 @@ private:
 
     // The cheapest collapses, none beside another, that take away at most so many triangles.
     void pass(size_t excess, Progress& progress) {
-        std::vector<Choice> choices(vertices_.size());
         threads_.parallel_for(vertices_.size(), piece, [&](size_t first, size_t last) {
             progress.advance(0);
-            for (size_t v = first; v < last; ++v) choices[v] = choice(v);
+            for (size_t v = first; v < last; ++v)
+                if (stale_[v]) choices_[v] = choice(v);
         });
         std::vector<std::pair<double, int32_t>> order;
-        for (size_t v = 0; v < choices.size(); ++v)
-            if (choices[v].into >= 0) order.emplace_back(choices[v].cost, static_cast<int32_t>(v));
+        for (size_t v = 0; v < choices_.size(); ++v)
+            if (choices_[v].into >= 0) order.emplace_back(choices_[v].cost, static_cast<int32_t>(v));
         const double cheap = std::ceil(looked_at * static_cast<double>(order.size()));
         const auto middle = order.begin() + static_cast<std::ptrdiff_t>(cheap);
         if (middle != order.end()) std::nth_element(order.begin(), middle, order.end());
         std::sort(order.begin(), middle);
-        std::vector<bool> changed(vertices_.size(), false);
+        std::vector<char> changed(vertices_.size(), false);
         size_t removed = 0;
         for (auto next = order.begin(); next != middle && removed < excess; ++next) {
-            const auto u = at(next->second), v = at(choices[u].into);
+            const auto u = at(next->second), v = at(choices_[u].into);
             if (changed[u] || changed[v]) continue;
             for (const int32_t t : by_vertex_.with(u)) {
                 bool goes = false;
@@ -316,6 +317,10 @@ private:
             quadrics_[v].add(quadrics_[u]);
         }
         sort_out();
+        // A choice depends on what is around the vertex and around those that it has edges to.
+        stale_ = changed;
+        for (const auto& [a, b, c] : triangles_)
+            if (changed[at(a)] || changed[at(b)] || changed[at(c)]) stale_[at(a)] = stale_[at(b)] = stale_[at(c)] = true;
     }
 
     std::span<const Point> vertices_;
@@ -323,6 +328,8 @@ private:
     Threads& threads_;
     std::vector<int32_t> into_;
     std::vector<Quadric> quadrics_;
+    std::vector<Choice> choices_;
+    std::vector<char> stale_;     // whose choice is to be made anew
     Grouped<int32_t> by_vertex_;  // triangles
 };
 
