@@ -90,12 +90,12 @@ class Collapses {
 public:
     Collapses(const Surface& source, Threads& threads)
         : vertices_(source.vertices), triangles_(source.triangles), threads_(threads), into_(vertices_.size()),
-          quadrics_(vertices_.size()), choices_(vertices_.size()), stale_(vertices_.size(), true) {
+          quadrics_(vertices_.size()), own_(vertices_.size()), choices_(vertices_.size()), stale_(vertices_.size(), true) {
         std::iota(into_.begin(), into_.end(), 0);
         join_borders();
         sort_out();
         threads_.parallel_for(vertices_.size(), piece, [&](size_t first, size_t last) {
-            for (size_t v = first; v < last; ++v) quadrics_[v] = measured(v);
+            for (size_t v = first; v < last; ++v) set(v, measured(v));
         });
     }
 
@@ -144,7 +144,7 @@ public:
             if (best == last) continue;
             for (size_t v = first; v < last; ++v)
                 if (at(into_[v]) == v) into_[v] = static_cast<int32_t>(best);
-            quadrics_[best] = all;
+            set(best, all);
         }
         sort_out();
         std::fill(stale_.begin(), stale_.end(), true);
@@ -153,6 +153,11 @@ public:
 private:
     const Point& point(int32_t v) const { return vertices_[at(v)]; }
     Point normal(const Triangle& t) const { return cross(point(t[1]) - point(t[0]), point(t[2]) - point(t[0])); }
+
+    void set(size_t v, const Quadric& quadric) {
+        quadrics_[v] = quadric;
+        own_[v] = quadric.of(vertices_[v]);
+    }
 
     // What is open and meets at the same places is joined: seams that no one sees.
     void join_borders() {
@@ -272,7 +277,7 @@ private:
             if (plain && open > 0 && spoke.triangles != 1) continue;
             const Point& there = point(spoke.vertex);
             const Point way = there - vertices_[u];
-            costs[count++] = {quadrics_[u].of(there) + quadrics_[at(spoke.vertex)].of(there) +
+            costs[count++] = {quadrics_[u].of(there) + own_[at(spoke.vertex)] +
                                   evenness * quadrics_[u].weight * dot(way, way),
                               spoke.vertex, spoke.triangles};
         }
@@ -315,6 +320,7 @@ private:
             }
             into_[u] = static_cast<int32_t>(v);
             quadrics_[v].add(quadrics_[u]);
+            set(v, quadrics_[v]);
         }
         sort_out();
         // A choice depends on what is around the vertex and around those that it has edges to.
@@ -328,6 +334,7 @@ private:
     Threads& threads_;
     std::vector<int32_t> into_;
     std::vector<Quadric> quadrics_;
+    std::vector<double> own_;  // what each vertex's own is of it
     std::vector<Choice> choices_;
     std::vector<char> stale_;     // whose choice is to be made anew
     Grouped<int32_t> by_vertex_;  // triangles
