@@ -31,15 +31,16 @@ class Surface(NamedTuple):
 
 
 writing_back = False  # while Blender tells of a change of geometry that is none: edits were written back into a mesh
-# Within one_reading(): the meshes that are up to date, by key and mode, and the Fingerprint of each, None if nobody asked.
+# Within one_reading(): the meshes that are up to date, by key and mode: the Fingerprint of each, or None before that is
+# asked for.
 _reading = None
 
 
 @contextlib.contextmanager
 def one_reading():
-    """Within it Blender writes its edits back into each mesh only once, half a second for a million faces, and the mesh is
-    hashed only once, for all who ask. For a step of the add-on's in which nobody else runs: whatever changes a mesh
-    in it says changed(), as what Blender tells of does by itself."""
+    """Within it Blender writes its edits back into each mesh only once, half a second for a million faces, and the mesh
+    is hashed only once, for all who ask. For a step of the add-on's, in which nobody else runs: what changes a mesh
+    meanwhile says changed(), as parts.changes does for all that Blender tells of."""
     global _reading
     before, _reading = _reading, {} if _reading is None else _reading
     try:

@@ -77,6 +77,7 @@ class Selection:
         elif extend:
             target |= self.before[self.kind]
         bm = self._edited(obj)
+        arrays.changed()
         removed, kept = self.now & ~target, self.now & target
         if _alone(obj) and OFF * np.count_nonzero(removed) > ALL_OFF + np.count_nonzero(kept):
             bpy.ops.mesh.select_all(action="DESELECT")
@@ -93,13 +94,13 @@ class Selection:
             bm.select_history.clear()
             if self.kind == "FACE" and face.select:
                 bm.select_history.add(face)
-        arrays.changed()
         _redraw(obj)
 
     def restore(self, obj):
         """Everything as it was: vertices, edges, faces, the active face and the history of picks."""
         bm = self._edited(obj)
         mesh = arrays.up_to_date(obj)
+        arrays.changed()
         # Blender hands a change of a face or an edge on to its vertices: so first all off, then on from fine to coarse.
         for kind in reversed(KINDS):
             elements = _sequence(bm, kind)
@@ -116,7 +117,6 @@ class Selection:
             bm.select_history.add(_sequence(bm, kind)[index])
         bm.faces.active = None if self.active_face is None else _sequence(bm, "FACE")[self.active_face]
         self.now = self.before[self.kind]
-        arrays.changed()
         _redraw(obj)
 
 

@@ -32,7 +32,8 @@ class Hover:
     def _found(self, context, point):
         shown = [each for each in context.objects_in_mode_unique_data
                  if each.type == "MESH" and each.visible_get(viewport=context.space_data)]
-        obj, face = picking.nearest(shown, lambda each: prepared(each).tree(each), context.region, context.region_data, point)
+        view = context.region, context.region_data, point
+        obj, face = picking.nearest(shown, lambda each: prepared(each).tree(each), *view)
         parts = prepared(obj).parts(obj) if obj else None
         if not parts:
             return None

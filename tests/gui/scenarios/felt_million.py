@@ -79,7 +79,7 @@ def play(stage):
     stage.mouse.key("ESC")
     yield from stage.settle()
     measured |= {f"entering {name.title()} Mode, Blender's own": each for name, each in mode_set.items()}
-    print(f"felt | {faces:,} faces | milliseconds | goal |\nfelt | --- | --- | --- |")
+    print(f"felt | {faces:,} faces, Blender {bpy.app.version_string} | milliseconds | goal |\nfelt | --- | --- | --- |")
     for name, value in measured.items():
         goal = GOALS.get(name)
         print(f"felt | {name} | {1000 * value:.1f} | {f'{1000 * goal:.0f}' if goal else ''} |")

@@ -90,7 +90,8 @@ class Collapses {
 public:
     Collapses(const Surface& source, Threads& threads)
         : vertices_(source.vertices), triangles_(source.triangles), threads_(threads), into_(vertices_.size()),
-          quadrics_(vertices_.size()), own_(vertices_.size()), choices_(vertices_.size()), stale_(vertices_.size(), true) {
+          quadrics_(vertices_.size()), own_(vertices_.size()), choices_(vertices_.size()),
+          stale_(vertices_.size(), true) {
         std::iota(into_.begin(), into_.end(), 0);
         join_borders();
         sort_out();
@@ -326,7 +327,8 @@ private:
         // A choice depends on what is around the vertex and around those that it has edges to.
         stale_ = changed;
         for (const auto& [a, b, c] : triangles_)
-            if (changed[at(a)] || changed[at(b)] || changed[at(c)]) stale_[at(a)] = stale_[at(b)] = stale_[at(c)] = true;
+            if (changed[at(a)] || changed[at(b)] || changed[at(c)])
+                stale_[at(a)] = stale_[at(b)] = stale_[at(c)] = true;
     }
 
     std::span<const Point> vertices_;
