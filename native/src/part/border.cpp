@@ -23,10 +23,6 @@ constexpr size_t most_faces = 12000;
 // An edge at the rim of the band costs by this share more than the same edge at the border: of two creases that are
 // alike the nearer one is taken, and where there is none the border stays.
 constexpr double pull = 0.5;
-// Costs are whole numbers of 1 / 2^24 of the band's reach. So rounding hardly ever decides, and what is least is so
-// beyond doubt.
-constexpr double cost_steps = 1 << 24;
-constexpr double most_cost = static_cast<double>(int64_t{1} << 36);
 // Depths that differ by less, relatively, are the same.
 constexpr double same_depth = 1e-9;
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -258,8 +254,7 @@ BorderBand border_band(const Creases& faces, std::span<const uint8_t> inside) {
             if (number[g] >= 0 && g < f) continue;  // told from the other side
             const bool at_border = !inside[f] != !inside[g];
             const double away = at_border ? 0 : std::min((depth[f] + depth[g]) / 2 / reach, 1.0);
-            const double steps = (1 + pull * away) * faces.cost(f, edge) / reach * cost_steps;
-            const auto cost = 1 + static_cast<int64_t>(std::min(steps, most_cost) + 0.5);
+            const int64_t cost = whole_cost((1 + pull * away) * faces.cost(f, edge) / reach);
             if (number[g] >= 0)
                 band.edges.push_back({static_cast<int32_t>(n), number[g], cost});
             else

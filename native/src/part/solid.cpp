@@ -15,11 +15,6 @@ namespace partwheel {
 
 namespace {
 
-// Areas of caps are whole numbers, of so many to the square of the size of what changed sides; none counts for more than
-// the largest.
-constexpr double cap_steps = 1 << 24;
-constexpr double largest_cap = static_cast<double>(int64_t{1} << 36);
-
 [[noreturn]] void refuse() {
     throw Error(PW_ERROR_DATA,
                 "This is not a hierarchy that can be used: its tetrahedra don't fit together. Build it again.");
@@ -214,9 +209,7 @@ std::vector<int32_t> Facets::with_faces(std::span<const Tetrahedron> tetrahedra,
             for (size_t c = 0; c < 4; ++c) {
                 const size_t other = at(neighbours_[t][c]);
                 if (number[other] >= 0 && other < t) continue;
-                const auto cost =
-                    1 + static_cast<int64_t>(std::min((area(t, c) / size / size + joins(t, c)) * cap_steps,
-                                                             largest_cap) + 0.5);
+                const int64_t cost = whole_cost(area(t, c) / size / size + joins(t, c));
                 if (number[other] >= 0)
                     band.edges.push_back({static_cast<int32_t>(n), number[other], cost});
                 else

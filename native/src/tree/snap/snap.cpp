@@ -27,10 +27,6 @@ constexpr double sheet_weight = 0.3;
 // A facet at the rim of the band costs by this share more than the same one at the split: of two creases that are alike
 // the nearer one is taken.
 constexpr double pull = 0.3;
-// Costs are whole numbers of 1 / 2^24 of the band's reach. So rounding hardly ever decides, and what is least is so
-// beyond doubt.
-constexpr double cost_steps = 1 << 24;
-constexpr double most_cost = static_cast<double>(int64_t{1} << 36);
 // Depths that differ by less, relatively, are the same.
 constexpr double same_depth = 1e-9;
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -270,8 +266,7 @@ private:
                 const bool at_split = side_[t] != side_[at(other)];
                 const double away = at_split ? 0 : std::min((depth_[t] + depth_[at(other)]) / 2 / reach, 1.0);
                 const double plain = sheet_weight * facets_[t][k].area / reach + facets_[t][k].folds;
-                const double steps = (1 + pull * away) * plain / reach * cost_steps;
-                const auto cost = 1 + static_cast<int64_t>(std::min(steps, most_cost) + 0.5);
+                const int64_t cost = whole_cost((1 + pull * away) * plain / reach);
                 if (node_[at(other)] >= 0)
                     problem.edges.push_back({static_cast<int32_t>(n), node_[at(other)], cost});
                 else
