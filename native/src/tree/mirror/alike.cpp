@@ -15,7 +15,7 @@ namespace partwheel {
 namespace {
 
 // Parts copied from side to side may leave scraps that nothing joins: up to this share of the area.
-constexpr double largest_scrap = 0.02;
+constexpr double largest_scrap = 0.1;
 
 class Joining {
 public:
