@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import trimesh
 from conftest import ROOT
-from partwheel import Hierarchy, Mode, meshes
+from partwheel import Hierarchy, meshes
 from partwheel.cut import Cut, bones, borders, links, mirror_planes, named, tree
 
 SIDES, RADIUS = 24, 0.5
@@ -166,10 +166,10 @@ def test_no_bone_is_without_length():
 
 
 @functools.cache
-def real(name, mode=Mode.REGROUPED):
+def real(name):
     """(Mesh, Cut, its Links, its Bones)"""
     mesh = meshes.read(ROOT / "build" / "deps" / "meshes" / f"{name}.off")
-    cut = Cut.automatic(Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, mode=mode))
+    cut = Cut.automatic(Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count))
     labels = cut.labels[mesh.faces]
     hung = tree(cut, mesh.vertices, mesh.triangles, labels)
     return mesh, cut, hung, bones(mesh.vertices, mesh.triangles, labels, hung,
@@ -198,5 +198,6 @@ def test_mirror_images_have_mirrored_bones():
     pairs = [(names.index(name), names.index(name.replace(".L", ".R"))) for name in names if ".L" in name]
     assert len(pairs) >= 2  # arms and legs
     for left, right in pairs:
-        for one, other in zip(found[left][:2], found[right][:2]):
-            assert np.linalg.norm(one - 2 * (one @ normal - offset) * normal - other) < 0.03 * size
+        # Of a part that is as wide as long which end is the farthest is a matter of a triangle.
+        for one, other, near in zip(found[left][:2], found[right][:2], (0.01, 0.07)):
+            assert np.linalg.norm(one - 2 * (one @ normal - offset) * normal - other) < near * size
