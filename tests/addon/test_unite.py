@@ -234,6 +234,24 @@ class Unite(SolidTest):
                 self.assertSolid(target.data)
                 self.assertAlmostEqual(volume(target.data), 16, places=5)
 
+    def test_one_that_was_left_out_is_noticed(self):
+        """Also where the other's faces were cut before. As solvers do it now and then with some parts: they are told
+        what came out, in place of one."""
+        union = part("compose.union")
+        base = self.cube().data
+        cut = self.cube()
+        self.edit(cut)
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.subdivide(number_cuts=2)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        for matrix, left_out in ((Matrix.Translation((1.2, 0.1, 0.2)), True), (Matrix.Translation((9, 0, 0)), True),
+                                 (Matrix(), False)):
+            other = self.cube().data
+            other.transform(matrix @ Matrix.Scale(0.5, 4))
+            for meshes in ((base, other), (other, base)):
+                wrong = union._implausible(meshes, [volume(mesh) for mesh in meshes], cut.data)
+                self.assertEqual(wrong, "one of them was left out" if left_out else None)
+
     def everything(self, target):
         return (sorted(obj.name for obj in bpy.data.objects), sorted(mesh.name for mesh in bpy.data.meshes),
                 sorted(c.name for c in bpy.data.collections), arrays(target.data)[0].tolist(), arrays(target.data)[1])

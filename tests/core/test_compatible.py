@@ -62,7 +62,21 @@ def test_borders_of_a_prism():
             assert border.radius == pytest.approx(scale * size * np.sqrt(area / np.pi))
             assert border.middle == pytest.approx(matrix[:3, :3] @ [0, 0, height] + matrix[:3, 3])
             assert border.normal == pytest.approx(matrix[:3, :3] @ [0, 0, z] / scale)
-            assert border.flatness == pytest.approx(1)
+
+
+def test_borders_are_those_of_their_rims():
+    """Caps between the same rim, flat and deeply creased: the same size and direction, and middle but for its height."""
+    angles = np.arange(12) * np.pi / 6
+    rim = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(12)])
+    found = []
+    for middle in ((0, 0, 0), (0.5, 0.2, -1)):
+        vertices = np.vstack([rim, [middle]])
+        found += compatible.borders(vertices, np.array([(i, (i + 1) % 12, 12) for i in range(12)]), np.eye(4))
+    flat, creased = found
+    assert creased.radius == pytest.approx(flat.radius)
+    assert creased.normal == pytest.approx(flat.normal)
+    assert creased.middle[:2] == pytest.approx(flat.middle[:2])
+    assert -1 < creased.middle[2] < 0
 
 
 def test_a_part_is_its_own_first_under_any_motion():

@@ -5,6 +5,7 @@ solver is tried."""
 import bpy
 import numpy as np
 from mathutils import Vector
+from mathutils.bvhtree import BVHTree
 
 from ..mesh import arrays, pieces
 from . import pinches, seams
@@ -133,11 +134,16 @@ def _united(base, operand, base_name, operand_name, slots):
                     "little: faces that lie in each other are the usual cause.")
 
 
-def _inside(inner, outer):
-    """Whether the vertices of one mesh lie in the other, by the parity of crossings along a ray."""
-    target = RayTarget(arrays.read(outer.vertices, "co", np.float32, 3), arrays.triangles(outer)[0])
-    step = max(len(inner.vertices) // SAMPLES, 1)
-    return all(_crossings(target, inner.vertices[i].co) % 2 for i in range(0, len(inner.vertices), step))
+def _left_out(one, other, result):
+    """Whether vertices of one mesh that lie outside of the other, by the parity of crossings along a ray, are missing
+    from the surface of the result."""
+    places = arrays.read(result.vertices, "co", np.float32, 3)
+    surface = BVHTree.FromPolygons(places.tolist(), arrays.triangles(result)[0].tolist())
+    near = TOLERANCE * float(np.linalg.norm(np.ptp(places, axis=0)))
+    target = RayTarget(arrays.read(other.vertices, "co", np.float32, 3), arrays.triangles(other)[0])
+    step = max(len(one.vertices) // SAMPLES, 1)
+    return any(surface.find_nearest(vertex.co)[3] > near and not _crossings(target, vertex.co) % 2
+               for vertex in list(one.vertices)[::step])
 
 
 def _crossings(target, place):
@@ -160,14 +166,13 @@ def _set_apart(mesh):
 
 def _implausible(meshes, volumes, result):
     """What is wrong with a union's volume, by inclusion and exclusion: it is at least the larger volume and at most the
-    sum. The larger mesh as it was is the union only if the other lies within."""
+    sum. It is the larger only if the other lies within, though faces of the one that is left may have been cut."""
     united = volume(result)
     slack = TOLERANCE * sum(volumes)
     if not max(volumes) - slack <= united <= sum(volumes) + slack:
         return f"its volume would be {united:.6g}, of {volumes[0]:.6g} and {volumes[1]:.6g}"
-    larger, smaller = meshes if volumes[0] >= volumes[1] else meshes[::-1]
-    if (len(result.vertices), len(result.polygons)) == (len(larger.vertices), len(larger.polygons)) and (
-            united <= max(volumes) + min(slack, min(volumes) / 2)) and not _inside(smaller, larger):
+    if united <= max(volumes) + min(slack, min(volumes) / 2) and (
+            _left_out(*meshes, result) or _left_out(*meshes[::-1], result)):
         return "one of them was left out"
     return None
 

@@ -26,6 +26,7 @@ TILT = np.cos(np.radians(30))  # the borders' normals stay this near to each oth
 ALIKE = 0.3  # of the border's radius: surfaces that are farther apart after refining are not fitted to each other
 BENEATH = 0.15  # of the radius: points of two caps this near to each other across the normal are compared
 DEEPEST = 0.5  # radii that a part is sunk in at most to close gaps
+CLOSED = 0.05  # of the area of caps that touch, what is seen along their normal: those with less enclose a hollow
 SMALL_BORDER = 0.25  # of the largest one's radius: those below don't count
 LEAST_SHARE, LARGEST_SHARE = 0.004, 0.7  # of the whole's area that a part offered has
 CUT = 200  # parts, into which the whole is cut to find what the wheel stops at
@@ -35,13 +36,13 @@ SAME = 0.6  # overlap from which two nodes of one hierarchy are offered as one p
 
 
 class Border(NamedTuple):
-    """Where a part was cut off: caps that touch. middle (3,); normal (3,) out of the solid; radius of a disk of the
-    same area; flatness: 1 for a plane, less the more the caps are bent."""
+    """Where a part was cut off: caps that touch. normal (3,) out of the solid; middle (3,) and radius, of a disk of the
+    same area, as seen along the normal: the rim's, however the caps between are creased (but for the middle's
+    height)."""
 
     middle: np.ndarray
     normal: np.ndarray
     radius: float
-    flatness: float = 1.0
 
 
 class Fit(NamedTuple):
@@ -76,9 +77,9 @@ def borders(vertices, triangles, matrix):
     for group in _groups(own):
         area, normal = areas[group].sum(), normals[group].sum(axis=0)
         length = np.linalg.norm(normal)
-        if area > 0 and length > 0:
-            found.append(Border((areas[group, None] * middles[group]).sum(axis=0) / area, normal / length,
-                                float(np.sqrt(area / np.pi)), float(length / area)))
+        if length > CLOSED * area:
+            seen = normals[group] @ normal / length  # their sum is the same for all caps with this rim
+            found.append(Border(seen @ middles[group] / length, normal / length, float(np.sqrt(length / np.pi))))
     return sorted(found, key=lambda each: -each.radius)
 
 
@@ -169,7 +170,7 @@ class Shape:
                 [np.log(self.volume / radius ** 3) / 3, np.log(self.area / radius ** 2) / 2],
                 np.log(axes), np.log(lateral), [np.log(max(height.std(), 1e-9))],
                 [np.arcsinh(towards), np.arcsinh(aside)], 0.5 * np.log(np.maximum(thick, 1e-9)),
-                [2 * (self.main.flatness - 1), 0.3 * np.log(self.share), 0.7 * (len(self.borders) - 1)]])
+                [0.3 * np.log(self.share), 0.7 * (len(self.borders) - 1)]])
         return self._features
 
 
