@@ -7,6 +7,7 @@ import bmesh
 import bpy
 import numpy
 from common import package, part, read_off
+from mathutils import Vector
 from solid_case import SolidTest, arrays, caps, volume
 
 
@@ -19,10 +20,21 @@ def angles(mesh):
     marks = caps(mesh)
     border = [edge for edge in bm.edges if len({marks[face.index] for face in edge.link_faces}) == 2]
     found = [numpy.mean([edge.calc_face_angle() for edge in border])]
-    bmesh.ops.delete(bm, geom=[bm.faces[index] for index in numpy.flatnonzero(marks)], context="FACES")
-    filled = bmesh.ops.holes_fill(bm, edges=border)["faces"]
-    bmesh.ops.poke(bm, faces=filled, center_mode="MEAN")
-    found.append(numpy.mean([edge.calc_face_angle() for edge in border]))
+    cone = []
+    while border:
+        loop, todo = [], [border[0]]
+        while todo:
+            edge = todo.pop()
+            if edge in border:
+                border.remove(edge)
+                loop.append(edge)
+                todo += [other for vertex in edge.verts for other in vertex.link_edges]
+        tip = sum((vertex.co for edge in loop for vertex in edge.verts), Vector()) / (2 * len(loop))
+        for edge in loop:
+            own, = [corner for corner in edge.link_loops if not marks[corner.face.index]]
+            start, end = own.vert.co, own.link_loop_next.vert.co
+            cone.append(own.face.normal.angle((start - end).cross(tip - end)))
+    found.append(numpy.mean(cone))
     bm.free()
     return found
 

@@ -342,6 +342,18 @@ TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
               (std::vector<int32_t>{0, 1}));
 }
 
+TEST_F(DendrogramTest, ScrapsGoAlongWithOnePart) {
+    // 0 and 1 are joined with 2, in a step of three, and then with 3.
+    const std::vector<Merge> merges = {{0, 1, 0, 0}, {4, 2, 0, 0}, {5, 3, 0, 0}};
+    const auto cut = [&](double one, double two) {
+        const std::vector<double> areas = {1000, one, two, 1000, 1000 + one, 1000 + one + two, 2000 + one + two};
+        return likeliest_cut(merges, 3, areas, std::vector<double>{0.8, 0.1, 0.1, 0.8, 0, 0.7, 0.1});
+    };
+    EXPECT_EQ(cut(5, 5), (std::vector<int32_t>{5, 3}));
+    EXPECT_EQ(cut(5, 7), (std::vector<int32_t>{0, 1, 2, 3}));
+    EXPECT_EQ(cut(7, 5), (std::vector<int32_t>{0, 1, 2, 3}));
+}
+
 TEST_F(DendrogramTest, StopsDifferAndTheClickTakesTheBest) {
     for (int i = 0; i < sized(2000, 300); ++i) {
         std::vector<double> areas = {whole(1, 5) / 5.0}, scores = {0};
