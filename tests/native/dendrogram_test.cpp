@@ -315,7 +315,7 @@ TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
         const Tree tree = tree_of(merges);
         std::vector<double> areas, scores;
         for (size_t c = 0; c < 2 * merges.size() + 1; ++c) {
-            areas.push_back(whole(0, 4));
+            areas.push_back(whole(1, 4));  // no scraps
             scores.push_back(std::uniform_real_distribution<double>(0.01, 1)(random));
             const bool inside = c > merges.size() && c < 2 * merges.size();
             if (inside && whole(0, 3) == 0) scores.back() = 0;  // a step to what is joined from more than two
