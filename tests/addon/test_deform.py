@@ -6,7 +6,8 @@ import bpy
 import numpy
 from common import BOX, MeshTest, package, part, read_off
 
-FINGER = 700  # a face of hand.off on a finger
+FINGER = 21  # a face of hand.off at the tip of a finger
+SNAPPED = 700  # one of a part whose border snapping moves
 
 
 def shift(x, y, z):
@@ -39,16 +40,16 @@ def inner(obj, faces):
 
 
 class Deform(MeshTest):
-    def hand(self):
+    def hand(self, face=FINGER):
         """(object in Edit Mode, node of a finger, its faces, its inner vertices, the farthest of them from the rest)"""
         obj = self.add(*read_off("hand"))
         self.edit(obj)
         api = part("api")
         hierarchy = api.hierarchy(obj)
-        stops, start = hierarchy.wheel(FINGER)
+        stops, start = hierarchy.wheel(face)
         # The finger is the largest part that is no more than a fifth of the hand.
         finger = sum(hierarchy.area[stop] <= 0.2 * hierarchy.area[-1] for stop in stops) - 1
-        node = api.part(obj, FINGER, finger - start).node
+        node = api.part(obj, face, finger - start).node
         api.select(obj, node)
         faces = api.faces(obj, node).tolist()
         free = inner(obj, faces)
@@ -66,16 +67,16 @@ class Deform(MeshTest):
         return str(refused.exception)
 
     def test_a_part_picked_with_a_snapped_border_is_deformed_so(self):
-        obj, node, faces, free, tip = self.hand()
+        obj, node, faces, free, tip = self.hand(SNAPPED)
         snapped = part("api").faces(obj, node, snap=True).tolist()
         self.assertNotEqual(set(snapped), set(faces))
         before = edited(obj)
         move = shift(0.1 * numpy.ptp(before, axis=0).max(), 0, 0)
-        start = part("pick.states").pick(part("api").hierarchy(obj), FINGER)
+        start = part("pick.states").pick(part("api").hierarchy(obj), SNAPPED)
         level = start.stops.index(node) - start.start
         for picked, arguments, chosen in ((True, {}, snapped), (False, {}, faces), (True, {"snap": False}, faces),
                                           (False, {"snap": True}, snapped)):
-            part("api").select(obj, part("api").part(obj, FINGER, level), snap=picked)
+            part("api").select(obj, part("api").part(obj, SNAPPED, level), snap=picked)
             self.assertEqual(self.run_operator(handles=[handle(tip, move, 0)], **arguments), {"FINISHED"})
             moved = numpy.flatnonzero((edited(obj) != before).any(axis=1))
             self.assertLessEqual(set(moved.tolist()), set(inner(obj, chosen)))

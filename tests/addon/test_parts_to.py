@@ -8,6 +8,7 @@ import bpy
 import numpy
 from common import part, read_off
 from mathutils import Vector
+from mathutils.bvhtree import BVHTree
 from partwheel.cut import Cut
 from solid_case import SolidTest, arrays, caps, volume
 
@@ -284,7 +285,7 @@ class Written(PartsCase):
 
     def test_shells_are_closed_and_so_thick(self):
         obj, cut = self.model("homer")
-        thick = 0.004 * max(obj.dimensions)
+        thick, shells = 0.004 * max(obj.dimensions), []
         for new in part("api").write(obj, cut, {"OBJECTS"}, shell=thick).objects:
             mesh = new.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
             directed = [pair for polygon in mesh.polygons
@@ -294,8 +295,15 @@ class Written(PartsCase):
             hollow = volume(new.data) > area * thick
             self.assertEqual(len(new.modifiers), hollow)  # thinner ones stay solid
             if hollow:
-                self.assertAlmostEqual(volume(mesh) / (area * thick), 1, delta=0.25)
-                self.assertLess(volume(mesh), volume(new.data))
+                shells.append((volume(mesh), area * thick))
+                self.assertLess(volume(mesh), min(area * thick, volume(new.data)), new.name)
+                # No thorns, but where a part is thinner than twice the shell, or sharp.
+                surface = BVHTree.FromPolygons([vertex.co for vertex in new.data.vertices],
+                                               [polygon.vertices[:] for polygon in new.data.polygons])
+                depth = numpy.array([surface.find_nearest(vertex.co)[3] for vertex in mesh.vertices])
+                self.assertGreater((depth < 1.5 * thick).mean(), 0.975, new.name)
+        found, expected = numpy.sum(shells, axis=0)
+        self.assertAlmostEqual(found / expected, 1, delta=0.25)  # edges are counted twice
 
     def test_open_objects_are_the_parts_polygons(self):
         for _, obj, cut in self.each():

@@ -18,6 +18,7 @@ MIDDLING_CURVATURE = 4.0
 SMOOTHING = 4
 CONVEX = 1e-6  # of the hull's volume, see cluster.h
 MOST_OVERLAP = 0.85  # of two stops
+SCRAP = 0.003  # of the area: no part of the automatic cut, if it can go along with one
 
 
 class Network:
@@ -452,7 +453,9 @@ class Regrouped:
             if n >= self.fine:
                 a, b = self.joined[n - self.fine]
                 if best[a] + best[b] > best[n]:
-                    best[n], cut[n] = best[a] + best[b], cut[a] + cut[b]
+                    small, large = sorted((a, b), key=lambda child: self.face_area[child])
+                    scrap = self.face_area[small] < SCRAP * sum(self.face_area[:self.fine])
+                    best[n], cut[n] = best[a] + best[b], [n] if scrap and cut[large] == [large] else cut[a] + cut[b]
         return cut[-1]
 
     def wheel(self, part):

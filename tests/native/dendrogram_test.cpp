@@ -315,7 +315,7 @@ TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
         const Tree tree = tree_of(merges);
         std::vector<double> areas, scores;
         for (size_t c = 0; c < 2 * merges.size() + 1; ++c) {
-            areas.push_back(whole(0, 4));
+            areas.push_back(whole(1, 4));  // no scraps
             scores.push_back(std::uniform_real_distribution<double>(0.01, 1)(random));
             const bool inside = c > merges.size() && c < 2 * merges.size();
             if (inside && whole(0, 3) == 0) scores.back() = 0;  // a step to what is joined from more than two
@@ -340,6 +340,18 @@ TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
     EXPECT_EQ(likeliest_cut(one, 0, std::vector<double>{1, 1, 2}, std::vector<double>{1, 1, 0.1}), std::vector<int32_t>{2});
     EXPECT_EQ(likeliest_cut(one, 1, std::vector<double>{1, 1, 2}, std::vector<double>{1, 1, 0.1}),
               (std::vector<int32_t>{0, 1}));
+}
+
+TEST_F(DendrogramTest, ScrapsGoAlongWithOnePart) {
+    // 0 and 1 are joined with 2, in a step of three, and then with 3.
+    const std::vector<Merge> merges = {{0, 1, 0, 0}, {4, 2, 0, 0}, {5, 3, 0, 0}};
+    const auto cut = [&](double one, double two) {
+        const std::vector<double> areas = {1000, one, two, 1000, 1000 + one, 1000 + one + two, 2000 + one + two};
+        return likeliest_cut(merges, 3, areas, std::vector<double>{0.8, 0.1, 0.1, 0.8, 0, 0.7, 0.1});
+    };
+    EXPECT_EQ(cut(5, 5), (std::vector<int32_t>{5, 3}));
+    EXPECT_EQ(cut(5, 7), (std::vector<int32_t>{0, 1, 2, 3}));
+    EXPECT_EQ(cut(7, 5), (std::vector<int32_t>{0, 1, 2, 3}));
 }
 
 TEST_F(DendrogramTest, StopsDifferAndTheClickTakesTheBest) {

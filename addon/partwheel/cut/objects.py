@@ -57,7 +57,9 @@ def made(obj, cut, names, options=Options()):
                 _drive(each, new[_root(tree)], away, options.explode)
         if options.shell and cut.volume(part) > options.shell * sum(face.area for face in each.data.polygons):
             shell = each.modifiers.new("Shell", "SOLIDIFY")
-            shell.thickness, shell.offset, shell.use_even_offset = options.shell, -1, True
+            shell.thickness, shell.offset = options.shell, -1
+            # The simple mode draws out thorns, hundreds of thicknesses long, where a cap meets the surface sharply.
+            shell.solidify_mode, shell.nonmanifold_thickness_mode = "NON_MANIFOLD", "EVEN"
     composition.update_matrices()
     return list(new.values())
 

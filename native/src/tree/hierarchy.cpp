@@ -287,7 +287,10 @@ std::vector<int32_t> Hierarchy::cut_automatic() const {
     const std::vector<uint8_t> kept = kept_merges();
     std::vector<double> areas(clusters, 0), scores(clusters, 0);
     for (size_t c = 0, n = 0; c < clusters; ++c) {
-        if (c >= leaves && !kept[c - leaves]) continue;
+        if (c >= leaves && !kept[c - leaves]) {
+            areas[c] = areas[at(merges_[c - leaves].left)] + areas[at(merges_[c - leaves].right)];
+            continue;
+        }
         areas[c] = area_[n];
         scores[c] = score_[n++];
     }
