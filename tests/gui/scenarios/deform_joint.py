@@ -8,7 +8,7 @@ from scenarios.deform import confirmed, inner
 
 def held(stage):
     _, stops, start = yield from stage.pick(0.40, 0.01, above=2)
-    index = next(index for index, part in enumerate(stops) if len(part) >= 600)
+    index = next(index for index, part in enumerate(stops) if len(part) >= 1000)
     stage.mouse.wheel(index - start)
     yield from stage.selected(stops[index], f"at stop {index}")
     before = stage.coordinates()

@@ -23,12 +23,12 @@ def deforming(stage, before):
     def vertices(stop):
         return sorted({vertex for face in hierarchy.faces(int(stop)) for vertex in obj.data.polygons[face].vertices})
 
-    level = max(level for level, stop in enumerate(stops) if (before[vertices(stop)][:, 0] > 0).all())
+    level = max(level for level, stop in enumerate(stops) if (before[vertices(stop)][:, 0] > 0.5).all())
     with stage.override():
         bpy.ops.mesh.partwheel_select(face_index=horn, level=level - start)
         bpy.ops.mesh.partwheel_deform("INVOKE_DEFAULT")
     yield from stage.drawn()
-    stage.check(stage.part("parts.picks").picked(obj).node == stops[level], "the largest part on one side is picked")
+    stage.check(stage.part("parts.picks").picked(obj).node == stops[level], "the largest part of one horn is picked")
     return vertices(stops[level])
 
 
