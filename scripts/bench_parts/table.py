@@ -31,7 +31,7 @@ def ratio(report):
         row("arrays to saved hierarchy, all stages, one thread / TetGen", report["pipeline"], 2.5, "{:.2f}"),
     ]
     if "regrouping" in report:
-        rows.append(row("what the regrouped mode adds / the stages above", report["regrouping"], 0.1, "{:.2f}"))
+        rows.append(row("what the regrouped mode adds / the stages above", report["regrouping"], 0.5, "{:.2f}"))
     return rows
 
 

@@ -7,13 +7,14 @@
 #include <boost/unordered_set.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <cmath>
 
 namespace partwheel::steady {
 
 // As std::nth_element.
-template <class Iterator, class Less>
-void nth_element(Iterator first, Iterator nth, Iterator last, Less less) {
+template <class Iterator, class Less = std::less<>>
+void nth_element(Iterator first, Iterator nth, Iterator last, Less less = {}) {
     for (int rounds = 64; last - first > 1; --rounds) {
         if (rounds == 0) return std::stable_sort(first, last, less);
         const auto pivot = *(first + (last - first) / 2);
