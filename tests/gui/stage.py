@@ -421,6 +421,16 @@ class Stage:
             self.area.tag_redraw()
             yield "the viewport is drawn", lambda: self._draws >= target
 
+    def sidebar(self):
+        """Opens the sidebar and goes to our tab: its region."""
+        self.area.spaces.active.show_region_ui = True
+        yield from self.drawn()
+        sidebar = next(region for region in self.area.regions if region.type == "UI")
+        self.mouse.move(sidebar.x + sidebar.width - 8, sidebar.y + sidebar.height - 40)
+        for _ in range(6):  # over the tabs, Ctrl and the wheel go from one to the next; ours is the last
+            self.mouse.wheel(-1, ctrl=True)
+        return sidebar
+
     def selected(self, faces, when):
         """Waits until exactly these faces are selected, then checks that they stay so. In the vertex and edge select
         modes: until exactly their vertices, or edges, are."""

@@ -44,8 +44,7 @@ Within cluster_within(const TetMesh& mesh, std::span<const int32_t> part, size_t
             in_order.push_back(piece[t]);
         }
         const Tetrahedron& tet = mesh.tetrahedra[t];
-        const auto corner = [&](size_t k) { return mesh.vertices[at(tet[k])]; };
-        p.volume += std::max(0.0, six_volumes(corner(0), corner(1), corner(2), corner(3)) / 6);
+        p.volume += volume(mesh, t);
         p.corners.insert(p.corners.end(), tet.begin(), tet.end());
     }
     for (const int32_t c : in_order) {
@@ -62,20 +61,17 @@ Within kept_within(const TetMesh& mesh, std::span<const Merge> merges, std::span
     const size_t leaves = mesh.tetrahedra.size(), clusters = leaves + merges.size();
     // Of each cluster: the part that it is in, or -1: several; its number here, volume and lowest tetrahedron.
     std::vector<int32_t> home(part.begin(), part.end()), number(clusters, -1), low(clusters);
-    std::vector<double> volume(clusters);
+    std::vector<double> volumes(clusters);
     home.resize(clusters, -1);
     std::iota(number.begin(), number.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
     std::iota(low.begin(), low.begin() + static_cast<std::ptrdiff_t>(leaves), 0);
-    for (size_t t = 0; t < leaves; ++t) {
-        const auto corner = [&](size_t k) { return mesh.vertices[at(mesh.tetrahedra[t][k])]; };
-        volume[t] = std::max(0.0, six_volumes(corner(0), corner(1), corner(2), corner(3)) / 6);
-    }
+    for (size_t t = 0; t < leaves; ++t) volumes[t] = volume(mesh, t);
     Within result;
     result.parts.resize(count);
 
     // A cluster that is all in one part, with its hull.
     const auto grown = [&](int32_t cluster) {
-        Grown g{number[at(cluster)], low[at(cluster)], volume[at(cluster)], {}, {}};
+        Grown g{number[at(cluster)], low[at(cluster)], volumes[at(cluster)], {}, {}};
         std::vector<int32_t> todo = {cluster}, corners;
         while (!todo.empty()) {
             const auto c = at(todo.back());
@@ -108,7 +104,7 @@ Within kept_within(const TetMesh& mesh, std::span<const Merge> merges, std::span
         const size_t c = leaves + m;
         merged[at(left)] = merged[at(right)] = 1;
         low[c] = std::min(low[at(left)], low[at(right)]);
-        volume[c] = volume[at(left)] + volume[at(right)];
+        volumes[c] = volumes[at(left)] + volumes[at(right)];
         if (home[at(left)] >= 0 && home[at(left)] == home[at(right)]) {
             home[c] = home[at(left)];
             number[c] = static_cast<int32_t>(leaves + result.merges.size());

@@ -3,6 +3,8 @@
 
 #include "surface/surface.h"
 
+#include <algorithm>
+
 namespace partwheel {
 
 struct TetMesh {
@@ -12,6 +14,12 @@ struct TetMesh {
     std::vector<int32_t> tet_of_triangle;            // behind each triangle of the surface
     size_t cavities = 0;
 };
+
+// Of a tetrahedron, not below 0: a sliver's may be rounded to less.
+inline double volume(const TetMesh& mesh, size_t tetrahedron) {
+    const auto corner = [&](size_t k) -> const Point& { return mesh.vertices[at(mesh.tetrahedra[tetrahedron][k])]; };
+    return std::max(0.0, six_volumes(corner(0), corner(1), corner(2), corner(3)) / 6);
+}
 
 // The facets with nothing on their other side, by tetrahedron and then corner.
 std::vector<Triangle> outer_facets(const TetMesh& mesh);

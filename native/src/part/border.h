@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/groups.h"
-#include "tree/snap/minimum_cut.h"
 #include "surface/surface.h"
+#include "tree/snap/minimum_cut.h"
 
 #include <cstddef>
 #include <cstdint>

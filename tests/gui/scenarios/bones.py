@@ -5,6 +5,8 @@ import math
 import bpy
 import numpy
 
+from scenarios.parts_to import mode, undone
+
 
 def play(stage):
     yield from stage.open("homer")
@@ -63,18 +65,6 @@ def bones(stage, where, digit, other):
         len(rig.data.bones) != count))
     yield from stage.settle()
     yield from stage.drawn()
-
-
-def mode(stage, name):
-    with stage.override():
-        bpy.ops.object.mode_set(mode=name)
-        bpy.ops.ed.undo_push(message=name)
-    yield from stage.drawn()
-
-
-def undone(stage):
-    stage.mouse.key("Z", ctrl=True)
-    yield from stage.settle()
 
 
 def posed(obj):

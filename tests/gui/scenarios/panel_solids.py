@@ -12,13 +12,8 @@ COPY, REMOVE, SPLIT, UNITE = 31, 51, 72, 140
 
 def play(stage):
     yield from stage.open("hand")
-    stage.area.spaces.active.show_region_ui = True
-    yield from stage.drawn()
-    sidebar = next(region for region in stage.area.regions if region.type == "UI")
+    sidebar = yield from stage.sidebar()
     top = sidebar.y + sidebar.height
-    stage.mouse.move(sidebar.x + sidebar.width - 8, top - 40)
-    for _ in range(6):  # over the tabs, Ctrl and the wheel go from one to the next; ours is the last
-        stage.mouse.wheel(-1, ctrl=True)
     yield from stage.settle()
     _, stops, start = yield from stage.pick(0.5, 0.9)
     wanted = next(i for i, part in enumerate(stops) if len(part) >= 0.05 * len(stage.wheels.triangles))

@@ -94,12 +94,7 @@ def opened_panel(stage):
         drawn.append(True)
 
     panel.draw = recorded
-    stage.area.spaces.active.show_region_ui = True
-    yield from stage.drawn()
-    sidebar = next(region for region in stage.area.regions if region.type == "UI")
-    stage.mouse.move(sidebar.x + sidebar.width - 8, sidebar.y + sidebar.height - 40)
-    for _ in range(6):  # over the tabs, Ctrl and the wheel go from one to the next; ours is the last
-        stage.mouse.wheel(-1, ctrl=True)
+    yield from stage.sidebar()
     yield from stage.until("the panel is drawn", lambda: drawn)
     panel.draw = draw
     yield from stage.drawn()

@@ -28,11 +28,6 @@ Point centre(const TetMesh& mesh, size_t t) {
     return sum;
 }
 
-double volume(const TetMesh& mesh, size_t t) {
-    const auto corner = [&](size_t k) -> const Point& { return mesh.vertices[at(mesh.tetrahedra[t][k])]; };
-    return std::max(0.0, six_volumes(corner(0), corner(1), corner(2), corner(3)) / 6);
-}
-
 // Each part keeps its largest piece; what else is of it becomes unsettled.
 void keep_largest_pieces(const TetMesh& mesh, size_t count, std::vector<int32_t>& part) {
     Joined pieces(part.size());
