@@ -12,7 +12,8 @@ bench quality_trace`.
 The pair cost is fitted to the likelihood that two faces, one of each part, lie in one part of a person's. Which pairs
 come up depends on the cost itself, so there are rounds: the first one with a cost by concavity and size alone, each
 later one with the pairs of the three rounds before. The node score is fitted to the overlap (intersection over union)
-with the segment that a click in the node is meant for, each segment being clicked equally often.
+with the segment that a click in the node is meant for, each segment being clicked equally often, on the nodes of the
+last three rounds: other trees are more data.
 
 Both are cross-validated: the categories are dealt into folds, and what is printed of a category comes from numbers that
 were fitted without it. A fit begins with weights by chance, and trees are greedy: the same fit from another seed moves
@@ -48,18 +49,21 @@ PAIR_RAMPS, NODE_RAMPS = 16, 12
 DIGITS = 4
 PAIRS_A_MODEL = 1200
 ROUNDS_SEEN = 3
+SCRAP = 0.003  # as in likeliest_cut()
 MOST_OVERLAP = 0.85  # as in wheel_stops()
 # The measures in groups, by what they look at: --without leaves one out. Some names are those of pairs and of nodes.
 GROUPS = {
-    "size": "area_s area_both volume_s volume_both area_step area volume sibling_area parent_area sibling_volume",
-    "convexity": "gap_both gap_s gap_l excess_to_s excess_to_all gap_added gap dents sibling_gap parent_gap gap_step",
+    "size": "area_s area_both volume_s volume_both area_step area volume sibling_area parent_area sibling_volume "
+            "halves_area",
+    "convexity": "gap_both gap_s gap_l excess_to_s excess_to_all gap_added gap dents sibling_gap parent_gap gap_step "
+                 "halves_gap whole_gap",
     "section": "face_to_volume_s face_to_volume_l face_to_area_s face_share_s face_share_l face_to_thick_s "
                "face_to_thick_l outline face_to_volume face_to_area face_to_thick",
     "length": "length_to_area_s length_share_s length_share_l length_to_area",
-    "thickness": "thickness_step thickness_s thickness_l thickness sibling_thickness",
+    "thickness": "thickness_step thickness_s thickness_l thickness sibling_thickness whole_thickness",
     "creases": "crease concave curvature parent_crease parent_concave parent_curvature",
     "order": "own_cost worst_cost parent_cost cost_step root parts_when_made parts_when_joined cheapest_above "
-             "dearest_above",
+             "dearest_above halves_cost dear_below dear",
 }
 
 
@@ -259,9 +263,13 @@ class Trace(Traced):
 
     def likeliest(self, scores):
         best, divided = self.area * scores, np.zeros(len(scores), bool)
+        one = ~divided  # of one part, but for scraps
         for j, pair in enumerate(self.merges):
-            if best[pair].sum() > best[self.parts + j]:
-                best[self.parts + j], divided[self.parts + j] = best[pair].sum(), True
+            n, (small, large) = self.parts + j, pair[np.argsort(self.area[pair], kind="stable")]
+            if best[pair].sum() > best[n]:
+                best[n] = best[pair].sum()
+                one[n] = one[large] and self.area[small] < SCRAP * self.area[-1]
+                divided[n] = not one[n]
         cut, todo = [], [len(scores) - 1]
         while todo:
             n = todo.pop()
@@ -406,12 +414,13 @@ def main():
         first = pair_data(traces_of("round0", [start_numbers()] * args.folds))
         held_back, fits = [], []  # by seed: figures of each model; (figures, pair numbers, node numbers) fitted to all
         for seed in range(args.seeds):
-            seen = [first]
+            seen, nodes_seen = [first], []
             for number in range(1, args.rounds + 1):
                 pairs = fitted(fit_pairs, sum(seen[-ROUNDS_SEEN:], []), seed)
                 traces = traces_of(f"round{number}", pairs)
                 seen.append(pair_data(traces))
-            nodes = fitted(fit_nodes, [(model, trace.node_data()) for model, trace in traces.items()], seed)
+                nodes_seen.append([(model, trace.node_data()) for model, trace in traces.items()])
+            nodes = fitted(fit_nodes, sum(nodes_seen[-ROUNDS_SEEN:], []), seed)
             held_back.append(measured(traces, nodes))
             after = measured(traces_of("after", pairs[-1:] * args.folds), nodes[-1:] * args.folds)
             fits.append((after.mean(axis=0), pairs[-1], nodes[-1]))

@@ -96,6 +96,22 @@ PairMeasures measures(const Parts& parts, const Pair& pair, double hull) {
     };
 }
 
+void look_below(Parts& parts) {
+    std::vector<uint8_t> seen(parts.all.size(), 0);  // that have halves; the other joined ones are steps
+    for (size_t n = 0; n < parts.all.size(); ++n) {
+        Part& part = parts.all[n];
+        if (n >= parts.fine && !seen[n]) continue;
+        part.dear += part.own_cost > 0 && part.own_cost < largest_cost;
+        if (part.above < 0) continue;
+        Part& above = parts[part.above];
+        above.halves_cost = std::max(above.halves_cost, part.own_cost);
+        above.halves_gap = std::max(above.halves_gap, convexity_gap(part.volume, part.hull_volume));
+        above.least_half = seen[at(part.above)] ? std::min(above.least_half, part.log_area) : part.log_area;
+        above.dear += part.dear;
+        seen[at(part.above)] = 1;
+    }
+}
+
 NodeMeasures measures(const Parts& parts, size_t node) {
     const Part &whole = parts.whole, &part = parts.all[node];
     const bool root = part.above < 0;
@@ -130,6 +146,13 @@ NodeMeasures measures(const Parts& parts, size_t node) {
         .cheapest_above = cheapest_above,
         .dearest_above = dearest_above,
         .sibling_volume = std::abs(sibling.volume - own.volume),
+        .halves_cost = part.halves_cost,
+        .halves_gap = part.halves_gap,
+        .halves_area = node < fine ? 0 : part.least_half - part.log_area,
+        .dear_below = log2_of(1 + part.dear),
+        .dear = log2_of(1 + parts.all.back().dear),
+        .whole_gap = convexity_gap(whole.volume, whole.hull_volume),
+        .whole_thickness = std::clamp(2 * whole.log_volume / 3 - whole.log_area, -8.0, 2.0),
     };
 }
 

@@ -25,7 +25,7 @@ public:
 
     std::vector<int32_t> choose();
     void join_by_cost();
-    std::vector<double> scores() const;
+    std::vector<double> scores();
     std::vector<double> worth(const std::vector<double>& scores) const;
     Joins joins(std::vector<int32_t> part_of) const;
     std::span<const Merge> below() const {  // the parts
@@ -227,7 +227,8 @@ void Regrouping::join_by_cost() {
 }
 
 // The score of each part, also of those that were joined.
-std::vector<double> Regrouping::scores() const {
+std::vector<double> Regrouping::scores() {
+    look_below(parts_);
     std::vector<double> all;
     for (size_t n = 0; n < parts_.all.size(); ++n) {
         const auto inputs = in_order(measures(parts_, n));

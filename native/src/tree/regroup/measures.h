@@ -72,7 +72,8 @@ struct OwnMeasures {
     double dents;              // log(0.000001 + dents / hull(all))
 };
 
-// Names in the order in which fitted_node_numbers has a weight for each. The root is its own parent and sibling.
+// Names in the order in which fitted_node_numbers has a weight for each. The root is its own parent and sibling. A join
+// is dear if people rather part than join the two: its own_cost is above 0, but below 8, which joins components.
 struct NodeMeasures {
     OwnMeasures own;
     double parent_cost;        // own_cost of the parent; 8 at the root
@@ -92,6 +93,13 @@ struct NodeMeasures {
     double cheapest_above;     // the least own_cost of its ancestors, at most 8
     double dearest_above;      // the largest own_cost of its ancestors, at least -8; 8 at the root
     double sibling_volume;     // how far the volume of the sibling is from volume, without a sign
+    double halves_cost;        // the larger own_cost of its two halves; -8 for a part
+    double halves_gap;         // the larger gap of its two halves; 0 for a part
+    double halves_area;        // area of the smaller half - area; 0 for a part
+    double dear_below;         // log(1 + how many dear joins it holds, its own too)
+    double dear;               // the same of all
+    double whole_gap;          // gap of all
+    double whole_thickness;    // thick(all) - 1/3 log volume(all) [-8, 2]
 };
 
 inline constexpr size_t pair_measures = sizeof(PairMeasures) / sizeof(double);

@@ -52,6 +52,8 @@ struct Part {
     std::vector<int32_t> pairs;
     double own_cost = -largest_cost, worst_cost = -largest_cost;  // of the merge that made it; of any below
     int32_t above = -1, beside = -1;  // what it became a part of, and with which other
+    double halves_cost = -largest_cost, halves_gap = 0, least_half = 0;  // see look_below(); least_half: of log_area
+    double dear = 0;                                                     // how many dear joins it holds
 
     void take_logs() {
         log_volume = log2_of(volume);
@@ -78,7 +80,10 @@ std::vector<int32_t> choose_parts(const TetMesh& mesh, const BinaryTree& tree);
 Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_t count, double hull_volume,
                     std::vector<Hull> hulls, HullKernel& kernel, Progress& progress);
 
-// What the networks are told of a pair, hull being the volume of the hull of both; and of a node, when all is joined.
+// When all is joined: notes of each part what holds of its halves.
+void look_below(Parts& parts);
+
+// What the networks are told of a pair, hull being the volume of the hull of both; and of a node, when that is done.
 PairMeasures measures(const Parts& parts, const Pair& pair, double hull);
 NodeMeasures measures(const Parts& parts, size_t node);
 
