@@ -406,6 +406,10 @@ class Regrouped:
             parent[a] = parent[b] = self.fine + j
             sibling[a], sibling[b] = b, a
         own = [self.own_measures(part) for part in self.parts]
+        dear = [[] for _ in self.parts]  # costs of the dear joins that each holds
+        for j, (a, b) in enumerate(self.joined, self.fine):
+            dear[j] = dear[a] + dear[b] + [cost for cost in [own[j]["own_cost"]] if 0 < cost < DEAREST]
+        whole_gap = 1 - self.volume / self.whole_hull
         self.scores, self.node_measures = [], []
         for n in range(len(self.parts)):
             ancestors, up = [], parent.get(n)
@@ -415,6 +419,7 @@ class Regrouped:
             root = n not in parent
             mine, above, beside = own[n], own[parent.get(n, n)], own[sibling.get(n, n)]
             parent_cost = DEAREST if root else above["own_cost"]
+            halves = [own[half] for half in self.joined[n - self.fine]] if n >= self.fine else []
 
             def parts_after(node):  # how many there are once it has been made
                 return self.fine - max(0, node - self.fine + 1)
@@ -428,7 +433,12 @@ class Regrouped:
                 parts_when_joined=0.0 if root else log(parts_after(parent[n]) + 1),
                 cheapest_above=min([DEAREST, *ancestors]),
                 dearest_above=DEAREST if root else max([-DEAREST, *ancestors]),
-                sibling_volume=abs(beside["volume"] - mine["volume"]))
+                sibling_volume=abs(beside["volume"] - mine["volume"]),
+                halves_cost=max([half["own_cost"] for half in halves], default=-DEAREST),
+                halves_gap=max([half["gap"] for half in halves], default=0.0),
+                halves_area=min([half["area"] for half in halves], default=mine["area"]) - mine["area"],
+                dear_below=log(1 + len(dear[n])), dear=log(1 + len(dear[-1])), whole_gap=within(whole_gap, 0.0, 1.0),
+                whole_thickness=within(2 / 3 * log(self.volume) - log(self.area), -8, 2))
             self.node_measures.append(np.array([measures[name] for name in NODE_NAMES]))
             z = self.node_score(self.node_measures[-1])
             self.scores.append((1 + softsign(z)) / 2)
