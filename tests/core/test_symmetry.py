@@ -73,7 +73,7 @@ def test_the_automatic_cut_is_its_own_mirror_image(both):
     hierarchy, mirror = both
     labels = hierarchy.face_labels(hierarchy.cut_automatic())
     parts = [set(np.flatnonzero(labels == label).tolist()) for label in np.unique(labels)]
-    parts = [part for part in parts if len(part) > 0.01 * len(mirror)]
+    parts = [part for part in parts if len(part) > 0.03 * len(mirror)]
     assert len(parts) > 3
     for part in parts:
         assert max(overlap({int(mirror[f]) for f in part}, other) for other in parts) > 0.9
