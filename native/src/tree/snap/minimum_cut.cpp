@@ -21,7 +21,7 @@ std::vector<uint8_t> minimum_cut(const Cut& cut) {
     std::vector<Arc> arcs;
     const auto as_node = [](int32_t n) { return static_cast<uint32_t>(n); };
     arcs.reserve(cut.edges.size() + 2 * count);
-    for (const CutEdge& edge : cut.edges) arcs.push_back({as_node(edge.one), as_node(edge.other), edge.cost, edge.cost});
+    for (const auto& [one, other, cost] : cut.edges) arcs.push_back({as_node(one), as_node(other), cost, cost});
     for (uint32_t n = 0; n < count; ++n) {
         if (cut.to_part[n] > 0) arcs.push_back({source, n, cut.to_part[n], 0});
         if (cut.to_rest[n] > 0) arcs.push_back({n, sink, cut.to_rest[n], 0});

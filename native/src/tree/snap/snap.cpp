@@ -67,11 +67,12 @@ public:
             for (const int32_t t : here) side_[at(t)] = unsettled;
             const bool whole = known || pieces(here, unsettled).all.size() < 2;
             split(here, number, whole);
-            const auto right = std::ranges::stable_partition(here, [&](int32_t t) { return side_[at(t)] == left_half; });
+            const auto in_left = [&](int32_t t) { return side_[at(t)] == left_half; };
+            const auto middle = std::stable_partition(here.begin(), here.end(), in_left);
             for (const int32_t t : here) side_[at(t)] = elsewhere;
-            // Halves of what is in one piece are, too, or something had changed sides.
+            // What is in one piece has halves in one piece each: another would have changed sides.
             const auto& halves = joined_[at(number) - parts_];
-            const std::span<int32_t> left = here.first(here.size() - right.size());
+            const std::span left(here.begin(), middle), right(middle, here.end());
             if (!left.empty()) todo.push_back({halves[0], left, whole});
             if (!right.empty()) todo.push_back({halves[1], right, whole});
             progress_.advance(0);
@@ -195,6 +196,7 @@ private:
         cut(tetrahedra, std::move(border), whole);
     }
 
+    // Whether it is beside the other half.
     bool is_at_split(int32_t t) const {
         return std::ranges::any_of(mesh_.neighbours[at(t)], [&](int32_t n) {
             return n >= 0 && side_[at(n)] != elsewhere && side_[at(n)] != side_[at(t)];
@@ -249,7 +251,7 @@ private:
         return found;
     }
 
-    // Whether a half of what is in one piece is in several. All of them then are at the split: from there they grow until
+    // Whether a half of what is in one piece is in several. Each of those is at the split: from there all grow until
     // each half has met. border: all that is at the split, and more.
     bool parted(std::span<const int32_t> border) {
         std::vector<int32_t> reached;
