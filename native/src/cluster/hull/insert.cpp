@@ -154,14 +154,24 @@ Hull HullKernel::build(std::span<const int32_t> vertices) {
     // Extreme points first: most others are then inside from the start.
     std::vector<int32_t>& order = vertices_;
     order.clear();
-    for (size_t i = 0; i < lattice_directions && vertices.size() > 32; ++i) {
+    const bool many = vertices.size() > 32;
+    for (size_t i = 0; i < lattice_directions && many; ++i) {
         const Point d = lattice_direction(i);
-        const auto [low, high] = std::minmax_element(
-            vertices.begin(), vertices.end(), [&](int32_t v, int32_t w) { return dot(at(v), d) < dot(at(w), d); });
-        order.push_back(*low);
-        order.push_back(*high);
+        double least = HUGE_VAL, most = -HUGE_VAL;
+        int32_t low = vertices[0], high = low;
+        for (const int32_t v : vertices) {
+            const double along = dot(at(v), d);
+            if (along < least) low = v, least = along;
+            if (along >= most) high = v, most = along;
+        }
+        order.push_back(low);
+        order.push_back(high);
     }
     order.insert(order.end(), vertices.begin(), vertices.end());
+    if (many) {  // of several tetrahedra: each vertex many times
+        ++stamp_;
+        std::erase_if(order, [&](int32_t v) { return marked(v) || (mark(v), false); });
+    }
 
     if (!load_simplex(order)) {
         std::sort(order.begin(), order.end());

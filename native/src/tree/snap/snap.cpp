@@ -7,9 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <iterator>
 #include <limits>
-#include <queue>
+#include <numeric>
 #include <utility>
 
 namespace partwheel {
@@ -29,6 +29,8 @@ constexpr double sheet_weight = 0.3;
 constexpr double pull = 0.3;
 // Depths that differ by less, relatively, are the same.
 constexpr double same_depth = 1e-9;
+// Depths are measured in so many steps of the reach.
+constexpr size_t rings = 256;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 enum : int8_t { elsewhere = -1, left_half = 0, right_half = 1, unsettled = 2 };
@@ -42,35 +44,37 @@ public:
         side_.assign(tetrahedra, elsewhere);
         depth_.assign(tetrahedra, infinite);
         node_.assign(tetrahedra, -1);
-        piece_.assign(tetrahedra, -1);
+        seed_.assign(tetrahedra, -1);
     }
 
     std::vector<int32_t> run() {
-        std::vector<int32_t> result(part_.size());
+        std::vector<int32_t> result(part_.size()), order(part_.size());
+        std::iota(order.begin(), order.end(), 0);
         struct Task {
             int32_t number;
-            std::vector<int32_t> tetrahedra;
+            std::span<int32_t> tetrahedra;  // of the order: each half in a slice of its own
+            bool whole;                     // surely in one piece
         };
-        std::vector<Task> todo(1);
-        todo[0].number = static_cast<int32_t>(2 * parts_ - 2);
-        for (size_t t = 0; t < part_.size(); ++t) todo[0].tetrahedra.push_back(static_cast<int32_t>(t));
+        std::vector<Task> todo = {{static_cast<int32_t>(2 * parts_ - 2), order, false}};
         place_parts(todo[0].number);
         while (!todo.empty()) {
-            const Task task = std::move(todo.back());
+            const auto [number, here, known] = todo.back();
             todo.pop_back();
-            if (at(task.number) < parts_) {
-                for (const int32_t t : task.tetrahedra) result[at(t)] = task.number;
+            if (at(number) < parts_) {
+                for (const int32_t t : here) result[at(t)] = number;
                 continue;
             }
-            split(task.tetrahedra, task.number);
-            const auto& halves = joined_[at(task.number) - parts_];
-            Task each[2] = {{halves[0], {}}, {halves[1], {}}};
-            for (const int32_t t : task.tetrahedra) {
-                each[side_[at(t)]].tetrahedra.push_back(t);
-                side_[at(t)] = elsewhere;
-            }
-            for (Task& half : each)
-                if (!half.tetrahedra.empty()) todo.push_back(std::move(half));
+            for (const int32_t t : here) side_[at(t)] = unsettled;
+            const bool whole = known || pieces(here, unsettled).all.size() < 2;
+            split(here, number, whole);
+            const auto in_left = [&](int32_t t) { return side_[at(t)] == left_half; };
+            const auto middle = std::stable_partition(here.begin(), here.end(), in_left);
+            for (const int32_t t : here) side_[at(t)] = elsewhere;
+            // What is in one piece has halves in one piece each: another would have changed sides.
+            const auto& halves = joined_[at(number) - parts_];
+            const std::span left(here.begin(), middle), right(middle, here.end());
+            if (!left.empty()) todo.push_back({halves[0], left, whole});
+            if (!right.empty()) todo.push_back({halves[1], right, whole});
             progress_.advance(0);
         }
         return result;
@@ -164,90 +168,156 @@ private:
     }
 
     // Sets side_ of these.
-    void split(std::span<const int32_t> tetrahedra, int32_t number) {
+    void split(std::span<const int32_t> tetrahedra, int32_t number, bool whole) {
         const auto& halves = joined_[at(number) - parts_];
-        std::vector<int32_t> settled;
+        std::vector<int32_t> newcomers, settled;
         for (const int32_t t : tetrahedra) {
             const int32_t place = place_of_part_[at(part_[at(t)])];
-            int8_t side = unsettled;
+            int8_t& side = side_[at(t)];
             for (const int8_t half : {left_half, right_half})
                 if (place >= first_[at(halves[at(half)])] && place < last_[at(halves[at(half)])]) side = half;
-            side_[at(t)] = side;
+            if (side == unsettled) newcomers.push_back(t);
         }
+        // They go with the nearest: from those beside them on.
         for (const int8_t half : {left_half, right_half})
-            for (const int32_t t : tetrahedra)
-                if (side_[at(t)] == half) settled.push_back(t);
-        for (size_t i = 0; i < settled.size(); ++i)  // what came from elsewhere goes with the nearest
+            for (const int32_t t : newcomers)
+                for (const int32_t n : mesh_.neighbours[at(t)])
+                    if (n >= 0 && side_[at(n)] == half) settled.push_back(n);
+        for (size_t i = 0; i < settled.size(); ++i)
             for (const int32_t n : mesh_.neighbours[at(settled[i])])
                 if (n >= 0 && side_[at(n)] == unsettled) {
                     side_[at(n)] = side_[at(settled[i])];
                     settled.push_back(n);
                 }
-        for (const int32_t t : tetrahedra)
+        for (const int32_t t : newcomers)
             if (side_[at(t)] == unsettled) side_[at(t)] = left_half;
-        gather(tetrahedra);
-        cut(tetrahedra);
+        std::vector<int32_t> border = at_split(tetrahedra);
+        if (!gather(tetrahedra, border, whole).empty()) border = at_split(tetrahedra);
+        cut(tetrahedra, std::move(border), whole);
     }
 
-    // What of a half is apart from its largest piece, and beside the other half, changes sides. Whether anything did.
-    bool gather(std::span<const int32_t> tetrahedra) {
-        bool changed = false;
-        for (const int8_t half : {left_half, right_half}) {
-            struct Piece {
-                double area = 0;
-                size_t first, last;
-                bool beside = false;  // the other half
-            };
-            std::vector<Piece> pieces;
-            std::vector<int32_t> order;  // of them all
-            for (const int32_t start : tetrahedra) {
-                if (side_[at(start)] != half || piece_[at(start)] >= 0) continue;
-                const auto number = static_cast<int32_t>(pieces.size());
-                Piece piece{0, order.size(), 0};
-                order.push_back(start);
-                piece_[at(start)] = number;
-                for (size_t i = piece.first; i < order.size(); ++i) {
-                    piece.area += area_[at(order[i])];
-                    for (const int32_t n : mesh_.neighbours[at(order[i])]) {
-                        if (n < 0 || side_[at(n)] == elsewhere) continue;
-                        if (side_[at(n)] != half) {
-                            piece.beside = true;
-                        } else if (piece_[at(n)] < 0) {
-                            piece_[at(n)] = number;
-                            order.push_back(n);
-                        }
+    // Whether it is beside the other half.
+    bool is_at_split(int32_t t) const {
+        return std::ranges::any_of(mesh_.neighbours[at(t)], [&](int32_t n) {
+            return n >= 0 && side_[at(n)] != elsewhere && side_[at(n)] != side_[at(t)];
+        });
+    }
+
+    std::vector<int32_t> at_split(std::span<const int32_t> tetrahedra) const {
+        std::vector<int32_t> border;
+        std::ranges::copy_if(tetrahedra, std::back_inserter(border), [&](int32_t t) { return is_at_split(t); });
+        return border;
+    }
+
+    void change_sides(std::span<const int32_t> tetrahedra) {
+        for (const int32_t t : tetrahedra) side_[at(t)] = side_[at(t)] == left_half ? right_half : left_half;
+    }
+
+    struct Piece {
+        double area;
+        size_t first, last;  // of the order
+        bool beside;         // the other half
+    };
+    struct Pieces {
+        std::vector<Piece> all;
+        std::vector<int32_t> order;
+    };
+
+    // Of those on a side.
+    Pieces pieces(std::span<const int32_t> tetrahedra, int8_t side) {
+        Pieces found;
+        std::vector<int32_t>& order = found.order;
+        for (const int32_t start : tetrahedra) {
+            if (side_[at(start)] != side || seed_[at(start)] >= 0) continue;
+            Piece piece{0, order.size(), 0, false};
+            order.push_back(start);
+            seed_[at(start)] = start;
+            for (size_t i = piece.first; i < order.size(); ++i) {
+                piece.area += area_[at(order[i])];
+                for (const int32_t n : mesh_.neighbours[at(order[i])]) {
+                    if (n < 0 || side_[at(n)] == elsewhere) continue;
+                    if (side_[at(n)] != side) {
+                        piece.beside = true;
+                    } else if (seed_[at(n)] < 0) {
+                        seed_[at(n)] = start;
+                        order.push_back(n);
                     }
                 }
-                piece.last = order.size();
-                pieces.push_back(piece);
             }
-            for (const int32_t t : order) piece_[at(t)] = -1;
+            piece.last = order.size();
+            found.all.push_back(piece);
+        }
+        for (const int32_t t : order) seed_[at(t)] = -1;
+        return found;
+    }
+
+    // Whether a half of what is in one piece is in several. Each of those is at the split: from there all grow until
+    // each half has met. border: all that is at the split, and more.
+    bool parted(std::span<const int32_t> border) {
+        std::vector<int32_t> reached;
+        for (const int32_t t : border)
+            if (seed_[at(t)] < 0 && is_at_split(t)) {
+                seed_[at(t)] = static_cast<int32_t>(reached.size());
+                reached.push_back(t);
+            }
+        size_t count = reached.size();
+        Joined met(count);
+        for (size_t i = 0; i < reached.size() && count > 2; ++i) {
+            const size_t t = at(reached[i]);
+            for (const int32_t n : mesh_.neighbours[t]) {
+                if (n < 0 || side_[at(n)] != side_[t]) continue;
+                if (seed_[at(n)] < 0) {
+                    seed_[at(n)] = seed_[t];
+                    reached.push_back(n);
+                } else if (met.find(at(seed_[at(n)])) != met.find(at(seed_[t]))) {
+                    met.join(at(seed_[at(n)]), at(seed_[t]));
+                    --count;
+                }
+            }
+        }
+        for (const int32_t t : reached) seed_[at(t)] = -1;
+        return count > 2;
+    }
+
+    // What of a half is apart from its largest piece, and beside the other half, changes sides. Returns all that did.
+    std::vector<int32_t> gather(std::span<const int32_t> tetrahedra, std::span<const int32_t> border, bool whole) {
+        std::vector<int32_t> changed;
+        if (whole && !parted(border)) return changed;
+        for (const int8_t half : {left_half, right_half}) {
+            const auto [all, order] = pieces(tetrahedra, half);
             // In single precision, so that those tie that do by symmetry.
             const auto size = [](const Piece& piece) {
                 return std::pair(static_cast<float>(piece.area), piece.last - piece.first);
             };
-            const auto largest = std::ranges::max_element(pieces, {}, size);
-            for (const Piece& piece : pieces) {
+            const auto largest = std::ranges::max_element(all, {}, size);
+            for (const Piece& piece : all) {
                 if (&piece == &*largest || !piece.beside) continue;
-                changed = true;
-                for (size_t i = piece.first; i < piece.last; ++i)
-                    side_[at(order[i])] = half == left_half ? right_half : left_half;
+                const auto apart = std::span(order).subspan(piece.first, piece.last - piece.first);
+                change_sides(apart);
+                changed.insert(changed.end(), apart.begin(), apart.end());
             }
         }
         return changed;
     }
 
     // Moves the border between the halves to where it costs least.
-    void cut(std::span<const int32_t> tetrahedra) {
+    void cut(std::span<const int32_t> tetrahedra, std::vector<int32_t> border, bool whole) {
         double areas[2] = {0, 0}, deepest[2] = {0, 0};
-        for (const int32_t t : tetrahedra) areas[side_[at(t)]] += area_[at(t)];
+        size_t beyond[2] = {0, 0};  // the band
+        for (const int32_t t : tetrahedra) {
+            areas[side_[at(t)]] += area_[at(t)];
+            ++beyond[side_[at(t)]];
+        }
         double reach = band_reach * std::sqrt(std::min(areas[0], areas[1]));
         if (!(reach > 0) || areas[0] + areas[1] < least_area * whole_) return;
-        const std::vector<int32_t> band = measure_depths(tetrahedra, reach);
-        for (const int32_t t : tetrahedra) {
+        const std::vector<int32_t> band = measure_depths(border, reach);
+        for (const int32_t t : band) {
             double& depth = deepest[side_[at(t)]];
             depth = std::max(depth, depth_[at(t)]);
+            --beyond[side_[at(t)]];
         }
+        for (const int8_t half : {left_half, right_half})
+            if (beyond[half] > 0) deepest[half] = infinite;
         std::vector<int32_t> free;
         for (const int32_t t : band) {
             // Of a half that is all within reach the deeper half stays.
@@ -273,49 +343,65 @@ private:
                     (side_[at(other)] == left_half ? problem.to_part : problem.to_rest)[n] += cost;
             }
         }
-        std::vector<int8_t> before;
-        for (const int32_t t : tetrahedra) before.push_back(side_[at(t)]);
-        const std::vector<uint8_t> left = minimum_cut(problem);
-        for (size_t n = 0; n < free.size(); ++n) side_[at(free[n])] = left[n] ? left_half : right_half;
-        if (gather(tetrahedra))  // what holds a piece where it is was not free
-            for (size_t i = 0; i < tetrahedra.size(); ++i) side_[at(tetrahedra[i])] = before[i];
         for (const int32_t t : band) {
             depth_[at(t)] = infinite;
             node_[at(t)] = -1;
+        }
+        const std::vector<uint8_t> left = minimum_cut(problem);
+        std::vector<int32_t> moved;
+        for (size_t n = 0; n < free.size(); ++n)
+            if ((side_[at(free[n])] == left_half) != (left[n] == 1)) moved.push_back(free[n]);
+        if (moved.empty()) return;
+        change_sides(moved);
+        for (const int32_t t : moved) {
+            border.push_back(t);
+            for (const int32_t n : mesh_.neighbours[at(t)])
+                if (n >= 0 && side_[at(n)] != elsewhere) border.push_back(n);
+        }
+        if (const std::vector<int32_t> apart = gather(tetrahedra, border, whole); !apart.empty()) {
+            change_sides(apart);  // what holds a piece where it is was not free
+            change_sides(moved);
         }
     }
 
     // How deep in its half each tetrahedron lies: the way to the split over places of tetrahedra; infinity beyond
     // reach, which is made less where so many are within it. Returns those within, in rising order.
-    std::vector<int32_t> measure_depths(std::span<const int32_t> tetrahedra, double& reach) {
-        using Reached = std::pair<double, int32_t>;
-        std::priority_queue<Reached, std::vector<Reached>, std::greater<>> front;
+    std::vector<int32_t> measure_depths(std::span<const int32_t> border, double& reach) {
+        // Ring by ring, each in any order until no way in it gets shorter: cheaper than by the shortest way first.
+        for (std::vector<Reached>& ring : rings_) ring.clear();
         std::vector<int32_t> band;
         const auto come = [&](int32_t t, double way) {
             if (way > reach || way >= depth_[at(t)]) return;
             if (depth_[at(t)] == infinite) band.push_back(t);
             depth_[at(t)] = way;
-            front.push({way, t});
+            rings_[static_cast<size_t>(way / reach * rings)].push_back({way, t});
         };
         const auto apart = [&](int32_t t, int32_t n) { return length(place_[at(t)] - place_[at(n)]); };
-        for (const int32_t t : tetrahedra)
+        for (const int32_t t : border)
             for (const int32_t n : mesh_.neighbours[at(t)])
                 if (n >= 0 && side_[at(n)] != elsewhere && side_[at(n)] != side_[at(t)]) come(t, apart(t, n) / 2);
-        for (size_t done = 0; !front.empty();) {
-            const auto [way, t] = front.top();
-            front.pop();
-            if (way > depth_[at(t)]) continue;
-            if (done++ == most_tetrahedra) {
-                reach = way;
-                break;
+        size_t done = 0;
+        for (size_t r = 0; r <= rings && done <= most_tetrahedra; ++r) {
+            for (size_t i = 0; i < rings_[r].size(); ++i) {
+                const auto [way, t] = rings_[r][i];
+                if (way > depth_[at(t)]) continue;
+                for (const int32_t n : mesh_.neighbours[at(t)])
+                    if (n >= 0 && side_[at(n)] == side_[at(t)]) come(n, way + apart(t, n));
             }
-            for (const int32_t n : mesh_.neighbours[at(t)])
-                if (n >= 0 && side_[at(n)] == side_[at(t)]) come(n, way + apart(t, n));
+            for (const auto& [way, t] : rings_[r]) done += way == depth_[at(t)];
         }
-        for (const int32_t t : band)
-            if (depth_[at(t)] > reach) depth_[at(t)] = infinite;
-        std::erase_if(band, [&](int32_t t) { return depth_[at(t)] == infinite; });
-        std::sort(band.begin(), band.end());
+        if (done > most_tetrahedra) {  // the others are deeper than these
+            std::vector<double> depths;
+            for (const int32_t t : band) depths.push_back(depth_[at(t)]);
+            std::ranges::nth_element(depths, depths.begin() + most_tetrahedra);
+            reach = depths[most_tetrahedra];
+        }
+        std::erase_if(band, [&](int32_t t) {
+            if (depth_[at(t)] <= reach) return false;
+            depth_[at(t)] = infinite;
+            return true;
+        });
+        std::ranges::sort(band);
         return band;
     }
 
@@ -334,10 +420,16 @@ private:
     std::vector<Point> place_;  // likewise: the middle of its outer facets, or its own
     std::vector<std::array<FacetCost, 4>> facets_;
 
+    struct Reached {
+        double way;
+        int32_t tetrahedron;
+    };
+    std::array<std::vector<Reached>, rings + 1> rings_;  // of measure_depths()
+
     // Of each tetrahedron, while what it is in is split.
     std::vector<int8_t> side_;
     std::vector<double> depth_;
-    std::vector<int32_t> node_, piece_;
+    std::vector<int32_t> node_, seed_;
 };
 
 }  // namespace
