@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
+HAND = ROOT / "build" / "deps" / "meshes" / "hand.off"
 PACKAGES = os.environ.get("PARTWHEEL_PACKAGES", str(ROOT / "native" / "python"))
 sys.path[:0] = [PACKAGES, str(Path(__file__).parent)]
 

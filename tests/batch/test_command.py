@@ -11,12 +11,11 @@ import time
 
 import numpy as np
 import pytest
-from conftest import ROOT, box, command, environment, hostile, reports, results, run, zip_bomb
+from conftest import HAND, box, command, environment, hostile, reports, results, run, zip_bomb
 from partwheel import Hierarchy
 
 from partwheel import meshes
 
-HAND = ROOT / "build" / "deps" / "meshes" / "hand.off"
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are kept on Linux only")
 
 

@@ -3,6 +3,7 @@
                      python3 -m partwheel parts MODEL -o FOLDER [--parts N] [--formats glb,ply,stl,3mf] [options]
                          [--pegs MM or --flat, --wall MM, --size MM, --bed X,Y,Z]
                      python3 -m partwheel batch IN... -o FOLDER [--make hierarchy,cut,...] [--shard I/N] [options]
+                     python3 -m partwheel report FOLDER
 
 Exit codes: 0 built, 1 a named error, 2 wrong usage (a file that can't be opened or written included)."""
 
@@ -178,6 +179,8 @@ def main(arguments=None):
     options = parse(arguments)
     if options.command == "batch":
         return batch.run(options)
+    if options.command == "report":
+        return batch.write_report(options)
     report = {"model": str(options.model), "error": None, "faces": None, "tets": None, "components": None,
               "seconds": {}}
     code = BUILT

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The command line of partwheel batch: its options, its progress, Ctrl-C, its last words and exit code."""
+"""The command line of partwheel batch and partwheel report: its options, its progress, Ctrl-C, its last words and exit code."""
 
 import argparse
 import json
@@ -19,7 +19,7 @@ LINES_SECONDS = 30  # between two lines of progress where no terminal shows them
 
 
 def add_to(commands, add_build_options):
-    """The command, for argparse."""
+    """The commands batch and report, for argparse."""
     batch = commands.add_parser("batch", help="build many models into a folder of results that can be gone on with")
     batch.add_argument("inputs", nargs="+", metavar="IN", help="mesh files, .blend files, folders of them, @FILE: a list")
     batch.add_argument("-o", "--output", type=Path, metavar="OUT", required=True, help="the folder of results")
@@ -40,7 +40,19 @@ def add_to(commands, add_build_options):
                        help="do only the I-th of N parts of the files, 1 <= I <= N; other machines do the others")
     batch.add_argument("--json", action="store_true", help="print the totals as JSON on one line")
     add_build_options(batch)
-    return batch
+    report = commands.add_parser("report", help="one HTML page of a folder that batch has filled")
+    report.add_argument("folder", type=Path, metavar="OUT", help="the folder; report.html is written into it")
+
+
+def write_report(options):
+    """Exit code: 0 written, 2 the folder can't be read or written."""
+    from . import report
+    try:
+        path, models = report.write(options.folder)
+    except OSError as error:
+        return _refused(f"{error.strerror}: {error.filename}", USAGE)
+    print(f"{path}: {models} models")
+    return DONE
 
 
 def settings(options):

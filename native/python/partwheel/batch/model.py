@@ -4,6 +4,8 @@
 import time
 from pathlib import Path
 
+import numpy as np
+
 from . import blend
 from .. import meshes
 from ..cut import Cut, files
@@ -29,7 +31,8 @@ def make(path, folder, settings, *, memory=0, seconds=None, threads=1):
     hierarchy: hierarchy.partwheel. cut: cut.json, the parts and the part of each face. objects: objects.glb, the parts
     as closed objects. colliders: colliders.obj, settings["hulls"] convex hulls, UCX_00 and so on. preview: preview.png.
     settings: as command.settings() gives them. memory: bytes that the worker process may take, 0: no limit. seconds: of
-    its processor time; None: as Job has it. Returns {"account", "rung", sizes ..., "seconds": {stage: seconds}}; raises
+    its processor time; None: as Job has it. A model that the mesher refuses is drawn in grey, if a preview is wanted and
+    can be: the error has the attribute pictured then. Returns {"account", "rung", sizes ..., "seconds": {stage: seconds}}; raises
     Error, OSError, MemoryError."""
     clock = _Clock()
     suffix = Path(path).suffix.lower()
@@ -38,7 +41,13 @@ def make(path, folder, settings, *, memory=0, seconds=None, threads=1):
     build = dict(settings["build"], mode=Mode[settings["build"]["mode"].upper()])
     job = Job(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, memory_limit=memory, time_limit=seconds,
               threads=threads, **build)
-    hierarchy = job.result()
+    try:
+        hierarchy = job.result()
+    except Error as error:
+        error.pictured = "preview" in settings["outputs"] and _sound(mesh)
+        if error.pictured:
+            _draw(folder, mesh, None, settings, suffix)
+        raise
     clock.lap("build")
     clock.laps.update(hierarchy.seconds)
     report = {"vertices": len(mesh.vertices), "triangles": len(mesh.triangles), "faces": mesh.face_count,
@@ -64,13 +73,23 @@ def make(path, folder, settings, *, memory=0, seconds=None, threads=1):
         report["hulls"] = _colliders(folder / "colliders.obj", hierarchy, settings["hulls"])
         clock.lap("colliders")
     if "preview" in wanted:
-        try:
-            preview(folder / "preview.png", mesh, cut, settings["preview"], suffix in Y_UP)
-        except ImportError as error:
-            raise Trouble("package", f"Previews need the packages embreex and Pillow: pip install partwheel[batch]. "
-                                     f"({error})") from error
+        _draw(folder, mesh, cut, settings, suffix)
         clock.lap("preview")
     return report
+
+
+def _draw(folder, mesh, cut, settings, suffix):
+    try:
+        preview(folder / "preview.png", mesh, cut, settings["preview"], suffix in Y_UP)
+    except ImportError as error:
+        raise Trouble("package", f"Previews need the packages embreex and Pillow: pip install partwheel[batch]. "
+                                 f"({error})") from error
+
+
+def _sound(mesh):
+    """Whether its numbers can be drawn at all, for the library may have refused them."""
+    return (len(mesh.triangles) > 0 and np.isfinite(mesh.vertices).all() and mesh.triangles.min() >= 0
+            and mesh.triangles.max() < len(mesh.vertices))
 
 
 def _colliders(path, hierarchy, count):

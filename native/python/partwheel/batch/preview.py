@@ -11,7 +11,7 @@ TOWARDS, UP = (0.5, -0.8, 0.45), (0, 0, 1)  # from where it is seen; glTF and it
 
 
 def preview(path, mesh, cut, size, y_up=False):
-    """Writes a PNG of size x size pixels. mesh: a meshes.Mesh; y_up: its second axis is up, not its third. Raises
+    """Writes a PNG of size x size pixels. mesh: a meshes.Mesh, sound in its numbers; cut: None for grey; y_up: its second axis is up, not its third. Raises
     ImportError without embreex and Pillow, OSError."""
     from PIL import Image
     from trimesh.ray.ray_pyembree import RayMeshIntersector
@@ -39,7 +39,7 @@ def preview(path, mesh, cut, size, y_up=False):
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(across, axis=1)
     bright = 0.25 + 0.75 * np.abs(across @ back) / np.where(length, length, 1)
-    paint = colors(cut.keys)[cut.labels[mesh.faces]] * bright[:, None]
+    paint = (colors(cut.keys)[cut.labels[mesh.faces]] if cut else np.full(3, 0.8)) * bright[:, None]
     picture = np.ones((len(hit), 3))
     picture[hit >= 0] = paint[hit[hit >= 0]]
     picture = picture.reshape(size, FINER, size, FINER, 3).mean(axis=(1, 3))

@@ -208,12 +208,16 @@ class Run:
             return
         error = answer.get("error")
         if error:
-            self.store.discard(beside)
+            pictured = answer.pop("pictured", False)
+            if not pictured:
+                self.store.discard(beside)
             if error["name"] == "memory" and not all_memory:
                 with self._change:
                     self._again.append(source)  # later, with all memory
+                self.store.discard(beside)
                 return
-            beside = self.store.beside(source.key)
+            if not pictured:
+                beside = self.store.beside(source.key)
         if source.changed():
             self.store.discard(beside)
             self._count(source, "_skipped")

@@ -34,7 +34,7 @@ class Slot:
 
     def make(self, task):
         """The answer to {"path", "folder", "settings", "memory", "seconds", "size", "threads"}, as for model.make() but
-        size, the file's bytes: what it returns, or {"error": {"name", "message"}}."""
+        size, the file's bytes: what it returns, or {"error": {"name", "message"}, "pictured": whether preview.png was made all the same}."""
         process, self._late = self._started(), False
         limit = task["seconds"] or SECONDS + SECONDS_PER_MEGABYTE * task["size"] / MEGABYTE
         self._deadline = time.monotonic() + PATIENCE * limit
@@ -113,7 +113,7 @@ def main():
             answer = make(task["path"], Path(task["folder"]), task["settings"], memory=memory, seconds=task["seconds"],
                           threads=task["threads"])
         except Exception as error:  # whatever it is, it is this model's result
-            answer = {"error": _told(error, task)}
+            answer = {"error": _told(error, task), "pictured": bool(getattr(error, "pictured", False))}
         answer["resident"] = _resident()
         answers.write(json.dumps(answer).encode() + b"\n")
         answers.flush()
