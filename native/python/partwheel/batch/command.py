@@ -22,7 +22,7 @@ def add_to(commands, add_build_options):
     """The commands batch and report, for argparse."""
     batch = commands.add_parser("batch", help="build many models into a folder of results that can be gone on with")
     batch.add_argument("inputs", nargs="+", metavar="IN", help="mesh files, .blend files, folders of them, @FILE: a list")
-    batch.add_argument("-o", "--output", type=Path, metavar="OUT", required=True, help="the folder of results")
+    batch.add_argument("-o", "--output", metavar="OUT", required=True, help="the folder of results")
     batch.add_argument("--make", type=outputs, default="hierarchy,cut", metavar="O,...",
                        help=f"what is made of each model: {', '.join(OUTPUTS)} (default: hierarchy,cut)")
     batch.add_argument("--parts", type=count, default=0, metavar="N", help="of the cut (default: as people would take)")
@@ -38,6 +38,9 @@ def add_to(commands, add_build_options):
                        help="try models again that failed by this name, as memory; all: whatever it was")
     batch.add_argument("--shard", type=shard, default=(1, 1), metavar="I/N",
                        help="do only the I-th of N parts of the files, 1 <= I <= N; other machines do the others")
+    batch.add_argument("--ray", metavar="ADDRESS",
+                       help="on a Ray cluster: its address, auto, or local; IN and OUT are paths that fsspec knows and "
+                            "all nodes see, --memory is each model's (needs pip install partwheel[ray])")
     batch.add_argument("--json", action="store_true", help="print the totals as JSON on one line")
     add_build_options(batch)
     report = commands.add_parser("report", help="one HTML page of a folder that batch has filled")
@@ -68,6 +71,8 @@ def settings(options):
 
 def run(options):
     """Exit code: 0 a result for each model, 1 some failed or the run could not begin, 2 wrong usage, 130 Ctrl-C."""
+    if options.ray:
+        return _run_on_ray(options)
     try:
         paths = inputs.found(options.inputs)
     except OSError as error:
@@ -95,6 +100,29 @@ def run(options):
     show.end()
     print(json.dumps(counts._asdict()) if options.json else describe(counts))
     return FAILED if counts.failed or counts.skipped else DONE
+
+
+def _run_on_ray(options):
+    from . import on_ray
+    limits = Options(settings(options), 0, options.memory or 0, options.time, frozenset(options.retry), options.shard,
+                     options.threads or 1)
+    signal.signal(signal.SIGTERM, _interrupt)
+
+    def progress(done, total):
+        print(f"{done} of {total} files", file=sys.stderr, flush=True)
+
+    try:
+        counts = on_ray.run(options.ray, options.inputs, options.output, limits, progress)
+    except KeyboardInterrupt:
+        return _refused("Stopped. What was done is done; the same command goes on with the rest.", INTERRUPTED)
+    except OSError as error:
+        return _refused(f"{error.strerror or error}: {error.filename or options.output}", USAGE)
+    except Error as error:
+        return _refused(str(error), FAILED)
+    failed = {name: number for name, number in counts.items() if name}
+    print(json.dumps({"total": sum(counts.values()), "failed": failed}) if options.json else
+          f"{sum(counts.values())} files, {sum(failed.values())} failed: {failed}")
+    return FAILED if failed else DONE
 
 
 def describe(counts):
