@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""partwheel batch in processes of its own: what it makes, hostile files, kills at any time, Ctrl-C, limits, .blend files."""
+"""partwheel batch in a process of its own: what it makes, hostile files, kills at any time, Ctrl-C, limits, Blender."""
 
 import json
+import os
 import random
 import shutil
 import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +18,9 @@ from partwheel import Hierarchy
 
 from partwheel import meshes
 
+# More models and kills, by the hour: PARTWHEEL_KILLS=20 PARTWHEEL_MODELS=FOLDER
+KILLS = int(os.environ.get("PARTWHEEL_KILLS", 4))
+MORE = list(Path(os.environ["PARTWHEEL_MODELS"]).iterdir()) if os.environ.get("PARTWHEEL_MODELS") else []
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are kept on Linux only")
 
 
@@ -140,25 +145,27 @@ def until(condition):
 
 
 def test_killed_at_random_and_resumed_nothing_is_lost_or_done_twice(boxes, tmp_path):
-    shutil.copy(HAND, boxes)
+    for path in MORE or [HAND]:
+        shutil.copy(path, boxes)
+    total = len(list(boxes.iterdir()))
     arguments = boxes, "-o", tmp_path / "out", "--make", "hierarchy,cut,colliders"
     dice, kills = random.Random(5), 0
-    for _ in range(5):
+    for _ in range(KILLS):
         before = done(tmp_path / "out")
         process = subprocess.Popen(command(*arguments), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                    env=environment())
-        goal = before + dice.randrange(3)
+        goal = before + dice.randrange(max(3, total // (2 * KILLS)))
         until(lambda: process.poll() is not None or done(tmp_path / "out") >= goal)
         time.sleep(dice.random() / 5)  # at any moment of what follows
         started = children(process.pid)
         process.kill()
         kills += process.wait() == -signal.SIGKILL
         until(lambda: not started or not alive(started))  # nothing outlives it
-    assert kills >= 2
-    totals = run(*arguments)
-    assert totals["made"] + totals["old"] == 13
-    whole = run(boxes, "-o", tmp_path / "whole", "--make", "hierarchy,cut,colliders")
-    assert whole["made"] == 13 and results(tmp_path / "out") == results(tmp_path / "whole")
+    assert kills >= KILLS // 3
+    totals = run(*arguments, code=None)
+    assert totals["made"] + totals["old"] + totals["same"] == total
+    whole = run(boxes, "-o", tmp_path / "whole", "--make", "hierarchy,cut,colliders", code=None)
+    assert whole["made"] + whole["same"] == total and results(tmp_path / "out") == results(tmp_path / "whole")
     keys = [json.loads(line)["key"] for path in (tmp_path / "out" / "done").iterdir()
             for line in path.read_text().splitlines()]
     assert len(keys) == len(set(keys))

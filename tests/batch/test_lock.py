@@ -68,6 +68,12 @@ def test_of_many_that_take_a_dead_ones_place_one_gets_it(tmp_path):
         assert got and max(most) == 1
 
 
+def test_a_number_below_the_highest_is_no_place(tmp_path):
+    """One that looked long ago, and comes when others have come and gone."""
+    (tmp_path / "one.3").write_text("{}")
+    assert lock.Lock(tmp_path, "one")._make(2) is None and not (tmp_path / "one.2").exists()
+
+
 def test_another_machines_owner_is_dead_when_it_does_not_touch_it(tmp_path):
     with lock.Lock(tmp_path, "one"):
         path, = tmp_path.glob("one.*")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The report, opened in a real browser: totals, pictures, pages, choices; names that are HTML; a hundred thousand rows."""
+"""The report in a real browser: totals, pictures, pages, choices; names that are HTML; a hundred thousand rows."""
 
 import html
 import re

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The command line of partwheel batch and partwheel report: its options, its progress, Ctrl-C, its last words and exit code."""
+"""The command lines of partwheel batch and partwheel report: options, progress, Ctrl-C, last words, exit codes."""
 
 import argparse
 import json

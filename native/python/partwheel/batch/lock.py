@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A lock on a folder's part, for processes on any number of machines that share the folder; a killed owner's is taken over.
+"""A lock on a folder's part, for processes on all machines that share the folder; a killed owner's is taken over.
 
 It is a file NAME.NUMBER that the owner made and touches as long as it lives. To take a lock over is to make the file
 of the next number, which only one process can; the highest number is never removed, so that nobody takes an older one's

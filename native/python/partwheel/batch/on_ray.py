@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""partwheel batch on a Ray cluster: inputs and results on any path that fsspec knows (a folder all nodes see, s3://...).
+"""partwheel batch on a Ray cluster: inputs and results on any path of fsspec (a folder all nodes see, s3://).
 
 Tasks of about a hundred models. A task brings each file to its node, makes the result there and puts it in its place,
 model.json last: what has a whole model.json is done. Ray begins a task again when its node dies; it then skips what is
@@ -27,8 +27,8 @@ RETRIES = -1  # of a task whose node died: for ever, for each begins where the l
 def run(address, names, output, options, progress=lambda done, total: None):
     """Does all files; {failure name or None: how many}. address: of the cluster, "auto", or "local" for one of this
     machine that ends with the run. names: files and folders, output: a
-    folder, as fsspec writes them. options: run.Options, of which jobs does not count; memory: for each model, 0: its core's
-    share of what its node has free. Raises Trouble where Ray or fsspec are missing, OSError, and what Ray raises."""
+    folder, as fsspec writes them. options: run.Options, of which jobs does not count; memory: for each model, 0: its
+    core's share of what its node has free. Raises Trouble where Ray or fsspec are missing, OSError, what Ray raises."""
     try:
         import fsspec
         import ray
@@ -148,7 +148,8 @@ class _Folder:
         place = self._at("models", key[:2], key)
         try:
             report = json.loads(self._files.cat_file(f"{place}/{REPORT}"))
-            sizes = {PurePosixPath(each["name"]).name: each["size"] for each in self._files.ls(place, detail=True, refresh=True)}
+            there = self._files.ls(place, detail=True, refresh=True)
+            sizes = {PurePosixPath(each["name"]).name: each["size"] for each in there}
         except (FileNotFoundError, ValueError):  # none, or torn
             return None
         return report if report["files"].items() <= sizes.items() else None
@@ -172,4 +173,5 @@ class _Folder:
     def _lines(self, kind, name, values):
         """Written whole: in a store of objects nothing can be appended."""
         self._files.makedirs(self._at(kind), exist_ok=True)
-        self._files.pipe_file(self._at(kind, f"{name}.jsonl"), "".join(json.dumps(each) + "\n" for each in values).encode())
+        lines = "".join(json.dumps(each) + "\n" for each in values)
+        self._files.pipe_file(self._at(kind, f"{name}.jsonl"), lines.encode())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A small picture of a model in its parts' colours, without a window or a graphics card: rays by Embree (embreex, Pillow)."""
+"""A small picture of a model in its parts' colours, without a window or a graphics card: by Embree (embreex), Pillow."""
 
 import numpy as np
 
@@ -11,8 +11,8 @@ TOWARDS, UP = (0.5, -0.8, 0.45), (0, 0, 1)  # from where it is seen; glTF and it
 
 
 def preview(path, mesh, cut, size, y_up=False):
-    """Writes a PNG of size x size pixels. mesh: a meshes.Mesh, sound in its numbers; cut: None for grey; y_up: its second axis is up, not its third. Raises
-    ImportError without embreex and Pillow, OSError."""
+    """Writes a PNG of size x size pixels. mesh: a meshes.Mesh, sound in its numbers; cut: None for grey; y_up: its second
+    axis is up, not its third. Raises ImportError without embreex and Pillow, OSError."""
     from PIL import Image
     from trimesh.ray.ray_pyembree import RayMeshIntersector
 

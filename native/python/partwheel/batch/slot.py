@@ -34,7 +34,8 @@ class Slot:
 
     def make(self, task):
         """The answer to {"path", "folder", "settings", "memory", "seconds", "size", "threads"}, as for model.make() but
-        size, the file's bytes: what it returns, or {"error": {"name", "message"}, "pictured": whether preview.png was made all the same}."""
+        size, the file's bytes: what it returns, or {"error": {"name", "message"}, "pictured": whether preview.png
+        was made all the same}."""
         process, self._late = self._started(), False
         limit = task["seconds"] or SECONDS + SECONDS_PER_MEGABYTE * task["size"] / MEGABYTE
         self._deadline = time.monotonic() + PATIENCE * limit
