@@ -99,11 +99,14 @@ def core():
     setup("core", "setup_core")
     build("core", "release", "partwheel", "partwheel_checks")
     make_packages()
-    packages = OUTPUT / "packages"
-    shutil.rmtree(packages, ignore_errors=True)
-    require("core", VENV / "core/bin/python", "-m", "pip", "install", "--no-deps", "--target", packages,
-            *(ROOT / "build/package").glob("*.whl"))
-    return pytest("core", "tests/core", PARTWHEEL_PACKAGES=str(packages))
+    return pytest("core", "tests/core", PARTWHEEL_PACKAGES=installed("core"))
+
+
+def batch():
+    """partwheel batch as installed from the wheel: hostile files, kills, Ctrl-C, its report in a browser."""
+    setup("batch", "setup_batch")
+    make_packages()
+    return pytest("batch", "tests/batch", "batch", PARTWHEEL_PACKAGES=installed("batch"))
 
 
 def reliability():
@@ -206,7 +209,7 @@ def ship():
 
 
 TIERS = {function.__name__: function
-         for function in (native, sanitizers, threads, determinism, fuzz, core, quality, reliability, addon, gui,
+         for function in (native, sanitizers, threads, determinism, fuzz, core, batch, quality, reliability, addon, gui,
                           newest, ship)}
 
 
@@ -260,6 +263,15 @@ def make_packages():
     return tuple(map(pathlib.Path, (OUTPUT / "package.log").read_text().splitlines()[-2:]))
 
 
+def installed(venv):
+    """A folder with the package in it as its wheel has it."""
+    packages = OUTPUT / f"packages-{venv}"
+    shutil.rmtree(packages, ignore_errors=True)
+    require(venv, VENV / venv / "bin/python", "-m", "pip", "install", "--no-deps", "--target", packages,
+            *(ROOT / "build/package").glob("*.whl"))
+    return str(packages)
+
+
 def ctest(log, preset, *options):
     report = fresh(log, "xml")
     code = run(log, ["ctest", "--preset", preset, "--parallel", str(os.cpu_count()), "--output-junit", report,
@@ -267,10 +279,10 @@ def ctest(log, preset, *options):
     return read_junit(log, report, code)
 
 
-def pytest(log, tests, **environment):
-    setup(log, "setup_core")
+def pytest(log, tests, venv="core", **environment):
+    setup(log, f"setup_{venv}")
     report = fresh(log, "xml")
-    command = [VENV / "core/bin/python", "-m", "pytest", "-rs", "-p", "no:cacheprovider", "--capture=sys",
+    command = [VENV / venv / "bin/python", "-m", "pytest", "-rs", "-p", "no:cacheprovider", "--capture=sys",
                f"--junitxml={report}", tests]  # what a dying library writes reaches the log
     code = run(log, command, os.environ | environment)
     return read_junit(log, report, code)

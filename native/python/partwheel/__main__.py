@@ -2,6 +2,8 @@
 """The command line: python3 -m partwheel build MODEL [-o FILE] [--json] [options]
                      python3 -m partwheel parts MODEL -o FOLDER [--parts N] [--formats glb,ply,stl,3mf] [options]
                          [--pegs MM or --flat, --wall MM, --size MM, --bed X,Y,Z]
+                     python3 -m partwheel batch IN... -o FOLDER [--make hierarchy,cut,...] [--shard I/N] [options]
+                     python3 -m partwheel report FOLDER
 
 Exit codes: 0 built, 1 a named error, 2 wrong usage (a file that can't be opened or written included)."""
 
@@ -13,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from . import meshes
+from .batch import command as batch
 from .cut import Cut, files, printing
 from .hierarchy import Hierarchy
 from .library import Error, Mode, Rung
@@ -44,7 +47,10 @@ def parse(arguments):
                             "itself, labelled and coloured (default: glb,ply; for a printer 3mf,stl)")
     _add_print_options(parts.add_argument_group("for a 3D printer", "needs pip install partwheel[printing]"))
     for command in (build, parts):
+        command.add_argument("model", type=Path, help="a mesh file: OFF, or any other format that trimesh reads")
+        command.add_argument("--json", action="store_true", help="print the report as JSON on one line")
         _add_build_options(command)
+    batch.add_to(commands, _add_build_options)
     return parser.parse_args(arguments)
 
 
@@ -60,8 +66,6 @@ def _add_print_options(printer):
 
 
 def _add_build_options(build):
-    build.add_argument("model", type=Path, help="a mesh file: OFF, or any other format that trimesh reads")
-    build.add_argument("--json", action="store_true", help="print the report as JSON on one line")
     build.add_argument("--quality", type=float, default=0.0, metavar="Q",
                        help="0: no points are added inside (default); 1.1 or more: bound on circumradius to shortest "
                             "edge of the tetrahedra, 1.4 is usual")
@@ -173,6 +177,10 @@ def describe(report):
 
 def main(arguments=None):
     options = parse(arguments)
+    if options.command == "batch":
+        return batch.run(options)
+    if options.command == "report":
+        return batch.write_report(options)
     report = {"model": str(options.model), "error": None, "faces": None, "tets": None, "components": None,
               "seconds": {}}
     code = BUILT

@@ -49,6 +49,8 @@ def _read_with_trimesh(path):
         options = {"fix_texture": False} if suffix == "ply" else {}  # or it splits vertices along texture seams
         scene = trimesh.load(path, process=False, force="scene", skip_materials=True, **options)
         pieces = [piece for node in scene.graph.nodes_geometry if (piece := _placed(scene, *scene.graph[node]))]
+    except MemoryError:
+        raise  # it says nothing about the file
     except Exception as error:  # trimesh's readers raise whatever their parsing meets
         raise MeshFileError(f"trimesh can't read {path.name} as a mesh: {error}") from error
     if not pieces:

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The lock: one owner at a time, whoever is killed; the folder of results: torn lines, damaged results, twins."""
+
+import json
+import os
+import subprocess
+import sys
+import threading
+
+import pytest
+from conftest import environment
+
+from partwheel.batch import lock
+from partwheel.batch.store import Store
+
+HOLD = "import sys; from partwheel.batch.lock import Lock\nwith Lock(sys.argv[1], 'one'): print('held', flush=True); input()"
+
+
+def holder(folder):
+    process = subprocess.Popen([sys.executable, "-c", HOLD, str(folder)], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                               env=environment())
+    assert process.stdout.readline() == b"held\n"
+    return process
+
+
+def test_a_living_owner_keeps_it_and_a_killed_one_does_not(tmp_path):
+    process = holder(tmp_path)
+    with pytest.raises(lock.Busy, match=str(process.pid)), lock.Lock(tmp_path, "one"):
+        pass
+    process.kill()
+    process.communicate()
+    with lock.Lock(tmp_path, "one"):
+        assert lock.living(tmp_path) == {"one"}
+    assert lock.living(tmp_path) == set()
+
+
+def test_given_back_it_can_be_taken_again(tmp_path):
+    for _ in range(3):
+        with lock.Lock(tmp_path, "one"):
+            pass
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_of_many_that_take_a_dead_ones_place_one_gets_it(tmp_path):
+    """Each holder counts itself while it holds: two at once would be seen."""
+    for _ in range(10):
+        process = holder(tmp_path)
+        process.kill()
+        process.communicate()
+        start, inside, most, got = threading.Barrier(8), [], [], []
+
+        def take():
+            start.wait()
+            try:
+                with lock.Lock(tmp_path, "one"):
+                    inside.append(1)
+                    most.append(len(inside))
+                    got.append(1)
+                    inside.pop()
+            except lock.Busy:
+                pass
+
+        threads = [threading.Thread(target=take) for _ in range(8)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        assert got and max(most) == 1
+
+
+def test_a_number_below_the_highest_is_no_place(tmp_path):
+    """One that looked long ago, and comes when others have come and gone."""
+    (tmp_path / "one.3").write_text("{}")
+    assert lock.Lock(tmp_path, "one")._make(2) is None and not (tmp_path / "one.2").exists()
+
+
+def test_another_machines_owner_is_dead_when_it_does_not_touch_it(tmp_path):
+    with lock.Lock(tmp_path, "one"):
+        path, = tmp_path.glob("one.*")
+        owner = path.read_text()
+    path.write_text(json.dumps({**json.loads(owner), "machine": "another"}))
+    with pytest.raises(lock.Busy), lock.Lock(tmp_path, "one"):
+        pass
+    before = path.stat().st_mtime - lock.STALE_SECONDS - 1
+    os.utime(path, (before, before))
+    with lock.Lock(tmp_path, "one"):
+        pass
+
+
+def test_a_used_process_number_is_no_living_owner(tmp_path):
+    with lock.Lock(tmp_path, "one"):
+        path, = tmp_path.glob("one.*")
+        owner = json.loads(path.read_text())
+    path.write_text(json.dumps({**owner, "began": "1"}))
+    with lock.Lock(tmp_path, "one"):
+        pass
+
+
+def test_an_owner_that_was_taken_over_knows(tmp_path, monkeypatch):
+    monkeypatch.setattr(lock, "BEAT_SECONDS", 0.01)
+    with lock.Lock(tmp_path, "one") as held:
+        path, = tmp_path.glob("one.*")
+        path.unlink()
+        held._beat.join()
+        assert held.lost
+    assert list(tmp_path.iterdir()) == []
+
+
+# ---- The folder
+
+
+KEY = "ab" * 32
+
+
+@pytest.fixture
+def store(tmp_path):
+    made = Store(tmp_path)
+    made.begin()
+    return made
+
+
+def put(store, text="some"):
+    beside = store.beside(KEY)
+    (beside / "file").write_text(text)
+    return store.publish(beside, KEY, {"error": None})
+
+
+def test_a_result_whose_files_are_not_whole_is_none_and_is_made_again(store):
+    assert store.report(KEY) is None and put(store) and store.report(KEY)["files"] == {"file": 4}
+    (store.place(KEY) / "file").write_text("so")
+    assert store.report(KEY) is None
+    assert put(store) and store.report(KEY)
+    (store.place(KEY) / "model.json").write_text("{")
+    assert store.report(KEY) is None
+
+
+def test_the_second_of_two_results_is_dropped(store):
+    assert put(store, "first") and not put(store, "other")
+    assert (store.place(KEY) / "file").read_text() == "first" and store.done() == [KEY]
+
+
+def test_a_torn_line_loses_itself_only(store, tmp_path):
+    store.note("one", KEY)
+    with open(tmp_path / "inputs" / "1-of-1.jsonl", "ab") as file:
+        file.write(b'{"path": "tw')
+    again = Store(tmp_path)
+    again.begin()
+    again.note("two", KEY)
+    again.note("one", KEY)
+    assert again.inputs() == {"one": KEY, "two": KEY}
+    assert len((tmp_path / "inputs" / "1-of-1.jsonl").read_text().splitlines()) == 3
+
+
+def test_what_was_left_unfinished_is_removed(store, tmp_path):
+    left = store.beside(KEY)
+    (left / "file").write_text("half")
+    Store(tmp_path).begin()
+    assert not left.exists()

@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The run with slots that only pretend: memory, retries, counting, stopping, two runs; and what keys depend on."""
+
+import contextlib
+import threading
+
+import pytest
+
+from partwheel.batch import lock, run
+from partwheel.batch.inputs import Input, found, of_shard
+from partwheel.batch.run import Options, Run
+
+SETTINGS = {"outputs": ["hierarchy"]}
+MEGABYTE = 2**20
+
+
+class Fake:
+    """A slot that does what the test says: make(task) -> answer."""
+
+    def __init__(self, does):
+        self._does = does
+
+    def make(self, task):
+        return self._does(task)
+
+    def watch(self):
+        pass
+
+    def kill(self):
+        pass
+
+    close = kill
+
+
+def go(folder, paths, does=lambda task: {}, *, jobs=2, memory=2048 * MEGABYTE, **more):
+    work = Run(folder, [str(path) for path in paths], Options(SETTINGS, jobs, memory, **more), lambda: Fake(does))
+    return work, work.go()
+
+
+@pytest.fixture
+def files(tmp_path):
+    folder = tmp_path / "in"
+    folder.mkdir()
+    for number in range(20):
+        (folder / f"{number:02}.off").write_text(str(number))
+    return sorted(folder.iterdir())
+
+
+def test_all_is_done_once_and_then_it_is_there(tmp_path, files):
+    seen = []
+    work, counts = go(tmp_path / "out", files, lambda task: seen.append(task["path"]) or {})
+    assert (counts.total, counts.made, counts.old, counts.failed, counts.share) == (20, 20, 0, {}, 1)
+    assert sorted(seen) == [str(path) for path in files]
+    work, counts = go(tmp_path / "out", files, lambda task: seen.append(task["path"]) or {})
+    assert (counts.made, counts.old, len(seen)) == (0, 20, 20)
+    assert sorted(work.store.done()) == sorted(work.store.inputs().values())
+
+
+def test_files_with_the_same_content_are_done_once(tmp_path, files):
+    files[3].write_text(files[4].read_text())
+    work, counts = go(tmp_path / "out", files)
+    assert (counts.made, counts.same, len(work.store.inputs())) == (19, 1, 20)
+
+
+def test_a_file_in_another_place_is_the_same(tmp_path, files):
+    go(tmp_path / "out", files)
+    for path in files:
+        path.rename(path.with_name("moved" + path.name))
+    assert go(tmp_path / "out", sorted(files[0].parent.iterdir()))[1].made == 0
+
+
+def test_models_together_never_have_more_memory_than_there_is(tmp_path, files):
+    for path in files[::3]:
+        path.write_bytes(path.name.encode() + bytes(5 * MEGABYTE))  # needs more than its share, not more than all
+    lock_, held, most, least = threading.Lock(), [], [], []
+
+    def does(task):
+        with lock_:
+            held.append(task["memory"])
+            most.append(sum(held))
+            least.append(task["memory"] / (512 * MEGABYTE + 120 * task["size"]))
+        threading.Event().wait(0.005)  # others may come in
+        with lock_:
+            held.remove(task["memory"])
+        return {}
+
+    go(tmp_path / "out", files, does, jobs=4, memory=2400 * MEGABYTE)
+    assert max(most) <= 2400 * MEGABYTE and max(most) > 1200 * MEGABYTE and min(least) >= 1
+
+
+def test_what_had_too_little_memory_is_tried_with_all_of_it_alone(tmp_path, files):
+    granted = []
+
+    def does(task):
+        if task["path"] == str(files[5]):
+            granted.append(task["memory"])
+            return {} if task["memory"] == 2048 * MEGABYTE else {"error": {"name": "memory", "message": "too little"}}
+        return {}
+
+    _, counts = go(tmp_path / "out", files, does)
+    assert granted == [1024 * MEGABYTE, 2048 * MEGABYTE] and counts.failed == {} and counts.made == 20
+
+
+def test_failures_are_results_and_are_tried_again_when_told(tmp_path, files):
+    bad = {str(files[1]): "crash", str(files[2]): "memory", str(files[3]): "memory"}
+
+    def does(task):
+        name = bad.get(task["path"])
+        return {"error": {"name": name, "message": "so"}} if name else {}
+
+    work, counts = go(tmp_path / "out", files, does)
+    assert counts.failed == {"crash": 1, "memory": 2} and counts.made == 20
+    assert go(tmp_path / "out", files)[1].made == 0
+    bad = {}
+    counts = go(tmp_path / "out", files, does, retry=frozenset({"memory"}))[1]
+    assert counts.made == 2 and counts.failed == {"crash": 1}
+    counts = go(tmp_path / "out", files, does, retry=frozenset({"all"}))[1]
+    assert counts.made == 1 and counts.failed == {}
+    assert sorted(work.store.done()) == sorted([*work.store.inputs().values()] +
+                                               [work.store.inputs()[str(path)] for path in files[1:4]])
+
+
+def test_a_file_that_changes_meanwhile_is_no_result(tmp_path, files):
+    def does(task):
+        if task["path"] == str(files[0]):
+            files[0].write_text("another")
+        return {}
+
+    work, counts = go(tmp_path / "out", files, does)
+    assert (counts.made, counts.skipped) == (19, 1)
+    assert go(tmp_path / "out", files)[1].made == 1
+
+
+def test_two_runs_never_meet(tmp_path, files):
+    inside, leave = threading.Event(), threading.Event()
+
+    def waits(task):
+        inside.set()
+        leave.wait()
+        return {}
+
+    first = Run(tmp_path / "out", list(map(str, files)), Options(SETTINGS, 2, 0), lambda: Fake(waits))
+    thread = threading.Thread(target=first.go)
+    thread.start()
+    inside.wait()
+    try:
+        for shard in ((1, 1), (1, 2)):  # the same part of the files; another division of them
+            with pytest.raises(lock.Busy):
+                go(tmp_path / "out", files, shard=shard)
+    finally:
+        leave.set()
+        thread.join()
+    assert go(tmp_path / "out", files)[1].old == 20
+
+
+def test_shards_divide_the_files_and_share_the_folder(tmp_path, files):
+    paths = list(map(str, files))
+    parts = [of_shard(paths, index, 3) for index in (1, 2, 3)]
+    assert sorted(sum(parts, [])) == paths and all(parts)
+    made = [go(tmp_path / "out", files, shard=(index, 3))[1].made for index in (1, 2, 3)]
+    assert made == list(map(len, parts))
+    assert go(tmp_path / "out", files)[1].old == 20
+    assert of_shard([*paths, "more"], 1, 3)[:len(parts[0])] == parts[0]
+
+
+def test_stopped_it_leaves_nothing_half_done(tmp_path, files):
+    class Stop(Exception):
+        pass
+
+    begun = threading.Event()
+
+    def does(task):
+        if task["path"] == str(files[8]):
+            begun.set()
+        return {}
+
+    def progress(counts):
+        if begun.is_set():
+            raise Stop
+
+    work = Run(tmp_path / "out", list(map(str, files)), Options(SETTINGS, 1, 0), lambda: Fake(does))
+    with contextlib.suppress(Stop):  # it may have been done before the stop
+        work.go(progress)
+    assert not (tmp_path / "out" / "unfinished" / "1-of-1").exists()
+    done = work.store.done()
+    assert len(done) == len(set(done)) >= 8
+    assert go(tmp_path / "out", files)[1].made == 20 - len(done)
+    assert len(set(work.store.done())) == len(work.store.done()) == 20
+
+
+def test_what_a_thread_meets_is_raised(tmp_path, files):
+    def does(task):
+        (tmp_path / "out" / "models").write_text("in the way")
+        return {}
+
+    with pytest.raises(OSError):
+        go(tmp_path / "out", files, does)
+
+
+def test_the_key_is_of_content_options_and_versions(tmp_path):
+    def key(path, settings=SETTINGS, versions={"library": "1"}):
+        return Input(str(path), settings, versions).key
+
+    one = tmp_path / "one.off"
+    one.write_text("OFF")
+    same = tmp_path / "same.off"
+    same.write_text("OFF")
+    other = tmp_path / "one.obj"
+    other.write_text("OFF")
+    assert key(one) == key(same)
+    keys = [key(one), key(other), key(one, {"outputs": []}), key(one, versions={"library": "2"}), key(tmp_path / "none.off")]
+    one.write_text("OFF ")
+    assert len({*keys, key(one)}) == 6
+
+
+def test_the_key_of_a_gltf_is_of_what_it_names_as_well(tmp_path):
+    path, beside = tmp_path / "one.gltf", tmp_path / "a b.bin"
+    path.write_text('{"buffers": [{"uri": "a%20b.bin"}, {"uri": "data:;base64,AAAA"}, {"uri": "none.bin"}]}')
+    beside.write_bytes(b"1")
+    before = Input(str(path), SETTINGS, {}).key
+    beside.write_bytes(b"2")
+    assert Input(str(path), SETTINGS, {}).key != before
+
+
+def test_inputs_are_files_folders_and_lists(tmp_path):
+    (tmp_path / "below").mkdir()
+    for name in ("b.off", "a.GLB", "note.txt", "below/c.stl"):
+        (tmp_path / name).write_text("x")
+    (tmp_path / "list").write_text(f"{tmp_path}/b.off\n\n{tmp_path}/note.txt\n{tmp_path}/b.off\n")
+    names = [path[len(str(tmp_path)) + 1:] for path in found([str(tmp_path)])]
+    assert names == ["a.GLB", "b.off", "below/c.stl"]
+    assert found([f"@{tmp_path}/list"]) == [f"{tmp_path}/b.off", f"{tmp_path}/note.txt"]
+
+
+def test_the_estimate_comes_from_the_share_that_is_done():
+    counts = run.Counts(10, 0, 5, {}, 0, 0, 0.25, 30.0)
+    assert counts.left == 90
+    assert counts._replace(share=0.0).left is None
