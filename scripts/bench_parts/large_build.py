@@ -1,9 +1,10 @@
 """One build of a large mesh, in a process of its own: prints what it took as JSON. Seconds are processor time, of all
 threads together.
 
-Run as: build/venv/core/bin/python large_build.py MODEL.npz [beside | shaken]
-beside: exactly, too, and how well the wheel's stops of the one are stops of the other. shaken: the same of two exact
-ones, of which the first has its vertices moved by a millionth of the model's size: how far exact trees agree at all.
+Run as: build/venv/core/bin/python large_build.py MODEL.npz [beside]
+beside: exactly, too, and how well the wheel's stops of the one are stops of the other. Then two bounds of that: the same
+of two exact ones, of which the first has its vertices moved by a millionth of the model's size; and how well the
+tetrahedra of the copy can tell the exact stops, whatever tree is made of them.
 """
 
 import json
@@ -49,6 +50,25 @@ def overlaps(vertices, triangles, coarse, exact):
     return found
 
 
+def told(vertices, triangles, coarse, exact):
+    """Of each exact wheel stop of some clicks its largest overlap, by area, with tetrahedra of the coarse tree."""
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    areas, found = np.linalg.norm(np.cross(b - a, c - a), axis=1), []
+    count = len(coarse.tetrahedra)
+    tetrahedron = np.empty(len(areas), np.int64)
+    tetrahedron[coarse.order] = np.repeat(np.arange(count), (coarse.last - coarse.first)[:count])
+    whole = np.bincount(tetrahedron, areas, count)
+    for face in np.random.default_rng(1).choice(len(areas), CLICKS, p=areas / areas.sum()):
+        for node in exact.wheel(face)[0]:
+            faces = exact.faces(node)
+            inside = np.bincount(tetrahedron[faces], areas[faces], count)
+            some = np.flatnonzero(inside)
+            most = some[np.argsort(-inside[some] / whole[some], kind="stable")]  # the best set is a beginning of this
+            union = inside.sum() + np.cumsum(whole[most] - inside[most])
+            found.append(float((np.cumsum(inside[most]) / union).max()))
+    return found
+
+
 def first_stops(hierarchy, face):
     """(the number of the first of the face's stops that holds each face, how many stops there are)"""
     stops = hierarchy.wheel(face)[0].tolist()
@@ -58,19 +78,22 @@ def first_stops(hierarchy, face):
     return first, len(stops)
 
 
+def spread(found):
+    return {"median": float(np.median(found)), "mean": float(np.mean(found)), "stops": len(found)}
+
+
 def main():
     path, *how = sys.argv[1:]
     with np.load(path) as file:
         vertices, triangles = file["vertices"].astype(float), file["triangles"]
-    given = vertices
-    if how == ["shaken"]:
-        size = np.linalg.norm(np.ptp(vertices, axis=0))
-        given = vertices + SHAKE * size * np.random.default_rng(1).normal(size=vertices.shape)
-    hierarchy, report = built(given, triangles, how == ["shaken"])
+    hierarchy, report = built(vertices, triangles, False)
     if how:
         exact, report["exactly"] = built(vertices, triangles, True)
-        found = overlaps(vertices, triangles, hierarchy, exact)
-        report["overlap"] = {"median": float(np.median(found)), "mean": float(np.mean(found)), "stops": len(found)}
+        report["overlap"] = spread(overlaps(vertices, triangles, hierarchy, exact))
+        report["told"] = spread(told(vertices, triangles, hierarchy, exact))
+        size = np.linalg.norm(np.ptp(vertices, axis=0))
+        moved = vertices + SHAKE * size * np.random.default_rng(1).normal(size=vertices.shape)
+        report["shaken"] = spread(overlaps(vertices, triangles, built(moved, triangles, True)[0], exact))
     print(json.dumps(report))
 
 

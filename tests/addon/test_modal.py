@@ -85,15 +85,15 @@ def event(kind, point=None, value="PRESS", **modifiers):
 class Tool:
     """An instance of an operator's methods without an operator."""
 
-    def __init__(self, operator="select", **properties):
+    def __init__(self, operator="select", kinds=("MESH", "OBJECT"), **properties):
         self.reports = []
-        self.operator = operator
+        self.operator, self.kinds = operator, kinds
         self.face_index, self.level, self.extend, self.deselect, self.tool, self.snap = 0, 0, False, False, False, False
-        self.quality, self.open_surfaces, self.exactly, self.begin = 0.0, False, False, -1
+        self.quality, self.open_surfaces, self.exactly = 0.0, False, False
         vars(self).update(properties)
 
     def __getattr__(self, name):
-        kinds = (getattr(bpy.types, f"{kind}_OT_partwheel_{self.operator}", None) for kind in ("MESH", "OBJECT"))
+        kinds = (getattr(bpy.types, f"{kind}_OT_partwheel_{self.operator}", None) for kind in self.kinds)
         cls = next(filter(None, kinds))
         found = [vars(each)[name] for each in cls.__mro__ if name in vars(each)]
         if not found:

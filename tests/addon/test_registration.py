@@ -6,6 +6,7 @@ import importlib.util
 import inspect
 import io
 import os
+import subprocess
 import sys
 import tempfile
 import time
@@ -174,6 +175,16 @@ class Registration(unittest.TestCase):
                          if item[1]["type"] == key and (item[1].get("any") or pressed == [
                              bool(item[1].get(each)) for each in ("ctrl", "shift", "alt", "oskey")])]
                 self.assertEqual(taken, [])
+
+    @unittest.skipUnless(bpy.app.binary_path, "bpy as a Python module has no start of its own")
+    def test_blender_starts_without_a_window(self):
+        """With the add-on enabled: there are no keymaps yet then."""
+        bpy.ops.wm.save_userpref()
+        run = subprocess.run([bpy.app.binary_path, "-b", "--python-expr",
+                              "import bpy; print('there:', hasattr(bpy.types, 'VIEW3D_PT_partwheel'))"],
+                             capture_output=True, text=True, check=True)
+        self.assertIn("there: True", run.stdout)
+        self.assertNotIn("Traceback", run.stdout + run.stderr)
 
     def test_operators_undo_and_panel(self):
         self.assertEqual(bpy.types.MESH_OT_partwheel_select.bl_options, {"REGISTER", "UNDO"})

@@ -408,21 +408,48 @@ class Views(MeshTest):
         bpy.context.view_layer.update()
         np.testing.assert_allclose(placed.matrix_world, start, atol=1e-6)
 
-    def test_edit_mode_begins_on_what_is_shown(self):
-        operator = part("pick.select").OBJECT_OT_partwheel_select
-        reports = []
-        fake = type("Fake", (), {"report": lambda self, *what: reports.append(what), "_target": operator._target})()
+    def picked_in_object_mode(self, end):
+        """The Tool after a pick of what is under the mouse, a notch up and this key."""
+        tool, context = Tool(kinds=("OBJECT",)), FakeContext()
+        self.addCleanup(lambda: tool._end(context))
+        self.assertEqual(tool.invoke(context, event("W")), {"RUNNING_MODAL"})
+        self.assertEqual((self.near.mode, self.far.mode, self.selected(self.far)), ("OBJECT", "OBJECT", set()))
+        tool.modal(context, event("WHEELUPMOUSE"))
+        self.assertEqual((self.far.mode, self.selected(self.far)), ("OBJECT", set()))
+        tool.modal(context, event(end))
+        return tool
+
+    @staticmethod
+    def selected(obj):
+        obj.update_from_editmode()
+        return {polygon.index for polygon in obj.data.polygons if polygon.select}
+
+    def test_object_mode_picks_what_is_shown(self):
+        """Nothing changes before it is confirmed; then Edit Mode has the part."""
         self.alone(self.far)
+        bpy.context.view_layer.objects.active = self.far
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+        self.far.data.polygons.foreach_set("select", [False] * len(self.far.data.polygons))
         bpy.context.view_layer.objects.active = self.near
-        self.assertEqual(operator.invoke(fake, FakeContext(), event("W")), {"CANCELLED"})
-        self.assertEqual((self.near.mode, self.far.mode, reports), ("OBJECT", "EDIT", []))
-        bpy.ops.object.mode_set(mode="OBJECT")
-        bpy.context.view_layer.objects.active = self.near  # which is not shown
+        self.near.select_set(True)
+        self.far.select_set(False)
+        tool = self.picked_in_object_mode("ESC")
+        self.assertEqual((self.far.mode, self.selected(self.far), tool.reports), ("OBJECT", set(), []))
+        self.assertEqual(bpy.context.view_layer.objects.active, self.near)
+        for end in ("RET", "TAB", "LEFTMOUSE"):
+            tool = self.picked_in_object_mode(end)
+            self.assertEqual((self.near.mode, self.far.mode, tool.reports), ("OBJECT", "EDIT", []))
+            self.assertEqual(self.selected(self.far), set(tool.hierarchy.faces(tool.state.node).tolist()))
+            bpy.ops.object.mode_set(mode="OBJECT")
+            self.far.data.polygons.foreach_set("select", [False] * len(self.far.data.polygons))
+            bpy.context.view_layer.objects.active = self.near
         self.far.location.x += 100
+        self.near.location.x += 200
         bpy.context.view_layer.update()
-        self.assertEqual(operator.invoke(fake, FakeContext(), event("W")), {"CANCELLED"})
+        tool = Tool(kinds=("OBJECT",))
+        self.assertEqual(tool.invoke(FakeContext(), event("W")), {"CANCELLED"})  # the active one is not shown here
         self.assertEqual((self.near.mode, self.far.mode), ("OBJECT", "OBJECT"))
-        self.assertIn("no mesh under the mouse", reports[-1][1])
+        self.assertIn("no mesh under the mouse", tool.reports[-1][1])
         self.alone(self.far)
 
     def test_an_edited_mesh_that_is_not_shown_says_so(self):

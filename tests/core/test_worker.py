@@ -176,6 +176,19 @@ def test_the_worker_is_started_by_the_caller_itself(monkeypatch):
     assert starters == [threading.current_thread()]
 
 
+def test_one_thread_and_none_before_it_is_asked():
+    """Each is a danger to Blender, too, above all to the script that has just asked for a build."""
+    Job(*shapes.cube(), **UNLIMITED).result()  # by now a Python is known
+    before = threading.active_count()
+    job = Job(*shapes.cube(), **UNLIMITED)
+    assert threading.active_count() == before and job.process_id
+    most = 0
+    while job.poll():
+        most = max(most, threading.active_count())
+    job.result()
+    assert most in (0, before + 1)  # 0: it was over before it was looked at
+
+
 # ---- Harm
 
 if LINUX and PLAIN:

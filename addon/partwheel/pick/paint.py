@@ -3,9 +3,9 @@
 
 import bpy
 
-from ..mesh import kept
 from ..mesh.refusing import Refused, can, changeable
 from .pick import PartPicker
+from .preview import Preview
 from .writers import WRITERS
 
 # Mode of the context -> what a part can become there, the first by default.
@@ -13,23 +13,6 @@ WAYS = {
     "SCULPT": ("FACE_SET", "MASK"), "PAINT_WEIGHT": ("VERTEX_GROUP", "PAINT_MASK"), "PAINT_VERTEX": ("PAINT_MASK",),
     "PAINT_TEXTURE": ("PAINT_MASK",),
 }
-
-
-class Preview:
-    """A target that changes nothing before the part is confirmed: the overlay alone shows it."""
-
-    def __init__(self, obj):
-        self.name, self.mode, self.faces = obj.name_full, obj.mode, len(obj.data.polygons)
-
-    def select(self, *_):
-        """What is drawn says it all."""
-
-    def restore(self):
-        """Nothing was changed."""
-
-    def fits(self):
-        obj = kept.named(self.name)
-        return obj is not None and obj.mode == self.mode and len(obj.data.polygons) == self.faces
 
 
 class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):

@@ -33,9 +33,6 @@ class PartPicker(InView):
     snap: bpy.props.BoolProperty(
         name="Snap Border", description="Move the border of the part to the creases nearby", default=False,
         options={"SKIP_SAVE"})
-    begin: bpy.props.IntProperty(
-        name="Begin At", description="The face of the active object that is picked first; -1: the one under the mouse",
-        default=NO_FACE, min=NO_FACE, options={"SKIP_SAVE", "HIDDEN"})
     tool: bpy.props.BoolProperty(
         name="From the Toolbar", description="The next click starts with the next part, and other keys go to Blender",
         default=False, options={"SKIP_SAVE", "HIDDEN"})
@@ -99,7 +96,7 @@ class PartPicker(InView):
         if not objects:
             self.report({"WARNING"}, "This 3D view does not show the mesh that is being edited")
             return {"CANCELLED"}
-        obj, face = (objects[0], self.begin) if self.begin != NO_FACE else self._under(context, event)
+        obj, face = self._under(context, event)
         if obj is not None:
             return self._pick(context, event, obj, face)
         if self.tool:
@@ -118,10 +115,13 @@ class PartPicker(InView):
         shown = [each for each in self._objects(context) if each.visible_get(viewport=area.spaces.active)]
         obj, face = picking.nearest(shown, lambda each: prepared(each).tree(each), *pixel)
         if face == NO_FACE:
-            self.report({"INFO"}, f"What is seen there was made by the modifiers of {obj.name} and belongs to no face "
-                                  "of its mesh")
+            self._made_by_modifiers(obj)
             return None, None
         return obj, face
+
+    def _made_by_modifiers(self, obj):
+        self.report({"INFO"}, f"What is seen there was made by the modifiers of {obj.name} and belongs to no face of "
+                              "its mesh")
 
     @staticmethod
     def _parts(obj):

@@ -48,9 +48,17 @@ class VIEW3D_PT_partwheel_overlays(bpy.types.Panel):
 CLASSES = (VIEW3D_PT_partwheel_overlays,)
 
 
+_registered = False
+
+
 def register():
-    bpy.utils.register_tool(SelectPart, after={"builtin.select"}, group=True)
+    """Where Blender starts without a window it has no keymaps yet when it enables add-ons, and can't take a tool."""
+    global _registered
+    _registered = bpy.context.window_manager.keyconfigs.default is not None
+    if _registered:
+        bpy.utils.register_tool(SelectPart, after={"builtin.select"}, group=True)
 
 
 def unregister():
-    bpy.utils.unregister_tool(SelectPart)
+    if _registered:
+        bpy.utils.unregister_tool(SelectPart)

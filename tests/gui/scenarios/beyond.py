@@ -1,4 +1,4 @@
-"""Object Mode enters Edit Mode with a part; Sculpt Mode makes a face set of one, Weight Paint a vertex group."""
+"""In Object Mode a part is picked with nothing changed, and Enter, Tab or any command enters Edit Mode with it; Sculpt Mode makes a face set of one, Weight Paint a vertex group."""
 import bpy
 
 
@@ -19,13 +19,32 @@ def play(stage):
     stage.mouse.key("TAB")
     yield from stage.until("Object Mode is there", lambda: stage.object.mode == "OBJECT")
     yield from stage.drawn()
-    started(bpy.ops.object.partwheel_select)
-    yield from stage.until("Edit Mode is entered", lambda: stage.object.mode == "EDIT")
-    yield from stage.selected(stops[start], "from Object Mode")
-    stage.mouse.wheel(1)
-    yield from stage.selected(stops[start + 1], "after a notch")
-    stage.mouse.key("RET")
-    yield from stage.ended()
+    before = faces_selected(stage)
+    for end in ("ESC", "RIGHTMOUSE"):
+        started(bpy.ops.object.partwheel_select)
+        yield from stage.until("the part is shown in Object Mode", lambda: stage.drawn_things() == 1)
+        stage.mouse.wheel(1)
+        yield from stage.settle()
+        stage.check(shown_faces(stage) == set(stops[start + 1]), "what is shown is the part after a notch")
+        stage.check(stage.object.mode == "OBJECT" and faces_selected(stage) == before, "nothing has changed")
+        yield from stage.screenshot("object")
+        stage.mouse.key(end)
+        yield from stage.until(f"{end} ends it", lambda: stage.drawn_things() == 0)
+        stage.check(stage.object.mode == "OBJECT" and faces_selected(stage) == before, f"after {end} neither")
+    for end in ("RET", "TAB"):
+        started(bpy.ops.object.partwheel_select)
+        yield from stage.until("the part is shown once more", lambda: stage.drawn_things() == 1)
+        stage.mouse.wheel(1)
+        yield from stage.settle()
+        stage.mouse.key(end)
+        yield from stage.until("Edit Mode is entered", lambda: stage.object.mode == "EDIT")
+        yield from stage.selected(stops[start + 1], f"by {end}")
+        yield from stage.ended()
+        if end == "RET":
+            stage.mouse.key("Z", ctrl=True)
+            yield from stage.selected((), "after one Ctrl Z, still in Edit Mode")
+            stage.mouse.key("Z", ctrl=True)
+            yield from stage.until("a second leaves Edit Mode", lambda: stage.object.mode == "OBJECT")
     stage.mouse.key("Z", ctrl=True)
     yield from stage.selected((), "after one Ctrl Z, still in Edit Mode")
     stage.mouse.key("Z", ctrl=True)
@@ -67,3 +86,14 @@ def play(stage):
     mesh = stage.object.data
     stage.check(mesh.use_paint_mask, "the paint mask is on")
     stage.check({face.index for face in mesh.polygons if face.select} == set(stops[start]), "it is exactly the part")
+
+
+def shown_faces(stage):
+    """Those of the part that the overlay draws."""
+    _, parts, node, *_ = stage.part("view.overlay").shown._what
+    return set(parts.hierarchy.faces(node).tolist())
+
+
+def faces_selected(stage):
+    """Outside Edit Mode."""
+    return [polygon.select for polygon in stage.object.data.polygons]

@@ -137,11 +137,13 @@ def displaced(stage):
     yield from stage.screenshot("displaced-before")
     with stage.override():
         bpy.ops.object.partwheel_select("INVOKE_DEFAULT")
+    yield from stage.until("the part is shown", lambda: stage.drawn_things() == 1)
+    yield from stage.screenshot("displaced-shown")
+    stage.mouse.key("RET")
     yield from stage.until("Edit Mode is entered", lambda: stage.object.mode == "EDIT")
     yield from stage.selected(stops[start], "the part that was under the mouse")
     yield from stage.screenshot("displaced-edited")
     stage.wheels.vertices = own
-    stage.mouse.key("RET")
     yield from stage.ended()
 
 
@@ -170,10 +172,11 @@ def alone(stage):
     yield from stage.screenshot("local-view")
     with stage.override():
         bpy.ops.object.partwheel_select("INVOKE_DEFAULT")
+    yield from stage.until("the part is shown in local view", lambda: stage.drawn_things() == 1)
+    stage.mouse.key("RET")
     yield from stage.until("Edit Mode is entered", lambda: model.mode == "EDIT")
     yield from stage.selected(stops[start], "in local view")
     stage.check(box.mode == "OBJECT", "the box is left alone")
-    stage.mouse.key("RET")
     yield from stage.ended()
     mode(stage, "OBJECT")
     with stage.override():
@@ -182,7 +185,8 @@ def alone(stage):
     stage.mouse.move(x, y)
     with stage.override():
         bpy.ops.object.partwheel_select("INVOKE_DEFAULT")
-    yield from stage.until("outside of it the box is meant", lambda: box.mode == "EDIT")
-    yield from stage.until("which is all of its part", lambda: box.data.total_face_sel > 0)
+    yield from stage.until("outside of it a part is shown", lambda: stage.drawn_things() == 1)
     stage.mouse.key("RET")
+    yield from stage.until("the box's", lambda: box.mode == "EDIT")
+    yield from stage.until("which is all of its part", lambda: box.data.total_face_sel > 0)
     yield from stage.ended()

@@ -41,7 +41,7 @@ class WorkerError(PartwheelError):
 
 
 class Job:
-    """One build in a worker process, which starts at once; arguments as for Hierarchy.build().
+    """One build in a worker process; arguments as for Hierarchy.build().
 
     memory_limit: bytes that the worker may use (None: 80 % of what is available now; 0: no limit). Kept on Linux only:
     macOS does not honour such limits, and on Windows none is set; there the system's own limits hold.
@@ -49,7 +49,8 @@ class Job:
     with other things stops no build; and seconds by the clock in which it may do nothing at all (None: two minutes and
     2 ms a triangle).
     python: the path of the Python that runs the worker, if it does; "": see interpreter.candidates(). Which one does is
-    found out once, beside what the caller does: the worker starts when one was found and any method is called.
+    found out once, beside what the caller does: the worker starts when one was found and any method is called, which also
+    looks after the time limit.
 
     A worker that crashes, exits, or goes beyond a limit is followed by another that begins at the rung of the ladder
     after the one it tried, if there is one; failures holds a WorkerError for each. Every method may be called from any
@@ -70,6 +71,7 @@ class Job:
         self._progress = 0.0, "surface"
         # Of this worker: whether it has begun to answer; processor time, and when that last grew.
         self._answered, self._work, self._seen_working = False, 0.0, 0.0
+        self._watched = None  # (the process that is at work, a list to say in how it has gone beyond the time limit)
         self._lock = threading.RLock()  # for the four below
         self._search, self._python = interpreter.Search(python), None
         self._process = None
@@ -77,19 +79,19 @@ class Job:
         self._hierarchy = self._error = None
         self._done = threading.Event()  # not is_alive(), which may say no too early after Ctrl-C (bpo-45274)
         self._thread = None
-        self._begin()
 
     def poll(self):
         """(fraction 0..1 that never falls, name of the stage) while it runs; None once result() won't block."""
         self._begin()
+        self._look()
         return None if self._done.is_set() else self._progress
 
     def wait(self, seconds):
         """Waits so long at most, and says whether the job is done."""
         end = time.monotonic() + seconds
-        while self.poll() and self._search and time.monotonic() < end:
-            self._done.wait(SEARCH_SECONDS)
-        return self._done.wait(max(0.0, end - time.monotonic()))
+        while self.poll() and (left := end - time.monotonic()) > 0:
+            self._done.wait(min(SEARCH_SECONDS if self._search else WATCH_SECONDS, left))
+        return self._done.is_set()
 
     def cancel(self):
         """Kills the worker at once. result() then raises PartwheelError with Status.CANCELLED, unless it was done."""
@@ -122,7 +124,8 @@ class Job:
     def _begin(self):
         """Starts the worker as soon as there is a Python for it, and the job's thread. Not in that thread, which so has
         little Python left to run: with Python up to 3.11 Blender takes any thread's hold of the interpreter for its
-        own, and may crash (seen in 3.4) where a script calls an operator under temp_override() that starts a build.
+        own, and crashes (seen in 3.4, at once with a thread that only counts) where a script calls operators under
+        temp_override() meanwhile. Nor when the job is made, for the same script may call the next one.
         """
         with self._lock:
             if not self._search:
@@ -138,6 +141,14 @@ class Job:
             self._search = None
             self._thread = threading.Thread(target=self._run, args=[launched], name="partwheel-job", daemon=True)
             self._thread.start()
+
+    def _look(self):
+        """Ends a worker that is late. Not in a thread of its own, see _begin()."""
+        watched, work, idle = self._watched, self._work, time.monotonic() - self._seen_working
+        if watched and max(work, idle) > self._time_limit:
+            process, late = watched
+            late.append("of work" if work > idle else "without any work")
+            process.kill()
 
     def _launch(self):
         """A worker process that was started, or the error why there is none."""
@@ -178,28 +189,17 @@ class Job:
         """One worker process from start to end: the Hierarchy, or raises PartwheelError."""
         process = _unless_error(launched)
         self._answered, self._work, self._seen_working = False, 0.0, time.monotonic()
-        over, late = threading.Event(), []
-
-        def watch():
-            while not over.wait(min(WATCH_SECONDS, self._time_limit)):
-                idle = time.monotonic() - self._seen_working
-                if max(self._work, idle) > self._time_limit:
-                    late.append("of work" if self._work > idle else "without any work")
-                    process.kill()
-                    break
-
-        watchman = threading.Thread(target=watch, name="partwheel-watch", daemon=True)
-        watchman.start()
+        late = []
+        self._watched = process, late
         try:
             self._send(process.stdin, rungs)
             answer = self._listen(process.stdout)
             if not answer:
                 process.wait()  # it has closed its pipe, so it is ending
         finally:
-            over.set()
+            self._watched = None
             process.kill()
             process.wait()
-            watchman.join()
             process.stdout.close()
             try:
                 process.stdin.close()

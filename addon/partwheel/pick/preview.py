@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The target of a pick that changes nothing before it is confirmed."""
+
+from ..mesh import kept
+
+
+class Preview:
+    """The overlay alone shows the part: no element of the mesh is touched, which a million of them would be felt by."""
+
+    def __init__(self, obj):
+        self.name, self.mode, self.faces = obj.name_full, obj.mode, len(obj.data.polygons)
+
+    def select(self, *_):
+        """What is drawn says it all."""
+
+    def restore(self):
+        """Nothing was changed."""
+
+    def fits(self):
+        obj = kept.named(self.name)
+        return obj is not None and obj.mode == self.mode and len(obj.data.polygons) == self.faces
