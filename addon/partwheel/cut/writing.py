@@ -37,10 +37,8 @@ def write(obj, cut, to=(), known=None, options=objects.Options(), unwrap=False):
         take_back()
         raise
     stored.keep(obj.data, cut.labels, names)
-    for layer in LAYERS:
-        if layer in to:
-            LAYERS[layer](obj, cut, names)
+    layers_made = {layer: LAYERS[layer](obj, cut, names) for layer in LAYERS if layer in to}
     if "BONES" in to:
-        armature.made(obj, cut, names)
+        armature.made(obj, cut, names, layers_made["VERTEX_GROUPS"])
     obj.data.update()
     return Written(names, made)
