@@ -12,8 +12,9 @@ OURS = "partwheel_bones"  # a property of armatures that were made here
 
 
 def made(obj, cut, names, weights):
-    """weights: of each part, as layers.vertex_groups() has written them. Returns the armature object, with a bone for each part; the one that was made before, if the object still has it: pose
-    and constraints of bones that keep their names stay. The object hangs on it."""
+    """The armature object, with a bone for each part; the one that was made before, if the object still has it: pose
+    and constraints of bones that keep their names stay. The object hangs on it. weights: of each part, as
+    layers.vertex_groups() has written them."""
     surface = arrays.surface(obj.data)
     labels = cut.labels[surface.faces]
     vertices, triangles = surface.vertices, surface.triangles
