@@ -12,7 +12,8 @@ from common import part
 from solid_case import arrays, volume
 from test_parts_to import PartsCase
 
-PACKAGES = Path(__file__).resolve().parents[2].joinpath("build", "venv", "core", "lib").glob("python3.*/site-packages")
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = list((ROOT / "build" / "venv" / "core" / "lib").glob("python3.*/site-packages"))
 SIZE, GAP, WALL = 200, 0.3, 1.0  # millimetres
 NEAR = 1e-5  # of SIZE: Blender keeps single floats
 
