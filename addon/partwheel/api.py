@@ -26,7 +26,9 @@ import operator
 import sys
 import time
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
+import bpy
 import numpy
 from mathutils import Vector
 
@@ -36,7 +38,7 @@ from .deform import methods
 from .deform.pen import Pen
 from .deform.region import Region
 from .cut import objects as parts_as_objects
-from .cut import stored, writing
+from .cut import printed, stored, writing
 from .mesh import arrays, selection
 from .mesh.refusing import Refused, read_only
 from .parts import builds, picks, registry
@@ -215,6 +217,27 @@ def write(obj, cut, to=(), names=None, closed=True, origins=True, explode=0.0, s
     known = None if names is None else dict(zip(cut.parts, names))
     return writing.write(obj, cut, to, known, parts_as_objects.Options(solids.Options(smooth, material), closed,
                                                                        origins, explode, shell), unwrap)
+
+
+def print_parts(obj, cut, clearance=0.2, wall=1.2, bed=None):
+    """A cut's parts as closed objects for a 3D printer, in a new collection: flat cuts, a peg and a socket across each
+    where there is room. All in millimetres, as the scene's units and the object's scale have it. clearance: the gap
+    around pegs; None: no pegs. wall: what stays around sockets. bed (3,): parts that are larger are split further.
+
+    Returns (objects, pegs, notes): pegs as partwheel.cut.printing.Peg, in millimetres of the object's own space; notes:
+    sentences on what could not be done, and on what is too thin or too large. partwheel.Error: manifold3d is not there,
+    or it can't be done; nothing has changed then."""
+    _mesh(obj, edited=False)
+    if cut.hierarchy is not hierarchy(obj):
+        raise Refused(f"The cut is not of {obj.name} as it is now: ask for its parts again.")
+    plan = printed.planned(bpy.context, obj, cut, writing.known_names(obj, cut), clearance, wall, bed)
+    return Printed(printed.made(obj, plan), plan.printable.pegs, plan.printable.notes)
+
+
+class Printed(NamedTuple):
+    objects: list
+    pegs: list
+    notes: list
 
 
 # ---- Solids. smooth: caps that go on as the surface does, not the flat facets inside the solid. material: caps get a

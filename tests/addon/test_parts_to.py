@@ -168,11 +168,18 @@ class Written(PartsCase):
                     self.assertSolid(new.data)
                     self.assertGreater(caps(new.data).sum(), 0)
                     self.assertLess(abs(numpy.array(new.matrix_world) - numpy.array(obj.matrix_world)).max(), 1e-6)
+                about = arrays(obj.data)[0].mean(axis=0)
                 if name in EXACT:
-                    about = arrays(obj.data)[0].mean(axis=0)
                     whole = volume64(obj, about)
-                    total = sum(volume64(new, about) for new in made)
-                    self.assertLess(abs(total - whole), 1e-9 * whole)
+                else:  # the mesh has no volume, but all of it as one solid does
+                    one, = part("api").write(obj, part("api").parts(obj, 1), {"OBJECTS"}, origins=False).objects
+                    whole = volume64(one, about)
+                    bpy.data.objects.remove(one)
+                total = sum(volume64(new, about) for new in made)
+                # Filled from points, parts keep the mesh's own polygons, and where these run through each other
+                # neighbours don't fit exactly: 0.16 % of the pig, 0.0003 % of the cow.
+                self.assertLess(abs(total - whole), (2e-3 if RUNGS[name] == "points" else 1e-9) * whole, name)
+                if name in EXACT:
                     own = sum((~caps(new.data)).sum() for new in made)
                     self.assertGreaterEqual(own, len(obj.data.polygons))
                 for new in made:

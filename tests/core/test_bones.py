@@ -8,7 +8,7 @@ import pytest
 import trimesh
 from conftest import ROOT
 from partwheel import Hierarchy, meshes
-from partwheel.cut import Cut, bones, borders, links, mirror_planes, named, tree
+from partwheel.cut import Cut, bones, borders, links, mirror_planes, named, tree, weights
 
 SIDES, RADIUS = 24, 0.5
 
@@ -52,7 +52,8 @@ class Volumes:
 
 def made(vertices, triangles, labels, volumes):
     middles = np.array([vertices[triangles[labels == part]].mean(axis=(0, 1)) for part in range(len(volumes))])
-    return bones(vertices, triangles, labels, links(Volumes(volumes), borders(vertices, triangles, labels), middles))
+    return bones(vertices, triangles, labels, links(Volumes(volumes), borders(vertices, triangles, labels), middles),
+                 weights(vertices, triangles, labels, len(volumes)))
 
 
 def assert_ends(bone, head, tail, close=1e-9):
@@ -81,6 +82,40 @@ def test_the_largest_at_one_end():
     for bone, head, tail in zip(chain, (0, 4, 7), (4, 7, 9)):
         assert_ends(bone, (0, 0, head), (0, 0, tail))
     assert [bone.connected for bone in chain] == [False, True, True]
+
+
+def bent(vertices, bone, axis, angle, share):
+    """vertices, each turned about the bone's head by its share of an angle, as bones with "Preserve Volume" do."""
+    turn = 2 * np.arctan2(share * np.sin(angle / 2), 1 - share + share * np.cos(angle / 2))[:, None]
+    away = vertices - bone.head
+    return (bone.head + away * np.cos(turn) + np.cross(axis, away) * np.sin(turn)
+            + (away @ axis)[:, None] * axis * (1 - np.cos(turn)))
+
+
+def volume(vertices, triangles):
+    return trimesh.Trimesh(vertices, triangles, process=False).volume
+
+
+def test_what_is_bent_keeps_its_volume():
+    vertices, triangles, labels = tube((4, 4), sides=48, step=0.0625)
+    # A limb with a ridge along one side, and a lump before the joint: the middle of the border is not where it turns best.
+    angle, z = np.arctan2(vertices[:, 1], vertices[:, 0]), vertices[:, 2]
+    grown = 1 + 0.6 * np.maximum(np.cos(angle - 0.5), 0) ** 4 + 0.5 * np.exp(-((z - 3.6) / 0.3) ** 2) * np.cos(angle + 1)
+    vertices[:, :2] *= grown[:, None]
+    own = borders(vertices, triangles, labels)[0]
+    for open_end in (False, True):  # holes elsewhere don't matter
+        kept = triangles[:-48] if open_end else triangles
+        head = made(vertices, kept, labels[:len(kept)], (2, 1))[1]
+        assert np.linalg.norm(head.head - own.center) > 0.03 * own.radius
+        share = np.zeros(len(vertices))
+        chosen, values = weights(vertices, kept, labels[:len(kept)], 2)[1]
+        share[chosen] = values
+        before, middle = volume(vertices, triangles), head._replace(head=own.center)
+        for axis in (np.eye(3)[0], np.eye(3)[1], np.array([-0.8, 0.6, 0])):
+            changed, at_middle = (abs(volume(bent(vertices, bone, axis, np.pi / 3, share), triangles) / before - 1)
+                                  for bone in (head, middle))
+            assert changed < 0.002, (axis, changed, at_middle)
+        assert changed < 0.2 * at_middle
 
 
 def blocks(cells, label_of):
@@ -128,11 +163,12 @@ def test_fingers_end_a_palm_and_a_thumb_does_not():
     vertices, triangles, labels = hand()
     found = made(vertices, triangles, labels, (100, 50, 1, 2, 2, 2))
     assert [bone.parent for bone in found] == [-1, 0, 1, 1, 1, 1]
-    assert_ends(found[0], (4.5, 0, 1), (4.5, 4, 1))
-    assert_ends(found[1], (4.5, 4, 1), (4.5, 9, 1))  # the middle of the fingers' borders
-    assert_ends(found[2], (2, 5.5, 1), (0, 5.5, 1))
+    # Joints are moved a little: the palm is not the same on both sides.
+    assert_ends(found[0], (4.5, 0, 1), (4.5, 4, 1), 0.1)
+    assert_ends(found[1], (4.5, 4, 1), (4.5, 9, 1), 0.1)  # the middle of the fingers' borders
+    assert_ends(found[2], (2, 5.5, 1), (0, 5.5, 1), 0.1)
     for finger, x in zip((3, 4, 5), (2.5, 4.5, 6.5)):
-        assert_ends(found[finger], (x, 9, 1), (x, 12, 1))
+        assert_ends(found[finger], (x, 9, 1), (x, 12, 1), 0.1)
     assert [bone.connected for bone in found] == [False, True, False, False, True, False]
 
 
@@ -140,11 +176,12 @@ def test_the_roots_bone_lies_in_a_mirror_plane():
     vertices, triangles, labels = tube((4,))
     leaning = vertices + vertices[:, 2:] * (0.2, 0.1, 0)
     root = links(Volumes((4,)), [], np.zeros((1, 3)))
-    free, = bones(leaning, triangles, labels, root)
+    whole = weights(leaning, triangles, labels, 1)
+    free, = bones(leaning, triangles, labels, root, whole)
     assert (free.tail - free.head)[:2] == pytest.approx((0.8, 0.4), abs=0.15)
-    held, = bones(leaning, triangles, labels, root, [(np.array([1.0, 0, 0]), 0.35)])
+    held, = bones(leaning, triangles, labels, root, whole, [(np.array([1.0, 0, 0]), 0.35)])
     assert (held.head[0], held.tail[0]) == pytest.approx((0.35, 0.35)) and (held.head[1:] == free.head[1:]).all()
-    far, = bones(leaning, triangles, labels, root, [(np.array([1.0, 0, 0]), 2.0), (np.array([0, 0, 1.0]), 2.0)])
+    far, = bones(leaning, triangles, labels, root, whole, [(np.array([1.0, 0, 0]), 2.0), (np.array([0, 0, 1.0]), 2.0)])
     assert (far.head == free.head).all() and (far.tail == free.tail).all()
 
 
@@ -172,7 +209,8 @@ def real(name):
     cut = Cut.automatic(Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count))
     labels = cut.labels[mesh.faces]
     hung = tree(cut, mesh.vertices, mesh.triangles, labels)
-    return mesh, cut, hung, bones(mesh.vertices, mesh.triangles, labels, hung,
+    shares = weights(mesh.vertices, mesh.triangles, labels, len(cut))
+    return mesh, cut, hung, bones(mesh.vertices, mesh.triangles, labels, hung, shares,
                                   mirror_planes(mesh.vertices, mesh.triangles))
 
 
@@ -183,7 +221,7 @@ def test_real_models(name):
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     slack = 0.05 * np.linalg.norm(high - low)
     for bone, link in zip(found, hung):
-        assert link.border is None or (bone.head == link.border.center).all()
+        assert link.border is None or np.linalg.norm(bone.head - link.border.center) <= 0.501 * link.border.radius
         assert (np.minimum(bone.head, bone.tail) > low - slack).all()
         assert (np.maximum(bone.head, bone.tail) < high + slack).all()
         assert np.linalg.norm(bone.tail - bone.head) > 1e-3 * np.linalg.norm(high - low)

@@ -9,7 +9,7 @@ import pytest
 import trimesh
 from conftest import ROOT
 from partwheel import Hierarchy, meshes
-from partwheel.cut import Cut, seams
+from partwheel.cut import Cut, further, seams
 from partwheel.cut.patches import Patch, Sheet, opened
 from partwheel.cut.stretch import Flat
 from scipy.sparse import coo_matrix
@@ -81,6 +81,35 @@ def test_seams_are_the_same_again_and_prefer_creases():
     ours, borders, all_of_them = (np.mean([angle[tuple(edge)] for edge in edges]) for edges in (
         found("homer").tolist(), plain.tolist(), list(angle)))
     assert ours > 1.3 * all_of_them and ours > borders
+
+
+def pieces(triangles, cut):
+    """(T,) the island of each triangle along edges."""
+    cut = {*map(tuple, np.sort(cut, axis=1).tolist())}
+    shape = trimesh.Trimesh(np.zeros((triangles.max() + 1, 3)), triangles, process=False)
+    return groups(len(triangles), [pair for pair, edge in zip(shape.face_adjacency, np.sort(
+        shape.face_adjacency_edges, axis=1).tolist()) if tuple(edge) not in cut])
+
+
+def test_an_island_that_a_solver_has_failed_on_is_divided_and_no_other():
+    mesh, cut = model("homer")
+    # Each triangle laid flat by itself, as it is; then half of the largest island ten times as large.
+    a, b, c = mesh.vertices[mesh.triangles].transpose(1, 0, 2)
+    length = np.linalg.norm(b - a, axis=1)
+    along = np.einsum("ij,ij->i", c - a, b - a) / length
+    high = np.linalg.norm(np.cross(b - a, c - a), axis=1) / length
+    zero = np.zeros(len(a))
+    uv = np.stack([np.column_stack(each) for each in ((zero, zero), (length, zero), (along, high))], axis=1)
+    assert (further(*mesh[:4], cut, found("homer"), uv) == found("homer")).all()
+    island = pieces(mesh.triangles, found("homer"))
+    failed = np.flatnonzero(island == np.bincount(island).argmax())
+    uv[failed[::2]] *= 10
+    after = further(*mesh[:4], cut, found("homer"), uv)
+    divided = pieces(mesh.triangles, after)
+    assert len({*divided[failed].tolist()}) > 1 and (islands(mesh.triangles, after) == 1).all()
+    others = np.setdiff1d(np.arange(len(island)), failed)
+    assert len({*zip(island[others].tolist(), divided[others].tolist())}) == island.max()
+    assert not {*divided[failed].tolist()} & {*divided[others].tolist()}
 
 
 def test_less_stretch_takes_more_seams():

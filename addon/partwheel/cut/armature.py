@@ -11,13 +11,14 @@ from partwheel.cut import bones, mirror_planes, tree
 OURS = "partwheel_bones"  # a property of armatures that were made here
 
 
-def made(obj, cut, names):
+def made(obj, cut, names, weights):
     """The armature object, with a bone for each part; the one that was made before, if the object still has it: pose
-    and constraints of bones that keep their names stay. The object hangs on it."""
+    and constraints of bones that keep their names stay. The object hangs on it. weights: of each part, as
+    layers.vertex_groups() has written them."""
     surface = arrays.surface(obj.data)
     labels = cut.labels[surface.faces]
     vertices, triangles = surface.vertices, surface.triangles
-    found = bones(vertices, triangles, labels, tree(cut, vertices, triangles, labels),
+    found = bones(vertices, triangles, labels, tree(cut, vertices, triangles, labels), weights,
                   mirror_planes(vertices, triangles))
     modifier = _modifier(obj)
     rig = modifier.object if modifier and _usable(obj, modifier.object) else _new(obj, modifier)

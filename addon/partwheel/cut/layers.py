@@ -19,7 +19,7 @@ def face_sets(obj, cut, _names):
 
 def vertex_groups(obj, cut, names):
     """One for each part, in place of groups of the same names: 1 within, falling smoothly across the borders. A
-    vertex's weights in them add up to 1."""
+    vertex's weights in them add up to 1. Returns them, as cut.weights() does."""
     surface = arrays.surface(obj.data)
     found = weights(surface.vertices, surface.triangles, cut.labels[surface.faces], len(cut))
     for name, (vertices, values) in zip(names, found):
@@ -31,6 +31,7 @@ def vertex_groups(obj, cut, names):
         group.add(vertices[whole].tolist(), 1.0, "REPLACE")
         for vertex, value in zip(vertices[~whole].tolist(), values[~whole].tolist()):
             group.add((vertex,), value, "REPLACE")
+    return found
 
 
 def check_locks(obj, names):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """mesh.partwheel_parts: the whole model in parts, seen in colours, edited with wheel, clicks and drags, and written to
-face sets, vertex groups, materials, seams, objects. Nothing changes before it is confirmed."""
+face sets, vertex groups, materials, seams, objects, pieces for a printer. Nothing changes before it is confirmed."""
 
 import json
 
@@ -17,8 +17,8 @@ from ..solid import copy_part, solids
 from ..view import keys, overlay, picking
 from ..view.in_view import InView, waiting
 from ..view.seen import NO_FACE
-from . import objects, states, stored, writing
-from partwheel import PartwheelError
+from . import objects, printed, states, stored, writing
+from partwheel import Error
 from partwheel.cut import Cut
 
 USUAL = {"OBJECT": {"OBJECTS"}, "EDIT_MESH": {"VERTEX_GROUPS"}, "SCULPT": {"FACE_SETS"}}
@@ -28,7 +28,9 @@ LABELS = {"FACE_SETS": ("Face Sets", "One for each part, in place of all that th
           "MATERIALS": ("Material Slots", "The model's own materials, with a slot for each part"),
           "SEAMS": ("Seams", "For unwrapping: along the borders, in creases, and where a part would not lie flat"),
           "OBJECTS": ("Objects", "Each part an object that hangs on the next one"),
-          "BONES": ("Bones", "An armature with a bone for each part, and the vertex groups for it, ready to be posed")}
+          "BONES": ("Bones", "An armature with a bone for each part, and the vertex groups for it, ready to be posed"),
+          "PRINT": ("For Printing", "Closed objects with flat cuts, pegs and sockets, checked. Needs manifold3d")}
+TO = *writing.TO, "PRINT"
 STRONG, WEAK = 0.85, 0.4  # how far the part that was clicked covers the model, and the others beside it
 
 
@@ -41,7 +43,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     to: bpy.props.EnumProperty(
         name="Make Them", description="What the parts become; none: they are only kept in the mesh",
-        items=[(name, *LABELS[name]) for name in writing.TO], options={"ENUM_FLAG", "SKIP_SAVE"}, default=set())
+        items=[(name, *LABELS[name]) for name in TO], options={"ENUM_FLAG", "SKIP_SAVE"}, default=set())
     count: bpy.props.IntProperty(
         name="Parts", description="How many; 0: those that are kept in the mesh, or as people would most likely take "
         "them", default=0, min=0, soft_max=64, max=999, options={"SKIP_SAVE"})
@@ -63,6 +65,16 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         name="Shell", description="How thick their walls are, by a modifier; 0: solid", default=0, min=0, unit="LENGTH")
     unwrap: bpy.props.BoolProperty(
         name="Unwrap", description="Unwrap the mesh along the seams, into a new UV map if it has others", default=True)
+    pegs: bpy.props.BoolProperty(
+        name="Pegs", description="A peg and a socket across each cut, where there is room", default=True)
+    clearance: bpy.props.FloatProperty(
+        name="Clearance (mm)", description="The gap around each peg, on all sides", default=0.2, min=0, soft_max=1)
+    wall: bpy.props.FloatProperty(
+        name="Wall (mm)", description="What stays around a socket; thinner walls are told", default=1.2, min=0,
+        soft_max=10)
+    bed: bpy.props.FloatVectorProperty(
+        name="Bed (mm)", description="The printer's: parts that are larger are split further; 0: large enough",
+        default=(0, 0, 0), min=0, soft_max=1000, size=3)
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was divided", default=True)
 
     lost = "the mesh is no longer as it was, or in another mode"
@@ -86,8 +98,13 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if "SEAMS" in self.to:
             layout.prop(self, "unwrap")
         if "OBJECTS" in self.to:
-            for name in ("closed", "smooth", "material", "origins", "explode", "shell", "hide"):
+            for name in ("closed", "smooth", "material", "origins", "explode", "shell"):
                 layout.prop(self, name)
+        if "PRINT" in self.to:
+            for name in ("pegs", "clearance", "wall", "bed"):
+                layout.prop(self, name)
+        if self.to & {"OBJECTS", "PRINT"}:
+            layout.prop(self, "hide")
 
     # ---- Without a window, and once more with other options
 
@@ -98,7 +115,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             return {"CANCELLED"}
         try:
             return self._write(context, obj, self._wanted(obj, hierarchy))
-        except (Refused, PartwheelError) as error:
+        except Error as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
 
@@ -125,7 +142,11 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         try:
             options = objects.Options(solids.Options(self.smooth, self.material), self.closed, self.origins,
                                       self.explode, self.shell)
-            made = writing.write(obj, cut, self.to, options=options, unwrap=self.unwrap).objects
+            known = writing.known_names(obj, cut)
+            plan = self._planned(context, obj, cut, known) if "PRINT" in self.to else None
+            made = writing.write(obj, cut, self.to - {"PRINT"}, known, options, self.unwrap).objects
+            if plan:
+                made += printed.made(obj, plan)
         finally:
             if mode != "OBJECT" and not made:
                 bpy.ops.object.mode_set(mode=mode)
@@ -137,8 +158,14 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             copy_part.only(context, [obj.find_armature()])
         self.count, self.clusters = len(cut), json.dumps(cut.parts)
         self.report({"INFO"}, f"{obj.name} in {len(cut)} parts"
-                    + "".join(f", {LABELS[name][0]}" for name in writing.TO if name in self.to))
+                    + "".join(f", {LABELS[name][0]}" for name in TO if name in self.to))
+        if plan and plan.printable.notes:
+            self.report({"WARNING"}, " ".join(plan.printable.notes))
         return {"FINISHED"}
+
+    def _planned(self, context, obj, cut, known):
+        return printed.planned(context, obj, cut, known, self.clearance if self.pegs else None, self.wall,
+                               tuple(self.bed) if all(self.bed) else None)
 
     # ---- With the mouse
 
@@ -237,7 +264,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     def _show(self, context, state):
         self.state = state
-        made = ", ".join(LABELS[name][0] for name in writing.TO if name in self.to) or "Kept in the Mesh"
+        made = ", ".join(LABELS[name][0] for name in TO if name in self.to) or "Kept in the Mesh"
         number = state.typed + "_" if state.typed else len(state.cut)
         one = ""
         if state.part is not None:

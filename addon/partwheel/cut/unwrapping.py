@@ -6,9 +6,10 @@ import numpy as np
 
 from ..mesh import arrays
 from ..mesh.refusing import Refused
-from partwheel.cut import seams
+from partwheel.cut import further, seams
 
 MOST_MAPS = 8  # UV maps that a mesh can have
+ROUNDS = 3  # so often at most seams are added where Blender's solver failed
 NAME, BESIDE = "UVMap", "Parts"  # of the first UV map; of ours, where there are others
 
 
@@ -21,12 +22,19 @@ def mark(obj, cut, unwrap):
     if unwrap and not own and len(mesh.uv_layers) == MOST_MAPS:
         raise Refused(f"{obj.name} has {MOST_MAPS} UV maps, no more are possible: remove one.")
     before = arrays.read(mesh.edges, "use_seam", bool)
-    ends, count = np.sort(arrays.edge_vertices(mesh), axis=1).astype(np.int64), len(mesh.vertices)
-    chosen = np.asarray(seams(*arrays.surface(mesh), cut), np.int64)
-    mesh.edges.foreach_set("use_seam", np.isin(ends @ [count, 1], chosen @ [count, 1]))
     added, active, old = None, mesh.uv_layers.active_index, None
+    surface = arrays.surface(mesh)
+    chosen = seams(*surface, cut)
+    _set(mesh, chosen)
     if unwrap:
         places = _unwrapped(obj)
+        for _ in range(ROUNDS):
+            more = further(*surface, cut, chosen, places.reshape(-1, 2)[_loops(mesh, surface)].astype(float))
+            if np.array_equal(more, chosen):
+                break
+            chosen = more
+            _set(mesh, chosen)
+            places = _unwrapped(obj)
         if own:
             old = arrays.read(own.data, "uv", np.float32, 2).ravel()
         else:
@@ -45,6 +53,21 @@ def mark(obj, cut, unwrap):
         mesh.uv_layers.active_index = active
 
     return take_back
+
+
+def _set(mesh, chosen):
+    """Seams where these vertices (n,2) are the ends of edges, and nowhere else."""
+    ends, count = np.sort(arrays.edge_vertices(mesh), axis=1).astype(np.int64), len(mesh.vertices)
+    mesh.edges.foreach_set("use_seam", np.isin(ends @ [count, 1], np.asarray(chosen, np.int64) @ [count, 1]))
+
+
+def _loops(mesh, surface):
+    """(T,3) the loop of each corner of a surface's triangles."""
+    count, vertices = len(mesh.vertices), arrays.read(mesh.loops, "vertex_index", np.int32)
+    faces = np.repeat(np.arange(len(mesh.polygons)), arrays.read(mesh.polygons, "loop_total", np.int32))
+    keys = faces * count + vertices
+    order = np.argsort(keys, kind="stable")
+    return order[np.searchsorted(keys[order], surface.faces[:, None] * np.int64(count) + surface.triangles)]
 
 
 def _unwrapped(original):

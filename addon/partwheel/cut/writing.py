@@ -18,6 +18,12 @@ class Written(NamedTuple):
     objects: list
 
 
+def known_names(obj, cut):
+    """{clusters: name} of the parts that are kept in the mesh."""
+    kept = stored.found(obj, cut.hierarchy)
+    return kept[1] if kept else {}
+
+
 def write(obj, cut, to=(), known=None, options=objects.Options(), unwrap=False):
     """Keeps the cut in the object's mesh and writes it: to, some of TO. known: {clusters: name} of parts that have one;
     None: those that are kept in the mesh. options: of objects. unwrap: also by the seams. Nothing has changed where it
@@ -25,8 +31,7 @@ def write(obj, cut, to=(), known=None, options=objects.Options(), unwrap=False):
     arrays.up_to_date(obj)
     to = {*to, "VERTEX_GROUPS"} if "BONES" in to else to
     if known is None:
-        kept = stored.found(obj, cut.hierarchy)
-        known = kept[1] if kept else {}
+        known = known_names(obj, cut)
     names = stored.names_of(obj, cut, known)
     if "VERTEX_GROUPS" in to:
         layers.check_locks(obj, names)
@@ -37,10 +42,8 @@ def write(obj, cut, to=(), known=None, options=objects.Options(), unwrap=False):
         take_back()
         raise
     stored.keep(obj.data, cut.labels, names)
-    for layer in LAYERS:
-        if layer in to:
-            LAYERS[layer](obj, cut, names)
+    layers_made = {layer: LAYERS[layer](obj, cut, names) for layer in LAYERS if layer in to}
     if "BONES" in to:
-        armature.made(obj, cut, names)
+        armature.made(obj, cut, names, layers_made["VERTEX_GROUPS"])
     obj.data.update()
     return Written(names, made)

@@ -105,7 +105,8 @@ RESULTS = {"FACE_SETS": Key("FACE_SETS", frozenset("S"), "Face Sets", ("EVENT_S"
            "MATERIALS": Key("MATERIALS", frozenset("M"), "Slots", ("EVENT_M",)),
            "SEAMS": Key("SEAMS", frozenset("U"), "Seams", ("EVENT_U",)),
            "OBJECTS": Key("OBJECTS", frozenset("O"), "Objects", ("EVENT_O",)),
-           "BONES": Key("BONES", frozenset("B"), "Bones", ("EVENT_B",))}
+           "BONES": Key("BONES", frozenset("B"), "Bones", ("EVENT_B",)),
+           "PRINT": Key("PRINT", frozenset("P"), "Print", ("EVENT_P",))}
 DIVIDING = (COUNT, NUMBER, ANEW, ONE, MERGE, *RESULTS.values(), CONFIRM, CANCEL)
 ON_ONE = (DIVIDE, MERGE, ONE._replace(label="Another"), *RESULTS.values(), CONFIRM, CANCEL)
 

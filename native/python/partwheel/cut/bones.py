@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..deform import surface_distances
-from .borders import welded
+from .borders import Link, from_root, welded
+from .hinges import hinge
 
 END = 0.9  # what lies beyond this share of the way to a part's farthest point is its end
 BESIDE = 0.5  # borders nearer than this share, or so much smaller than another one, don't end a bone
@@ -24,15 +25,17 @@ class Bone(NamedTuple):
     connected: bool
 
 
-def bones(vertices, triangles, labels, tree, planes=()):
-    """[Bone, ...] for each part. It begins at the middle of the border by which the part hangs on another, a loose
-    piece's in its own middle; and ends in the next border, in the middle of those that end the part together (the
-    fingers' of a hand), or where the part is farthest away. The root's goes through the part from end to end, up or
-    towards the + of the axis that it follows most; with one part alone that hangs on it, towards that.
+def bones(vertices, triangles, labels, tree, weights, planes=()):
+    """[Bone, ...] for each part. It begins in the middle of the border by which the part hangs on another, where its
+    hinge is best, a loose piece's in its own middle; and ends in the next border, in the middle of those that end the
+    part together (the fingers' of a hand), or where the part is farthest away. The root's goes through the part from end
+    to end, up or towards the + of the axis that it follows most; with one part alone that hangs on it, towards that.
 
-    vertices (V,3), triangles (T,3), labels (T,) the part of each triangle, tree: the parts' Links. planes: the model's
-    mirror_planes(), in which the root's bone lies if it may."""
+    vertices (V,3), triangles (T,3), labels (T,) the part of each triangle, tree: the parts' Links. weights: theirs, with
+    which they are to be bent, as weights() gives them. planes: the model's mirror_planes(), in which the root's bone lies
+    if it may."""
     vertices = np.asarray(vertices, np.float64)
+    tree = _with_hinges(vertices, triangles, tree, weights)
     triangles = welded(vertices)[triangles]
     low, high = (end(vertices[triangles], axis=(0, 1)) for end in (np.min, np.max))
     least = LEAST * np.linalg.norm(high - low)
@@ -55,6 +58,21 @@ def bones(vertices, triangles, labels, tree, planes=()):
     joined = [link.parent >= 0 and bool(np.linalg.norm(ends[link.parent][1] - head) < least)
               for (head, _), link in zip(ends, tree)]
     return [Bone(*each, link.parent, connected) for each, link, connected in zip(ends, tree, joined)]
+
+
+def _with_hinges(vertices, triangles, tree, weights):
+    """The Links, whose borders have their hinges as their centers."""
+    shares = np.zeros((len(tree), len(vertices)))  # what turns with each part: its own weights, and of all that hangs on it
+    found = list(tree)
+    for part in from_root(tree)[::-1]:
+        own, values = weights[part]
+        shares[part, own] += values
+        parent, border = tree[part]
+        if parent >= 0:
+            shares[parent] += shares[part]
+        if border:
+            found[part] = Link(parent, border._replace(center=hinge(vertices, triangles, border, shares[part])))
+    return found
 
 
 def _in_plane(head, tail, planes):

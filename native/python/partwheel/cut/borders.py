@@ -9,7 +9,7 @@ import numpy as np
 from ..deform import surface_distances
 from ..joint import MOST, groups
 
-REACH = 1.0  # radii of a border in which weights fall, on either side: joints bend best so, see docs/bones.md
+REACH = 2.0  # radii of a border in which weights fall, on either side: joints bend best so, see docs/bones.md
 
 
 class Border(NamedTuple):

@@ -64,12 +64,14 @@ class Printable(NamedTuple):
     notes: list
 
 
-def printable(cut, vertices, triangles, faces, options=Options(), word="Part"):
+def printable(cut, vertices, triangles, faces, options=Options(), word="Part", named_by=None):
     """A Printable. vertices (V,3), triangles (T,3), faces (T,) the source face of each: the surface that the cut's
-    hierarchy is of. word: that names begin with. Raises PrintError without manifold3d."""
+    hierarchy is of. word: that names begin with; named_by: names instead, of the cut that fits. Raises PrintError without
+    manifold3d."""
     manifold = _manifold3d()
     cut, notes = _fitting(cut, options), []
-    names, labels = named(cut, vertices, triangles, faces, word), cut.labels[faces]
+    names = named_by(cut) if named_by else named(cut, vertices, triangles, faces, word)
+    labels = cut.labels[faces]
     hung = tree(cut, vertices, triangles, labels)
     solids = cut.solids()
     bodies = {}

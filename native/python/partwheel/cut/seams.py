@@ -7,11 +7,12 @@ import numpy as np
 from ..border import Creases
 from .cut import Tree
 from .patches import Patch, Sheet, components, cut_back, opened
-from .stretch import Flat
+from .stretch import Flat, measured
 
 STRETCH = 1.09  # by this factor areas of a patch may be too large or too small on average; of all patches: by 1.1
 COVERED = 0.0005  # the share of a patch that may lie on top of itself: what pixels can't tell
 NEARLY, AT_ONCE = 2, 16  # cuts into a patch: one by one, once it stretches at most twice too much; else several at once
+FAILED = 1.5  # by so much areas of an island differ only where a solver has failed: no patch is foretold half of that
 SCRAP = 0.1  # of a part: pieces that are smaller, beside its largest, go with their neighbours
 LEAST = 0.05  # of a patch that is divided: each side has more
 
@@ -35,6 +36,29 @@ def seams(vertices, triangles, faces, face_count, cut, stretch=STRETCH):
         chosen += _within(whole.part(own), tree, stretch)
     chosen.append(_between(whole, labels))
     return whole.ends[np.unique(np.concatenate(chosen))]
+
+
+def further(vertices, triangles, faces, face_count, cut, ends, uv, stretch=STRETCH):
+    """(n,2) seams as ends are, where an unwrapping by those failed: islands whose areas differ far more than was foretold
+    are divided once more along the tree. The same seams if there are none, or nothing can be divided.
+
+    ends (n,2): what seams() or this gave of the same surface and cut; uv (T,3,2): of the triangles' corners, by them."""
+    whole = Sheet(vertices, triangles, faces)
+    seam = np.isin(whole.ends @ [len(whole.places), 1], np.sort(ends, axis=1) @ [len(whole.places), 1])
+    tree, inside = None, ~seam[whole.edge]
+    for own in whole.pieces(components(len(whole.triangles), whole.pair[inside])):
+        sheet = whole.part(own)
+        if measured(sheet, uv[own]) <= FAILED:
+            continue
+        tree = tree or _Tree(cut.hierarchy, Creases(vertices, triangles, faces, face_count))
+        sides = tree.divided(sheet)
+        if sides is not None:
+            seam[sheet.edge] = False  # its own cuts begin anew
+            seam[_between(sheet, sides)] = True
+            for piece in sheet.pieces(sides):
+                for edges in _within(whole.part(own[piece]), tree, stretch):
+                    seam[edges] = True
+    return whole.ends[seam]
 
 
 def _between(sheet, labels):

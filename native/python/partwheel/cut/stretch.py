@@ -11,6 +11,7 @@ SMOOTHED = 3  # so many rounds: a peak is to be more than one sharp vertex
 SADDLE = 0.5  # a cut to a saddle makes its surroundings cover each other: not so soon
 NEXT, FAR = 0.5, 2.0  # peaks at a time: those half as high, so much farther apart than from the rim
 DIGITS = 6  # of heights: of what is the same on both sides of a model the lower number comes first
+WORST = 10.0  # by which a triangle counts at most, where it is measured
 FINE = 192  # pixels that an outline is wide or high
 
 
@@ -49,10 +50,7 @@ class Flat:
 
     def stretch(self):
         """How much areas differ: the mean, by area, of by what factor a place is too large or too small."""
-        area = self.patch.sheet.areas / max(self.patch.sheet.areas.sum(), 1e-300)
-        factor = np.exp(np.clip(2 * self.scale[self.patch.vertex].mean(axis=1), -50, 50))
-        factor /= max(_dot(factor, area), 1e-300)
-        return _dot(np.maximum(factor, 1 / np.maximum(factor, 1e-9)), area)
+        return _unevenness(np.exp(np.clip(2 * self.scale[self.patch.vertex].mean(axis=1), -50, 50)), self.patch.sheet.areas)
 
     def peaks(self, away, most):
         """[vertex, ...] at most so many that are scaled most, up or down, each farther from the others than they are from
@@ -82,6 +80,20 @@ class Flat:
         steps = length[:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
         steps -= length[:, None] * (steps.sum(axis=0) / max(length.sum(), 1e-300))  # so that it closes
         return _covered_twice(np.cumsum(steps, axis=0))
+
+
+def measured(sheet, uv):
+    """What Flat.stretch() foretells, of a Sheet that was laid flat: uv (T,3,2). A triangle counts at most WORST."""
+    a, b, c = uv.transpose(1, 0, 2)
+    return _unevenness(abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) / np.maximum(sheet.areas, 1e-300),
+                       sheet.areas, WORST)
+
+
+def _unevenness(factor, areas, most=1e9):
+    """The mean, by area, of by what factor a place is too large or too small."""
+    area = areas / max(areas.sum(), 1e-300)
+    factor = factor / max(_dot(factor, area), 1e-300)
+    return _dot(np.minimum(np.maximum(factor, 1 / np.maximum(factor, 1e-9)), most), area)
 
 
 def _covered_twice(outline):

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The whole model in parts for a 3D printer, from Blender: what is made is read back, and compared by manifold3d, whose
+copy is that of the core tier's environment."""
+
+import sys
+from pathlib import Path
+from unittest.mock import patch
+
+import bpy
+import numpy
+from common import part
+from solid_case import arrays, volume
+from test_parts_to import PartsCase
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = list((ROOT / "build" / "venv" / "core" / "lib").glob("python3.*/site-packages"))
+SIZE, GAP, WALL = 200, 0.3, 1.0  # millimetres
+NEAR = 1e-5  # of SIZE: Blender keeps single floats
+
+
+class Print(PartsCase):
+    def setUp(self):
+        super().setUp()
+        self.path = list(sys.path)
+        bpy.context.scene.unit_settings.scale_length = 0.001  # a unit is a millimetre
+
+    def tearDown(self):
+        bpy.context.scene.unit_settings.scale_length = 1
+        sys.path[:] = self.path
+        super().tearDown()
+
+    def with_manifold3d(self):
+        sys.path.extend(map(str, PACKAGES))  # last: numpy stays Blender's
+        try:
+            import manifold3d
+        except ImportError:
+            self.skipTest("manifold3d is not there for this Python")
+        return manifold3d
+
+    def sized(self, name):
+        """(the object, scaled so that it is SIZE long, its cut)"""
+        obj, cut = self.model(name)
+        obj.scale = [SIZE / max(obj.dimensions)] * 3
+        obj.location, obj.rotation_euler = (3, 1, 2), (0.3, 0.2, 1)
+        bpy.context.view_layer.update()
+        bpy.context.view_layer.objects.active = obj
+        return obj, cut
+
+    def test_pegs_fit_their_sockets(self):
+        manifold3d = self.with_manifold3d()
+        for name, count in (("homer", 5), ("elephant", 6), ("cow", 4)):
+            obj, _ = self.sized(name)
+            cut = part("api").parts(obj, count)
+            objects, pegs, notes = part("api").print_parts(obj, cut, GAP, WALL)
+            self.assertEqual(len(objects), count, notes)
+            self.assertGreater(len(pegs), 1, notes)
+            bodies = {}
+            for new in objects:
+                self.assertSolid(new.data)
+                places, polygons = arrays(new.data)
+                places = places * obj.scale[0]
+                body = manifold3d.Manifold(manifold3d.Mesh64(places, numpy.array(polygons, numpy.uint64)))
+                self.assertEqual(body.status(), manifold3d.Error.NoError)
+                bodies[new.name] = body
+                self.assertLess(abs(numpy.array(new.matrix_world) - numpy.array(obj.matrix_world)).max(), 1e-6 * SIZE)
+            # Parts meet at their cuts, but overlap nowhere by more than single floats do.
+            all_of_them = list(bodies.values())
+            for one in range(len(all_of_them)):
+                for other in range(one):
+                    both = all_of_them[one] ^ all_of_them[other]
+                    self.assertLess(both.volume(), NEAR * SIZE * both.surface_area() + 1e-9)
+            names = [new.name for new in objects]
+            for peg in pegs:
+                # Around the middle of the peg: it is the one's, and the other is as far away as the gap is wide.
+                own, other = bodies[names[peg.part]], bodies[names[peg.into]]
+                middle, way = peg.center + 0.5 * peg.length * peg.direction, peg.direction.tolist()
+                inside = manifold3d.Manifold.sphere(0.3 * peg.radius, 24).translate(middle.tolist())
+                self.assertLess((inside - own).volume(), 1e-6 * inside.volume())
+                slab = [each.trim_by_plane(way, float(peg.direction @ middle) - 0.1 * peg.length) for each in (own, other)]
+                around = manifold3d.Manifold.sphere(0.6 * peg.length + 2 * peg.radius, 32).translate(middle.tolist())
+                self.assertAlmostEqual((slab[0] ^ around).min_gap(slab[1] ^ around, 3 * GAP), GAP, 2)
+
+    def test_what_is_lost_is_the_gaps_alone(self):
+        self.with_manifold3d()
+        obj, _ = self.sized("homer")
+        cut = part("api").parts(obj, 5)
+        whole = volume(obj.data) * obj.scale[0] ** 3
+        flat = sum(volume(new.data) for new in part("api").print_parts(obj, cut, None).objects) * obj.scale[0] ** 3
+        self.assertLess(abs(flat - whole), 1e-5 * whole)
+        objects, pegs, _ = part("api").print_parts(obj, cut, GAP, WALL)
+        self.assertGreater(len(pegs), 1)
+        gaps = whole - sum(volume(new.data) for new in objects) * obj.scale[0] ** 3
+        area = 1.5 * numpy.sqrt(3)  # of a hexagon, for a radius of 1
+        wide = GAP / numpy.cos(numpy.pi / 6)
+        sockets = sum(area * ((peg.radius + wide) ** 2 * (peg.length + GAP) - peg.radius ** 2 * peg.length) for peg in pegs)
+        self.assertLess(abs(gaps - sockets), 0.02 * sockets + 1e-5 * whole)
+
+    def test_the_operator(self):
+        self.with_manifold3d()
+        obj, _ = self.sized("elephant")
+        before = set(bpy.data.collections)
+
+        def new():
+            made, = set(bpy.data.collections) - before
+            before.add(made)
+            return made
+
+        self.assertEqual(bpy.ops.mesh.partwheel_parts(to={"PRINT"}, count=4, clearance=GAP, wall=WALL), {"FINISHED"})
+        made = new()
+        self.assertEqual(len(made.objects), 4)
+        self.assertEqual({each.name for each in made.objects}, set(part("api").kept_parts(obj)[1]))
+        self.assertTrue(obj.hide_get())
+        size = 0.6 * SIZE
+        obj.hide_set(False)
+        bpy.context.view_layer.objects.active = obj
+        for each in bpy.context.view_layer.objects:
+            each.select_set(each == obj)
+        self.assertEqual(bpy.ops.mesh.partwheel_parts(to={"PRINT", "FACE_SETS"}, count=2, pegs=False,
+                                                      bed=(size, size, size)), {"FINISHED"})
+        made = new()
+        self.assertGreater(len(made.objects), 2)
+        for each in made.objects:
+            self.assertSolid(each.data)
+            self.assertLessEqual(max(numpy.ptp(arrays(each.data)[0], axis=0)) * obj.scale[0], 1.01 * size)
+
+    def test_without_manifold3d_nothing_changes(self):
+        obj, _ = self.sized("homer")
+        before = len(bpy.data.objects), len(bpy.data.collections)
+        with patch.dict(sys.modules, {"manifold3d": None}), self.assertRaisesRegex(RuntimeError, "pip install manifold3d"):
+            bpy.ops.mesh.partwheel_parts(to={"PRINT", "FACE_SETS"})
+        self.assertEqual((len(bpy.data.objects), len(bpy.data.collections)), before)
+        self.assertIsNone(part("api").kept_parts(obj))
+        obj.scale.x *= 2
+        bpy.context.view_layer.update()
+        self.with_manifold3d()
+        with self.assertRaisesRegex(RuntimeError, "scale"):
+            bpy.ops.mesh.partwheel_parts(to={"PRINT"})
