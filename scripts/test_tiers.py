@@ -194,7 +194,7 @@ def ship():
     the two that are for other machines, by wine and qemu. An hour of compiling: only when it is named."""
     require("ship-package", "scripts/package", "all")
     print((OUTPUT / "ship-package.log").read_text().split("distribution\n")[-1], end="")
-    setup("ship", "setup_bpy")
+    setup("ship", "setup_bpy", "setup_workflows")
     result = pytest("ship", "tests/ship")
     for preset in ("windows-x64", "linux-arm64"):
         build(f"ship-{preset}", preset)
