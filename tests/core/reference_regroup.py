@@ -18,7 +18,7 @@ MIDDLING_CURVATURE = 4.0
 SMOOTHING = 4
 CONVEX = 1e-6  # of the hull's volume, see cluster.h
 MOST_OVERLAP = 0.85  # of two stops
-SCRAP = 0.003  # of the area: no part of the automatic cut, if it can go along with one
+PRICE = 0.01  # of the whole area: what a part of the automatic cut must bring
 
 
 class Network:
@@ -458,14 +458,12 @@ class Regrouped:
         """The parts of the automatic cut."""
         best, cut = [], []
         for n in range(len(self.parts)):
-            best.append(self.face_area[n] * self.scores[n])
+            best.append(self.face_area[n] * self.scores[n] - PRICE * self.face_area[-1])
             cut.append([n])
             if n >= self.fine:
                 a, b = self.joined[n - self.fine]
                 if best[a] + best[b] > best[n]:
-                    small, large = sorted((a, b), key=lambda child: self.face_area[child])
-                    scrap = self.face_area[small] < SCRAP * sum(self.face_area[:self.fine])
-                    best[n], cut[n] = best[a] + best[b], [n] if scrap and cut[large] == [large] else cut[a] + cut[b]
+                    best[n], cut[n] = best[a] + best[b], cut[a] + cut[b]
         return cut[-1]
 
     def wheel(self, part):

@@ -315,7 +315,7 @@ TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
         const Tree tree = tree_of(merges);
         std::vector<double> areas, scores;
         for (size_t c = 0; c < 2 * merges.size() + 1; ++c) {
-            areas.push_back(whole(1, 4));  // no scraps
+            areas.push_back(whole(1, 4));
             scores.push_back(std::uniform_real_distribution<double>(0.01, 1)(random));
             const bool inside = c > merges.size() && c < 2 * merges.size();
             if (inside && whole(0, 3) == 0) scores.back() = 0;  // a step to what is joined from more than two
@@ -324,9 +324,9 @@ TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
         const auto worth = [&](const std::vector<int32_t>& cut) {
             double sum = 0;
             for (const int32_t n : cut) sum += areas[static_cast<size_t>(n)] * scores[static_cast<size_t>(n)];
-            return sum;
+            return sum - 0.01 * areas.back() * static_cast<double>(cut.size());
         };
-        double best = 0;
+        double best = -HUGE_VAL;
         const auto cuts = all_cuts(tree.root());
         for (const auto& cut : cuts)
             if (std::ranges::none_of(cut, a_step)) best = std::max(best, worth(cut));
@@ -342,16 +342,15 @@ TEST_F(DendrogramTest, LikeliestCutIsTheBestOfAll) {
               (std::vector<int32_t>{0, 1}));
 }
 
-TEST_F(DendrogramTest, ScrapsGoAlongWithOnePart) {
+TEST_F(DendrogramTest, APartMustBeWorthAHundredthOfTheWhole) {
     // 0 and 1 are joined with 2, in a step of three, and then with 3.
     const std::vector<Merge> merges = {{0, 1, 0, 0}, {4, 2, 0, 0}, {5, 3, 0, 0}};
-    const auto cut = [&](double one, double two) {
-        const std::vector<double> areas = {1000, one, two, 1000, 1000 + one, 1000 + one + two, 2000 + one + two};
-        return likeliest_cut(merges, 3, areas, std::vector<double>{0.8, 0.1, 0.1, 0.8, 0, 0.7, 0.1});
+    const std::vector<double> areas = {50, 0.2, 0.2, 49.6, 50.2, 50.4, 100};
+    const auto cut = [&](double score) {
+        return likeliest_cut(merges, 3, areas, std::vector<double>{score, 0.5, 0.5, 0.8, 0, 0.49, 0.1});
     };
-    EXPECT_EQ(cut(5, 5), (std::vector<int32_t>{5, 3}));
-    EXPECT_EQ(cut(5, 7), (std::vector<int32_t>{0, 1, 2, 3}));
-    EXPECT_EQ(cut(7, 5), (std::vector<int32_t>{0, 1, 2, 3}));
+    EXPECT_EQ(cut(0.50), (std::vector<int32_t>{5, 3}));        // apart 0.5 more, for two more parts
+    EXPECT_EQ(cut(0.54), (std::vector<int32_t>{0, 1, 2, 3}));  // apart 2.5 more
 }
 
 TEST_F(DendrogramTest, StopsDifferAndTheClickTakesTheBest) {

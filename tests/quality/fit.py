@@ -49,7 +49,7 @@ PAIR_RAMPS, NODE_RAMPS = 16, 12
 DIGITS = 4
 PAIRS_A_MODEL = 1200
 ROUNDS_SEEN = 3
-SCRAP = 0.003  # as in likeliest_cut()
+PRICE = 0.01  # as in likeliest_cut()
 MOST_OVERLAP = 0.85  # as in wheel_stops()
 # The measures in groups, by what they look at: --without leaves one out. Some names are those of pairs and of nodes.
 GROUPS = {
@@ -262,14 +262,10 @@ class Trace(Traced):
         return sorted(alive)
 
     def likeliest(self, scores):
-        best, divided = self.area * scores, np.zeros(len(scores), bool)
-        one = ~divided  # of one part, but for scraps
+        best, divided = self.area * scores - PRICE * self.area[-1], np.zeros(len(scores), bool)
         for j, pair in enumerate(self.merges):
-            n, (small, large) = self.parts + j, pair[np.argsort(self.area[pair], kind="stable")]
-            if best[pair].sum() > best[n]:
-                best[n] = best[pair].sum()
-                one[n] = one[large] and self.area[small] < SCRAP * self.area[-1]
-                divided[n] = not one[n]
+            if best[pair].sum() > best[self.parts + j]:
+                best[self.parts + j], divided[self.parts + j] = best[pair].sum(), True
         cut, todo = [], [len(scores) - 1]
         while todo:
             n = todo.pop()

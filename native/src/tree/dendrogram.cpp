@@ -95,20 +95,18 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
 
 std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
                                    std::span<const double> scores) {
-    constexpr double scrap = 0.003;
+    constexpr double price = 0.01;
     const size_t leaves = merges.size() + 1;
     std::vector<double> best(leaves + merges.size());
-    std::vector<uint8_t> divided(merges.size(), 0), one(best.size(), 1);  // one: of one part, but for scraps
+    std::vector<uint8_t> divided(merges.size(), 0);
     for (size_t c = 0; c < best.size(); ++c) {
-        best[c] = areas[c] * scores[c];
+        best[c] = areas[c] * scores[c] - price * areas.back();
         if (c + top < best.size()) continue;
-        size_t small = at(merges[c - leaves].left), large = at(merges[c - leaves].right);
-        if (areas[small] > areas[large]) std::swap(small, large);
-        const double apart = best[small] + best[large];
+        const Merge& merge = merges[c - leaves];
+        const double apart = best[at(merge.left)] + best[at(merge.right)];
         if (scores[c] != 0 && apart <= best[c]) continue;
         best[c] = apart;
-        one[c] = one[large] != 0 && areas[small] < scrap * areas.back();
-        divided[c - leaves] = scores[c] == 0 || one[c] == 0;
+        divided[c - leaves] = 1;
     }
     return cut_where(merges, [&](size_t m) { return divided[m] != 0; });
 }
