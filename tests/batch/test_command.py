@@ -17,10 +17,13 @@ from conftest import HAND, box, command, environment, hostile, reports, results,
 from partwheel import Hierarchy
 
 from partwheel import meshes
+from partwheel.batch import slot
+from partwheel.batch.run import Options, Run
 
 # More models and kills, by the hour: PARTWHEEL_KILLS=20 PARTWHEEL_MODELS=FOLDER
 KILLS = int(os.environ.get("PARTWHEEL_KILLS", 4))
 MORE = list(Path(os.environ["PARTWHEEL_MODELS"]).iterdir()) if os.environ.get("PARTWHEEL_MODELS") else []
+SETTINGS = {"outputs": ["hierarchy"], "build": {"mode": "regrouped"}, "parts": 0, "hulls": 0, "preview": 0}
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are kept on Linux only")
 
 
@@ -35,6 +38,7 @@ def test_what_is_made_of_a_model(tmp_path):
     files = {"hierarchy.partwheel", "cut.json", "objects.glb", "colliders.obj", "preview.png"}
     assert set(report["files"]) == files == {path.name for path in place.iterdir()} - {"model.json"}
     assert report["error"] is None and report["rung"] == "exact" and report["faces"] == 2390
+    assert 0 < report["processor_seconds"]
     assert {"read", "build", "tetrahedra", "cut", "preview"} <= set(report["seconds"])
 
     mesh = meshes.read(HAND)
@@ -87,19 +91,20 @@ def test_a_zip_bomb_meets_its_limit_alone(boxes, tmp_path):
     assert totals["failed"] == {"memory": 1} and totals["made"] == 13
 
 
-def test_a_reader_without_end_meets_its_limit(boxes, tmp_path, monkeypatch):
-    """A module that is found before the package's own spins when it reads a certain file."""
+@pytest.mark.parametrize("does, patience", [("while True: pass", 1e9), ("time.sleep(1e9)", 1)],
+                         ids=["processor time", "waiting for ever"])
+def test_a_reader_without_end_meets_its_limit(boxes, tmp_path, monkeypatch, does, patience):
+    """Each limit alone. A module that Python loads before all others spins, or waits, when one file is read."""
     (tmp_path / "sitecustomize.py").write_text(
         "import sys, time\n"
         "def hook(event, arguments):\n"
-        "    if event == 'open' and str(arguments[0]).endswith('box03.off') and 'partwheel.batch.slot' in sys.modules "
-        "and sys.argv[0] == '-c':\n"
-        "        while True: pass\n"
+        "    if event == 'open' and str(arguments[0]).endswith('box03.off'):\n"
+        f"        {does}\n"
         "sys.addaudithook(hook)\n")
-    path = environment()["PYTHONPATH"]
-    totals = run(boxes, "-o", tmp_path / "out", "--make", "hierarchy", "--time", 2, code=1,
-                 PYTHONPATH=f"{tmp_path}:{path}")
-    assert totals["failed"] == {"time limit": 1} and totals["made"] == 12
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.setattr(slot, "PATIENCE", patience)
+    counts = Run(tmp_path / "out", [str(boxes / "box03.off")], Options(SETTINGS, 1, 0, seconds=1)).go()
+    assert counts.failed == {"time limit": 1} and counts.made == 1
 
 
 def test_a_reader_that_crashes_fails_alone(boxes, tmp_path):

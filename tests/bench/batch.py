@@ -96,18 +96,15 @@ def scaling(room, models, rounds):
 
 
 def classes(room, models, dollars):
-    """One model after the other, so that seconds are a core's."""
     _, processor = batch(models, room / "all", 1, MAKE)
     told = [json.loads(path.read_text()) for path in (room / "all" / "models").rglob("model.json")]
     told = [report for report in told if not report["error"]]
-    print(f"| faces ({MAKE}) | models | seconds | of them build | kB a model |\n|---|---|---|---|---|")
+    print(f"| faces ({MAKE}) | models | processor seconds | kB a model |\n|---|---|---|---|")
     for low, high in zip((0, *CLASSES), (*CLASSES, float("inf"))):
         those = [report for report in told if low <= report["faces"] < high]
         if those:
-            seconds = [sum(report["seconds"][stage] for stage in ("read", "build", "save", "cut", "colliders", "preview"))
-                       for report in those]
-            print(f"| {low:,} to {high:,} | {len(those)} | {statistics.median(seconds):.2f} | "
-                  f"{statistics.median(report['seconds']['build'] for report in those):.2f} | "
+            print(f"| {low:,} to {high:,} | {len(those)} | "
+                  f"{statistics.median(report['processor_seconds'] for report in those):.2f} | "
                   f"{statistics.median(sum(report['files'].values()) for report in those) / 1000:.0f} |")
     hours = processor / len(models) * 1e6 / 3600
     disk = statistics.mean(sum(report["files"].values()) for report in told)

@@ -35,7 +35,7 @@ class Slot:
     def make(self, task):
         """The answer to {"path", "folder", "settings", "memory", "seconds", "size", "threads"}, as for model.make() but
         size, the file's bytes: what it returns, or {"error": {"name", "message"}, "pictured": whether preview.png
-        was made all the same}."""
+        was made all the same}; and "processor_seconds", all processes' together."""
         process, self._late = self._started(), False
         limit = task["seconds"] or SECONDS + SECONDS_PER_MEGABYTE * task["size"] / MEGABYTE
         self._deadline = time.monotonic() + PATIENCE * limit
@@ -109,12 +109,14 @@ def main():
     for line in sys.stdin.buffer:
         task = json.loads(line)
         _limit(base, task)
+        before = sum(os.times()[:4])  # with that of the worker processes that have ended
         try:
             memory = task["memory"] and max(task["memory"] - (_data() - base), 64 * MEGABYTE)
             answer = make(task["path"], Path(task["folder"]), task["settings"], memory=memory, seconds=task["seconds"],
                           threads=task["threads"])
         except Exception as error:  # whatever it is, it is this model's result
             answer = {"error": _told(error, task), "pictured": bool(getattr(error, "pictured", False))}
+        answer["processor_seconds"] = round(sum(os.times()[:4]) - before, 2)
         answer["resident"] = _resident()
         answers.write(json.dumps(answer).encode() + b"\n")
         answers.flush()
