@@ -25,6 +25,9 @@ target_compile_definitions(partwheel_test_support INTERFACE PARTWHEEL_MESHES="${
 if(sources)
   add_library(partwheel_test_sources STATIC ${sources})
   target_link_libraries(partwheel_test_sources PUBLIC partwheel_test_support)
+  if(PARTWHEEL_PLATFORM MATCHES "^linux")  # the engine's rooms, which tests see beside the library, want it too
+    target_sources(partwheel_test_sources PRIVATE cmake/cross/single_threaded.cpp)
+  endif()
 endif()
 
 foreach(source ${programs})
