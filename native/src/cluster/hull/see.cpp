@@ -58,7 +58,8 @@ size_t HullKernel::walk(const FacetsView& h, const Point& p, size_t start) {
             best = rated > there ? g : best;
             there = std::max(there, rated);
         }
-        if (!(there >= here - equal)) return h.centred && surely_best(h, f, p) ? inside : none;
+        // Where the origin is outside of a facet and of all about it none is better, and none worse.
+        if (best == f || !(there >= here - equal)) return h.centred && surely_best(h, f, p) ? inside : none;
         f = best;
         here = there;
     }
