@@ -78,7 +78,7 @@ def unbroken(mesh, hierarchy, slices, options, faces, alone):
     if not alone:  # then the mesh stays wound as it is
         lost |= against != (2 * against.sum() > len(against))
     made = []
-    found = hierarchy.solids(slices) if faces is None else [solid_of(hierarchy, *slices[0], faces)]
+    found = hierarchy.solids(slices) if len(slices) > 1 else [solid_of(hierarchy, *slices[0], faces)]
     for (tet_first, tet_last), solid in zip(slices, found):
         if solid is None or (lost & _inside(hierarchy, tet_first, tet_last, faces)).any():
             made.append(None)
