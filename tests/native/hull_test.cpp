@@ -198,6 +198,22 @@ TEST_F(HullTest, NearlyFlatSets) {
     });
 }
 
+TEST_F(HullTest, NearlyFlatHullsOfManyCornersGrow) {
+    // Rounding puts the middle of a flat hull outside of some of its facets: nothing may look for a better one for ever.
+    for (int i = 0; i < sized(20, 4); ++i) {
+        SCOPED_TRACE(i);
+        Points points;
+        const Point normal = {real(-1, 1), real(-1, 1), 1};
+        for (int k = 0; k < 160; ++k) {
+            const double turn = real(0, 2 * std::numbers::pi), x = std::cos(turn), y = std::sin(turn);
+            points.push_back({x, y, -normal[0] * x - normal[1] * y});
+        }
+        for (int k = 0; k < 40; ++k) points.push_back({real(-1, 1), real(-1, 1), real(-1, 1) * (k % 2 == 0 ? 1e-15 : 1)});
+        ASSERT_NO_FATAL_FAILURE(expect_all(points, 160));
+        ASSERT_NO_FATAL_FAILURE(expect_all(points, 161));
+    }
+}
+
 TEST_F(HullTest, FarFromTheOrigin) {
     expect_many(200, 60, [&] { return Point{1e6 + real(-1, 1), -3e6 + real(-1, 1), 1e6 + real(-1, 1)}; });
     expect_many(200, 60, [&] { return Point{1e9 + whole(0, 3), 1e9 + whole(0, 3), -1e9 + whole(0, 3)}; });
