@@ -276,7 +276,7 @@ PW_API pw_status pw_hierarchy_cut_least_concavity(const pw_hierarchy *hierarchy,
                                                   size_t capacity, size_t *count);
 
 /* The parts that people would most likely divide the whole into: the cut of the dendrogram with the largest sum of area
- * times score, less a hundredth of the whole area for each part, so that there are no scraps between them; or, in
+ * times score, less half a hundredth of the whole area for each part, so that there are no scraps between them; or, in
  * PW_MODE_PAPER, that at a height of 3 % of the hull's volume: the paper leaves the height to the user. */
 PW_API pw_status pw_hierarchy_cut_automatic(const pw_hierarchy *hierarchy, int32_t *bounds, size_t capacity,
                                             size_t *count);

@@ -18,7 +18,7 @@ MIDDLING_CURVATURE = 4.0
 SMOOTHING = 4
 CONVEX = 1e-6  # of the hull's volume, see cluster.h
 MOST_OVERLAP = 0.85  # of two stops
-PRICE = 0.01  # of the whole area: what a part of the automatic cut must bring
+PRICE = 0.005  # of the whole area: what a part of the automatic cut must bring
 
 
 class Network:

@@ -49,7 +49,7 @@ PAIR_RAMPS, NODE_RAMPS = 16, 12
 DIGITS = 4
 PAIRS_A_MODEL = 1200
 ROUNDS_SEEN = 3
-PRICE = 0.01  # as in likeliest_cut()
+PRICE = 0.005  # as in likeliest_cut()
 MOST_OVERLAP = 0.85  # as in wheel_stops()
 # The measures in groups, by what they look at: --without leaves one out. Some names are those of pairs and of nodes.
 GROUPS = {

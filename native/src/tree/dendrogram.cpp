@@ -95,7 +95,7 @@ std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t p
 
 std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,
                                    std::span<const double> scores) {
-    constexpr double price = 0.01;
+    constexpr double price = 0.005;
     const size_t leaves = merges.size() + 1;
     std::vector<double> best(leaves + merges.size());
     std::vector<uint8_t> divided(merges.size(), 0);

@@ -31,8 +31,8 @@ std::vector<uint8_t> prune_regrouped(std::span<const Merge> merges, std::span<co
 // tree: O(T parts) time at most. Returns the clusters' numbers (see Merge), in depth-first order. 1 <= parts <= T.
 std::vector<int32_t> cut_least_concavity(std::span<const Merge> merges, size_t parts);
 
-// The cut whose clusters have the largest sum of area x score, less a hundredth of the whole area for each: the parts
-// that people would most likely take, without scraps between them. areas, scores: of each cluster. The last `top`
+// The cut whose clusters have the largest sum of area x score, less half a hundredth of the whole area for each: the
+// parts that people would most likely take, without scraps between them. areas, scores: of each cluster. The last `top`
 // merges, those of regroup(), may be divided, those of them with a score of 0 must be where what they are in is.
 // Numbers as above.
 std::vector<int32_t> likeliest_cut(std::span<const Merge> merges, size_t top, std::span<const double> areas,

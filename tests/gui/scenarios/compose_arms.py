@@ -21,7 +21,7 @@ def play(stage):
     homer = stage.object
     whole, width = volume(homer), homer.dimensions.x
     for side in (0.02, 0.98):
-        yield from picked_up_to(stage, side, 0.62, 0.06)
+        yield from picked_up_to(stage, side, 0.62, 0.08)
         before = len(homer.data.polygons)
         stage.mouse.key("X", shift=True, ctrl=True)
         yield from stage.until("the arm is gone", lambda before=before: len(homer.data.polygons) != before)

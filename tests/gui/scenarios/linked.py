@@ -72,10 +72,11 @@ def play(stage):
     yield from stage.drawn()
     stage.mouse.move(x, y)
     yield from menu(stage)
+    yield from stage.until("a part of it is shown", lambda: stage.drawn_things() == 1)
+    stage.mouse.key("RET")
     yield from stage.until("the original is being edited", lambda: model.mode == "EDIT")
     yield from stage.until("something of it is selected", lambda: model.data.total_face_sel > 0)
     stage.window.view_layer.objects.active = model
-    stage.mouse.key("RET")
     yield from stage.ended()
 
     # Two users of one mesh: the one under the mouse that is being edited is picked from.
