@@ -126,6 +126,7 @@ def test_while_a_shim_hangs_nothing_waits_for_it(pythons, shim):
     hangs = shim("hangs", HANGS)
     pythons(hangs)
     job = Job(*shapes.cube(), **UNLIMITED)
+    assert job.poll() == (0.0, "surface")  # begins it
     until(lambda: calls(hangs))
     assert job.poll() == (0.0, "surface") and job.process_id is None and not job.wait(0)
     job.cancel()
