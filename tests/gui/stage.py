@@ -367,6 +367,15 @@ class Stage:
         yield from self.selected(stops[start], "after the start")
         return face, stops, start
 
+    def parts_to(self, x, y, *keys):
+        """Parts to... with the mouse there, then these keys."""
+        self.mouse.move(x, y)
+        with self.override():
+            bpy.ops.mesh.partwheel_parts("INVOKE_DEFAULT")
+        yield from self.drawn()
+        for key in keys:
+            self.mouse.key(key)
+
     def take(self, spot, when, notches=1):
         """Hover, a click with the tool and notches up take the part at a spot(): (its wheel's stops, the index of the
         first)."""

@@ -6,10 +6,9 @@ import numpy as np
 
 from ..mesh import arrays
 from ..mesh.refusing import Refused
-from partwheel.cut import further, seams
+from partwheel.cut import laid_flat, seams
 
 MOST_MAPS = 8  # UV maps that a mesh can have
-ROUNDS = 3  # so often at most seams are added where Blender's solver failed
 NAME, BESIDE = "UVMap", "Parts"  # of the first UV map; of ours, where there are others
 
 
@@ -24,17 +23,18 @@ def mark(obj, cut, unwrap):
     before = arrays.read(mesh.edges, "use_seam", bool)
     added, active, old = None, mesh.uv_layers.active_index, None
     surface = arrays.surface(mesh)
-    chosen = seams(*surface, cut)
-    _set(mesh, chosen)
-    if unwrap:
-        places = _unwrapped(obj)
-        for _ in range(ROUNDS):
-            more = further(*surface, cut, chosen, places.reshape(-1, 2)[_loops(mesh, surface)].astype(float))
-            if np.array_equal(more, chosen):
-                break
-            chosen = more
-            _set(mesh, chosen)
+    if not unwrap:
+        _set(mesh, seams(*surface, cut))
+    else:
+        loops, places = _loops(mesh, surface), None
+
+        def by_blender(ends):
+            nonlocal places
+            _set(mesh, ends)
             places = _unwrapped(obj)
+            return places.reshape(-1, 2)[loops].astype(float)
+
+        laid_flat(*surface, cut, by_blender)
         if own:
             old = arrays.read(own.data, "uv", np.float32, 2).ravel()
         else:

@@ -29,6 +29,12 @@ def solid_of(hierarchy, tet_first, tet_last, faces=None):
     return hierarchy.solid_of_faces(tet_first, tet_last, faces)
 
 
+def solids_of(hierarchy, slices, faces=None):
+    """The same of each of several slices, matching where they meet; None for one that has no tetrahedron left. faces: for
+    a single slice."""
+    return hierarchy.solids(slices) if len(slices) > 1 else [solid_of(hierarchy, *slices[0], faces)]
+
+
 def facets(hierarchy, tet_first, tet_last, faces=None):
     """(vertices (n,3), triangles (m,3)) of those facets of a slice that are inside the whole, wound outwards; None if it
     has no tetrahedron left. faces: as above."""
@@ -78,7 +84,7 @@ def unbroken(mesh, hierarchy, slices, options, faces, alone):
     if not alone:  # then the mesh stays wound as it is
         lost |= against != (2 * against.sum() > len(against))
     made = []
-    found = hierarchy.solids(slices) if len(slices) > 1 else [solid_of(hierarchy, *slices[0], faces)]
+    found = solids_of(hierarchy, slices, faces)
     for (tet_first, tet_last), solid in zip(slices, found):
         if solid is None or (lost & _inside(hierarchy, tet_first, tet_last, faces)).any():
             made.append(None)

@@ -47,8 +47,8 @@ def parts(obj, hierarchy, slices, options=Options(), faces=None):
     if not exact:
         found = fitting.unbroken(mesh, hierarchy, slices, options, faces, alone=True)
     else:
-        found = hierarchy.solids(slices) if len(slices) > 1 else [fitting.solid_of(hierarchy, *slices[0], faces)]
-        found = [solid and fitting.exactly(mesh, hierarchy, solid, alone=True) for solid in found]
+        found = [solid and fitting.exactly(mesh, hierarchy, solid, alone=True)
+                 for solid in fitting.solids_of(hierarchy, slices, faces)]
     made = []
     try:
         for each, solid in zip(slices, found):

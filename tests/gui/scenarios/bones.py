@@ -55,12 +55,7 @@ def bones(stage, where, digit, other):
     """Parts to..., so many, bones instead of what is usual."""
     before = model().find_armature()
     count = len(before.data.bones) if before else 0
-    stage.mouse.move(*where[:2])
-    with stage.override():
-        bpy.ops.mesh.partwheel_parts("INVOKE_DEFAULT")
-    yield from stage.drawn()
-    for key in (digit, other, "B", "RET"):
-        stage.mouse.key(key)
+    yield from stage.parts_to(*where[:2], digit, other, "B", "RET")
     yield from stage.until("there are bones", lambda: (rig := model().find_armature()) and (
         len(rig.data.bones) != count))
     yield from stage.settle()

@@ -15,13 +15,9 @@ def play(stage):
     stage.window.scene.unit_settings.scale_length = 0.15  # so that he is as large as what is printed
     model, before = stage.object, set(bpy.data.objects)
     x, y, _ = stage.spot(0.5, 0.5)
-    stage.mouse.move(x, y)
     with stage.override():
         bpy.ops.ed.undo_push(message="Begin")
-        bpy.ops.mesh.partwheel_parts("INVOKE_DEFAULT")
-    yield from stage.drawn()
-    for key in ("FIVE", "O", "P", "RET"):
-        stage.mouse.key(key)
+    yield from stage.parts_to(x, y, "FIVE", "O", "P", "RET")
     yield from stage.until("there are five pieces", lambda: len(set(bpy.data.objects) - before) == 5)
     yield from stage.settle()
     stage.check(all(bpy.data.collections[f"{model.name} for printing"] in new.users_collection

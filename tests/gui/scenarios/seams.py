@@ -6,13 +6,9 @@ import bpy
 def play(stage):
     yield from stage.open("homer", mode="EDGE")
     x, y, _ = stage.spot(0.5, 0.5)
-    stage.mouse.move(x, y)
     with stage.override():
         bpy.ops.ed.undo_push(message="Begin")
-        bpy.ops.mesh.partwheel_parts("INVOKE_DEFAULT")
-    yield from stage.drawn()
-    for key in ("G", "U", "RET"):  # no groups, seams
-        stage.mouse.key(key)
+    yield from stage.parts_to(x, y, "G", "U", "RET")  # no groups, seams
     yield from stage.until("it is unwrapped", lambda: stage.object.mode == "EDIT" and stage.object.data.uv_layers)
     yield from stage.settle()
     stage.check(not stage.object.vertex_groups, "nothing else is made")

@@ -64,7 +64,7 @@ class Input:
     stopped: asked on the way; when it says so what comes out is not to be used."""
 
     def __init__(self, path, settings, versions, stopped=lambda: False):
-        self.path, self.suffix = path, os.path.splitext(path)[1].lower()
+        self.path, self.suffix, self._settings = path, os.path.splitext(path)[1].lower(), settings
         self.versions = {**versions, "blender": blend.version()} if self.suffix == ".blend" else versions
         self.size, self.sha256, self.error = 0, None, None
         try:
@@ -78,6 +78,11 @@ class Input:
             content = ["unreadable", path, self.error]
         told = json.dumps([content, self.suffix, settings, self.versions], sort_keys=True)
         self.key = hashlib.sha256(told.encode("utf-8", "surrogateescape")).hexdigest()
+
+    def report(self):
+        """What model.json says of it before anything was made of it."""
+        return {"key": self.key, "sha256": self.sha256, "bytes": self.size, "format": self.suffix[1:],
+                "settings": self._settings, "versions": self.versions, "error": None}
 
     def changed(self):
         """Whether the file is another than it was."""

@@ -17,7 +17,7 @@ from .inputs import SUFFIXES, Input, of_shard, versions
 from .model import Trouble
 from .run import cores, memory
 from .slot import Slot
-from .store import REPORT
+from .store import REPORT, written
 
 MODELS_A_TASK, TASKS_A_CORE = 100, 4  # at most; at least, so that no core waits long for the last
 WAIT_SECONDS = 1  # between two looks at what is done
@@ -108,16 +108,14 @@ def _one(fsspec, folder, slot, path, options, known, room):
         source.key, source.error = hashlib.sha256(told.encode()).hexdigest(), trouble
     folder.note(path, source.key)
     old = folder.report(source.key)
-    if old and not (old["error"] and {"all", old["error"]["name"]} & options.retry):
+    if old and not options.to_retry(old):
         return old["error"] and old["error"]["name"]
     made = room / "out"
     made.mkdir()
     answer = {"error": {"name": "file", "message": source.error}} if source.error else slot.make(
-        {"path": str(local), "folder": str(made), "settings": options.settings, "memory": options.memory,
-         "seconds": options.seconds, "size": source.size, "threads": options.threads})
+        options.task(source, made, options.memory))
     pictured = answer.pop("pictured", True)
-    report = {"key": source.key, "sha256": source.sha256, "bytes": source.size, "format": source.suffix[1:],
-              "settings": options.settings, "versions": source.versions, "error": None, **answer}
+    report = {**source.report(), **answer}
     folder.publish(made if pictured else None, source.key, report)
     return report["error"] and report["error"]["name"]
 
@@ -161,8 +159,7 @@ class _Folder:
         self._files.makedirs(place, exist_ok=True)
         for path in files:
             self._files.put_file(str(path), f"{place}/{path.name}")
-        text = json.dumps(report, indent=1, sort_keys=True) + "\n"
-        self._files.pipe_file(f"{place}/{REPORT}", text.encode())
+        self._files.pipe_file(f"{place}/{REPORT}", written(report))
         self._done.append({"key": key})
         self._lines("done", self._attempt, self._done)
 

@@ -34,6 +34,15 @@ class Options(NamedTuple):
     shard: tuple = (1, 1)
     threads: int = 1
 
+    def to_retry(self, report):
+        """Whether an old result is a failure that is to be tried again."""
+        return report["error"] and bool({"all", report["error"]["name"]} & self.retry)
+
+    def task(self, source, folder, memory):
+        """What a Slot is asked to make of an Input in a folder, with so much memory."""
+        return {"path": source.path, "folder": str(folder), "settings": self.settings, "memory": memory,
+                "seconds": self.seconds, "size": source.size, "threads": self.threads}
+
 
 class Counts(NamedTuple):
     """total: files. old: their results were there. made: in this run, failures among them. failed: {name: how many}, old
@@ -193,11 +202,9 @@ class Run:
                 self._count(source, "_same")
                 return
             old = self.store.report(source.key)
-            if old and not self._to_retry(old):
+            if old and not self._options.to_retry(old):
                 self._count(source, "_old", old)
                 return
-        report = {"key": source.key, "sha256": source.sha256, "bytes": source.size, "format": source.suffix[1:],
-                  "settings": self._options.settings, "versions": source.versions, "error": None}
         beside = self.store.beside(source.key)
         if source.error:
             answer, all_memory = {"error": {"name": "file", "message": source.error}}, True
@@ -222,7 +229,7 @@ class Run:
             self.store.discard(beside)
             self._count(source, "_skipped")
             return
-        report.update(answer)
+        report = {**source.report(), **answer}
         with self._change:
             if (old := self.store.report(source.key)) and old["error"]:
                 self.store.withdraw(source.key)  # it was tried again
@@ -240,16 +247,11 @@ class Run:
         try:
             if self._stopped.is_set():
                 return {}, True
-            return slot.make({"path": source.path, "folder": str(beside), "settings": self._options.settings,
-                              "memory": granted, "seconds": self._options.seconds, "size": source.size,
-                              "threads": self._options.threads}), granted == most
+            return slot.make(self._options.task(source, beside, granted)), granted == most
         finally:
             with self._change:
                 self._free += granted
                 self._change.notify_all()
-
-    def _to_retry(self, report):
-        return report["error"] and bool({"all", report["error"]["name"]} & self._options.retry)
 
     def _count(self, source, what, report=None):
         with self._change:

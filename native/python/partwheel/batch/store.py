@@ -53,7 +53,7 @@ class Store:
     def publish(self, beside, key, report):
         """The result made in that folder comes into its place; False if another shard was first."""
         report["files"] = {path.name: path.stat().st_size for path in sorted(beside.iterdir())}
-        (beside / REPORT).write_text(json.dumps(report, indent=1, sort_keys=True) + "\n", "utf-8")
+        (beside / REPORT).write_bytes(written(report))
         place = self.place(key)
         place.parent.mkdir(parents=True, exist_ok=True)
         if place.exists() and self.report(key) is None:
@@ -98,6 +98,11 @@ class Store:
 
     def _lines_of(self, kind):
         return self.folder / kind / f"{self._shard}.jsonl"
+
+
+def written(report):
+    """model.json, as bytes."""
+    return (json.dumps(report, indent=1, sort_keys=True) + "\n").encode()
 
 
 def _append(path, value):

@@ -6,7 +6,7 @@ from .borders import Border, Link, borders, links, tree, weights
 from .colors import colors
 from .cut import Cut
 from .names import mirror_planes, named
-from .seams import further, seams
+from .seams import further, laid_flat, seams
 
-__all__ = ["Bone", "Border", "Cut", "Link", "bones", "borders", "colors", "further", "links", "mirror_planes", "named",
-           "seams", "tree", "weights"]
+__all__ = ["Bone", "Border", "Cut", "Link", "bones", "borders", "colors", "further", "laid_flat", "links", "mirror_planes",
+           "named", "seams", "tree", "weights"]

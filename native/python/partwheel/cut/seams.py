@@ -13,6 +13,7 @@ STRETCH = 1.09  # by this factor areas of a patch may be too large or too small 
 COVERED = 0.0005  # the share of a patch that may lie on top of itself: what pixels can't tell
 NEARLY, AT_ONCE = 2, 16  # cuts into a patch: one by one, once it stretches at most twice too much; else several at once
 FAILED = 1.5  # by so much areas of an island differ only where a solver has failed: no patch is foretold half of that
+ROUNDS = 3  # so often at most seams are added where a solver failed
 SCRAP = 0.1  # of a part: pieces that are smaller, beside its largest, go with their neighbours
 LEAST = 0.05  # of a patch that is divided: each side has more
 
@@ -36,6 +37,21 @@ def seams(vertices, triangles, faces, face_count, cut, stretch=STRETCH):
         chosen += _within(whole.part(own), tree, stretch)
     chosen.append(_between(whole, labels))
     return whole.ends[np.unique(np.concatenate(chosen))]
+
+
+def laid_flat(vertices, triangles, faces, face_count, cut, unwrap):
+    """(seams (n,2), UVs (T,3,2) of the triangles' corners) of a cut: seams(), and further() where the solver failed.
+    unwrap: the UVs by given seams, asked ROUNDS + 1 times at most."""
+    surface = vertices, triangles, faces, face_count
+    ends = seams(*surface, cut)
+    uv = unwrap(ends)
+    for _ in range(ROUNDS):
+        more = further(*surface, cut, ends, uv)
+        if np.array_equal(more, ends):
+            break
+        ends = more
+        uv = unwrap(ends)
+    return ends, uv
 
 
 def further(vertices, triangles, faces, face_count, cut, ends, uv, stretch=STRETCH):

@@ -106,7 +106,7 @@ void look_below(Parts& parts) {
         Part& above = parts[part.above];
         above.halves_cost = std::max(above.halves_cost, part.own_cost);
         above.halves_gap = std::max(above.halves_gap, convexity_gap(part.volume, part.hull_volume));
-        above.least_half = seen[at(part.above)] ? std::min(above.least_half, part.log_area) : part.log_area;
+        above.least_half = std::min(above.least_half, part.log_area);
         above.dear += part.dear;
         seen[at(part.above)] = 1;
     }

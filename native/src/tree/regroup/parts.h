@@ -52,8 +52,9 @@ struct Part {
     std::vector<int32_t> pairs;
     double own_cost = -largest_cost, worst_cost = -largest_cost;  // of the merge that made it; of any below
     int32_t above = -1, beside = -1;  // what it became a part of, and with which other
-    double halves_cost = -largest_cost, halves_gap = 0, least_half = 0;  // see look_below(); least_half: of log_area
-    double dear = 0;                                                     // how many dear joins it holds
+    // See look_below(); least_half: the least log_area of a half.
+    double halves_cost = -largest_cost, halves_gap = 0, least_half = std::numeric_limits<double>::infinity();
+    double dear = 0;  // how many dear joins it holds
 
     void take_logs() {
         log_volume = log2_of(volume);
