@@ -29,9 +29,24 @@ using Corners = std::array<size_t, 3>;
 using Face = CgalMesh::Face_index;
 using Halfedge = CgalMesh::Halfedge_index;
 
-// Longer rims are filled with a fan, and so is what comes after many: the best triangulation takes time that grows with
-// the square of their length at least.
-constexpr size_t longest_triangulated = 300, most_squared = 20000000;
+// Longer rims are filled with a fan. Where Delaunay's triangulation holds no filling, the best of all takes a time that
+// grows with the cube of the length: beyond so many of its steps in all, too, a fan.
+constexpr size_t longest_triangulated = 300, most_steps = 10000000;
+
+// Counts those steps, and lets a cancellation in.
+class FillingWatcher : public pmp::Hole_filling::Default_visitor {
+public:
+    explicit FillingWatcher(Progress& progress) : progress_(&progress) {}
+    void start_cubic_phase(int steps) { steps_ += static_cast<size_t>(steps); }
+    void cubic_step() {
+        if (++step_ % 4096 == 0) progress_->advance(0);
+    }
+    bool spent() const { return steps_ > most_steps; }
+
+private:
+    Progress* progress_;
+    size_t steps_ = 0, step_ = 0;
+};
 
 // Points with equal coordinates become one, triangles without area and copies of others go.
 void read_soup(const Surface& source, std::vector<CgalPoint>& points, std::vector<Corners>& triangles, Mending& done) {
@@ -100,12 +115,13 @@ double volume_of(const CgalMesh& mesh, const std::vector<Face>& faces) {
 }
 
 // The faces that close a hole, or none if that fails.
-std::vector<Face> fill(CgalMesh& mesh, Halfedge rim, size_t& squared) {
+std::vector<Face> fill(CgalMesh& mesh, Halfedge rim, FillingWatcher& watcher) {
     std::vector<Face> patch;
     const size_t length = CGAL::halfedges_around_face(rim, mesh).size();
-    squared += length * length;
-    if (length <= longest_triangulated && squared <= most_squared) {
-        pmp::triangulate_hole(mesh, rim, std::back_inserter(patch));
+    if (length <= longest_triangulated) {
+        pmp::triangulate_hole(
+            mesh, rim, std::back_inserter(patch),
+            CGAL::parameters::visitor(std::ref(watcher)).do_not_use_cubic_algorithm(watcher.spent()));
         if (!patch.empty()) return patch;
     }
     CgalKernel::Vector_3 sum(0, 0, 0);
@@ -128,11 +144,11 @@ void fill_holes(Mended& mended, Progress& progress) {
     std::vector<Halfedge> rims;
     pmp::extract_boundary_cycles(mesh, std::back_inserter(rims));
     std::vector<size_t> holes(parts, 0);
-    size_t squared = 0;
+    FillingWatcher watcher(progress);
     for (size_t i = 0; i < rims.size(); ++i) {
         progress.advance(0.1 + 0.1 * static_cast<double>(i) / static_cast<double>(rims.size()));
         const size_t p = part[mesh.face(mesh.opposite(rims[i]))];
-        const std::vector<Face> faces = fill(mesh, rims[i], squared);
+        const std::vector<Face> faces = fill(mesh, rims[i], watcher);
         patch[p].insert(patch[p].end(), faces.begin(), faces.end());
         ++holes[p];
     }
