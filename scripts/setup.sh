@@ -168,6 +168,12 @@ setup_core() {
     venv core /usr/bin/python3 numpy scipy trimesh networkx lxml pytest libigl manifold3d pyfqmr check-jsonschema
 }
 
+# What makes the site of docs/. Pinned: its look was looked at.
+setup_docs() {
+    start_setup && packages python3 python3-venv ca-certificates || return
+    venv docs /usr/bin/python3 mkdocs==1.6.1 mkdocs-material==9.8.2 mkdocstrings==1.0.8 mkdocstrings-python==2.0.11
+}
+
 setup_batch() {
     setup_build && setup_blender && packages chromium procps &&
         venv batch /usr/bin/python3 numpy scipy trimesh networkx lxml embreex pillow pytest \
