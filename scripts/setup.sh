@@ -5,6 +5,7 @@
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
 #   setup_core      build/venv/core: Python with numpy, trimesh and what it writes 3MF by, pytest, libigl, pyfqmr,
 #                   check-jsonschema; a locale for its tests
+#   setup_docs      build/venv/docs: what makes the site of docs/
 #   setup_batch     build/venv/batch: what partwheel batch draws previews with as well; a Blender, a browser;
 #                   Ray and a server like S3's if PARTWHEEL_RAY is set
 #   setup_psb       build/deps/psb: the benchmark that parts are judged by, where it lies beside the project
