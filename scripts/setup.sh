@@ -5,6 +5,7 @@
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
 #   setup_core      build/venv/core: Python with numpy, trimesh and what it writes 3MF by, pytest, libigl, pyfqmr,
 #                   check-jsonschema; a locale for its tests
+#   setup_docs      build/venv/docs: what makes the site of docs/
 #   setup_batch     build/venv/batch: what partwheel batch draws previews with as well; a Blender, a browser;
 #                   Ray and a server like S3's if PARTWHEEL_RAY is set
 #   setup_psb       build/deps/psb: the benchmark that parts are judged by, where it lies beside the project
@@ -166,6 +167,12 @@ setup_core() {
     start_setup && packages python3 python3-venv ca-certificates locales || return
     into "$deps/locales" fill_locales || return
     venv core /usr/bin/python3 numpy scipy trimesh networkx lxml pytest libigl manifold3d pyfqmr check-jsonschema
+}
+
+# What makes the site of docs/. Pinned: its look was looked at.
+setup_docs() {
+    start_setup && packages python3 python3-venv ca-certificates || return
+    venv docs /usr/bin/python3 mkdocs==1.6.1 mkdocs-material==9.8.2 mkdocstrings==1.0.8 mkdocstrings-python==2.0.11
 }
 
 setup_batch() {

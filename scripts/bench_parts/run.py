@@ -27,7 +27,7 @@ def main():
     parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures, and prints what holds.")
     parser.add_argument("section", nargs="*", help=" ".join(SECTIONS))
     parser.add_argument("--quick", action="store_true", help="fewer and smaller models, some 3 minutes")
-    parser.add_argument("--readme", action="store_true", help="also put table and plot into README.md and docs/images")
+    parser.add_argument("--docs", action="store_true", help="also put table and plot into docs/benchmarks.md and docs/images")
     arguments = parser.parse_args()
     for name in arguments.section:
         if name not in SECTIONS:
@@ -51,8 +51,8 @@ def main():
     if "scale" in reports:
         plot.draw(reports["scale"], BUILD / "scale.png")
     print(f"\n{text}")
-    if arguments.readme:
-        table.into_readme(text, reports, ROOT)
+    if arguments.docs:
+        table.into_docs(text, reports, ROOT)
     return 0
 
 

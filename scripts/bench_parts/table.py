@@ -1,12 +1,13 @@
 """The table: what was measured, its goal, whether it holds; and beside it the peers. In Markdown."""
 
+import pathlib
 import shutil
 import textwrap
 
 from programs import BUILD, ROOT, Failure
 
-BEGIN, END = "<!-- scripts/bench --readme: from here", "<!-- to here -->"
-PLOT = "docs/images/scale.png"
+BEGIN, END = "<!-- scripts/bench --docs: from here", "<!-- to here -->"
+PLOT = pathlib.Path("docs/images/scale.png")
 
 
 def text(reports):
@@ -154,14 +155,14 @@ def markdown(rows):
     return "\n".join(lines)
 
 
-def into_readme(table, reports, root=ROOT):
-    """Replaces what README.md has between the two marks, and the plot."""
-    readme = root / "README.md"
-    before, begin, rest = readme.read_text("utf-8").partition(BEGIN)
+def into_docs(table, reports, root=ROOT):
+    """Replaces what docs/benchmarks.md has between the two marks, and the plot."""
+    page = root / "docs" / "benchmarks.md"
+    before, begin, rest = page.read_text("utf-8").partition(BEGIN)
     mark, end, after = rest.partition(END)
     if not begin or not end:
-        raise Failure(f"README.md has no marks '{BEGIN} ...' and '{END}'")
-    plot = f"![Time and memory against size]({PLOT})\n\n" if "scale" in reports else ""
-    readme.write_text(f"{before}{BEGIN}{mark.splitlines()[0]}\n\n{plot}{table}\n{END}{after}", "utf-8")
+        raise Failure(f"{page} has no marks '{BEGIN} ...' and '{END}'")
+    plot = f"![Time and memory against size]({PLOT.relative_to('docs')})\n\n" if "scale" in reports else ""
+    page.write_text(f"{before}{BEGIN}{mark.splitlines()[0]}\n\n{plot}{table}\n{END}{after}", "utf-8")
     if plot:
         shutil.copyfile(BUILD / "scale.png", root / PLOT)

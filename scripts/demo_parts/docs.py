@@ -1,4 +1,4 @@
-"""Makes the README's pictures, docs/images, of what the demo left: a few wheel stops by name, a few cuts, and the ways of
+"""Makes the docs' pictures, docs/images, of what the demo left: a few wheel stops by name, a few cuts, and the ways of
 building.
 
 Run as: python docs.py FOLDER IMAGES

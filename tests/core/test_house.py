@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The house from its sources: data flows one way, so imports do; no room is too full; the README lists the rooms."""
+"""The house from its sources: data flows one way, so imports do; no room is too full; the docs list the rooms."""
 
 import ast
 import functools
@@ -99,8 +99,8 @@ def test_no_room_is_too_full(tree):
     assert full == {}
 
 
-def test_the_readme_lists_the_rooms():
-    text = (ROOT / "README.md").read_text()
+def test_the_docs_list_the_rooms():
+    text = (ROOT / "docs" / "how.md").read_text()
     rooms = {path.parent.relative_to(ROOT).as_posix() + "/" for path in code(ROOT / "native") + code(ROOT / "addon")}
     listed = set(re.findall(r"^    ((?:native|addon)/[\w/]*/) ", text, re.M))
     assert listed == rooms

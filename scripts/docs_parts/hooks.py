@@ -1,0 +1,29 @@
+"""What the site does otherwise than the files of docs/: the C API's page is made from the headers, and a link to a source
+file, which the site doesn't have, is the file's path."""
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+HEADERS = ROOT / "native" / "include"
+OUTSIDE = re.compile(r"\[([^]]+)\]\((?:\.\./)+([^)#]+)\)")
+
+
+def on_page_markdown(markdown, page, **_):
+    if page.file.src_path == "api_c.md":
+        markdown += "".join(map(section, ("partwheel.h", "partwheel_types.h", "partwheel_edit.h")))
+    return OUTSIDE.sub(lambda link: f"{link[1]} (`{link[2]}`)" if link[2] not in link[1] else link[1], markdown)
+
+
+def section(header):
+    """A header as a page reads it: each chapter with its comments and declarations, as they stand."""
+    text = (HEADERS / header).read_text()
+    chapters = re.split(r"^/\* -{4} (.+?) -+ \*/\n", text, flags=re.M)
+    head, chapters = chapters[0], zip(chapters[1::2], chapters[2::2])
+    about = re.sub(r"^ \*? ?", "", head[2:head.index("*/")], flags=re.M)
+    parts = [f"\n\n## {header}\n\n```text\n{about.strip()}\n```\n"]
+    rest = head[head.index("*/") + 2:].strip()
+    if rest:
+        parts.append(f"\n```c\n{rest}\n```\n")
+    parts += [f"\n### {title}\n\n```c\n{body.strip()}\n```\n" for title, body in chapters]
+    return "".join(parts)

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""README and docs against what they speak of: links lead somewhere, what is named is there, the Python examples run."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+import shapes
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")])
+LONGEST_README = 150  # lines
+EXAMPLES = re.compile(r"```python\n(.*?)```", re.S)
+
+named = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+
+
+def anchors(page):
+    """As GitHub and MkDocs make them of headings."""
+    headings = re.findall(r"^#+ (.+)$", page.read_text(), re.M)
+    return {re.sub(r"[^\w -]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
+
+
+@named
+def test_links_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text()):
+        if "://" in target:
+            continue
+        path, _, anchor = target.partition("#")
+        file = (page.parent / path).resolve() if path else page
+        assert file.exists(), target
+        assert not anchor or anchor in anchors(file), target
+
+
+@named
+def test_scripts_and_files_that_are_named_exist(page):
+    text = page.read_text()
+    paths = re.findall(r"(?:^    |`)((?:scripts(?!/partwheel\.js)|tests|native|addon|docs|cmake)/[\w./]+)", text, re.M)
+    for path in paths:
+        assert (ROOT / path.rstrip(".")).exists(), path
+
+
+def test_each_page_is_in_the_sites_menu_and_each_picture_on_a_page():
+    menu = (ROOT / "mkdocs.yml").read_text()
+    text = "".join(page.read_text() for page in PAGES)
+    for page in (ROOT / "docs").rglob("*.md"):
+        assert page.relative_to(ROOT / "docs").as_posix() in menu
+    for picture in (ROOT / "docs" / "images").iterdir():
+        assert f"images/{picture.name})" in text, picture
+
+
+def test_the_readme_is_short():
+    assert len((ROOT / "README.md").read_text().splitlines()) <= LONGEST_README
+
+
+def test_shortcuts_of_a_part_are_in_the_keymap():
+    """The docs speak of Shift, Ctrl and a letter; the add-on binds those letters and no others."""
+    text = "".join(page.read_text() for page in PAGES)
+    told = set(re.findall(r"Shift Ctrl ([A-Z])\b", text)) | set(re.findall(r"\*\*([A-Z])\*\*", re.search(
+        r"have Shift, Ctrl and a letter.*?status bar", text, re.S)[0]))
+    view = (ROOT / "addon/partwheel/view/keys.py").read_text()
+    keymap = (ROOT / "addon/partwheel/ui/keymap.py").read_text()
+    bound = set(re.findall(r'Command\("[\w.]+", "([A-Z])"', view)) | set(re.findall(r'"([A-Z])", "PRESS"', keymap))
+    bound |= set(re.findall(r'Key\("SNAP_BORDER", frozenset\("(\w)"\)', view))
+    assert told == bound
+
+
+def test_the_python_examples_run():
+    examples = [text for text in EXAMPLES.findall((ROOT / "docs" / "scripting.md").read_text()) if "hierarchy" in text]
+    assert len(examples) == 2
+    hand = shapes.SHAPES["hand.off"]()
+    scope = {"vertices": hand.vertices, "triangles": hand.triangles}
+    exec(compile(examples[0], "docs/scripting.md", "exec"), scope)
+    assert 0 < scope["part"].sum() < len(hand.triangles) and len(scope["cut"]) > 1
+    first = scope["saved"]
+    exec(compile(examples[1], "docs/scripting.md", "exec"), scope)
+    assert scope["hierarchy"].save() == first
+
+
+def test_what_the_examples_for_blender_call_is_in_the_api():
+    text = next(text for text in EXAMPLES.findall((ROOT / "docs" / "scripting.md").read_text()) if "import api" in text)
+    api = ast.parse((ROOT / "addon" / "partwheel" / "api.py").read_text())
+    functions = {node.name: node for node in api.body if isinstance(node, ast.FunctionDef)}
+    calls = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)
+             and getattr(node.func.value, "id", "") == "api"]
+    assert len(calls) >= 8
+    for call in calls:
+        arguments = functions[call.func.attr].args
+        names = [each.arg for each in arguments.args + arguments.kwonlyargs]
+        assert len(call.args) <= len(arguments.args)
+        assert {keyword.arg for keyword in call.keywords} <= set(names), call.func.attr
