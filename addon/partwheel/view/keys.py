@@ -61,9 +61,14 @@ COMMANDS = (
     Command("mesh.partwheel_deform", "J", "Turn Joint", {"method": "JOINT"}),
     Command("mesh.partwheel_move", "G", "Move"),
     Command("mesh.partwheel_deform", "P", "Move Within", {"method": "PROPORTIONAL", "start": "G"}),
+    Command("mesh.partwheel_similar", "L", "Similar"),
+    Command("mesh.partwheel_mirrored", "F", "Other Side"),
     Command("mesh.partwheel_copy", "C", "Copy"),
     Command("mesh.partwheel_remove", "X", "Remove"),
 )
+
+# While the parts that are alike are chosen.
+ALIKE = (Key("ALIKE", frozenset(TURNS), "More, Fewer", names="Wheel, ↑↓"), CONFIRM, NAVIGATE, CANCEL)
 
 # While a part is deformed: between two movements of the handle, and during one.
 DRAG = Key("DRAG", frozenset({"LEFTMOUSE"}), "Drag the Handle, or Put It Elsewhere", ("MOUSE_LMB_DRAG",))
