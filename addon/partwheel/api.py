@@ -45,6 +45,7 @@ from .mesh.refusing import Refused, read_only
 from .parts import builds, picks, registry
 from .pick import borders, states
 from .related import others
+from .related import remembered as named
 from .solid import composition, solids
 from partwheel import PartwheelError, Status
 from partwheel.cut import Cut
@@ -183,6 +184,20 @@ def mirrored(obj, node, plane=1):
     if not 1 <= plane <= len(images):
         raise ValueError(f"There are {len(images)} such planes, numbered from 1.")
     return images[plane - 1].node
+
+
+def remember(obj, node, name, snap=False):
+    """The node gets a name, which the panel lists: the face attribute "part: NAME" of the mesh, 1 on its faces.
+    partwheel.Error: another has it."""
+    _mesh(obj, changes=True)
+    named.remember(obj.data, name, faces(obj, node, snap))
+
+
+def remembered(obj):
+    """{name: node} of the remembered parts: that which has most in common with the faces then. partwheel.Error: one of
+    them is no more."""
+    built = hierarchy(obj)
+    return {name: named.node(obj, built, name)[0] for name in named.names(obj.data)}
 
 
 def cut(obj, parts=None, height=None, least_concavity=None, automatic=False):

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From the part in hand to others, without a window: those that are alike, and the one on the other side."""
 
+import tempfile
+from pathlib import Path
+
 import bpy
 import numpy
 from common import BOX, flags, part, read_off, selected
@@ -48,10 +51,10 @@ class Related(ToolTest):
     def api(self):
         return part("api")
 
-    def bar(self, axis, way):
-        """(the node that is nearest to being a bar, its faces)"""
+    def bar(self, axis, way, begin=4):
+        """The node that is nearest to being a bar. begin: of the one towards +."""
         centers = numpy.array([face.center for face in self.obj.data.polygons])[:, axis]
-        wanted = set(numpy.flatnonzero(centers > 4 if way > 0 else centers < 0).tolist())
+        wanted = set(numpy.flatnonzero(centers > begin if way > 0 else centers < 0).tolist())
         overlap = [len(wanted & faces) / len(wanted | faces)
                    for faces in (set(self.h.faces(node).tolist()) for node in range(len(self.h.parent)))]
         self.assertGreater(max(overlap), 0.8)
@@ -146,6 +149,69 @@ class Related(ToolTest):
                 bpy.ops.mesh.partwheel_mirrored()
             self.assertEqual(selected(obj), before)
             bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_remembered_parts(self):
+        bars = [self.bar(axis, 1) for axis in range(3)]
+        for bar, name in zip(bars, ("Left Arm", "Bein", "頭")):
+            self.in_hand(bar)
+            self.assertEqual(bpy.ops.mesh.partwheel_remember(part=f" {name} "), {"FINISHED"})
+            bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertEqual(self.api.remembered(self.obj), dict(zip(("Left Arm", "Bein", "頭"), bars)))
+        self.edit(self.obj)
+        for name, bar in zip(("頭", "Left Arm"), (bars[2], bars[0])):
+            self.assertEqual(bpy.ops.mesh.partwheel_recall(part=name), {"FINISHED"})
+            self.assertEqual(selected(self.obj), self.faces(bar))
+            self.assertEqual(part("parts.picks").picked(self.obj).node, bar)
+        bpy.ops.mesh.partwheel_recall(part="Bein", extend=True)
+        self.assertEqual(selected(self.obj), self.faces(bars[0], bars[1]))
+        bpy.ops.mesh.partwheel_recall(part="Left Arm", deselect=True)
+        self.assertEqual(selected(self.obj), self.faces(bars[1]))
+        self.assertEqual(bpy.ops.mesh.partwheel_rename(part="Bein", new="Leg"), {"FINISHED"})
+        self.assertEqual(bpy.ops.mesh.partwheel_forget(part="Left Arm"), {"FINISHED"})
+        self.assertEqual(set(part("related.remembered").names(self.obj.data)), {"Leg", "頭"})
+        for operator, values, words in (
+                (bpy.ops.mesh.partwheel_remember, {"part": "Leg"}, "There is a part that is remembered as Leg"),
+                (bpy.ops.mesh.partwheel_remember, {"part": "  "}, "can't be empty"),
+                (bpy.ops.mesh.partwheel_remember, {"part": 60 * "x"}, "too long"),
+                (bpy.ops.mesh.partwheel_rename, {"part": "Leg", "new": "頭"}, "There is a part"),
+                (bpy.ops.mesh.partwheel_recall, {"part": "Left Arm"}, "No part of model is remembered as Left Arm"),
+                (bpy.ops.mesh.partwheel_forget, {"part": "Left Arm"}, "No part")):
+            with self.assertRaisesRegex(RuntimeError, words):
+                operator(**values)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertEqual(self.api.remembered(self.obj), {"Leg": bars[1], "頭": bars[2]})
+
+    def test_remembered_parts_are_found_again(self):
+        """After moving vertices, after finding the parts anew, after edits of the mesh, in another file."""
+        obj = self.obj
+        bar, own = self.bar(1, 1), self.faces(self.bar(1, 1))
+        self.api.remember(obj, bar, "Bar")
+        for vertex in obj.data.vertices:
+            vertex.co.y *= 1.5
+        obj.data.update()
+        self.assertEqual(self.api.remembered(obj), {"Bar": bar})
+        self.h = self.api.build(obj)
+        self.assertEqual(self.api.remembered(obj), {"Bar": self.bar(1, 1, 6)})
+        self.edit(obj)
+        bpy.ops.mesh.partwheel_recall(part="Bar")
+        self.assertGreater(len(selected(obj) & own), 0.8 * len(selected(obj) | own))
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.subdivide(number_cuts=1)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        with tempfile.TemporaryDirectory() as directory:
+            path = str(Path(directory) / "kept.blend")
+            bpy.data.libraries.write(path, {obj})
+            bpy.data.objects.remove(obj)
+            with bpy.data.libraries.load(path) as (_, wanted):
+                wanted.objects = ["model"]
+        self.obj = obj = self.link(wanted.objects[0])
+        self.h = self.api.build(obj)
+        found, wanted = self.faces(self.api.remembered(obj)["Bar"]), self.faces(self.bar(1, 1, 6))
+        self.assertGreater(len(found & wanted), 0.7 * len(found | wanted))
+        with self.assertRaisesRegex(part("mesh.refusing").Refused, "No part of model as it is now is much like"):
+            few = obj.data.attributes.new("part: every other", "INT", "FACE")
+            few.data.foreach_set("value", numpy.arange(len(obj.data.polygons), dtype=numpy.int32) % 3 == 0)
+            self.api.remembered(obj)
 
     def test_a_part_must_be_in_hand(self):
         self.edit(self.obj)

@@ -2,6 +2,6 @@
 """Which parts of a model are alike, and which are each other's mirror images."""
 
 from .mirrored import Image, mirrored
-from .similar import THRESHOLD, measures, similar
+from .similar import THRESHOLD, measures, nearest, similar
 
-__all__ = ["THRESHOLD", "Image", "measures", "mirrored", "similar"]
+__all__ = ["THRESHOLD", "Image", "measures", "mirrored", "nearest", "similar"]

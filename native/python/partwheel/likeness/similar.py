@@ -152,3 +152,13 @@ def _refined(points, staying, turn):
 def _squared(moving, staying):
     """(...,n,m) distances squared."""
     return np.maximum((moving ** 2).sum(axis=-1)[..., None] + (staying ** 2).sum(axis=-1) - 2 * moving @ staying.T, 0)
+
+
+def nearest(hierarchy, inside):
+    """(the node that has most in common with a set of faces, its overlap with them by their number, 0..1). inside (F,)
+    bool: the faces. Of nodes with the same faces that which people would take most likely."""
+    running = np.concatenate([[0], np.cumsum(inside[hierarchy.order])])
+    common = running[hierarchy.last] - running[hierarchy.first]
+    overlap = common / np.maximum(hierarchy.last - hierarchy.first + running[-1] - common, 1)
+    best = int(np.lexsort((hierarchy.score, overlap))[-1])
+    return best, float(overlap[best])
