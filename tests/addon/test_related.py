@@ -2,6 +2,7 @@
 """From the part in hand to others, without a window: those that are alike, and the one on the other side."""
 
 import tempfile
+import types
 from pathlib import Path
 
 import bpy
@@ -164,6 +165,11 @@ class Related(ToolTest):
             self.assertEqual(part("parts.picks").picked(self.obj).node, bar)
         bpy.ops.mesh.partwheel_recall(part="Bein", extend=True)
         self.assertEqual(selected(self.obj), self.faces(bars[0], bars[1]))
+        for held in ({}, {"shift": True}, {"ctrl": True}):  # a click on the name
+            tool = Tool("recall", ("MESH",), part="Left Arm")
+            self.assertEqual(tool.invoke(FakeContext(), event("LEFTMOUSE", **held)), {"FINISHED"})
+            self.assertEqual((tool.extend, tool.deselect), (bool(held.get("shift")), bool(held.get("ctrl"))))
+            bpy.ops.mesh.partwheel_recall(part="Bein", extend=True)
         bpy.ops.mesh.partwheel_recall(part="Left Arm", deselect=True)
         self.assertEqual(selected(self.obj), self.faces(bars[1]))
         self.assertEqual(bpy.ops.mesh.partwheel_rename(part="Bein", new="Leg"), {"FINISHED"})
@@ -180,6 +186,20 @@ class Related(ToolTest):
                 operator(**values)
         bpy.ops.object.mode_set(mode="OBJECT")
         self.assertEqual(self.api.remembered(self.obj), {"Leg": bars[1], "頭": bars[2]})
+
+    def test_the_list_shows_and_searches_remembered_parts(self):
+        for bar, name in ((self.bar(0, 1), "Left Arm"), (self.bar(1, 1), "Leg"), (self.bar(2, 1), "Armour")):
+            self.api.remember(self.obj, bar, name)
+        mesh = self.obj.data
+        mesh.attributes.new("arm of somebody else's", "INT", "FACE")
+        self.assertEqual(part("related.remembered").names(mesh), ["Left Arm", "Leg", "Armour"])
+        for wanted, found in (("", ["Left Arm", "Leg", "Armour"]), ("arm", ["Left Arm", "Armour"]), ("L*G", ["Leg"]),
+                              ("part", []), ("x", [])):
+            field = types.SimpleNamespace(filter_name=wanted, bitflag_filter_item=4, use_filter_sort_alpha=False)
+            flags, _ = part("ui.remembered").VIEW3D_UL_partwheel_remembered.filter_items(field, None, mesh, "")
+            self.assertEqual(set(flags), {0, 4} if found else {0})
+            self.assertEqual([f"part: {name}" for name in found],
+                             [each.name for each, flag in zip(mesh.attributes, flags) if flag])
 
     def test_remembered_parts_are_found_again(self):
         """After moving vertices, after finding the parts anew, after edits of the mesh, in another file."""

@@ -3,13 +3,12 @@
 here is Partwheel's. The truth that similar.py measures against."""
 
 import numpy as np
-from scipy.cluster.hierarchy import average, fcluster
 from scipy.spatial import cKDTree
-from scipy.spatial.distance import squareform
 
 POINTS = 400
-NEAR = 0.05  # mean distance after alignment, in roots of the area, up to which two segments are alike
-FAR = 0.2  # at least so far apart are those whose areas alone say so
+# Mean distance after alignment, in roots of the area, up to which two segments are alike (the same twice: 0.027, by the
+# points' own distances), and from which on they are not.
+NEAR, FAR = 0.05, 0.08
 LEAST = 0.002  # of the whole's area: smaller segments are left out
 STEPS, TURNS, TRIES = 30, 8, 6
 
@@ -71,12 +70,3 @@ def distances(mesh, labels):
             if 0.6 < surfaces[one].area / surfaces[other].area < 1 / 0.6:
                 found[i, j] = found[j, i] = apart(surfaces[one], surfaces[other])
     return np.array(kept), found
-
-
-def groups(kept, found, near=NEAR):
-    """[[label, ...], ...] of two and more segments that are alike on average (agglomerative, average linkage)."""
-    if len(kept) < 2:
-        return []
-    found = np.where(np.eye(len(kept), dtype=bool), 0, np.minimum(found, FAR))
-    of = fcluster(average(squareform(found, checks=False)), near, "distance")
-    return [kept[of == number].tolist() for number in np.unique(of) if np.count_nonzero(of == number) > 1]

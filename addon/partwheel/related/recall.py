@@ -7,6 +7,7 @@ from ..mesh.refusing import Refused, can, changeable
 from ..mesh.selection import Selections
 from ..parts import picks, registry
 from ..pick import borders
+from ..view import overlay
 from . import remembered
 
 
@@ -26,8 +27,7 @@ class _InEditMode:
         except Refused as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        if context.area:
-            context.area.tag_redraw()
+        overlay.redraw()  # and with the view the list beside it
         return {"FINISHED"}
 
 

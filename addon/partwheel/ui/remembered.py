@@ -16,9 +16,13 @@ class VIEW3D_UL_partwheel_remembered(bpy.types.UIList):
     def draw_item(self, _context, layout, _mesh, attribute, _icon, _active, _property):
         name = attribute.name[len(remembered.PREFIX):]
         row = layout.row(align=True)
-        row.operator("mesh.partwheel_recall", text=name, icon="RESTRICT_SELECT_OFF", emboss=False).part = name
-        row.operator("mesh.partwheel_rename", text="", icon="GREASEPENCIL", emboss=False).part = name
-        row.operator("mesh.partwheel_forget", text="", icon="X", emboss=False).part = name
+        left = row.row()
+        left.alignment = "LEFT"
+        left.operator("mesh.partwheel_recall", text=name, icon="RESTRICT_SELECT_OFF", emboss=False).part = name
+        right = row.row(align=True)
+        right.alignment = "RIGHT"
+        right.operator("mesh.partwheel_rename", text="", icon="GREASEPENCIL", emboss=False).part = name
+        right.operator("mesh.partwheel_forget", text="", icon="X", emboss=False).part = name
 
     def filter_items(self, _context, mesh, _property):
         wanted = f"*{self.filter_name.lower()}*"
@@ -37,7 +41,10 @@ class VIEW3D_PT_partwheel_remembered(bpy.types.Panel):
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_parent_id = "VIEW3D_PT_partwheel"
-    bl_context = "mesh_edit"
+
+    @classmethod
+    def poll(cls, context):
+        return context.mode == "EDIT_MESH"
 
     def draw(self, context):
         mesh = context.edit_object.data

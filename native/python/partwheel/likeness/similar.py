@@ -17,7 +17,7 @@ POINTS, FINE, COARSE = 192, 768, 3  # on a surface: to align; to measure with; o
 TURNS, TRIES, STEPS = 8, 3, 8  # about the longest axis; how many of all turns are refined, and in how many steps
 UNLIKE = 0.5  # mean difference of logarithms of lengths up to which a node is aligned at all
 MOST, NESTED = 120, 4  # nodes that are aligned, and of those how many in one place
-LENGTHS, ALIGNED, SCORE = 0.3, 4.0, 0.3  # weights: fitted to people's segments, tests/quality/similar.py
+LENGTHS, ALIGNED, SCORE = 0.3, 4.0, 0.6  # weights: fitted to people's segments, tests/quality/similar.py
 THRESHOLD = 0.78  # of likeness, from which on parts are taken for alike
 DIGITS = 9
 NARROW = 0.05  # of the root of the area: the radius of a border below which it doesn't count how much
@@ -72,18 +72,18 @@ def similar(hierarchy, measured, node):
     alike from a threshold on are the list's beginning."""
     unlike = abs(measured.lengths - measured.lengths[node]).mean(axis=1)
     first, last = hierarchy.first, hierarchy.last
+    lacking = np.maximum(0, hierarchy.score[node] - hierarchy.score)  # less of what people take for a part
     beside = (last > first) & ((last <= first[node]) | (first >= last[node]))
     near = np.flatnonzero(beside & (unlike < UNLIKE))
-    chosen = []
-    for other in near[np.argsort(unlike[near], kind="stable")].tolist():
+    chosen, known = [], LENGTHS * unlike + SCORE * lacking
+    for other in near[np.argsort(known[near], kind="stable")].tolist():
         if sum(first[other] < last[each] and first[each] < last[other] for each in chosen) < NESTED:
             chosen.append(other)
             if len(chosen) == MOST:
                 break
     own, found = Surface(measured, node), []
     for other in chosen:
-        lacking = max(0.0, hierarchy.score[node] - hierarchy.score[other])  # less of what people take for a part
-        apart = LENGTHS * unlike[other] + ALIGNED * distance(own, Surface(measured, other)) + SCORE * lacking
+        apart = known[other] + ALIGNED * distance(own, Surface(measured, other))
         # Products of matrices differ in their last bits with where these lie in memory: that is no part of a likeness.
         found.append((-round(float(np.exp(-apart)), DIGITS), other))
     kept = []
