@@ -10,7 +10,7 @@ segment most, of four clicks on it; segments that no stop overlaps by half have 
 apart. A part that was found is right if it overlaps a segment that is alike by half, by area, and no other did.
 
 Mirrored: in models that are their own mirror image, of segments whose mirror image is another segment of that person's
-(by half), the share for which that is what is found.
+(by half), the share for which that is among what is found, one part for each of the model's planes.
 """
 
 import argparse
@@ -61,8 +61,7 @@ class Model:
         return self.known[node]
 
     def mirrored(self, node):
-        images = likeness.mirrored(self.hierarchy, *self.surface, node)
-        return images[0].node if images else None
+        return [image.node for image in likeness.mirrored(self.hierarchy, *self.surface, node)]
 
 
 def figures(path, segmentations):
@@ -85,9 +84,8 @@ def figures(path, segmentations):
             if like.any():
                 _count(count, overlaps[:, model.similar(node)], like, apart[number] <= alike.FAR)
             if image is not None:
-                other = model.mirrored(node)
                 count["mirrors"] += 1
-                count["mirrored"] += other is not None and overlaps[image][other] >= HALF
+                count["mirrored"] += (overlaps[image][model.mirrored(node)] >= HALF).any()
     return count
 
 

@@ -40,7 +40,7 @@ def mirrored(hierarchy, vertices, triangles, faces, node):
         images = points - 2 * np.outer(points @ normal - offset, normal)
         hits = np.bincount(_faces_at(images, corners, double, faces), minlength=len(inside))[hierarchy.order]
         hits = np.concatenate([[0], np.cumsum(hits)]) / POINTS
-        common = (hits[hierarchy.last] - hits[hierarchy.first]) * area[node]
+        common = np.minimum((hits[hierarchy.last] - hits[hierarchy.first]) * area[node], area)
         overlap = common / np.maximum(area[node] + area - common, 1e-300)
         if overlap[node] < BESIDE:
             apart = (hierarchy.last <= hierarchy.first[node]) | (hierarchy.first >= hierarchy.last[node])
