@@ -96,6 +96,28 @@ def test_the_whole_has_none(six):
     assert likeness.mirrored(hierarchy, *shape[:3], whole) == []
 
 
+def test_a_part_inside_has_none(build_shape):
+    shape, hierarchy = build_shape("hand.off")
+    inside = int(np.flatnonzero(hierarchy.first == hierarchy.last)[0])
+    assert similar(shape, hierarchy, inside) == [] == likeness.mirrored(hierarchy, *shape[:3], inside)
+
+
+def test_nearest_is_the_node_with_most_in_common(build_shape):
+    shape, hierarchy = build_shape("hand.off")
+    random = np.random.default_rng(0)
+    for node in random.choice(np.flatnonzero(hierarchy.last - hierarchy.first > 20), 20).tolist():
+        inside = np.zeros(shape.face_count, bool)
+        inside[hierarchy.faces(node)] = True
+        found, overlap = likeness.nearest(hierarchy, inside)
+        assert overlap == 1 and set(hierarchy.faces(found).tolist()) == set(hierarchy.faces(node).tolist())
+        inside ^= random.random(len(inside)) < 0.05
+        faces = set(np.flatnonzero(inside).tolist())
+        overlaps = [len(faces & other) / len(faces | other)
+                    for other in (set(hierarchy.faces(each).tolist()) for each in range(len(hierarchy.parent)))]
+        found, overlap = likeness.nearest(hierarchy, inside)
+        assert overlap == pytest.approx(max(overlaps)) == overlaps[found]
+
+
 def test_measures_are_those_of_each_nodes_own_faces(six):
     shape, _, hierarchy = six
     measured = likeness.measures(hierarchy, *shape[:3])

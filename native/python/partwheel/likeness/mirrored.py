@@ -32,6 +32,8 @@ def mirrored(hierarchy, vertices, triangles, faces, node):
     inside = np.zeros(len(hierarchy.order), bool)
     inside[hierarchy.faces(node)] = True
     own = inside[faces]
+    if not own.any():
+        return []
     points = spread_over(corners[own], double[own], POINTS)[0]
     area = np.cumsum(np.concatenate([[0], np.bincount(faces, double, len(inside))[hierarchy.order]]))
     area = area[hierarchy.last] - area[hierarchy.first]

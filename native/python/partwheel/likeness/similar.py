@@ -13,12 +13,13 @@ import numpy as np
 
 from ..compatible import spread_over
 
-POINTS, FINE, COARSE = 192, 768, 3  # on a surface: to align; to measure with; of how many one is enough to choose turns
+POINTS, FINE, COARSE = 192, 768, 4  # on a surface: to align; to measure with; of how many one is enough to choose turns
 TURNS, TRIES, STEPS = 8, 3, 8  # about the longest axis; how many of all turns are refined, and in how many steps
 UNLIKE = 0.5  # mean difference of logarithms of lengths up to which a node is aligned at all
 MOST, NESTED = 120, 4  # nodes that are aligned, and of those how many in one place
 LENGTHS, ALIGNED, SCORE = 0.3, 4.0, 0.6  # weights: fitted to people's segments, tests/quality/similar.py
 THRESHOLD = 0.78  # of likeness, from which on parts are taken for alike
+HOPELESS = 0.12  # mean distance, in roots of the area, before refining: such are not refined
 DIGITS = 9
 NARROW = 0.05  # of the root of the area: the radius of a border below which it doesn't count how much
 
@@ -69,11 +70,13 @@ def measures(hierarchy, vertices, triangles, faces):
 def similar(hierarchy, measured, node):
     """[(node, likeness), ...] beside a node: those that are most like it, apart from each other and from it, the most
     alike first. likeness: 1 for the same shape and size, down to 0; mirror images count as the same. So all that are
-    alike from a threshold on are the list's beginning."""
+    alike from a threshold on are the list's beginning. Of a node inside, without faces, there are none."""
+    if measured.first[node] == measured.last[node]:
+        return []
     unlike = abs(measured.lengths - measured.lengths[node]).mean(axis=1)
     first, last = hierarchy.first, hierarchy.last
     lacking = np.maximum(0, hierarchy.score[node] - hierarchy.score)  # less of what people take for a part
-    beside = (last > first) & ((last <= first[node]) | (first >= last[node]))
+    beside = (measured.last > measured.first) & ((last <= first[node]) | (first >= last[node]))
     near = np.flatnonzero(beside & (unlike < UNLIKE))
     chosen, known = [], LENGTHS * unlike + SCORE * lacking
     for other in near[np.argsort(known[near], kind="stable")].tolist():
@@ -111,7 +114,9 @@ class Surface:
 def distance(one, other):
     """The mean distance of two Surfaces once one is brought onto the other, relative to the other's size."""
     turns, staying = _turns(one.axes, other.axes), other.points
-    rough = np.sqrt(_squared(one.points[::COARSE] @ turns.transpose(0, 2, 1), staying).min(axis=2)).mean(axis=1)
+    rough = np.sqrt(_squared(one.points[::COARSE] @ turns.transpose(0, 2, 1), staying[::2]).min(axis=2)).mean(axis=1)
+    if rough.min() > HOPELESS * other.size:
+        return float(rough.min() / other.size)
     best = np.inf
     for turn in turns[np.argsort(rough.round(DIGITS), kind="stable")[:TRIES]]:
         turn, shift = _refined(one.points, staying, turn)
