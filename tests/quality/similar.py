@@ -116,8 +116,8 @@ def shares(count):
     """(strict precision, precision, recall, mirrored); nan of nothing."""
     with np.errstate(invalid="ignore", divide="ignore"):
         right, wrong = np.float64(count["right"]), count["wrong"]
-        return (right / (right + wrong + count["unclear"]), right / (right + wrong), np.float64(count["found"]) / count["wanted"],
-                np.float64(count["mirrored"]) / count["mirrors"])
+        return (right / (right + wrong + count["unclear"]), right / (right + wrong),
+                np.float64(count["found"]) / count["wanted"], np.float64(count["mirrored"]) / count["mirrors"])
 
 
 def main():
@@ -136,7 +136,8 @@ def main():
             rows[name] = [pool.submit(figures, args.meshes / f"{model}.off",
                                       sorted((args.segmentations / str(model)).glob("*.seg"))[:args.people])
                           for model in models[:args.models]]
-        print("| category | precision, strictly | precision | recall | mirrored | segments without a part |\n|---|---|---|---|---|---|")
+        print("| category | precision, strictly | precision | recall | mirrored | segments without a part |")
+        print("|---|---|---|---|---|---|")
         table = []
         for name, pending in rows.items():
             found = [each.result() for each in pending]
