@@ -230,7 +230,7 @@ class Related(ToolTest):
         self.assertGreater(len(found & wanted), 0.7 * len(found | wanted))
         with self.assertRaisesRegex(part("mesh.refusing").Refused, "No part of model as it is now is much like"):
             few = obj.data.attributes.new("part: every other", "INT", "FACE")
-            few.data.foreach_set("value", numpy.arange(len(obj.data.polygons), dtype=numpy.int32) % 3 == 0)
+            few.data.foreach_set("value", (numpy.arange(len(obj.data.polygons)) % 3 == 0).astype(numpy.int32))
             self.api.remembered(obj)
 
     def test_a_part_must_be_in_hand(self):
