@@ -8,6 +8,7 @@ window. While the add-on is enabled, whatever its repository is called, and in B
     arm = api.part(obj, 42, level=2)       # a click on face 42 and two notches up
     api.select(obj, arm)
     copy = api.copy_part(obj, arm)         # the part as a closed solid, a new object
+    fingers = api.similar(obj, finger)     # [(node, likeness), ...] of the parts that are alike
     labels = api.cut(obj, parts=8)         # (F,) the part of each face, 0 to 7
     api.write(obj, api.parts(obj), to={"OBJECTS", "VERTEX_GROUPS"})  # the whole model in parts
     api.swap(obj, arm, other)              # exchanged for the most compatible part of another object
@@ -43,11 +44,14 @@ from .mesh import arrays, selection
 from .mesh.refusing import Refused, read_only
 from .parts import builds, picks, registry
 from .pick import borders, states
+from .related import others
+from .related import remembered as named
 from .solid import composition, solids
 from partwheel import PartwheelError, Status
 from partwheel.cut import Cut
 from partwheel.deform import MOST_ITERATIONS
 from partwheel.joint import REACH
+from partwheel.likeness import THRESHOLD
 
 Build, State = builds.Build, registry.State
 
@@ -165,6 +169,35 @@ def select(obj, node=None, faces=None, extend=False, deselect=False, snap=False)
     if face is not None:
         picks.remember(obj, face, number, snap)
     return chosen
+
+
+def similar(obj, node, threshold=THRESHOLD):
+    """[(node, likeness), ...] the other parts that are alike in shape and size, mirror images among them, the most alike
+    first; none overlaps another or the node. likeness: 1 for the same down to 0; threshold: the least."""
+    return [each for each in others.alike(obj, *_node(obj, node)) if each[1] >= threshold]
+
+
+def mirrored(obj, node, plane=1):
+    """The node on the other side of the model. plane: of the planes in which it is its own mirror image and the node has
+    another part on its other side, the best one first. partwheel.Error: there is none."""
+    images = others.images(obj, *_node(obj, node))
+    if not 1 <= plane <= len(images):
+        raise ValueError(f"There are {len(images)} such planes, numbered from 1.")
+    return images[plane - 1].node
+
+
+def remember(obj, node, name, snap=False):
+    """The node gets a name, which the panel lists: the face attribute "part: NAME" of the mesh, 1 on its faces.
+    partwheel.Error: another has it."""
+    _mesh(obj, changes=True)
+    named.remember(obj.data, name, faces(obj, node, snap))
+
+
+def remembered(obj):
+    """{name: node} of the remembered parts: that which has most in common with the faces then. partwheel.Error: one of
+    them is no more."""
+    built = hierarchy(obj)
+    return {name: named.node(obj, built, name)[0] for name in named.names(obj.data)}
 
 
 def cut(obj, parts=None, height=None, least_concavity=None, automatic=False):

@@ -53,6 +53,20 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         for name in ("parts", "exactly", "save_with_file", "memory_share", "time_limit", "python"):
             column.prop(self, name)
         draw_overlays(column)
+        key = pie_key()
+        if key:
+            column.prop(key, "type", text="Pie Menu", full_event=True)
+
+
+PIE = "VIEW3D_MT_PIE_partwheel"
+
+
+def pie_key():
+    """The user's KeyMapItem for the pie menu, which has no key until the user gives it one; None without a window."""
+    configuration = bpy.context.window_manager.keyconfigs.user
+    keymap = configuration and configuration.keymaps.get("Mesh")
+    return next((item for item in (keymap.keymap_items if keymap else ()) if item.idname == "wm.call_menu_pie"
+                 and item.properties.name == PIE), None)
 
 
 OVERLAYS = ("show_part", "show_next", "show_hull", "show_cut")

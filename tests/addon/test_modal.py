@@ -376,7 +376,7 @@ class Modal(ToolTest):
         self.send("ESC")
         plain = [chr(letter) for letter in range(ord("A"), ord("Z") + 1)] + ["TAB", "DEL", "SPACE", "F3"]
         ours = [(each.key, {"shift": True, "ctrl": True}) for each in part("view.keys").COMMANDS]
-        self.assertEqual(len(set(each.key for each in part("view.keys").COMMANDS)), 6)
+        self.assertEqual(len(set(each.key for each in part("view.keys").COMMANDS)), 8)
         for tool in (True, False):
             digits = ["ONE", "TWO", "THREE"] * tool
             blenders = [(kind, {}) for kind in plain + digits] + [("TAB", {"shift": True}), ("D", {"shift": True})]

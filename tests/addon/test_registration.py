@@ -154,12 +154,15 @@ class Registration(unittest.TestCase):
                 self.assertEqual({name: len(functions) for name, functions in after[4].items()},
                                  {name: len(functions) for name, functions in before[4].items()})
 
-    def test_the_shortcut_is_there_and_was_free(self):
+    def test_the_shortcuts_are_there_and_were_free(self):
         """In all keymaps that come with Blender: the default, for either mouse button; that of Blender 2.7; and the
-        industry compatible one."""
-        (key, *modifiers), = [item[3:] for item in keymap_items()
-                              if item[:3] == ("Blender addon", "Mesh", "mesh.partwheel_select")]
-        pressed = [*map(bool, modifiers), False]
+        industry compatible one. Also the key that snaps the border of the part that is held."""
+        ours = {item[3:] for item in keymap_items() if item[:2] == ("Blender addon", "Mesh")}
+        self.assertEqual({item for item in ours if item[0] == "NONE"}, {("NONE", False, False, False)})  # the pie's
+        ours = {item for item in ours if item[0] != "NONE"}
+        self.assertEqual({key for key, *_ in ours}, {"W", *(each.key for each in part("view.keys").COMMANDS)})
+        snaps, = part("view.keys").SNAP_BORDER.events
+        ours = [(key, [*map(bool, modifiers), False]) for key, *modifiers in (*ours, (snaps, True, True, False))]
         default, industry = map(keymap_data, ("blender_default", "industry_compatible_data"))
         keymaps = {f"default, {mouse}, legacy {legacy}": default.generate_keymaps(
                        default.Params(select_mouse=mouse, legacy=legacy))
@@ -172,9 +175,11 @@ class Registration(unittest.TestCase):
                 self.assertTrue(names - {"Object Non-modal"} <= {name for name, _, _ in content})
                 taken = [(name, item[0]) for name, _, values in content
                          if name in names or name.startswith("3D View Tool") for item in values["items"]
+                         for key, pressed in ours
                          if item[1]["type"] == key and (item[1].get("any") or pressed == [
                              bool(item[1].get(each)) for each in ("ctrl", "shift", "alt", "oskey")])]
-                self.assertEqual(taken, [])
+                # Over a button of the interface, where no part is held, C copies the data path.
+                self.assertEqual(set(taken) - {("User Interface", "ui.copy_data_path_button")}, set())
 
     def test_blender_starts_without_a_window(self):
         """With the add-on enabled: there are no keymaps yet then. bpy as a Python module has no start of its own."""
@@ -299,8 +304,13 @@ class Layout:
     def column(self, **_):
         return Layout(self.offered)
 
+    menu_pie = column
+
     def separator(self):
-        self.offered["separator"] = len(self.offered)
+        self.offered.setdefault("separator", len(self.offered))
+
+    def menu(self, name):
+        self.offered[name] = types.SimpleNamespace(context="INVOKE_REGION_WIN")
 
     def operator(self, name, text=""):
         kind, _, short = name.partition(".")
@@ -315,10 +325,13 @@ class Offers(unittest.TestCase):
 
     SOLIDS = ["mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_split", "mesh.partwheel_swap"]
     MENUS = {
-        "VIEW3D_MT_edit_mesh": ["mesh.partwheel_deform", *SOLIDS[:2], "mesh.partwheel_parts", *SOLIDS[2:]],
+        "VIEW3D_MT_edit_mesh": ["mesh.partwheel_deform", *SOLIDS[:2], "mesh.partwheel_parts", *SOLIDS[2:],
+                                "VIEW3D_MT_partwheel_part"],
         "VIEW3D_MT_sculpt": ["mesh.partwheel_parts"],
         "VIEW3D_MT_object": ["mesh.partwheel_parts", *SOLIDS[2:], "object.partwheel_place", "object.partwheel_unite"],
-        "VIEW3D_MT_select_edit_mesh": ["mesh.partwheel_select"],
+        "VIEW3D_MT_select_edit_mesh": ["mesh.partwheel_similar", "mesh.partwheel_mirrored", "mesh.partwheel_select"],
+        "VIEW3D_MT_edit_mesh_context_menu": ["VIEW3D_MT_partwheel_part"],
+        "VIEW3D_MT_edit_mesh_select_similar": ["mesh.partwheel_similar", "mesh.partwheel_mirrored"],
         "VIEW3D_MT_select_object": ["object.partwheel_select"],
         "VIEW3D_MT_face_sets": [("FACE_SET", "Face Set")],
         "VIEW3D_MT_mask": [("MASK", "Mask")],
@@ -341,6 +354,19 @@ class Offers(unittest.TestCase):
                 self.assertEqual(list(layout.offered), ["mesh.partwheel_paint"])
                 button, = layout.offered.values()
                 self.assertEqual((button.write, button.text), (expected[0][0], f"{expected[0][1]} from Part by Wheel"))
+
+    def test_the_menu_of_a_part_and_the_pie(self):
+        operators = {}
+        for menu in ("VIEW3D_MT_partwheel_part", part("preferences").PIE):
+            layout = Layout()
+            getattr(bpy.types, menu).draw(types.SimpleNamespace(layout=layout), bpy.context)
+            layout.offered.pop("separator", None)
+            self.assertEqual({each.context for each in layout.offered.values()}, {"INVOKE_REGION_WIN"})
+            operators[menu] = list(layout.offered)
+        self.assertEqual(len(operators[part("preferences").PIE]), 8)  # as many as a pie has room for
+        self.assertLessEqual(set(operators[part("preferences").PIE]), set(operators["VIEW3D_MT_partwheel_part"]))
+        for word in ("Segment", "Region", "Island"):  # what F3 finds it by
+            self.assertIn(word, bpy.types.VIEW3D_MT_partwheel_part.bl_label)
 
     def test_the_panel_of_solids(self):
         for mode, more in (("EDIT_MESH", []), ("OBJECT", ["object.partwheel_place", "object.partwheel_unite"])):

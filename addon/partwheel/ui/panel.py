@@ -41,6 +41,8 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
             column = layout.column()
             column.operator_context = "INVOKE_REGION_WIN"
             column.operator("mesh.partwheel_select")
+            column.operator("mesh.partwheel_similar")
+            column.operator("mesh.partwheel_mirrored")
             column.operator("mesh.partwheel_move")
             column.operator("mesh.duplicate_move", text="Duplicate Part")
             column.operator("mesh.partwheel_path")

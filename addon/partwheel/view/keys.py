@@ -34,7 +34,7 @@ RESIZE = Key("RESIZE", frozenset(TURNS), "Larger, Smaller", names="Wheel, ↑↓
 CONFIRM = Key("CONFIRM", frozenset({"RET", "NUMPAD_ENTER"}), "Confirm", ("EVENT_RETURN",))
 CANCEL = Key("CANCEL", frozenset({"RIGHTMOUSE", "ESC"}), "Cancel", ("EVENT_ESC", "MOUSE_RMB"))
 CLICK = Key("CLICK", frozenset({"LEFTMOUSE"}), "Pick a Part", ("MOUSE_LMB",))
-SNAP_BORDER = Key("SNAP_BORDER", frozenset("E"), "Snap Border", ("EVENT_SHIFT", "EVENT_CTRL", "EVENT_E"))
+SNAP_BORDER = Key("SNAP_BORDER", frozenset("E"), "Snap", ("EVENT_SHIFT", "EVENT_CTRL", "EVENT_E"))
 ERASE = Key("ERASE", frozenset({"BACK_SPACE"}), "")
 DIGITS = dict(zip(("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE"), "0123456789"))
 NUMBER = Key("NUMBER", frozenset(DIGITS), "Number", names="0-9")
@@ -57,13 +57,18 @@ HELD = (RESIZE, CLICK._replace(label="Next Part"), SNAP_BORDER)
 ENDS = (CONFIRM, NAVIGATE, CANCEL)
 # Shift, Ctrl and a letter, of those that no keymap of Blender's has for anything in Edit Mode.
 COMMANDS = (
-    Command("mesh.partwheel_deform", "D", "Drag Handle", {"method": "RIGID"}),
-    Command("mesh.partwheel_deform", "J", "Turn Joint", {"method": "JOINT"}),
+    Command("mesh.partwheel_deform", "D", "Drag", {"method": "RIGID"}),
+    Command("mesh.partwheel_deform", "J", "Turn", {"method": "JOINT"}),
     Command("mesh.partwheel_move", "G", "Move"),
-    Command("mesh.partwheel_deform", "P", "Move Within", {"method": "PROPORTIONAL", "start": "G"}),
+    Command("mesh.partwheel_deform", "P", "Within", {"method": "PROPORTIONAL", "start": "G"}),
+    Command("mesh.partwheel_similar", "L", "Similar"),
+    Command("mesh.partwheel_mirrored", "F", "Mirror"),
     Command("mesh.partwheel_copy", "C", "Copy"),
     Command("mesh.partwheel_remove", "X", "Remove"),
 )
+
+# While the parts that are alike are chosen.
+ALIKE = (Key("ALIKE", frozenset(TURNS), "More, Fewer", names="Wheel, ↑↓"), CONFIRM, NAVIGATE, CANCEL)
 
 # While a part is deformed: between two movements of the handle, and during one.
 DRAG = Key("DRAG", frozenset({"LEFTMOUSE"}), "Drag the Handle, or Put It Elsewhere", ("MOUSE_LMB_DRAG",))

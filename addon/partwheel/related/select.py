@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operators that go on from the part that was picked last to others: all that are alike, the one on the other side."""
+
+import bpy
+import numpy as np
+
+from ..mesh import arrays
+from ..mesh.refusing import Refused
+from ..mesh.selection import Selections
+from ..parts import picks
+from ..pick import borders
+from ..view import keys, picking
+from ..view.in_view import InView, waiting
+from . import others
+from partwheel.likeness import THRESHOLD
+
+
+class _FromPart(picks.NeedsPick):
+    """Selects nodes beside the part in hand."""
+
+    extend: bpy.props.BoolProperty(
+        name="Extend", description="Add to what is selected, instead of replacing it", default=True)
+
+    def _selected(self, obj, hierarchy, nodes, snap, selections, extend, active=None):
+        faces = [borders.faces(obj, hierarchy, node, snap) for node in nodes]
+        selections.select(obj, np.concatenate(faces), active, extend)
+
+
+class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
+    """Select all parts (segments, regions) like the one picked last, in shape and size: fingers, legs, horns"""
+
+    bl_idname = "mesh.partwheel_similar"
+    bl_label = "Select Similar Parts"
+    bl_options = {"REGISTER", "UNDO"}
+
+    threshold: bpy.props.FloatProperty(
+        name="Threshold", description="How alike parts are that are selected: 1 is the same shape and size, less is "
+        "more parts", default=THRESHOLD, min=0, max=1, subtype="FACTOR")
+
+    # ---- Without a window
+
+    def execute(self, context):
+        obj = context.edit_object
+        try:
+            self._start(context, obj)
+        except Refused as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self._show(obj, self._count())
+        return {"FINISHED"}
+
+    def _start(self, context, obj):
+        with arrays.one_reading():
+            self.hierarchy, _ = picks.chosen(obj, -1)
+            self.pick = picks.picked(obj)
+            self.alike = others.alike(obj, self.hierarchy, self.pick.node)
+            self.selections = Selections(context.objects_in_mode_unique_data, obj)
+
+    def _count(self):
+        """How many parts are alike from the threshold on: they come first."""
+        return sum(likeness >= self.threshold for _, likeness in self.alike)
+
+    def _show(self, obj, count):
+        self.count = count
+        nodes = [self.pick.node, *(node for node, _ in self.alike[:count])]
+        self._selected(obj, self.hierarchy, nodes, self.pick.snap, self.selections, self.extend, self.pick.face)
+
+    # ---- With the wheel
+
+    def _begin(self, context, _event):
+        obj = context.edit_object
+        self.object_name, self.selections = obj.name_full, None
+        with waiting(context):
+            self._start(context, obj)
+        self.scroll = keys.Scroll(keys.SCROLL_STEP)
+        return self._to(context, self._count())
+
+    def _to(self, context, count):
+        """So many parts beside the one in hand; the threshold is between the last one and the next."""
+        count = min(max(count, 0), len(self.alike))
+        if count != self._count():
+            ends = [1.0, *(likeness for _, likeness in self.alike), 0.0]
+            self.threshold = (ends[count] + ends[count + 1]) / 2
+        self._show(context.edit_object, count)
+        self._tell(context, f"{count + 1} parts, alike from {self.threshold:.2f} on", keys.ALIKE)
+        return {"RUNNING_MODAL"}
+
+    def _handle(self, context, event):
+        if event.type in keys.SYSTEM or event.type in keys.MOVES:
+            return {"PASS_THROUGH"}
+        over = picking.under_mouse(context, event) is not None
+        plain = not (event.shift or event.ctrl or event.alt or event.oskey)
+        if event.type == "TRACKPADPAN" and over and plain:
+            return self._to(context, self.count + self.scroll.notches(event.mouse_y - event.mouse_prev_y))
+        if event.type in keys.NAVIGATE.events or event.type in keys.TURNS and not (over and plain):
+            return {"PASS_THROUGH"}
+        if event.value not in {"PRESS", "DOUBLE_CLICK"}:
+            return {"RUNNING_MODAL"}
+        if event.type in keys.CANCEL.events:
+            return {"CANCELLED"}
+        if event.type in keys.TURNS:
+            return self._to(context, self.count + keys.TURNS[event.type])
+        if event.type in keys.MODIFIERS:
+            return {"RUNNING_MODAL"}
+        if event.type in keys.CONFIRM.events or event.type == "LEFTMOUSE" and over:
+            return {"FINISHED"}
+        return {"FINISHED", "PASS_THROUGH"}  # any other key means what it always means
+
+    def _take_back(self, context):
+        if self.selections and self._still_there(context):
+            self.selections.restore()
+
+    def _still_there(self, context):
+        obj = context.edit_object
+        return obj is not None and obj.name_full == self.object_name and self.selections.fits()
+
+
+class MESH_OT_partwheel_mirrored(_FromPart, bpy.types.Operator):
+    """Select the part (segment, region) on the other side of the model, across its own plane of symmetry"""
+
+    bl_idname = "mesh.partwheel_mirrored"
+    bl_label = "Select Mirrored Part"
+    bl_options = {"REGISTER", "UNDO"}
+
+    plane: bpy.props.IntProperty(
+        name="Plane", description="Of the planes in which the model is its own mirror image, the best one first",
+        default=1, min=1, max=3)
+    # The panel of the last operation does it again with the part that was in hand then.
+    node: bpy.props.IntProperty(default=-1, options={"HIDDEN", "SKIP_SAVE"})
+
+    def execute(self, context):
+        obj = context.edit_object
+        try:
+            hierarchy, self.node = picks.chosen(obj, self.node)
+            images = others.images(obj, hierarchy, self.node)
+        except Refused as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.plane = min(self.plane, len(images))
+        node, pick = images[self.plane - 1].node, picks.picked(obj)
+        snap = bool(pick and pick.snap)
+        nodes = [self.node, node] if self.extend else [node]
+        face = int(hierarchy.faces(node)[0])
+        self._selected(obj, hierarchy, nodes, snap, Selections(context.objects_in_mode_unique_data, obj), self.extend,
+                       face)
+        if not self.extend:
+            picks.remember(obj, face, node, snap)
+        return {"FINISHED"}
+
+
+CLASSES = (MESH_OT_partwheel_similar, MESH_OT_partwheel_mirrored)

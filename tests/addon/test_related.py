@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From the part in hand to others, without a window: those that are alike, and the one on the other side."""
+
+import tempfile
+import types
+from pathlib import Path
+
+import bpy
+import numpy
+from common import BOX, flags, part, read_off, selected
+from test_modal import FakeContext, Tool, ToolTest, event, show
+
+
+def jack(lengths, cells=4):
+    """A cube of quads with a bar on each of its six sides, so many cells long: towards -x, +x, -y, +y, -z, +z."""
+    full = {(x, y, z) for x in range(cells) for y in range(cells) for z in range(cells)}
+    for axis in range(3):
+        for way in (-1, 1):
+            for along in range(lengths[2 * axis + (way > 0)]):
+                for u in range(1, cells - 1):
+                    for v in range(1, cells - 1):
+                        cell = [0, 0, 0]
+                        cell[axis], cell[axis - 1], cell[axis - 2] = cells + along if way > 0 else -1 - along, u, v
+                        full.add(tuple(cell))
+    vertices, polygons = {}, []
+    for cell in sorted(full):
+        for axis in range(3):
+            for way in (0, 1):
+                if tuple(numpy.array(cell) + (2 * way - 1) * numpy.eye(3, dtype=int)[axis]) in full:
+                    continue
+                corners = []
+                for u, v in ((0, 0), (1, 0), (1, 1), (0, 1))[::1 if way else -1]:
+                    corner = list(cell)
+                    corner[axis] += way
+                    corner[(axis + 1) % 3] += u
+                    corner[(axis + 2) % 3] += v
+                    corners.append(vertices.setdefault(tuple(corner), len(vertices)))
+                polygons.append(tuple(corners))
+    return list(vertices), polygons
+
+
+class Related(ToolTest):
+    def setUp(self):
+        super().setUp()
+        self.use(4, 8, 4, 8, 4, 8)
+
+    def use(self, *lengths):
+        self.obj = self.add(*jack(lengths))
+        self.h = self.api.build(self.obj)
+
+    @property
+    def api(self):
+        return part("api")
+
+    def bar(self, axis, way, begin=4):
+        """The node that is nearest to being a bar. begin: of the one towards +."""
+        centers = numpy.array([face.center for face in self.obj.data.polygons])[:, axis]
+        wanted = set(numpy.flatnonzero(centers > begin if way > 0 else centers < 0).tolist())
+        overlap = [len(wanted & faces) / len(wanted | faces)
+                   for faces in (set(self.h.faces(node).tolist()) for node in range(len(self.h.parent)))]
+        self.assertGreater(max(overlap), 0.8)
+        return int(numpy.argmax(overlap))
+
+    def faces(self, *nodes):
+        return set(face for node in nodes for face in self.h.faces(node).tolist())
+
+    def in_hand(self, node):
+        self.edit(self.obj)
+        self.api.select(self.obj, node)
+
+    def test_all_bars_of_one_length(self):
+        for way in (1, -1):
+            bars = [self.bar(axis, way) for axis in range(3)]
+            found = self.api.similar(self.obj, bars[0])
+            self.assertEqual({node for node, _ in found[:2]}, set(bars[1:]))
+            self.in_hand(bars[0])
+            self.assertEqual(bpy.ops.mesh.partwheel_similar(threshold=found[1][1] - 1e-4), {"FINISHED"})
+            self.assertEqual(selected(self.obj), self.faces(*bars))
+            self.assertEqual(bpy.ops.mesh.partwheel_similar(threshold=1, extend=False), {"FINISHED"})
+            self.assertEqual(selected(self.obj), self.faces(bars[0], *(node for node, value in found if value == 1)))
+            bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_extending_keeps_what_is_selected(self):
+        bars = [self.bar(axis, 1) for axis in range(3)]
+        other = self.bar(0, -1)
+        self.in_hand(bars[0])
+        self.api.select(self.obj, faces=self.h.faces(other), extend=True)
+        least = self.api.similar(self.obj, bars[0])[1][1] - 1e-4
+        bpy.ops.mesh.partwheel_similar(threshold=least)
+        self.assertEqual(selected(self.obj), self.faces(*bars, other))
+        bpy.ops.mesh.partwheel_similar(threshold=least, extend=False)
+        self.assertEqual(selected(self.obj), self.faces(*bars))
+
+    def test_the_wheel_takes_more_and_fewer(self):
+        bars = [self.bar(axis, 1) for axis in range(3)]
+        alike = [node for node, _ in self.api.similar(self.obj, bars[0], 0)]
+        self.assertEqual(set(alike[:2]), set(bars[1:]))
+        show(self.obj)
+        self.in_hand(bars[0])
+        before = flags(self.obj)
+        for end in ("RET", "LEFTMOUSE", "G", "ESC", "RIGHTMOUSE"):
+            self.context = FakeContext()
+            self.tool = Tool("similar", ("MESH",), threshold=0.0, extend=True, bl_label="Select Similar Parts")
+            self.assertEqual(self.tool.invoke(self.context, event("L")), {"RUNNING_MODAL"})
+            self.assertEqual(selected(self.obj), self.faces(bars[0], *alike))
+            count = len(alike)
+            for kind, by in [("WHEELDOWNMOUSE", -1)] * (count + 2) + [("WHEELUPMOUSE", 1), ("PAGE_UP", 1)]:
+                self.assertEqual(self.send(kind), {"RUNNING_MODAL"})
+                count = max(count + by, 0)
+                self.assertEqual(selected(self.obj), self.faces(bars[0], *alike[:count]))
+                self.assertEqual(len(self.api.similar(self.obj, bars[0], self.tool.threshold)), count)
+            self.assertEqual(self.send("WHEELUPMOUSE", shift=True), {"PASS_THROUGH"})
+            self.assertEqual(self.send("MIDDLEMOUSE"), {"PASS_THROUGH"})
+            if end in {"ESC", "RIGHTMOUSE"}:
+                self.assertEqual(self.send(end), {"CANCELLED"})
+                self.assertEqual(flags(self.obj), before)
+            else:
+                self.assertEqual(self.send(end), {"FINISHED", "PASS_THROUGH"} if end == "G" else {"FINISHED"})
+                self.assertEqual(selected(self.obj), self.faces(*bars))
+                self.api.select(self.obj, bars[0])
+                before = flags(self.obj)
+            self.assertIsNone(self.context.header[-1])
+
+    def test_the_other_side(self):
+        self.use(6, 6, 4, 7, 3, 8)
+        left, right = self.bar(0, -1), self.bar(0, 1)
+        self.assertEqual((self.api.mirrored(self.obj, left), self.api.mirrored(self.obj, right)), (right, left))
+        self.in_hand(left)
+        self.assertEqual(bpy.ops.mesh.partwheel_mirrored(), {"FINISHED"})
+        self.assertEqual(selected(self.obj), self.faces(left, right))
+        self.assertEqual(part("parts.picks").picked(self.obj).node, left)
+        self.assertEqual(bpy.ops.mesh.partwheel_mirrored(extend=False), {"FINISHED"})
+        self.assertEqual(selected(self.obj), self.faces(right))
+        self.assertEqual(part("parts.picks").picked(self.obj).node, right)
+        # What the panel of the last operation does again, with the part of then.
+        self.assertEqual(bpy.ops.mesh.partwheel_mirrored(node=left), {"FINISHED"})
+        self.assertEqual(selected(self.obj), self.faces(left, right))
+
+    def test_what_has_no_other_side(self):
+        self.use(6, 6, 4, 7, 3, 8)
+        hand = self.add(*read_off("hand"), "hand")
+        for obj, node in ((self.obj, self.bar(1, 1)), (hand, self.api.part(hand, 900))):
+            with self.assertRaisesRegex(part("mesh.refusing").Refused, f"no mirror image in {obj.name}"):
+                self.api.mirrored(obj, node)
+            bpy.context.view_layer.objects.active = obj
+            self.edit(obj)
+            self.api.select(obj, node)
+            before = selected(obj)
+            with self.assertRaisesRegex(RuntimeError, "no mirror image"):
+                bpy.ops.mesh.partwheel_mirrored()
+            self.assertEqual(selected(obj), before)
+            bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_remembered_parts(self):
+        bars = [self.bar(axis, 1) for axis in range(3)]
+        for bar, name in zip(bars, ("Left Arm", "Bein", "頭")):
+            self.in_hand(bar)
+            self.assertEqual(bpy.ops.mesh.partwheel_remember(part=f" {name} "), {"FINISHED"})
+            bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertEqual(self.api.remembered(self.obj), dict(zip(("Left Arm", "Bein", "頭"), bars)))
+        self.edit(self.obj)
+        for name, bar in zip(("頭", "Left Arm"), (bars[2], bars[0])):
+            self.assertEqual(bpy.ops.mesh.partwheel_recall(part=name), {"FINISHED"})
+            self.assertEqual(selected(self.obj), self.faces(bar))
+            self.assertEqual(part("parts.picks").picked(self.obj).node, bar)
+        bpy.ops.mesh.partwheel_recall(part="Bein", extend=True)
+        self.assertEqual(selected(self.obj), self.faces(bars[0], bars[1]))
+        for held in ({}, {"shift": True}, {"ctrl": True}):  # a click on the name
+            tool = Tool("recall", ("MESH",), part="Left Arm")
+            self.assertEqual(tool.invoke(FakeContext(), event("LEFTMOUSE", **held)), {"FINISHED"})
+            self.assertEqual((tool.extend, tool.deselect), (bool(held.get("shift")), bool(held.get("ctrl"))))
+            bpy.ops.mesh.partwheel_recall(part="Bein", extend=True)
+        bpy.ops.mesh.partwheel_recall(part="Left Arm", deselect=True)
+        self.assertEqual(selected(self.obj), self.faces(bars[1]))
+        self.assertEqual(bpy.ops.mesh.partwheel_rename(part="Bein", new="Leg"), {"FINISHED"})
+        self.assertEqual(bpy.ops.mesh.partwheel_forget(part="Left Arm"), {"FINISHED"})
+        self.assertEqual(set(part("related.remembered").names(self.obj.data)), {"Leg", "頭"})
+        for operator, values, words in (
+                (bpy.ops.mesh.partwheel_remember, {"part": "Leg"}, "There is a part that is remembered as Leg"),
+                (bpy.ops.mesh.partwheel_remember, {"part": "  "}, "can't be empty"),
+                (bpy.ops.mesh.partwheel_remember, {"part": 60 * "x"}, "too long"),
+                (bpy.ops.mesh.partwheel_rename, {"part": "Leg", "new": "頭"}, "There is a part"),
+                (bpy.ops.mesh.partwheel_recall, {"part": "Left Arm"}, "No part of model is remembered as Left Arm"),
+                (bpy.ops.mesh.partwheel_forget, {"part": "Left Arm"}, "No part")):
+            with self.assertRaisesRegex(RuntimeError, words):
+                operator(**values)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertEqual(self.api.remembered(self.obj), {"Leg": bars[1], "頭": bars[2]})
+
+    def test_the_list_shows_and_searches_remembered_parts(self):
+        for bar, name in ((self.bar(0, 1), "Left Arm"), (self.bar(1, 1), "Leg"), (self.bar(2, 1), "Armour")):
+            self.api.remember(self.obj, bar, name)
+        mesh = self.obj.data
+        mesh.attributes.new("arm of somebody else's", "INT", "FACE")
+        self.assertEqual(part("related.remembered").names(mesh), ["Left Arm", "Leg", "Armour"])
+        for wanted, found in (("", ["Left Arm", "Leg", "Armour"]), ("arm", ["Left Arm", "Armour"]), ("L*G", ["Leg"]),
+                              ("part", []), ("x", [])):
+            field = types.SimpleNamespace(filter_name=wanted, bitflag_filter_item=4, use_filter_sort_alpha=False)
+            flags, _ = part("ui.remembered").VIEW3D_UL_partwheel_remembered.filter_items(field, None, mesh, "")
+            self.assertEqual(set(flags), {0, 4} if found else {0})
+            self.assertEqual([f"part: {name}" for name in found],
+                             [each.name for each, flag in zip(mesh.attributes, flags) if flag])
+
+    def test_remembered_parts_are_found_again(self):
+        """After moving vertices, after finding the parts anew, after edits of the mesh, in another file."""
+        obj = self.obj
+        bar, own = self.bar(1, 1), self.faces(self.bar(1, 1))
+        self.api.remember(obj, bar, "Bar")
+        for vertex in obj.data.vertices:
+            vertex.co.y *= 1.5
+        obj.data.update()
+        self.assertEqual(self.api.remembered(obj), {"Bar": bar})
+        self.h = self.api.build(obj)
+        self.assertEqual(self.api.remembered(obj), {"Bar": self.bar(1, 1, 6)})
+        self.edit(obj)
+        bpy.ops.mesh.partwheel_recall(part="Bar")
+        self.assertGreater(len(selected(obj) & own), 0.8 * len(selected(obj) | own))
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.mesh.subdivide(number_cuts=1)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        with tempfile.TemporaryDirectory() as directory:
+            path = str(Path(directory) / "kept.blend")
+            bpy.data.libraries.write(path, {obj})
+            bpy.data.objects.remove(obj)
+            with bpy.data.libraries.load(path) as (_, wanted):
+                wanted.objects = ["model"]
+        self.obj = obj = self.link(wanted.objects[0])
+        self.h = self.api.build(obj)
+        found, wanted = self.faces(self.api.remembered(obj)["Bar"]), self.faces(self.bar(1, 1, 6))
+        self.assertGreater(len(found & wanted), 0.7 * len(found | wanted))
+        with self.assertRaisesRegex(part("mesh.refusing").Refused, "No part of model as it is now is much like"):
+            few = obj.data.attributes.new("part: every other", "INT", "FACE")
+            few.data.foreach_set("value", (numpy.arange(len(obj.data.polygons)) % 3 == 0).astype(numpy.int32))
+            self.api.remembered(obj)
+
+    def test_a_part_must_be_in_hand(self):
+        self.edit(self.obj)
+        for operator in (bpy.ops.mesh.partwheel_similar, bpy.ops.mesh.partwheel_mirrored):
+            with self.assertRaisesRegex(RuntimeError, "No part is picked"):
+                operator()
+        bpy.ops.object.mode_set(mode="OBJECT")
+        box = self.add(*BOX)
+        self.assertEqual(self.api.similar(box, len(self.api.hierarchy(box).parent) - 1), [])

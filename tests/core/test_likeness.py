@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Parts that are alike, and parts on the other side, of shapes whose parts are known."""
+
+import numpy as np
+import pytest
+import shapes
+from partwheel import Hierarchy, likeness
+from test_symmetry import figure, mirror_faces
+
+ARM = 2  # length of an arm in cells
+SIDES = [(axis, way) for axis in range(3) for way in (-1, 1)]
+
+
+def arms(lengths=6 * (ARM,)):
+    """A cube with an arm on each of its sides, of these lengths in cells, four faces to a cell's side: (Shape, (F,) the
+    number of each face's arm, -1 for the cube)."""
+    cells = [(0, 0, 0)] + [tuple(way * step * (k == axis) for k in range(3))
+                           for (axis, way), length in zip(SIDES, lengths) for step in range(1, length + 1)]
+    finer = {tuple(2 * np.array(cell) + corner) for cell in cells for corner in np.ndindex(2, 2, 2)}
+    shape = shapes.polycube(finer)
+    middles = np.zeros((shape.face_count, 3))
+    np.add.at(middles, shape.faces, shape.vertices[shape.triangles].mean(axis=1))
+    middles = middles / np.bincount(shape.faces)[:, None] - 1
+    of = np.full(shape.face_count, -1)
+    for number, (axis, way) in enumerate(SIDES):
+        of[way * middles[:, axis] > 1] = number
+    return shape, of
+
+
+def moved(shape, seed):
+    """The same, turned and moved: nothing lies along an axis."""
+    random = np.random.default_rng(seed)
+    turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
+    turn *= np.sign(np.linalg.det(turn))
+    return shape._replace(vertices=shape.vertices @ turn.T + random.normal(size=3))
+
+
+def arm(hierarchy, of, number):
+    """The node that is an arm, but for few faces."""
+    wanted = set(np.flatnonzero(of == number).tolist())
+    overlaps = [len(wanted & faces) / len(wanted | faces)
+                for faces in (set(hierarchy.faces(node).tolist()) for node in range(len(hierarchy.parent)))]
+    assert max(overlaps) > 0.8
+    return int(np.argmax(overlaps))
+
+
+def of_nodes(hierarchy, of, nodes):
+    """The number of the arm that each node is, but for few faces."""
+    values = [np.unique(of[hierarchy.faces(node)], return_counts=True) for node in nodes]
+    assert all(counts.max() > 0.8 * counts.sum() for _, counts in values)
+    return [int(numbers[counts.argmax()]) for numbers, counts in values]
+
+
+def similar(shape, hierarchy, node):
+    return likeness.similar(hierarchy, likeness.measures(hierarchy, *shape[:3]), node)
+
+
+@pytest.fixture(scope="module", params=[None, 3])
+def six(request):
+    shape, of = arms()
+    shape = shape if request.param is None else moved(shape, request.param)
+    return shape, of, Hierarchy.build(*shape)
+
+
+def test_all_arms_from_each(six):
+    shape, of, hierarchy = six
+    for number in range(6):
+        found = similar(shape, hierarchy, arm(hierarchy, of, number))
+        alike = [node for node, value in found if value >= likeness.THRESHOLD]
+        assert sorted(of_nodes(hierarchy, of, alike)) == [other for other in range(6) if other != number]
+
+
+def test_those_of_its_size_come_first():
+    shape, of = arms((2, 2, 4, 4, 4, 2))
+    hierarchy = Hierarchy.build(*shape)
+    for number, others in ((0, [1, 5]), (3, [2, 4])):
+        found = similar(shape, hierarchy, arm(hierarchy, of, number))
+        assert sorted(of_nodes(hierarchy, of, [node for node, _ in found[:2]])) == others
+        assert found[1][1] >= likeness.THRESHOLD
+        assert found[1][1] > 1.05 * max([value for _, value in found[2:]], default=0)  # the end of a long one, say
+
+
+def test_parts_are_apart_and_the_most_alike_first(six):
+    shape, of, hierarchy = six
+    for node in (arm(hierarchy, of, 0), int(hierarchy.wheel(0)[0][0])):
+        found = similar(shape, hierarchy, node)
+        assert [value for _, value in found] == sorted((value for _, value in found), reverse=True)
+        taken = [face for other in (node, *(other for other, _ in found)) for face in hierarchy.faces(other).tolist()]
+        assert len(taken) == len(set(taken))
+
+
+def test_the_whole_has_none(six):
+    shape, _, hierarchy = six
+    whole = int(np.flatnonzero(hierarchy.parent < 0)[0])
+    assert similar(shape, hierarchy, whole) == []
+    assert likeness.mirrored(hierarchy, *shape[:3], whole) == []
+
+
+def test_a_part_inside_has_none(build_shape):
+    shape, hierarchy = build_shape("hand.off")
+    inside = int(np.flatnonzero(hierarchy.first == hierarchy.last)[0])
+    assert similar(shape, hierarchy, inside) == [] == likeness.mirrored(hierarchy, *shape[:3], inside)
+
+
+def test_nearest_is_the_node_with_most_in_common(build_shape):
+    shape, hierarchy = build_shape("hand.off")
+    random = np.random.default_rng(0)
+    for node in random.choice(np.flatnonzero(hierarchy.last - hierarchy.first > 20), 20).tolist():
+        inside = np.zeros(shape.face_count, bool)
+        inside[hierarchy.faces(node)] = True
+        found, overlap = likeness.nearest(hierarchy, inside)
+        assert overlap == 1 and set(hierarchy.faces(found).tolist()) == set(hierarchy.faces(node).tolist())
+        inside ^= random.random(len(inside)) < 0.05
+        faces = set(np.flatnonzero(inside).tolist())
+        overlaps = [len(faces & other) / len(faces | other)
+                    for other in (set(hierarchy.faces(each).tolist()) for each in range(len(hierarchy.parent)))]
+        found, overlap = likeness.nearest(hierarchy, inside)
+        assert overlap == pytest.approx(max(overlaps)) == overlaps[found]
+
+
+def test_measures_are_those_of_each_nodes_own_faces(six):
+    shape, _, hierarchy = six
+    measured = likeness.measures(hierarchy, *shape[:3])
+    for node in np.random.default_rng(1).choice(np.flatnonzero(hierarchy.last > hierarchy.first), 30).tolist():
+        corners = shape.vertices[shape.triangles[np.isin(shape.faces, hierarchy.faces(node))]]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+        area = np.linalg.norm(normals, axis=1)
+        # Each triangle as many points: exact for moments when the six that are a quadrature of degree two... its edges'
+        # middles.
+        middles = (corners + np.roll(corners, 1, axis=1)) / 2
+        weights = np.repeat(area / 3, 3)
+        points = middles.reshape(-1, 3) - np.average(middles.reshape(-1, 3), axis=0, weights=weights)
+        extents = np.sqrt(np.maximum(np.linalg.eigvalsh((points.T * weights) @ points / area.sum()), 0))
+        root = np.sqrt(area.sum())
+        border = np.sqrt(np.linalg.norm(normals.sum(axis=0)) / np.pi)
+        wanted = np.maximum([root, np.cbrt(hierarchy.volume[node]), *extents, border], 0.05 * root)
+        assert np.allclose(np.exp(measured.lengths[node]), wanted, rtol=1e-6)
+
+
+def test_the_arm_on_the_other_side():
+    shape, of = arms((2, 2, 3, 4, 1, 0))  # x = 1, the middle of the cube, is the only plane of symmetry but for y and z
+    hierarchy = Hierarchy.build(*shape)
+    for number, other in ((0, 1), (1, 0)):
+        (image, *_) = likeness.mirrored(hierarchy, *shape[:3], arm(hierarchy, of, number))
+        assert of_nodes(hierarchy, of, [image.node]) == [other] and image.overlap > 0.9
+        assert abs(image.normal[0]) > 0.999 and abs(abs(image.offset) - 1) < 0.02
+
+
+def test_each_plane_has_an_image():
+    shape, of = arms()
+    hierarchy = Hierarchy.build(*shape)
+    found = likeness.mirrored(hierarchy, *shape[:3], arm(hierarchy, of, 0))
+    across, middle = shape.vertices[shape.triangles[of[shape.faces] == 0]].mean(axis=(0, 1)), shape.vertices.mean(axis=0)
+    assert found and 0 not in of_nodes(hierarchy, of, [image.node for image in found])
+    for image in found:
+        there = across - 2 * (across @ image.normal - image.offset) * image.normal
+        ends = [shape.vertices[shape.triangles[of[shape.faces] == number]].mean(axis=(0, 1)) for number in range(6)]
+        assert of_nodes(hierarchy, of, [image.node]) == [int(np.linalg.norm(ends - there, axis=1).argmin())]
+        assert image.overlap > 0.9 and abs(middle @ image.normal - image.offset) < 0.02
+
+
+def test_both_sides_of_a_figure():
+    shape = figure()
+    hierarchy, mirror = Hierarchy.build(*shape), mirror_faces(shape, 3.5)
+    hits, count = 0, 0
+    for face in range(0, shape.face_count, 23):
+        stops, at = hierarchy.wheel(face)
+        inside = set(hierarchy.faces(stops[at]).tolist())
+        wanted = {int(mirror[each]) for each in inside}
+        if wanted & inside:  # across the plane
+            continue
+        count += 1
+        images = likeness.mirrored(hierarchy, *shape[:3], int(stops[at]))
+        got = set(hierarchy.faces(images[0].node).tolist()) if images else set()
+        hits += len(got & wanted) > 0.9 * len(got | wanted)
+    assert count > 10 and hits >= 0.95 * count

@@ -1,0 +1,58 @@
+"""From the part in hand to others: Shift Ctrl L selects those that are alike, the wheel takes more and fewer, Esc takes
+it back; the panel of the last operation changes the threshold; Shift Ctrl F adds the part on the other side."""
+import bpy
+
+
+def play(stage):
+    yield from stage.open("homer")
+    stage.use_tool()
+    likeness = stage.part("related.others").alike
+
+    def has_its_like(spot):
+        hierarchy = stage.registry.hierarchy(stage.object)
+        stops, start = hierarchy.wheel(spot[2])
+        found = likeness(stage.object, hierarchy, int(stops[start]))
+        return found and found[0][1] > 0.9
+
+    spots = (stage.spot(x, 0.5, above=1) for x in (0.05, 0.95, 0.2, 0.8, 0.35, 0.65))
+    yield from stage.take(next(spot for spot in spots if has_its_like(spot)), "to be used", notches=0)
+    arm = stage.selection()
+    pick = stage.part("parts.picks").picked
+    stage.shortcut("mesh.partwheel_similar")
+    yield from stage.until("the alike ones are selected", lambda: len(stage.selection()) > len(arm))
+    hierarchy, node = pick(stage.object).hierarchy, pick(stage.object).node
+    alike = likeness(stage.object, hierarchy, node)
+
+    def faces(count):
+        """Of the part and so many more."""
+        return arm.union(*(hierarchy.faces(other).tolist() for other, _ in alike[:count]))
+
+    count = next(count for count in range(len(alike) + 1) if stage.selection() == faces(count))
+    stage.check(1 <= count < len(alike), f"{count} of {len(alike)} parts are alike")
+    stage.bar_fits((yield from stage.screenshot("similar")))
+    for notches in (1, -1, -1):
+        count += notches
+        stage.mouse.wheel(notches)
+        yield from stage.selected(faces(count), f"after {notches} notches")
+    stage.mouse.key("ESC")
+    yield from stage.selected(arm, "after Esc")
+
+    stage.shortcut("mesh.partwheel_similar")
+    yield from stage.until("they are selected again", lambda: len(stage.selection()) > len(arm))
+    stage.mouse.key("RET")
+    yield from stage.ended()
+    last = bpy.data.window_managers[0].operators[-1]
+    stage.check(last.bl_idname == "MESH_OT_partwheel_similar", "there is its panel")
+    last.properties.threshold = (alike[0][1] + 1) / 2
+    with stage.override():
+        bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)
+    yield from stage.selected(arm, "with a higher threshold")
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.selected(arm, "after Ctrl Z")
+
+    stage.shortcut("mesh.partwheel_mirrored")
+    other = frozenset(hierarchy.faces(stage.part("related.others").images(stage.object, hierarchy, node)[0].node).tolist())
+    yield from stage.selected(arm | other, "on both sides")
+    yield from stage.screenshot("mirrored")
+    stage.mouse.key("Z", ctrl=True)
+    yield from stage.selected(arm, "after Ctrl Z")
