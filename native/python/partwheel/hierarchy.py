@@ -2,13 +2,13 @@
 """Hierarchy: a mesh's tree of nearly convex parts, built by the native library, as numpy arrays and questions."""
 
 import operator
-from ctypes import byref, c_size_t, c_void_p
-from typing import NamedTuple
+from ctypes import byref, c_double, c_size_t, c_void_p
+from typing import NamedTuple, Optional
 
 import numpy as np
 
 from .library import (
-    Arrays, Build, BuildOptions, Context, Handle, Mode, PartwheelError, Rung, Status, SummaryStruct, check, load,
+    Arrays, Build, BuildOptions, Context, ConvexOptions, Handle, Mode, PartwheelError, Rung, Status, SummaryStruct, check, load,
     made, told,
 )
 
@@ -44,6 +44,17 @@ class Solid(NamedTuple):
     ends: np.ndarray
     faces: np.ndarray
     beyond: np.ndarray
+
+
+class ConvexPart(NamedTuple):
+    """A convex hull for a part of a solid. vertices (n,3), triangles (m,3): closed, convex, outward. volume: of the
+    hull's own part of the solid. error: the largest distance of its surface from the solid, at most; None if none
+    was asked for."""
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    volume: float
+    error: Optional[float]
 
 
 class _Memory:
@@ -251,6 +262,26 @@ class Hierarchy:
     def hull_of_slice(self, tet_first, tet_last):
         """The convex hull of tetrahedra[tet_first:tet_last], for a part of a cut: (vertices, triangles)."""
         return self._mesh(load().pw_hierarchy_hull, _number(tet_first), _number(tet_last))[1:]
+
+    def convex_parts(self, hulls=0, *, error=0.0, max_vertices=0, approximate=False):
+        """[ConvexPart, ...]: few convex hulls that contain the solid and little else, the largest first. They are best of
+        mode PAPER's tree.
+
+        hulls: so many, at most 4096; fewer where more would be no better. error: the largest distance from the solid
+        that a hull's surface may have, in the unit of the coordinates; with hulls as well, at most so many hulls.
+        max_vertices: of a hull, 8 or more, as engines limit them; one that had more gets one of fewer around it, or with
+        approximate the hull of some of its vertices. See pw_hierarchy_convex_parts in partwheel_convex.h."""
+        options = ConvexOptions(hulls=_number(hulls), error=float(error), max_vertices=_number(max_vertices),
+                                approximate=bool(approximate))
+        parts = Handle(load().pw_convex_parts_free,
+                       made(load().pw_hierarchy_convex_parts, self._handle, byref(options)))
+        types = [c_void_p, c_size_t, c_void_p, c_size_t, c_double, c_double]
+        hulls = []
+        for index in range(told([c_size_t], load().pw_convex_parts_count, parts)[0]):
+            vertices, n, triangles, m, volume, away = told(types, load().pw_convex_parts_hull, parts, index)
+            hulls.append(ConvexPart(_view(parts, vertices, (n, 3), np.float64), _view(parts, triangles, (m, 3), np.int32),
+                                    volume, away if away >= 0 else None))
+        return hulls
 
     def solid(self, node):
         """The closed, manifold surface around a node's tetrahedra: a Solid. Where polygons are not triangles,

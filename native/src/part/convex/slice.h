@@ -1,0 +1,31 @@
+// Tetrahedra cut by a plane: tetrahedra on both sides.
+#pragma once
+
+#include "base/geometry.h"
+
+#include <span>
+#include <vector>
+
+namespace partwheel {
+class HullKernel;
+}
+
+namespace partwheel::convex {
+
+// The points p with dot(normal, p) = offset. The normal need not be of length 1.
+struct CutPlane {
+    Point normal{};
+    double offset = 0;
+
+    double height(const Point& p) const { return dot(normal, p) - offset; }
+};
+
+struct Sliced {
+    std::vector<Tetrahedron> below, above;  // of positive height; corners in no special order
+};
+
+// Vertices no higher or lower than `flat` count as in the plane, and are on both sides: so no slivers are made. Edges that
+// cross the plane get a vertex there, which the kernel takes in; each edge one, for all tetrahedra about it.
+Sliced slice(std::span<const Tetrahedron> tetrahedra, const CutPlane& plane, double flat, HullKernel& kernel);
+
+}  // namespace partwheel::convex
