@@ -201,7 +201,7 @@ MeshView as_mesh(const double* vertices, size_t vertex_count, const int32_t* tri
 // Structs of a program that may be older or newer than the library: see the header's habits. None ends with padding,
 // where a later version's member could lie.
 static_assert(offsetof(pw_build_options, exact_triangles) + sizeof(int64_t) == sizeof(pw_build_options));
-static_assert(offsetof(pw_convex_options, reserved) + sizeof(int32_t) == sizeof(pw_convex_options));
+static_assert(offsetof(pw_convex_options, max_vertices) + sizeof(size_t) == sizeof(pw_convex_options));
 static_assert(offsetof(pw_arrays, score) + sizeof(double*) == sizeof(pw_arrays));
 static_assert(offsetof(pw_summary, deviation) + sizeof(double) == sizeof(pw_summary));
 
@@ -452,20 +452,21 @@ pw_status pw_mesh_origins(const pw_mesh* mesh, const int32_t** ends, const int32
     });
 }
 
-pw_status pw_hierarchy_convex_parts(const pw_hierarchy* hierarchy, const pw_convex_options* options,
-                                    pw_convex_parts** parts) {
+pw_status pw_hierarchy_convex_parts(pw_context* context, const pw_hierarchy* hierarchy,
+                                    const pw_convex_options* options, pw_convex_parts** parts) {
     return guarded({{"hierarchy", hierarchy}, {"options", options}, {"parts", parts}}, [&] {
         const pw_convex_options given = taken(*options);
         require(given.error >= 0 && std::isfinite(given.error), "error must be 0 or a length.");
-        require(given.hulls > 0 || given.error > 0, "Either hulls or error must be more than 0.");
+        require((given.hulls > 0) != (given.error > 0), "Either hulls or error must be given: more than 0, and the other 0.");
         require(given.hulls <= most_parts, "hulls must be at most 4096.");
         require(given.max_vertices == 0 || given.max_vertices >= fewest_hull_vertices,
                 "max_vertices must be 0 for any number, or at least 8.");
-        require(given.approximate == 0 || given.approximate == 1, "approximate must be 0 or 1.");
-        require(given.reserved == 0, "reserved must be 0.");
-        *parts = new pw_convex_parts{convex_parts(
-            *hierarchy, hierarchy->solids,
-            {given.hulls, given.error, given.max_vertices, given.approximate == 1})};
+        Progress unwatched;
+        Progress& progress = context ? context->progress : unwatched;
+        const Watch watch(progress);
+        *parts = new pw_convex_parts{
+            convex_parts(*hierarchy, {given.hulls, given.error, given.max_vertices}, progress)};
+        progress.reach(1);
     });
 }
 

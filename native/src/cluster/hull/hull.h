@@ -110,6 +110,8 @@ public:
     }
 
     Box bounds(const Hull& hull) const;
+    // Its vertices are the hull's, in the same order.
+    TriangleMesh surface(const Hull& hull) const;
 
 private:
     // A point that may be outside.

@@ -35,6 +35,19 @@ Hull HullKernel::allocate(std::span<const int32_t> vertices, size_t facets) {
     return hull;
 }
 
+TriangleMesh HullKernel::surface(const Hull& hull) const {
+    TriangleMesh mesh;
+    const auto corners = hull.vertices();
+    for (const int32_t v : corners) mesh.vertices.push_back(at(v));
+    for (const HullFacet& facet : hull.facets()) {
+        Triangle t = facet.corners;
+        for (int32_t& v : t)
+            v = static_cast<int32_t>(std::lower_bound(corners.begin(), corners.end(), v) - corners.begin());
+        mesh.triangles.push_back(t);
+    }
+    return mesh;
+}
+
 void HullKernel::load(const Hull& hull) {
     const FacetsView h = view(hull);
     if (h.count <= set_bits)

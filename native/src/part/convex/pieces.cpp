@@ -5,71 +5,38 @@
 // comes down. That costs about as much as two hulls of the piece, for all places of the plane.
 #include "part/convex/pieces.h"
 
+#include "part/convex/principal.h"
+
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace partwheel::convex {
 
 namespace {
 
-constexpr size_t places = 16;        // of the plane, in a sweep
-constexpr double flat = 1e-9;        // of a piece's extent: nearer to the plane is in it
+// An even number: what is best in the middle, by symmetry, is seldom good for long.
+constexpr int places = 4;
+constexpr size_t finer_directions = 2;
+constexpr int finer_places = 2;  // on either side, each a third of the way to the next
+constexpr double gap = 1e-6;     // boxes that are nearer may touch
+// Points of a plane are moved off it by so much, relative to the model, lest it takes exact arithmetic to see that they
+// are in one plane. These hulls are only measured.
+constexpr double bulge = 1e-5;
+constexpr double jitter = 1e-6;
 
-std::vector<int32_t> vertices_of(std::span<const Tetrahedron> tetrahedra) {
-    std::vector<int32_t> used;
-    used.reserve(4 * tetrahedra.size());
-    for (const Tetrahedron& t : tetrahedra) used.insert(used.end(), t.begin(), t.end());
-    std::sort(used.begin(), used.end());
-    used.erase(std::unique(used.begin(), used.end()), used.end());
-    return used;
-}
-
-std::vector<std::array<int32_t, 2>> edges_of(std::span<const Tetrahedron> tetrahedra) {
-    std::vector<std::array<int32_t, 2>> edges;
-    edges.reserve(6 * tetrahedra.size());
-    for (const Tetrahedron& t : tetrahedra)
-        for (size_t i = 0; i < 4; ++i)
-            for (size_t j = i + 1; j < 4; ++j) edges.push_back({std::min(t[i], t[j]), std::max(t[i], t[j])});
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+std::array<Edge, 6> edges_of(const Tetrahedron& t) {
+    std::array<Edge, 6> edges;
+    size_t n = 0;
+    for (size_t i = 0; i < 4; ++i)
+        for (size_t j = i + 1; j < 4; ++j) edges[n++] = {std::min(t[i], t[j]), std::max(t[i], t[j])};
     return edges;
 }
 
-// The principal directions of some points: eigenvectors of their covariance, by Jacobi's rotations.
-std::array<Point, 3> principal_directions(const HullKernel& kernel, std::span<const int32_t> vertices) {
-    Point mean{};
-    for (const int32_t v : vertices) mean = mean + kernel.point(v);
-    mean = 1 / static_cast<double>(vertices.size()) * mean;
-    double a[3][3] = {};
-    for (const int32_t v : vertices) {
-        const Point d = kernel.point(v) - mean;
-        for (size_t i = 0; i < 3; ++i)
-            for (size_t j = 0; j < 3; ++j) a[i][j] += d[i] * d[j];
-    }
-    std::array<Point, 3> q = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // rows
-    constexpr size_t rounds = 12;
-    for (size_t round = 0; round < rounds; ++round)
-        for (size_t i = 0; i < 2; ++i)
-            for (size_t j = i + 1; j < 3; ++j) {
-                if (a[i][j] == 0) continue;
-                const double theta = (a[j][j] - a[i][i]) / (2 * a[i][j]);
-                const double t = std::copysign(1 / (std::fabs(theta) + std::sqrt(theta * theta + 1)), theta);
-                const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-                for (size_t k = 0; k < 3; ++k) {
-                    const double x = a[k][i], y = a[k][j];
-                    a[k][i] = c * x - s * y;
-                    a[k][j] = s * x + c * y;
-                }
-                for (size_t k = 0; k < 3; ++k) {
-                    const double x = a[i][k], y = a[j][k];
-                    a[i][k] = c * x - s * y;
-                    a[j][k] = s * x + c * y;
-                    const double u = q[i][k], v = q[j][k];
-                    q[i][k] = c * u - s * v;
-                    q[j][k] = s * u + c * v;
-                }
-            }
-    return q;
+template <class T>
+void each_once(std::vector<T>& items) {
+    std::sort(items.begin(), items.end());
+    items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
 // The extreme ones of points in a plane across this direction: a few of them decide, and most are dropped.
@@ -101,86 +68,140 @@ void keep_extreme(std::vector<Point>& points, const Point& direction) {
 
 }  // namespace
 
+Outline::Outline(std::span<const Tetrahedron> tetrahedra) {
+    vertices.reserve(4 * tetrahedra.size());
+    edges.reserve(6 * tetrahedra.size());
+    for (const Tetrahedron& t : tetrahedra) {
+        vertices.insert(vertices.end(), t.begin(), t.end());
+        for (const Edge& e : edges_of(t))
+            if (e[0] != e[1]) edges.push_back(e);
+    }
+    each_once(vertices);
+    each_once(edges);
+}
+
+Outline::Outline(const Outline& a, const Outline& b) {
+    std::ranges::set_union(a.vertices, b.vertices, std::back_inserter(vertices));
+    std::ranges::set_union(a.edges, b.edges, std::back_inserter(edges));
+}
+
 Piece Pieces::piece(std::vector<Tetrahedron> tetrahedra) {
-    Hull hull = kernel_.build(vertices_of(tetrahedra));
-    return {std::move(tetrahedra), std::move(hull)};
+    Outline outline(tetrahedra);
+    Hull hull = kernel_.build(outline.vertices);
+    double solid = 0;
+    for (const auto& [a, b, c, d] : tetrahedra)
+        solid += std::fabs(six_volumes(kernel_.point(a), kernel_.point(b), kernel_.point(c), kernel_.point(d))) / 6;
+    return {std::move(tetrahedra), std::move(outline), std::move(hull), solid};
 }
 
 Piece Pieces::joined(const Piece& a, const Piece& b) {
-    Piece both;
-    both.tetrahedra = a.tetrahedra;
-    both.tetrahedra.insert(both.tetrahedra.end(), b.tetrahedra.begin(), b.tetrahedra.end());
-    both.hull = kernel_.unite(a.hull, b.hull.vertices());
-    return both;
+    std::vector<Tetrahedron> both = a.tetrahedra;
+    both.insert(both.end(), b.tetrahedra.begin(), b.tetrahedra.end());
+    return {std::move(both), {a.outline, b.outline}, kernel_.unite(a.hull, b.hull.vertices()), a.solid + b.solid};
 }
 
 double Pieces::joined_cost(const Piece& a, const Piece& b) {
     return kernel_.united_volume(a.hull, b.hull.vertices()).volume;
 }
 
-bool Pieces::touch(const Piece& a, const Piece& b, double gap) const {
+bool Pieces::touch(const Piece& a, const Piece& b) const {
     const Box x = kernel_.bounds(a.hull), y = kernel_.bounds(b.hull);
     for (size_t k = 0; k < 3; ++k)
         if (x.low[k] > y.high[k] + gap || y.low[k] > x.high[k] + gap) return false;
     return true;
 }
 
-Division Pieces::best_division(std::span<const Tetrahedron> tetrahedra, std::span<const Point> more) {
-    const auto vertices = vertices_of(tetrahedra);
-    const auto edges = edges_of(tetrahedra);
+std::vector<Point> Pieces::principal(const Outline& outline) const {
+    std::vector<Point> points;
+    for (const int32_t v : outline.vertices) points.push_back(kernel_.point(v));
+    const auto found = principal_directions(points);
+    return {found.begin(), found.end()};
+}
+
+Division Pieces::best_division(const Piece& piece) {
+    std::vector<Point> directions = principal(piece.outline);
+    for (size_t i = 0; i < lattice_directions; ++i) directions.push_back(lattice_direction(i));
+    return best_across(piece.outline, std::move(directions));
+}
+
+Division Pieces::best_division(const Piece& a, const Piece& b) {
+    const Outline both(a.outline, b.outline);
+    std::vector<Point> directions = principal(both);
+    const Box x = kernel_.bounds(a.hull), y = kernel_.bounds(b.hull);
+    directions.push_back(y.low + y.high - x.low - x.high);
+    return best_across(both, std::move(directions));
+}
+
+Division Pieces::best_across(const Outline& outline, std::vector<Point> directions) {
+    struct Sweep {
+        Division best;
+        double step = 0;
+    };
+    std::vector<Sweep> sweeps;
+    std::vector<double> offsets;
+    for (const Point& d : directions) {
+        const double size = length(d);
+        if (!(size > 0)) continue;
+        const Point along = 1 / size * d;
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (const int32_t v : outline.vertices) {
+            const double h = dot(along, kernel_.point(v));
+            low = std::min(low, h);
+            high = std::max(high, h);
+        }
+        if (!(low < high)) continue;
+        Sweep sweep;
+        sweep.step = (high - low) / (places + 1);
+        offsets.clear();
+        for (int i = 1; i <= places; ++i) offsets.push_back(low + i * sweep.step);
+        try_planes(outline, along, offsets, sweep.best);
+        sweeps.push_back(sweep);
+    }
+    std::ranges::stable_sort(sweeps, {}, [](const Sweep& s) { return s.best.cost; });
+    sweeps.resize(std::min(sweeps.size(), finer_directions));
     Division best;
-    for (const Point& d : principal_directions(kernel_, vertices)) sweep(vertices, edges, d, best);
-    for (const Point& d : more) sweep(vertices, edges, d, best);
-    if (more.empty())
-        for (size_t i = 0; i < lattice_directions; ++i) sweep(vertices, edges, lattice_direction(i), best);
+    for (Sweep& sweep : sweeps) {
+        const auto [normal, middle] = sweep.best.plane;
+        offsets.clear();
+        for (int i = -finer_places; i <= finer_places; ++i)
+            if (i != 0) offsets.push_back(middle + i * sweep.step / (finer_places + 1));
+        try_planes(outline, normal, offsets, sweep.best);
+        if (sweep.best.cost < best.cost) best = sweep.best;
+    }
     return best;
 }
 
-void Pieces::sweep(std::span<const int32_t> vertices, std::span<const std::array<int32_t, 2>> edges,
-                   const Point& direction, Division& best) {
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (const int32_t v : vertices) {
-        const double h = dot(direction, kernel_.point(v));
-        low = std::min(low, h);
-        high = std::max(high, h);
-    }
-    if (!(low < high)) return;
-    const double step = (high - low) / (places + 1);
-    std::vector<double> offsets;
-    for (size_t i = 1; i <= places; ++i) offsets.push_back(low + static_cast<double>(i) * step);
-    Division here;
-    try_planes(vertices, edges, direction, offsets, here);
-    // Finer, where it may become the best.
-    if (here.cost < best.cost + 0.02 * std::fabs(best.cost) || best.cost == HUGE_VAL) {
-        const double middle = here.plane.offset;
-        offsets.clear();
-        for (int i = -3; i <= 3; ++i)
-            if (i != 0) offsets.push_back(middle + i * step / 4);
-        try_planes(vertices, edges, direction, offsets, here);
-    }
-    if (here.cost < best.cost) best = here;
-}
-
-void Pieces::try_planes(std::span<const int32_t> vertices, std::span<const std::array<int32_t, 2>> edges,
-                        const Point& direction, std::span<const double> offsets, Division& best) {
+// offsets: rising. direction: of length 1.
+void Pieces::try_planes(const Outline& outline, const Point& direction, std::span<const double> offsets, Division& best) {
     const size_t n = offsets.size(), kept = kernel_.point_count();
+    heights_.resize(std::max(heights_.size(), kept));
     // Between which planes each vertex is; and where edges cross each plane.
     std::vector<std::vector<int32_t>> between(n + 1);
     std::vector<std::vector<Point>> crossings(n);
     const auto band = [&](double h) {
-        return static_cast<size_t>(std::lower_bound(offsets.begin(), offsets.end(), h) - offsets.begin());
+        size_t i = 0;
+        while (i < n && offsets[i] < h) ++i;
+        return i;
     };
-    for (const int32_t v : vertices) between[band(dot(direction, kernel_.point(v)))].push_back(v);
-    for (const auto& [a, b] : edges) {
-        const Point &p = kernel_.point(a), &q = kernel_.point(b);
-        const double hp = dot(direction, p), hq = dot(direction, q);
-        const size_t first = band(std::min(hp, hq)), last = band(std::max(hp, hq));
-        for (size_t i = first; i < last; ++i) crossings[i].push_back(p + (offsets[i] - hp) / (hq - hp) * (q - p));
+    for (const int32_t v : outline.vertices) {
+        heights_[at(v)] = dot(direction, kernel_.point(v));
+        between[band(heights_[at(v)])].push_back(v);
+    }
+    for (const auto& [a, b] : outline.edges) {
+        const double ha = heights_[at(a)], hb = heights_[at(b)];
+        const size_t last = band(std::max(ha, hb));
+        for (size_t i = band(std::min(ha, hb)); i < last; ++i)
+            crossings[i].push_back(kernel_.point(a) +
+                                   (offsets[i] - ha) / (hb - ha) * (kernel_.point(b) - kernel_.point(a)));
     }
     std::vector<std::vector<int32_t>> at_plane(n);
     for (size_t i = 0; i < n; ++i) {
         keep_extreme(crossings[i], direction);
-        for (const Point& p : crossings[i]) at_plane[i].push_back(kernel_.add(p));
+        const Box box = Box::around(crossings[i]);
+        const Point middle = 0.5 * (box.low + box.high);
+        const double share = bulge / std::max(box.diagonal(), bulge);
+        for (const Point& p : crossings[i])
+            at_plane[i].push_back(kernel_.add(p - share * dot(p - middle, p - middle) * direction));
     }
     std::vector<double> costs(n, 0);
     for (const bool up : {true, false}) {
@@ -190,7 +211,7 @@ void Pieces::try_planes(std::span<const int32_t> vertices, std::span<const std::
             std::vector<int32_t> added = between[up ? i : i + 1];
             added.insert(added.end(), at_plane[i].begin(), at_plane[i].end());
             hull = hull ? kernel_.unite(hull, added) : kernel_.build(added);
-            costs[i] += hull.facet_count() ? hull.volume() : HUGE_VAL;
+            costs[i] += hull.volume();
         }
     }
     for (size_t i = 0; i < n; ++i)
@@ -198,15 +219,8 @@ void Pieces::try_planes(std::span<const int32_t> vertices, std::span<const std::
     kernel_.forget(kept);
 }
 
-std::array<Piece, 2> Pieces::divided(std::span<const Tetrahedron> tetrahedra, const CutPlane& plane) {
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (const Tetrahedron& t : tetrahedra)
-        for (const int32_t v : t) {
-            const double h = plane.height(kernel_.point(v));
-            low = std::min(low, h);
-            high = std::max(high, h);
-        }
-    Sliced sides = slice(tetrahedra, plane, flat * (high - low), kernel_);
+std::array<Piece, 2> Pieces::divided(std::vector<Tetrahedron> tetrahedra, const CutPlane& plane) {
+    Sliced sides = slice(tetrahedra, plane, kernel_, jitter);
     return {piece(std::move(sides.below)), piece(std::move(sides.above))};
 }
 

@@ -9,10 +9,12 @@ namespace partwheel::convex {
 
 namespace {
 
-constexpr double gap = 1e-6;         // working: boxes that are nearer may touch
 constexpr double least_gain = 1e-9;  // of all volume: less is rounding
+constexpr double least_hope = 0.01;  // of all volume, that two hulls are more than their solid: else they stay as they are
 constexpr size_t most_rounds = 4;
 constexpr size_t most_exchanges = 64;
+
+std::array<size_t, 2> in_order(size_t a, size_t b) { return {std::min(a, b), std::max(a, b)}; }
 
 }  // namespace
 
@@ -22,25 +24,30 @@ double Search::cost() const {
     return sum;
 }
 
-std::vector<Piece> Search::take() {
-    std::vector<Piece> taken;
-    for (Entry& each : pieces_) taken.push_back(std::move(each.piece));
-    pieces_.clear();
-    return taken;
+double Search::gain(Entry& entry) {
+    if (!entry.division) {
+        tick_();
+        entry.division = made_.best_division(entry.piece);
+    }
+    return entry.division->cost == HUGE_VAL ? 0 : entry.piece.cost() - entry.division->cost;
 }
 
-double Search::gain(Entry& entry) {
-    if (!entry.division) entry.division = made_.best_division(entry.piece.tetrahedra, {});
-    return entry.division->cost == HUGE_VAL ? 0 : entry.piece.cost() - entry.division->cost;
+size_t Search::most_gaining() {
+    size_t best = 0;
+    for (size_t i = 1; i < pieces_.size(); ++i)
+        if (gain(pieces_[i]) > gain(pieces_[best])) best = i;
+    return best;
 }
 
 // False if nothing came of it; it will not be tried again.
 bool Search::divide(size_t i) {
-    auto [below, above] = made_.divided(pieces_[i].piece.tetrahedra, pieces_[i].division->plane);
-    if (below.hull.facet_count() == 0 || above.hull.facet_count() == 0) {
+    const CutPlane plane = pieces_[i].division->plane;
+    auto [below, above] = made_.divided(pieces_[i].piece.tetrahedra, plane);
+    if (below.tetrahedra.empty() || above.tetrahedra.empty()) {
         pieces_[i].division = Division{};
         return false;
     }
+    steps_.push_back({Step::divide, i, 0, plane});
     pieces_[i] = entry(std::move(below));
     pieces_.push_back(entry(std::move(above)));
     return true;
@@ -49,9 +56,7 @@ bool Search::divide(size_t i) {
 void Search::divide_until(size_t count) {
     const double least = least_gain * cost();
     while (pieces_.size() < count) {
-        size_t best = 0;
-        for (size_t i = 1; i < pieces_.size(); ++i)
-            if (gain(pieces_[i]) > gain(pieces_[best])) best = i;
+        const size_t best = most_gaining();
         if (gain(pieces_[best]) <= least) return;
         divide(best);
     }
@@ -69,20 +74,20 @@ void Search::divide_until_good(const Good& good, size_t most) {
 }
 
 void Search::join(size_t a, size_t b) {
+    steps_.push_back({Step::join, a, b, {}});
     pieces_[a] = entry(made_.joined(pieces_[a].piece, pieces_[b].piece));
     pieces_.erase(pieces_.begin() + static_cast<std::ptrdiff_t>(b));
 }
 
-// With what joining adds. Costs that were asked for before are known.
+// The cheapest first; of pieces that touch, or of all. Costs that were asked for before are known.
 std::vector<Search::Pair> Search::pairs(bool all) {
     std::vector<Pair> found;
     decltype(known_) known;
     for (size_t a = 0; a < pieces_.size(); ++a)
         for (size_t b = a + 1; b < pieces_.size(); ++b) {
             const Piece &x = pieces_[a].piece, &y = pieces_[b].piece;
-            if (!all && !made_.touch(x, y, gap)) continue;
-            std::array<size_t, 2> key = {pieces_[a].stamp, pieces_[b].stamp};
-            std::ranges::sort(key);
+            if (!all && !made_.touch(x, y)) continue;
+            const auto key = in_order(pieces_[a].stamp, pieces_[b].stamp);
             const auto place = std::ranges::lower_bound(known_, key, {}, &decltype(known_)::value_type::first);
             const double cost = place != known_.end() && place->first == key
                                     ? place->second
@@ -92,23 +97,29 @@ std::vector<Search::Pair> Search::pairs(bool all) {
         }
     std::ranges::sort(known);
     known_ = std::move(known);
+    std::ranges::sort(found, {}, [](const Pair& p) { return std::tuple(p.cost, p.a, p.b); });
     return found;
 }
 
-void Search::join_until(size_t count, const Good& good) {
-    std::set<std::array<size_t, 2>> refused;  // by stamps
+void Search::join_until(size_t count) {
     while (pieces_.size() > count) {
+        tick_();
         auto found = pairs(false);
-        if (found.empty() && !good) found = pairs(true);
-        const auto stamps = [&](const Pair& p) {
-            return std::array{pieces_[p.a].stamp, pieces_[p.b].stamp};
-        };
-        std::ranges::sort(found, {}, [](const Pair& p) { return std::tuple(p.cost, p.a, p.b); });
+        if (found.empty()) found = pairs(true);
+        join(found.front().a, found.front().b);
+    }
+}
+
+void Search::join_while_good(const Good& good) {
+    std::set<std::array<size_t, 2>> refused;  // by stamps
+    for (;;) {
+        const auto found = pairs(false);
         const auto best = std::ranges::find_if(found, [&](const Pair& p) {
-            if (!good) return true;
-            if (refused.contains(stamps(p))) return false;
+            const auto key = in_order(pieces_[p.a].stamp, pieces_[p.b].stamp);
+            if (refused.contains(key)) return false;
+            tick_();
             if (good(made_.joined(pieces_[p.a].piece, pieces_[p.b].piece))) return true;
-            refused.insert(stamps(p));
+            refused.insert(key);
             return false;
         });
         if (best == found.end()) return;
@@ -116,48 +127,43 @@ void Search::join_until(size_t count, const Good& good) {
     }
 }
 
-void Search::move_borders(const Good& good) {
-    const double least = least_gain * cost();
-    std::set<std::array<size_t, 2>> tried;
-    for (size_t round = 0; round < most_rounds; ++round) {
-        bool moved = false;
+void Search::move_borders() {
+    const double all = cost();
+    std::set<std::array<size_t, 2>> tried;  // by stamps
+    for (size_t round = 0, moved = 1; round < most_rounds && moved; ++round) {
+        moved = 0;
         for (size_t a = 0; a < pieces_.size(); ++a)
             for (size_t b = a + 1; b < pieces_.size(); ++b) {
                 const Piece &x = pieces_[a].piece, &y = pieces_[b].piece;
-                if (!made_.touch(x, y, gap) || !tried.insert({pieces_[a].stamp, pieces_[b].stamp}).second) continue;
                 const double now = x.cost() + y.cost();
-                // Two that are convex by themselves can't gain.
+                if (now - x.solid - y.solid < least_hope * all || !made_.touch(x, y) ||
+                    !tried.insert({pieces_[a].stamp, pieces_[b].stamp}).second)
+                    continue;
+                tick_();
+                const Division best = made_.best_division(x, y);
+                if (!(best.cost < now - least_gain * all)) continue;
                 std::vector<Tetrahedron> both = x.tetrahedra;
                 both.insert(both.end(), y.tetrahedra.begin(), y.tetrahedra.end());
-                const Box p = made_.kernel().bounds(x.hull), q = made_.kernel().bounds(y.hull);
-                const std::array<Point, 1> between = {q.low + q.high - p.low - p.high};
-                const Division best = made_.best_division(both, between);
-                if (!(best.cost < now - least)) continue;
-                auto [below, above] = made_.divided(both, best.plane);
-                if (below.hull.facet_count() == 0 || above.hull.facet_count() == 0) continue;
-                if (!(below.cost() + above.cost() < now - least)) continue;
-                if (good && !(good(below) && good(above))) continue;
+                auto [below, above] = made_.divided(std::move(both), best.plane);
+                if (below.tetrahedra.empty() || above.tetrahedra.empty() ||
+                    !(below.cost() + above.cost() < now - least_gain * all))
+                    continue;
+                steps_.push_back({Step::move, a, b, best.plane});
                 pieces_[a] = entry(std::move(below));
                 pieces_[b] = entry(std::move(above));
-                moved = true;
+                ++moved;
             }
-        if (!moved) return;
     }
 }
 
 void Search::exchange() {
     const double least = least_gain * cost();
     for (size_t i = 0; i < most_exchanges; ++i) {
-        size_t best = 0;
-        for (size_t k = 1; k < pieces_.size(); ++k)
-            if (gain(pieces_[k]) > gain(pieces_[best])) best = k;
+        const size_t best = most_gaining();
         const auto found = pairs(false);
-        const Pair* least_pair = nullptr;
-        for (const Pair& p : found)
-            if (p.a != best && p.b != best && (!least_pair || p.cost < least_pair->cost)) least_pair = &p;
-        if (!least_pair || gain(pieces_[best]) - least_pair->cost <= least) return;
-        if (!divide(best)) continue;  // the new one is the last
-        join(least_pair->a, least_pair->b);
+        const auto cheapest = std::ranges::find_if(found, [&](const Pair& p) { return p.a != best && p.b != best; });
+        if (cheapest == found.end() || gain(pieces_[best]) - cheapest->cost <= least) return;
+        if (divide(best)) join(cheapest->a, cheapest->b);  // what is new is the last
     }
 }
 

@@ -6,34 +6,45 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace partwheel::convex {
 
+// What the search did, by places in its list of pieces: piece a is divided, and what is above goes to the end; b is joined
+// with a, and those after b move up; or a and b together are divided anew.
+struct Step {
+    enum { divide, join, move } what;
+    size_t a, b;
+    CutPlane plane;
+};
+
 // Every choice is the least cost, the first of several: the same on every run.
 class Search {
 public:
-    // Whether a piece is as good as it must be; none: all are.
     using Good = std::function<bool(const Piece&)>;
+    using Tick = std::function<void()>;  // called before each division; it may throw
 
-    Search(Pieces& made, std::vector<Piece> start) : made_(made) {
-        for (Piece& piece : start) pieces_.push_back({std::move(piece), {}, next_stamp_++});
+    // Starts with all as one piece.
+    Search(Pieces& made, std::vector<Tetrahedron> all, Tick tick) : made_(made), tick_(std::move(tick)) {
+        pieces_.push_back(entry(made_.piece(std::move(all))));
     }
 
     // Divides the piece that gains most by it, until there are so many or none gains.
     void divide_until(size_t count);
     // Divides those that are not good until all are, or there are so many.
     void divide_until_good(const Good& good, size_t most);
-    // Joins the two that cost least, until there are so many; with `good`, while the joined are.
-    void join_until(size_t count, const Good& good = {});
+    // Joins the two that cost least, until there are so many.
+    void join_until(size_t count);
+    // Joins the two that cost least while what is joined is good.
+    void join_while_good(const Good& good);
     // Two neighbours together are divided by the plane that is best for them, where that is better than what divides them
-    // now; with `good`, where both stay good.
-    void move_borders(const Good& good = {});
+    // now.
+    void move_borders();
     // Divides one piece and joins two others while that gains.
     void exchange();
 
-    double cost() const;
-    std::vector<Piece> take();
+    std::span<const Step> steps() const { return steps_; }
 
 private:
     struct Entry {
@@ -46,14 +57,18 @@ private:
         double cost = HUGE_VAL;  // what joining adds
     };
 
+    double cost() const;
     double gain(Entry& entry);
+    size_t most_gaining();
     bool divide(size_t i);
     void join(size_t a, size_t b);
     std::vector<Pair> pairs(bool all);
     Entry entry(Piece&& piece) { return {std::move(piece), {}, next_stamp_++}; }
 
     Pieces& made_;
+    Tick tick_;
     std::vector<Entry> pieces_;
+    std::vector<Step> steps_;
     size_t next_stamp_ = 0;
     std::vector<std::pair<std::array<size_t, 2>, double>> known_;  // costs of joining, by stamps; sorted
 };

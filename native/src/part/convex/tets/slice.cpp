@@ -1,13 +1,17 @@
 // Tetrahedra cut by a plane: what is on a side is one tetrahedron, a pyramid or a prism, which are tetrahedra again.
-#include "part/convex/slice.h"
+#include "part/convex/tets/slice.h"
 
 #include "cluster/hull/hull.h"
 
+#include <cmath>
 #include <map>
 
 namespace partwheel::convex {
 
 namespace {
+
+constexpr double flat_share = 1e-9;            // of the extent across the plane
+constexpr double golden = 0.6180339887498949;  // multiples of it are spread evenly, less whole numbers
 
 // The prism between two triangles whose corners go with each other.
 void add_prism(const Triangle& t, const Triangle& u, std::vector<Tetrahedron>& to) {
@@ -18,17 +22,26 @@ void add_prism(const Triangle& t, const Triangle& u, std::vector<Tetrahedron>& t
 
 }  // namespace
 
-Sliced slice(std::span<const Tetrahedron> tetrahedra, const CutPlane& plane, double flat, HullKernel& kernel) {
+Sliced slice(std::span<const Tetrahedron> tetrahedra, const CutPlane& plane, HullKernel& kernel, double jitter) {
     Sliced made;
     std::map<std::array<int32_t, 2>, int32_t> crossings;
     const auto height = [&](int32_t v) { return plane.height(kernel.point(v)); };
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const Tetrahedron& t : tetrahedra)
+        for (const int32_t v : t) {
+            low = std::min(low, height(v));
+            high = std::max(high, height(v));
+        }
+    const double flat = flat_share * (high - low);
     const auto crossing = [&](int32_t a, int32_t b) {
         if (a > b) std::swap(a, b);
         const auto [found, is_new] = crossings.try_emplace({a, b}, -1);
         if (is_new) {
             const double ha = height(a), hb = height(b);
             const Point p = kernel.point(a), q = kernel.point(b);
-            found->second = kernel.add(p + ha / (ha - hb) * (q - p));
+            const auto n = static_cast<double>(crossings.size());
+            const double off = jitter * (golden * n - std::floor(golden * n));
+            found->second = kernel.add(p + ha / (ha - hb) * (q - p) + off * plane.normal);
         }
         return found->second;
     };

@@ -1,0 +1,120 @@
+// A polytope around a hull, plane by plane, each where the polytope's farthest corner is.
+//
+// In the dual, planes are points: of those against the polytope the hull is built, and each of its facets is a corner.
+#include "part/convex/fewer.h"
+
+#include "cluster/hull/hull.h"
+#include "part/convex/apart.h"
+#include "part/convex/principal.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace partwheel::convex {
+
+namespace {
+
+constexpr double margin = 1e-9;   // of the extent
+constexpr double same = 1e-12;    // of the distance from the middle
+constexpr double nearer = 1e-6;   // of the extent: a corner that is no farther out has all it needs
+
+// The surface of the convex hull.
+TriangleMesh hull_of(std::span<const Point> points) {
+    HullKernel kernel(points);
+    std::vector<int32_t> all(points.size());
+    for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int32_t>(i);
+    return kernel.surface(kernel.build(all));
+}
+
+// The corners where planes n meet, of which all points x with dot(n, x) <= 1 are on the inner side.
+std::vector<Point> corners_of(std::span<const Point> planes) {
+    const TriangleMesh dual = hull_of(planes);
+    std::vector<Point> corners;
+    for (const Triangle& t : dual.triangles) {
+        const Point &a = dual.vertices[at(t[0])], &b = dual.vertices[at(t[1])], &c = dual.vertices[at(t[2])];
+        const Point n = cross(b - a, c - a);
+        corners.push_back(1 / dot(n, a) * n);
+    }
+    // Where more than three meet, one of those that rounding made of it.
+    std::sort(corners.begin(), corners.end());
+    std::vector<Point> kept;
+    for (const Point& p : corners)
+        if (std::ranges::none_of(kept, [&](const Point& q) { return length(p - q) < same * length(p); })) kept.push_back(p);
+    return kept;
+}
+
+double extent_along(std::span<const Point> points, const Point& direction) {
+    double most = -HUGE_VAL;
+    for (const Point& p : points) most = std::max(most, dot(direction, p));
+    return most;
+}
+
+// The axes, or the principal directions if a box along these is smaller.
+std::array<Point, 3> directions_of_box(std::span<const Point> points) {
+    const std::array<Point, 3> axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, principal = principal_directions(points);
+    const auto volume = [&](const std::array<Point, 3>& directions) {
+        double product = 1;
+        for (const Point& d : directions) product *= extent_along(points, d) + extent_along(points, -1 * d);
+        return product;
+    };
+    return volume(principal) < (1 - nearer) * volume(axes) ? principal : axes;
+}
+
+}  // namespace
+
+TriangleMesh fewer_around(const TriangleMesh& hull, size_t most) {
+    if (hull.vertices.size() <= most) return hull;
+    Point middle{};
+    for (const Point& p : hull.vertices) middle = middle + 1 / static_cast<double>(hull.vertices.size()) * p;
+    std::vector<Point> around;  // of the middle
+    for (const Point& p : hull.vertices) around.push_back(p - middle);
+    const double extent = Box::around(around).diagonal();
+    struct Side {
+        Point normal;
+        double offset;
+    };
+    std::vector<Side> facets;
+    for (const auto& [a, b, c] : hull.triangles) {
+        const Point n = cross(around[at(b)] - around[at(a)], around[at(c)] - around[at(a)]);
+        if (length(n) > 0) facets.push_back({1 / length(n) * n, extent_along(around, 1 / length(n) * n)});
+    }
+    std::vector<Point> planes;  // as corners_of() takes them
+    const auto add = [&](const Point& direction) {
+        planes.push_back(1 / (extent_along(around, direction) + margin * extent) * direction);
+    };
+    for (const Point& d : directions_of_box(around)) {
+        add(d);
+        add(-1 * d);
+    }
+    std::vector<Point> corners = corners_of(planes);
+    for (;;) {
+        // The corner that is farthest beyond a facet.
+        double farthest = nearer * extent;
+        const Point* corner = nullptr;
+        for (const Point& p : corners)
+            for (const Side& side : facets)
+                if (dot(side.normal, p) - side.offset > farthest) {
+                    farthest = dot(side.normal, p) - side.offset;
+                    corner = &p;
+                }
+        if (!corner) break;
+        Point nearest{};
+        double distance = HUGE_VAL;
+        for (const auto& [a, b, c] : hull.triangles) {
+            const Point q = nearest_on_triangle(*corner, around[at(a)], around[at(b)], around[at(c)]);
+            if (length(*corner - q) < distance) {
+                distance = length(*corner - q);
+                nearest = q;
+            }
+        }
+        add(1 / distance * (*corner - nearest));
+        auto next = corners_of(planes);
+        if (next.size() > most) break;
+        corners = std::move(next);
+    }
+    TriangleMesh made = hull_of(corners);
+    for (Point& p : made.vertices) p = p + middle;
+    return made;
+}
+
+}  // namespace partwheel::convex
