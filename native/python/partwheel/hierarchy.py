@@ -263,25 +263,24 @@ class Hierarchy:
         """The convex hull of tetrahedra[tet_first:tet_last], for a part of a cut: (vertices, triangles)."""
         return self._mesh(load().pw_hierarchy_hull, _number(tet_first), _number(tet_last))[1:]
 
-    def convex_parts(self, hulls=0, *, error=0.0, max_vertices=0, approximate=False):
-        """[ConvexPart, ...]: few convex hulls that contain the solid and little else, the largest first. They are best of
-        mode PAPER's tree.
+    def convex_parts(self, hulls=None, *, error=None, max_vertices=None, context=None):
+        """[ConvexPart, ...]: convex hulls that together contain the solid and little else, the largest first.
 
-        hulls: so many, at most 4096; fewer where more would be no better. error: the largest distance from the solid
-        that a hull's surface may have, in the unit of the coordinates; with hulls as well, at most so many hulls.
-        max_vertices: of a hull, 8 or more, as engines limit them; one that had more gets one of fewer around it, or with
-        approximate the hull of some of its vertices. See pw_hierarchy_convex_parts in partwheel_convex.h."""
-        options = ConvexOptions(hulls=_number(hulls), error=float(error), max_vertices=_number(max_vertices),
-                                approximate=bool(approximate))
+        Either hulls, so many, at most 4096, fewer where more would gain nothing; or error, the largest distance from the
+        solid that any hull's surface may have, in the unit of the coordinates: as few as are found. max_vertices: of a
+        hull, 8 or more, as engines limit them; one that had more gets a convex polytope of fewer around it. context: a
+        Context, to cancel from another thread and to see the progress. See pw_hierarchy_convex_parts in
+        partwheel_convex.h."""
+        options = ConvexOptions(hulls=_number(hulls or 0), error=float(error or 0), max_vertices=_number(max_vertices or 0))
         parts = Handle(load().pw_convex_parts_free,
-                       made(load().pw_hierarchy_convex_parts, self._handle, byref(options)))
+                       made(load().pw_hierarchy_convex_parts, context, self._handle, byref(options)))
         types = [c_void_p, c_size_t, c_void_p, c_size_t, c_double, c_double]
-        hulls = []
+        found = []
         for index in range(told([c_size_t], load().pw_convex_parts_count, parts)[0]):
             vertices, n, triangles, m, volume, away = told(types, load().pw_convex_parts_hull, parts, index)
-            hulls.append(ConvexPart(_view(parts, vertices, (n, 3), np.float64), _view(parts, triangles, (m, 3), np.int32),
-                                    volume, away if away >= 0 else None))
-        return hulls
+            found.append(ConvexPart(_view(parts, vertices, (n, 3), np.float64),
+                                    _view(parts, triangles, (m, 3), np.int32), volume, away if away >= 0 else None))
+        return found
 
     def solid(self, node):
         """The closed, manifold surface around a node's tetrahedra: a Solid. Where polygons are not triangles,

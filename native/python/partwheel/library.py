@@ -91,7 +91,6 @@ class ConvexOptions(_Sized):
 
     _fields_ = [
         ("struct_size", c_size_t), ("hulls", c_size_t), ("error", c_double), ("max_vertices", c_size_t),
-        ("approximate", c_int32), ("reserved", c_int32),
     ]
 
 
@@ -130,7 +129,7 @@ FUNCTIONS = {
     "pw_hierarchy_cut_least_concavity": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_cut_automatic": (c_int, [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_hull": (c_int, [c_void_p, c_size_t, c_size_t, POINTER(c_void_p)]),
-    "pw_hierarchy_convex_parts": (c_int, [c_void_p, POINTER(ConvexOptions), POINTER(c_void_p)]),
+    "pw_hierarchy_convex_parts": (c_int, [c_void_p, c_void_p, POINTER(ConvexOptions), POINTER(c_void_p)]),
     "pw_convex_parts_free": (None, [c_void_p]),
     "pw_convex_parts_count": (c_int, [c_void_p, POINTER(c_size_t)]),
     "pw_convex_parts_hull": (c_int, [c_void_p, c_size_t, POINTER(c_void_p), POINTER(c_size_t), POINTER(c_void_p),

@@ -1,6 +1,8 @@
 // Distances from tetrahedra, and the largest of a surface's by branch and bound.
 #include "part/convex/apart.h"
 
+#include "base/curve.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -11,7 +13,8 @@ namespace partwheel::convex {
 
 namespace {
 
-constexpr size_t leaf = 4;  // tetrahedra
+constexpr double rounding = 1e-12;  // a point that is no farther out of a facet may as well be in it
+
 
 double squared(const Point& p) { return dot(p, p); }
 
@@ -30,13 +33,32 @@ Point nearest_on_segment(const Point& p, const Point& a, const Point& b) {
     return a + t * along;
 }
 
-double squared_to_tetrahedron(const Point& p, const std::array<Point, 4>& t) {
-    double best = HUGE_VAL;
-    for (const auto& [i, j, k] : facet_corners) {
-        const Point n = cross(t[j] - t[i], t[k] - t[i]);
-        if (dot(p - t[i], n) > 0) best = std::min(best, squared(p - nearest_on_triangle(p, t[i], t[j], t[k])));
+std::vector<Triangle> outer_facets(std::span<const Tetrahedron> tetrahedra) {
+    std::vector<std::pair<Triangle, Triangle>> facets;  // corners in rising order, and as they are
+    facets.reserve(4 * tetrahedra.size());
+    for (const Tetrahedron& t : tetrahedra)
+        for (size_t k = 0; k < 4; ++k) {
+            Triangle corners = facet(t, k);
+            std::ranges::sort(corners);
+            facets.push_back({corners, facet(t, k)});
+        }
+    std::ranges::sort(facets);
+    std::vector<Triangle> outer;
+    for (size_t i = 0; i < facets.size(); ++i)
+        if ((i == 0 || facets[i - 1].first != facets[i].first) &&
+            (i + 1 == facets.size() || facets[i + 1].first != facets[i].first))
+            outer.push_back(facets[i].second);
+    return outer;
+}
+
+template <class Item>
+std::vector<Box> boxes_of(std::span<const Point> points, std::span<const Item> items) {
+    std::vector<Box> boxes;
+    for (const Item& item : items) {
+        boxes.emplace_back();
+        for (const int32_t v : item) boxes.back().add(points[at(v)]);
     }
-    return best == HUGE_VAL ? 0 : best;
+    return boxes;
 }
 
 }  // namespace
@@ -53,52 +75,81 @@ Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const 
     return best;
 }
 
-Distances::Distances(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra)
-    : points_(points), tetrahedra_(tetrahedra) {
-    bound(0, 0, tetrahedra.size());
-}
-
-void Distances::bound(size_t node, size_t first, size_t last) {
-    if (boxes_.size() <= node) boxes_.resize(node + 1);
-    Box box;
-    if (last - first <= leaf) {
-        for (const Tetrahedron& t : tetrahedra_.subspan(first, last - first))
-            for (const int32_t v : t) box.add(points_[at(v)]);
-    } else {
-        const size_t middle = first + (last - first) / 2;
-        bound(2 * node + 1, first, middle);
-        bound(2 * node + 2, middle, last);
-        for (const size_t half : {2 * node + 1, 2 * node + 2}) {
-            box.add(boxes_[half].low);
-            box.add(boxes_[half].high);
-        }
+BoxTree::BoxTree(std::span<const Box> items) {
+    Box all;
+    for (const Box& box : items) {
+        all.add(box.low);
+        all.add(box.high);
     }
-    boxes_[node] = box;
+    const double longest = std::max({all.high[0] - all.low[0], all.high[1] - all.low[1], all.high[2] - all.low[2]});
+    std::vector<std::pair<uint64_t, size_t>> places;
+    for (size_t i = 0; i < items.size(); ++i)
+        places.push_back({place_in_cube(0.4999 / longest * (items[i].low + items[i].high - all.low - all.low), curve_bits), i});
+    std::ranges::sort(places);
+    for (const auto& [place, i] : places) order.push_back(i);
+    bound(items, 0, 0, items.size());
 }
 
-// best and enough are squares.
-void Distances::nearest(size_t node, size_t first, size_t last, const Point& p, double enough, double& best) const {
-    if (last - first <= leaf) {
-        for (const auto& [a, b, c, d] : tetrahedra_.subspan(first, last - first))
-            best = std::min(best, squared_to_tetrahedron(p, {points_[at(a)], points_[at(b)], points_[at(c)],
-                                                             points_[at(d)]}));
+void BoxTree::bound(std::span<const Box> items, size_t node, size_t first, size_t last) {
+    if (boxes.size() <= node) boxes.resize(node + 1);
+    if (last - first == 1) {
+        boxes[node] = items[order[first]];
         return;
     }
     const size_t middle = first + (last - first) / 2;
-    const double below = squared_to_box(p, boxes_[2 * node + 1]), above = squared_to_box(p, boxes_[2 * node + 2]);
+    bound(items, 2 * node + 1, first, middle);
+    bound(items, 2 * node + 2, middle, last);
+    Box box = boxes[2 * node + 1];
+    box.add(boxes[2 * node + 2].low);
+    box.add(boxes[2 * node + 2].high);
+    boxes[node] = box;
+}
+
+Distances::Distances(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra)
+    : points_(points), tetrahedra_(tetrahedra), surface_(outer_facets(tetrahedra)),
+      of_tetrahedra_(boxes_of(points, tetrahedra)), of_surface_(boxes_of(points, std::span<const Triangle>(surface_))) {}
+
+bool Distances::inside(size_t node, size_t first, size_t last, const Point& p) const {
+    if (squared_to_box(p, of_tetrahedra_.boxes[node]) > 0) return false;
+    if (last - first > 1) {
+        const size_t middle = first + (last - first) / 2;
+        return inside(2 * node + 1, first, middle, p) || inside(2 * node + 2, middle, last, p);
+    }
+    for (size_t k = 0; k < 4; ++k) {
+        const Triangle t = facet(tetrahedra_[of_tetrahedra_.order[first]], k);
+        const Point& a = points_[at(t[0])];
+        const Point n = cross(points_[at(t[1])] - a, points_[at(t[2])] - a);
+        const double height = dot(p - a, n);
+        if (height > 0 && height * height > rounding * rounding * squared(n)) return false;
+    }
+    return true;
+}
+
+// Of the surface. enough: squared.
+void Distances::look(size_t node, size_t first, size_t last, const Point& p, double enough, Found& best) const {
+    if (last - first == 1) {
+        const auto& [a, b, c] = surface_[of_surface_.order[first]];
+        const Point q = nearest_on_triangle(p, points_[at(a)], points_[at(b)], points_[at(c)]);
+        if (squared(p - q) < best.squared) best = {q, squared(p - q)};
+        return;
+    }
+    const size_t middle = first + (last - first) / 2;
+    const double below = squared_to_box(p, of_surface_.boxes[2 * node + 1]);
+    const double above = squared_to_box(p, of_surface_.boxes[2 * node + 2]);
     for (const bool second : {below > above, below <= above})
-        if (best > enough && (second ? above : below) < best) {
+        if (best.squared > enough && (second ? above : below) < best.squared) {
             if (second)
-                nearest(2 * node + 2, middle, last, p, enough, best);
+                look(2 * node + 2, middle, last, p, enough, best);
             else
-                nearest(2 * node + 1, first, middle, p, enough, best);
+                look(2 * node + 1, first, middle, p, enough, best);
         }
 }
 
-double Distances::distance(const Point& p, double enough) const {
-    double best = HUGE_VAL;
-    nearest(0, 0, tetrahedra_.size(), p, std::max(enough, 0.0) * std::max(enough, 0.0), best);
-    return std::sqrt(best);
+Point Distances::nearest(const Point& p, double enough) const {
+    Found best;
+    const double limit = std::max(enough, 0.0) * std::max(enough, 0.0);
+    look(0, 0, surface_.size(), p, limit, best);
+    return best.squared > limit && inside(0, 0, tetrahedra_.size(), p) ? p : best.point;
 }
 
 double Distances::farthest(const TriangleMesh& surface, double slack, double enough) const {
@@ -114,12 +165,15 @@ double Distances::farthest(const TriangleMesh& surface, double slack, double eno
         const auto& [a, b, c] = corners;
         const Point middle = 1.0 / 3 * (a + b + c);
         const double reach = std::sqrt(std::max({squared(a - middle), squared(b - middle), squared(c - middle)}));
-        const double limit = in_doubt(), away = distance(middle, limit - reach);
-        if (away + reach <= limit) {
-            settled = std::max(settled, away + reach);
+        const double limit = in_doubt();
+        // A triangle's farthest point from this one is a corner.
+        const Point q = nearest(middle, limit - reach);
+        const double most = std::sqrt(std::max({squared(a - q), squared(b - q), squared(c - q)}));
+        if (most <= limit) {
+            settled = std::max(settled, most);
         } else {
-            least = std::max(least, away);
-            areas.push({away + reach, corners});
+            least = std::max(least, length(middle - q));
+            areas.push({most, corners});
         }
     };
     // The large ones first, so that small ones matter less. No point of a triangle is farther from a corner than the
@@ -137,7 +191,7 @@ double Distances::farthest(const TriangleMesh& surface, double slack, double eno
         if (least > enough && std::isfinite(enough)) return least;
         double farthest_corner = 0;
         for (const int32_t v : t) {
-            if (of_vertex[at(v)] < 0) of_vertex[at(v)] = distance(surface.vertices[at(v)], in_doubt() / 2);
+            if (of_vertex[at(v)] < 0) of_vertex[at(v)] = length(surface.vertices[at(v)] - nearest(surface.vertices[at(v)], in_doubt() / 2));
             farthest_corner = std::max(farthest_corner, of_vertex[at(v)]);
         }
         if (farthest_corner + reach <= in_doubt())
