@@ -1,5 +1,4 @@
 // The C functions: argument checks and calls into the rooms, nothing else.
-#include "partwheel_convex.h"
 #include "partwheel_edit.h"
 
 #include "fill/ladder.h"

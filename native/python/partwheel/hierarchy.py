@@ -270,7 +270,7 @@ class Hierarchy:
         solid that any hull's surface may have, in the unit of the coordinates: as few as are found. max_vertices: of a
         hull, 8 or more, as engines limit them; one that had more gets a convex polytope of fewer around it. context: a
         Context, to cancel from another thread and to see the progress. See pw_hierarchy_convex_parts in
-        partwheel_convex.h."""
+        partwheel_edit.h."""
         options = ConvexOptions(hulls=_number(hulls or 0), error=float(error or 0), max_vertices=_number(max_vertices or 0))
         parts = Handle(load().pw_convex_parts_free,
                        made(load().pw_hierarchy_convex_parts, context, self._handle, byref(options)))
