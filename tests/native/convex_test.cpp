@@ -14,7 +14,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 #include <random>
 #include <set>
 
@@ -48,14 +47,25 @@ bool contains(const TriangleMesh& hull, const Point& p) {
     });
 }
 
-// By how much p is outside.
-double outside(const TriangleMesh& hull, const Point& p) {
-    double most = 0;
-    for (const auto& [a, b, c] : hull.triangles) {
-        const Point n = cross(hull.vertices[at(b)] - hull.vertices[at(a)], hull.vertices[at(c)] - hull.vertices[at(a)]);
-        most = std::max(most, dot(n, p - hull.vertices[at(a)]) / length(n));
-    }
-    return most;
+// By barycentric coordinates, and each edge by itself: another way than the library's.
+double distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
+    const auto to_segment = [&](const Point& u, const Point& v) {
+        const double t = std::clamp(dot(p - u, v - u) / dot(v - u, v - u), 0.0, 1.0);
+        return length(p - u - t * (v - u));
+    };
+    double best = std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
+    const Point u = b - a, v = c - a, w = p - a;
+    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v), d = uu * vv - uv * uv;
+    const double s = (vv * wu - uv * wv) / d, t = (uu * wv - uv * wu) / d;
+    if (s >= 0 && t >= 0 && s + t <= 1) best = std::min(best, length(w - s * u - t * v));
+    return best;
+}
+
+bool contains(const TriangleMesh& hull, const Point& p, double near) {
+    return contains(hull, p) || std::ranges::any_of(hull.triangles, [&](const Triangle& t) {
+               return distance_to_triangle(p, hull.vertices[at(t[0])], hull.vertices[at(t[1])],
+                                           hull.vertices[at(t[2])]) <= near;
+           });
 }
 
 Hierarchy loaded(const TriMesh& mesh) {
@@ -97,7 +107,8 @@ void expect_cover(const Hierarchy& hierarchy, const std::vector<ConvexPart>& par
             sum_of_shares += s;
         }
         p = 1 / sum_of_shares * p;
-        EXPECT_TRUE(std::ranges::any_of(parts, [&](const ConvexPart& part) { return outside(part.hull, p) <= near; }));
+        EXPECT_TRUE(std::ranges::any_of(parts, [&](const ConvexPart& part) { return contains(part.hull, p, near); }))
+            << parts.size();
         ++tried;
     }
     EXPECT_GT(tried, 0u);
@@ -183,7 +194,9 @@ TEST(Pieces, HullsContainEachPointOfTheirPieceExactly) {
 }
 
 TEST(ConvexParts, OneIsTheHull) {
-    for (const TriMesh& mesh : models()) {
+    for (const TriMesh& model : models()) {
+        // Of coordinates of which no difference is rounded.
+        const TriMesh mesh = snapped(model, std::ldexp(1.0, std::ilogb(Box::around(model.vertices).diagonal()) - 20));
         const auto parts = parts_of(loaded(mesh), {.hulls = 1});
         ASSERT_EQ(parts.size(), 1u);
         const ReferenceHull hull = reference_hull(mesh.vertices);
@@ -216,7 +229,7 @@ TEST(ConvexParts, CoverTheSolidWithLittleBesides) {
         const auto cut = hierarchy.cut_least_concavity(24);
         for (size_t k = 0; k + 1 < cut.size(); ++k)
             papers += volume(hierarchy.hull(static_cast<size_t>(cut[k]), static_cast<size_t>(cut[k + 1])));
-        EXPECT_LT(before, papers) << mesh.name;
+        EXPECT_LT(before, papers) << mesh.name << ' ' << papers / hierarchy.summary().volume << ' ' << before / hierarchy.summary().volume;
     }
 }
 
@@ -262,15 +275,12 @@ TEST(Fewer, IsAroundTheHullExactly) {
             p = 1 / length(p) * p;
             points.push_back({5 + stretch[0] * p[0], stretch[1] * p[1], -7 + stretch[2] * p[2]});
         }
-        HullKernel kernel(points);
-        std::vector<int32_t> all(points.size());
-        std::iota(all.begin(), all.end(), 0);
-        const TriangleMesh hull = kernel.surface(kernel.build(all));
+        const TriangleMesh hull = hull_of(points);
         double before = HUGE_VAL;
         for (const size_t most : {8u, 16u, 32u, 64u, 255u, 1000u}) {
             const TriangleMesh fewer = fewer_around(hull, most);
             EXPECT_LE(fewer.vertices.size(), most);
-            for (const Point& p : points) ASSERT_TRUE(contains(fewer, p));
+            for (const Point& p : points) ASSERT_TRUE(contains(fewer, p)) << most << " " << stretch[1];
             EXPECT_LT(volume(fewer), before);
             before = volume(fewer);
         }
@@ -278,20 +288,6 @@ TEST(Fewer, IsAroundTheHullExactly) {
         // A ball's: the best polytopes of so many corners around one have about as much.
         EXPECT_LT(volume(fewer_around(hull, 64)) / before, 1.2);
     }
-}
-
-double distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
-    // By descent in barycentric coordinates, each edge by itself: slow, and another way than the library's.
-    const auto to_segment = [&](const Point& u, const Point& v) {
-        const double t = std::clamp(dot(p - u, v - u) / dot(v - u, v - u), 0.0, 1.0);
-        return length(p - u - t * (v - u));
-    };
-    double best = std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
-    const Point u = b - a, v = c - a, w = p - a;
-    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v), d = uu * vv - uv * uv;
-    const double s = (vv * wu - uv * wv) / d, t = (uu * wv - uv * wu) / d;
-    if (s >= 0 && t >= 0 && s + t <= 1) best = std::min(best, length(w - s * u - t * v));
-    return best;
 }
 
 // Of points all over the hulls, by every triangle of the surface and, inside, by the sum of angles.

@@ -205,4 +205,7 @@ private:
     std::vector<int32_t> unloaded_;
 };
 
+// The surface of the hull of points, by a kernel of its own. Its vertices are the extreme ones, in their order.
+TriangleMesh hull_of(std::span<const Point> points);
+
 }  // namespace partwheel

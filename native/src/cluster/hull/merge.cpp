@@ -1,6 +1,8 @@
 // Hulls at rest, one block of memory each from the kernel's pool, and what takes them to work and back: unions.
 #include "cluster/hull/view.h"
 
+#include <numeric>
+
 namespace partwheel {
 
 size_t Hull::Block::bytes(size_t vertices, size_t facets) {
@@ -46,6 +48,13 @@ TriangleMesh HullKernel::surface(const Hull& hull) const {
         mesh.triangles.push_back(t);
     }
     return mesh;
+}
+
+TriangleMesh hull_of(std::span<const Point> points) {
+    HullKernel kernel(points);
+    std::vector<int32_t> all(points.size());
+    std::iota(all.begin(), all.end(), 0);
+    return kernel.surface(kernel.build(all));
 }
 
 void HullKernel::load(const Hull& hull) {

@@ -3,6 +3,7 @@
 // In the dual, planes are points: of those against the polytope the hull is built, and each of its facets is a corner.
 #include "part/convex/fewer.h"
 
+#include "base/predicates.h"
 #include "cluster/hull/hull.h"
 #include "part/convex/apart.h"
 #include "part/convex/principal.h"
@@ -17,14 +18,6 @@ namespace {
 constexpr double margin = 1e-9;   // of the extent
 constexpr double same = 1e-12;    // of the distance from the middle
 constexpr double nearer = 1e-6;   // of the extent: a corner that is no farther out has all it needs
-
-// The surface of the convex hull.
-TriangleMesh hull_of(std::span<const Point> points) {
-    HullKernel kernel(points);
-    std::vector<int32_t> all(points.size());
-    for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int32_t>(i);
-    return kernel.surface(kernel.build(all));
-}
 
 // The corners where planes n meet, of which all points x with dot(n, x) <= 1 are on the inner side.
 std::vector<Point> corners_of(std::span<const Point> planes) {
@@ -41,6 +34,12 @@ std::vector<Point> corners_of(std::span<const Point> planes) {
     for (const Point& p : corners)
         if (std::ranges::none_of(kept, [&](const Point& q) { return length(p - q) < same * length(p); })) kept.push_back(p);
     return kept;
+}
+
+bool is_inside(const TriangleMesh& hull, const Point& p) {
+    return std::ranges::all_of(hull.triangles, [&](const Triangle& t) {
+        return orientation(hull.vertices[at(t[0])], hull.vertices[at(t[1])], hull.vertices[at(t[2])], p) <= 0;
+    });
 }
 
 double extent_along(std::span<const Point> points, const Point& direction) {
@@ -113,7 +112,13 @@ TriangleMesh fewer_around(const TriangleMesh& hull, size_t most) {
         corners = std::move(next);
     }
     TriangleMesh made = hull_of(corners);
-    for (Point& p : made.vertices) p = p + middle;
+    const std::vector<Point> of_middle = made.vertices;
+    // Corners of planes that are nearly parallel are rounded by more than the margin; so, larger until all is inside.
+    double grown = 0;
+    do {
+        for (size_t i = 0; i < of_middle.size(); ++i) made.vertices[i] = middle + (1 + grown) * of_middle[i];
+        grown = std::max(margin, 2 * grown);
+    } while (!std::ranges::all_of(hull.vertices, [&](const Point& p) { return is_inside(made, p); }));
     return made;
 }
 

@@ -25,9 +25,8 @@ public:
     using Good = std::function<bool(const Piece&)>;
     using Tick = std::function<void()>;  // called before each division; it may throw
 
-    // Starts with all as one piece.
-    Search(Pieces& made, std::vector<Tetrahedron> all, Tick tick) : made_(made), tick_(std::move(tick)) {
-        pieces_.push_back(entry(made_.piece(std::move(all))));
+    Search(Pieces& made, std::vector<std::vector<Tetrahedron>> start, Tick tick) : made_(made), tick_(std::move(tick)) {
+        for (auto& tetrahedra : start) pieces_.push_back(entry(made_.piece(std::move(tetrahedra))));
     }
 
     // Divides the piece that gains most by it, until there are so many or none gains.
@@ -44,6 +43,7 @@ public:
     // Divides one piece and joins two others while that gains.
     void exchange();
 
+    double cost() const;  // all hulls' volume
     std::span<const Step> steps() const { return steps_; }
 
 private:
@@ -57,7 +57,6 @@ private:
         double cost = HUGE_VAL;  // what joining adds
     };
 
-    double cost() const;
     double gain(Entry& entry);
     size_t most_gaining();
     bool divide(size_t i);

@@ -41,6 +41,7 @@ Sliced slice(std::span<const Tetrahedron> tetrahedra, const CutPlane& plane, Hul
             const Point p = kernel.point(a), q = kernel.point(b);
             const auto n = static_cast<double>(crossings.size());
             const double off = jitter * (golden * n - std::floor(golden * n));
+            made.edges.push_back({a, b});
             found->second = kernel.add(p + ha / (ha - hb) * (q - p) + off * plane.normal);
         }
         return found->second;

@@ -3,6 +3,7 @@
 
 #include "base/geometry.h"
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct CutPlane {
 
 struct Sliced {
     std::vector<Tetrahedron> below, above;  // of positive height; corners in no special order
+    std::vector<std::array<int32_t, 2>> edges;  // of each vertex that was added: it is between these two
 };
 
 // Vertices that are nearer to the plane than rounding are in it, and on both sides: so no slivers are made. Edges that
