@@ -15,9 +15,9 @@ namespace partwheel::convex {
 
 namespace {
 
-constexpr double margin = 1e-9;   // of the extent
+constexpr double margin = 1e-9;   // of the box's sides
 constexpr double same = 1e-12;    // of the distance from the middle
-constexpr double nearer = 1e-6;   // of the extent: a corner that is no farther out has all it needs
+constexpr double nearer = 1e-6;   // of them: a corner that is no farther out has all it needs
 
 // The corners where planes n meet, of which all points x with dot(n, x) <= 1 are on the inner side.
 std::vector<Point> corners_of(std::span<const Point> planes) {
@@ -67,28 +67,41 @@ TriangleMesh fewer_around(const TriangleMesh& hull, size_t most) {
     for (const Point& p : hull.vertices) middle = middle + 1 / static_cast<double>(hull.vertices.size()) * p;
     std::vector<Point> around;  // of the middle
     for (const Point& p : hull.vertices) around.push_back(p - middle);
-    const double extent = Box::around(around).diagonal();
+    // Where the box is a cube, as volumes see it: else a thin hull would get all planes about its rim.
+    const std::array<Point, 3> directions = directions_of_box(around);
+    Point sizes;
+    for (size_t k = 0; k < 3; ++k)
+        sizes[k] = extent_along(around, directions[k]) + extent_along(around, -1 * directions[k]);
+    for (Point& p : around)
+        p = {dot(directions[0], p) / sizes[0], dot(directions[1], p) / sizes[1], dot(directions[2], p) / sizes[2]};
+    const auto back = [&](const Point& p) {
+        return p[0] * sizes[0] * directions[0] + p[1] * sizes[1] * directions[1] + p[2] * sizes[2] * directions[2];
+    };
+
+    const TriangleMesh inner = hull_of(around);
     struct Side {
         Point normal;
         double offset;
     };
     std::vector<Side> facets;
-    for (const auto& [a, b, c] : hull.triangles) {
-        const Point n = cross(around[at(b)] - around[at(a)], around[at(c)] - around[at(a)]);
+    for (const auto& [a, b, c] : inner.triangles) {
+        const Point n = cross(inner.vertices[at(b)] - inner.vertices[at(a)], inner.vertices[at(c)] - inner.vertices[at(a)]);
         if (length(n) > 0) facets.push_back({1 / length(n) * n, extent_along(around, 1 / length(n) * n)});
     }
     std::vector<Point> planes;  // as corners_of() takes them
     const auto add = [&](const Point& direction) {
-        planes.push_back(1 / (extent_along(around, direction) + margin * extent) * direction);
+        planes.push_back(1 / (extent_along(around, direction) + margin) * direction);
     };
-    for (const Point& d : directions_of_box(around)) {
-        add(d);
-        add(-1 * d);
-    }
+    for (size_t k = 0; k < 3; ++k)
+        for (const double sign : {1.0, -1.0}) {
+            Point axis{};
+            axis[k] = sign;
+            add(axis);
+        }
     std::vector<Point> corners = corners_of(planes);
     for (;;) {
         // The corner that is farthest beyond a facet.
-        double farthest = nearer * extent;
+        double farthest = nearer;
         const Point* corner = nullptr;
         for (const Point& p : corners)
             for (const Side& side : facets)
@@ -99,8 +112,8 @@ TriangleMesh fewer_around(const TriangleMesh& hull, size_t most) {
         if (!corner) break;
         Point nearest{};
         double distance = HUGE_VAL;
-        for (const auto& [a, b, c] : hull.triangles) {
-            const Point q = nearest_on_triangle(*corner, around[at(a)], around[at(b)], around[at(c)]);
+        for (const auto& [a, b, c] : inner.triangles) {
+            const Point q = nearest_on_triangle(*corner, inner.vertices[at(a)], inner.vertices[at(b)], inner.vertices[at(c)]);
             if (length(*corner - q) < distance) {
                 distance = length(*corner - q);
                 nearest = q;
@@ -111,6 +124,7 @@ TriangleMesh fewer_around(const TriangleMesh& hull, size_t most) {
         if (next.size() > most) break;
         corners = std::move(next);
     }
+    for (Point& p : corners) p = back(p);
     TriangleMesh made = hull_of(corners);
     const std::vector<Point> of_middle = made.vertices;
     // Corners of planes that are nearly parallel are rounded by more than the margin; so, larger until all is inside.

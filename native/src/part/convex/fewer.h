@@ -7,9 +7,9 @@
 
 namespace partwheel::convex {
 
-// A convex polytope that contains a closed, convex surface, with `most` vertices at most, 8 or more. Its sides are those of a
-// box, and planes against the hull where it went farthest away from it. To be around it in spite of rounding it keeps
-// some 1e-9 of the hull's extent away.
+// A convex polytope that contains a closed, convex surface, exactly, with `most` vertices at most, 8 or more. Its sides are
+// those of a box, and planes against the hull where it went farthest away from it, as seen where the box is a cube. It keeps
+// some 1e-9 of the box's sides away from the hull.
 TriangleMesh fewer_around(const TriangleMesh& hull, size_t most);
 
 }  // namespace partwheel::convex
