@@ -120,6 +120,7 @@ private:
             search.join_until(options_.hulls);
             search.move_borders();
             search.exchange();
+            search.join_until(options_.hulls);
             if (search.cost() >= least) continue;
             least = search.cost();
             best = std::move(pieces);

@@ -22,8 +22,8 @@ constexpr int finer_places = 2;  // on either side, each a third of the way to t
 constexpr double gap = 1e-6;     // boxes that are nearer may touch
 // Points of a plane are moved off it by so much, relative to the model, lest it takes exact arithmetic to see that they
 // are in one plane. These hulls are only measured.
-constexpr double bulge = 1e-5;
-constexpr double jitter = 1e-6;
+constexpr double bulge = 1e-6;
+constexpr double jitter = 1e-7;
 
 std::array<Edge, 6> edges_of(const Tetrahedron& t) {
     std::array<Edge, 6> edges;

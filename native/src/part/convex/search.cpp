@@ -9,7 +9,8 @@ namespace partwheel::convex {
 
 namespace {
 
-constexpr double least_gain = 1e-9;  // of all volume: less is rounding
+constexpr double least_gain = 1e-5;  // of all volume: less may be what points were moved by, see pieces.cpp
+constexpr size_t crowd = 8;          // of the tetrahedra at first: planes cut them to ever smaller ones
 constexpr double least_hope = 0.01;  // of all volume, that two hulls are more than their solid: else they stay as they are
 constexpr size_t most_rounds = 4;
 constexpr size_t most_exchanges = 64;
@@ -22,6 +23,12 @@ double Search::cost() const {
     double sum = 0;
     for (const Entry& each : pieces_) sum += each.piece.cost();
     return sum;
+}
+
+bool Search::crowded() const {
+    size_t sum = 0;
+    for (const Entry& each : pieces_) sum += each.piece.tetrahedra.size();
+    return sum > crowd * tetrahedra_at_first_ + 1000;
 }
 
 double Search::gain(Entry& entry) {
@@ -102,10 +109,12 @@ std::vector<Search::Pair> Search::pairs(bool all) {
 }
 
 void Search::join_until(size_t count) {
-    while (pieces_.size() > count) {
+    const double nothing = least_gain * cost();
+    while (pieces_.size() > 1) {
         tick_();
         auto found = pairs(false);
-        if (found.empty()) found = pairs(true);
+        if (pieces_.size() > count && found.empty()) found = pairs(true);
+        if (found.empty() || (pieces_.size() <= count && found.front().cost > nothing)) return;
         join(found.front().a, found.front().b);
     }
 }
@@ -130,7 +139,7 @@ void Search::join_while_good(const Good& good) {
 void Search::move_borders() {
     const double all = cost();
     std::set<std::array<size_t, 2>> tried;  // by stamps
-    for (size_t round = 0, moved = 1; round < most_rounds && moved; ++round) {
+    for (size_t round = 0, moved = 1; round < most_rounds && moved && !crowded(); ++round) {
         moved = 0;
         for (size_t a = 0; a < pieces_.size(); ++a)
             for (size_t b = a + 1; b < pieces_.size(); ++b) {
@@ -158,7 +167,7 @@ void Search::move_borders() {
 
 void Search::exchange() {
     const double least = least_gain * cost();
-    for (size_t i = 0; i < most_exchanges; ++i) {
+    for (size_t i = 0; i < most_exchanges && !crowded(); ++i) {
         const size_t best = most_gaining();
         const auto found = pairs(false);
         const auto cheapest = std::ranges::find_if(found, [&](const Pair& p) { return p.a != best && p.b != best; });

@@ -26,14 +26,17 @@ public:
     using Tick = std::function<void()>;  // called before each division; it may throw
 
     Search(Pieces& made, std::vector<std::vector<Tetrahedron>> start, Tick tick) : made_(made), tick_(std::move(tick)) {
-        for (auto& tetrahedra : start) pieces_.push_back(entry(made_.piece(std::move(tetrahedra))));
+        for (auto& tetrahedra : start) {
+            tetrahedra_at_first_ += tetrahedra.size();
+            pieces_.push_back(entry(made_.piece(std::move(tetrahedra))));
+        }
     }
 
     // Divides the piece that gains most by it, until there are so many or none gains.
     void divide_until(size_t count);
     // Divides those that are not good until all are, or there are so many.
     void divide_until_good(const Good& good, size_t most);
-    // Joins the two that cost least, until there are so many.
+    // Joins the two that cost least, until there are so many, and on while that costs nothing.
     void join_until(size_t count);
     // Joins the two that cost least while what is joined is good.
     void join_while_good(const Good& good);
@@ -57,6 +60,7 @@ private:
         double cost = HUGE_VAL;  // what joining adds
     };
 
+    bool crowded() const;
     double gain(Entry& entry);
     size_t most_gaining();
     bool divide(size_t i);
@@ -68,7 +72,7 @@ private:
     Tick tick_;
     std::vector<Entry> pieces_;
     std::vector<Step> steps_;
-    size_t next_stamp_ = 0;
+    size_t next_stamp_ = 0, tetrahedra_at_first_ = 0;
     std::vector<std::pair<std::array<size_t, 2>, double>> known_;  // costs of joining, by stamps; sorted
 };
 
