@@ -118,7 +118,8 @@ def test_mujoco_takes_the_hulls(written):
 def test_urdf_has_all_hulls(written):
     yourdfpy = pytest.importorskip("yourdfpy")
     folder, volumes = written
-    robot = yourdfpy.URDF.load(str(folder / "my_hand.urdf"), load_collision_meshes=True, build_collision_scene_graph=True)
+    robot = yourdfpy.URDF.load(str(folder / "my_hand.urdf"), load_collision_meshes=True, build_collision_scene_graph=True,
+                               force_collision_mesh=False)
     assert [link.name for link in robot.robot.links] == ["my_hand"]
     found = sorted(mesh.volume for mesh in robot.collision_scene.geometry.values())
     assert found == pytest.approx(sorted(volumes), rel=1e-6)
