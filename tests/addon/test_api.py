@@ -56,20 +56,21 @@ class Api(MeshTest):
         before = places(obj)
         hulls = self.api.convex(obj, hulls=9, max_vertices=32)
         self.assertEqual([each.name for each in hulls], [f"UCX_{obj.name}_{number:02}" for number in range(9)])
-        left = np.ones(len(before), bool)
+        left, size = np.ones(len(before), bool), np.ptp(before, axis=0).max()
         for each in hulls:
             self.assertIs(each.parent, obj)
             self.assertEqual(each.matrix_world, obj.matrix_world)
             self.assertLessEqual(len(each.data.vertices), 32)
-            normals = np.array([polygon.normal[:] for polygon in each.data.polygons])
-            middles = np.array([polygon.center[:] for polygon in each.data.polygons])
-            beyond = before @ normals.T - (middles * normals).sum(axis=1)
-            left &= (beyond > 1e-5 * np.ptp(before, axis=0).max()).any(axis=1)
+            # Single precision turns the smallest facets anyhow.
+            facets = [polygon for polygon in each.data.polygons if polygon.area > 1e-5 * size ** 2]
+            normals = np.array([polygon.normal[:] for polygon in facets])
+            middles = np.array([polygon.center[:] for polygon in facets])
+            left &= (before @ normals.T - (middles * normals).sum(axis=1) > 1e-4 * size).any(axis=1)
         self.assertFalse(left.any())
         np.testing.assert_array_equal(places(obj), before)
         with self.assertRaises(package().PartwheelError):
             self.api.convex(obj)
-        self.assertEqual(len(self.api.convex(obj, error=0.2 * np.ptp(before, axis=0).max())[0].users_collection), 1)
+        self.assertEqual(len(self.api.convex(obj, error=0.2 * size)[0].users_collection), 1)
 
     def test_a_build_that_is_waited_for(self):
         obj = self.add(*read_off("hand"))
