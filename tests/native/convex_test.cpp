@@ -229,7 +229,7 @@ TEST(ConvexParts, CoverTheSolidWithLittleBesides) {
         const auto cut = hierarchy.cut_least_concavity(24);
         for (size_t k = 0; k + 1 < cut.size(); ++k)
             papers += volume(hierarchy.hull(static_cast<size_t>(cut[k]), static_cast<size_t>(cut[k + 1])));
-        EXPECT_LT(before, papers) << mesh.name << ' ' << papers / hierarchy.summary().volume << ' ' << before / hierarchy.summary().volume;
+        EXPECT_LT(before, papers) << mesh.name;
     }
 }
 
