@@ -16,7 +16,7 @@ namespace partwheel::convex {
 namespace {
 
 constexpr double margin = 1e-9;   // of the box's sides
-constexpr double same = 1e-12;    // of the distance from the middle
+constexpr double same = 1e-6;     // of them: corners that are nearer to each other are one, as for whoever reads the hull
 constexpr double nearer = 1e-6;   // of them: a corner that is no farther out has all it needs
 
 // The corners where planes n meet, of which all points x with dot(n, x) <= 1 are on the inner side.
@@ -28,11 +28,10 @@ std::vector<Point> corners_of(std::span<const Point> planes) {
         const Point n = cross(b - a, c - a);
         corners.push_back(1 / dot(n, a) * n);
     }
-    // Where more than three meet, one of those that rounding made of it.
     std::sort(corners.begin(), corners.end());
     std::vector<Point> kept;
     for (const Point& p : corners)
-        if (std::ranges::none_of(kept, [&](const Point& q) { return length(p - q) < same * length(p); })) kept.push_back(p);
+        if (std::ranges::none_of(kept, [&](const Point& q) { return length(p - q) < same; })) kept.push_back(p);
     return kept;
 }
 
@@ -127,7 +126,8 @@ TriangleMesh fewer_around(const TriangleMesh& hull, size_t most) {
     for (Point& p : corners) p = back(p);
     TriangleMesh made = hull_of(corners);
     const std::vector<Point> of_middle = made.vertices;
-    // Corners of planes that are nearly parallel are rounded by more than the margin; so, larger until all is inside.
+    // Corners that were taken for one, or of planes that are nearly parallel, are off by more than the margin: so, larger
+    // until all is inside.
     double grown = 0;
     do {
         for (size_t i = 0; i < of_middle.size(); ++i) made.vertices[i] = middle + (1 + grown) * of_middle[i];
