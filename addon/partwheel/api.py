@@ -11,6 +11,7 @@ window. While the add-on is enabled, whatever its repository is called, and in B
     fingers = api.similar(obj, finger)     # [(node, likeness), ...] of the parts that are alike
     labels = api.cut(obj, parts=8)         # (F,) the part of each face, 0 to 7
     api.write(obj, api.parts(obj), to={"OBJECTS", "VERTEX_GROUPS"})  # the whole model in parts
+    api.convex(obj, hulls=16, max_vertices=64)  # convex colliders
     api.swap(obj, arm, other)              # exchanged for the most compatible part of another object
 
 The object comes first, then the node: a number of the object's hierarchy, a partwheel.Hierarchy, or the Part that
@@ -38,6 +39,7 @@ from .compose import placement, swapping, union
 from .deform import methods
 from .deform.pen import Pen
 from .deform.region import Region
+from .cut import hulls as hulls_as_objects
 from .cut import objects as parts_as_objects
 from .cut import printed, stored, writing
 from .mesh import arrays, selection
@@ -265,6 +267,15 @@ def print_parts(obj, cut, clearance=0.2, wall=1.2, bed=None):
         raise Refused(f"The cut is not of {obj.name} as it is now: ask for its parts again.")
     plan = printed.planned(bpy.context, obj, cut, writing.known_names(obj, cut), clearance, wall, bed)
     return Printed(printed.made(obj, plan), plan.printable.pegs, plan.printable.notes)
+
+
+def convex(obj, hulls=None, error=None, max_vertices=None):
+    """[object, ...] convex hulls that together contain the object's mesh and little else, for game engines: children of
+    the object, UCX_<its name>_00 and so on, in a new collection; the largest first. Give one of the two: hulls: so many,
+    fewer where more would gain nothing. error: as few as are found of which none goes farther than that from the mesh, in
+    the object's own space. max_vertices: of each hull, 8 or more. Outside Edit Mode only."""
+    _mesh(obj, edited=False)
+    return hulls_as_objects.made(obj, hierarchy(obj).convex_parts(hulls, error=error, max_vertices=max_vertices))
 
 
 class Printed(NamedTuple):

@@ -3,6 +3,7 @@
 
 #include "fill/ladder.h"
 #include "part/border.h"
+#include "part/convex/convex_parts.h"
 #include "part/deform.h"
 #include "part/fair.h"
 #include "part/polygons.h"
@@ -36,6 +37,10 @@ struct pw_hierarchy : Hierarchy {
 
 struct pw_mesh : TriangleMesh {};
 
+struct pw_convex_parts {
+    std::vector<ConvexPart> parts;
+};
+
 struct pw_deformation : Deformation {
     using Deformation::Deformation;
 };
@@ -52,6 +57,7 @@ namespace {
 
 constexpr double smallest_quality = 1.1;
 constexpr size_t most_parts = 4096;
+constexpr size_t fewest_hull_vertices = 8;  // of a box
 constexpr size_t usual_exact_triangles = 200000;
 constexpr size_t most_struct = 4096;  // bytes of a struct of any version: more is a struct_size that was never set
 
@@ -194,6 +200,7 @@ MeshView as_mesh(const double* vertices, size_t vertex_count, const int32_t* tri
 // Structs of a program that may be older or newer than the library: see the header's habits. None ends with padding,
 // where a later version's member could lie.
 static_assert(offsetof(pw_build_options, exact_triangles) + sizeof(int64_t) == sizeof(pw_build_options));
+static_assert(offsetof(pw_convex_options, max_vertices) + sizeof(size_t) == sizeof(pw_convex_options));
 static_assert(offsetof(pw_arrays, score) + sizeof(double*) == sizeof(pw_arrays));
 static_assert(offsetof(pw_summary, deviation) + sizeof(double) == sizeof(pw_summary));
 
@@ -442,6 +449,47 @@ pw_status pw_mesh_origins(const pw_mesh* mesh, const int32_t** ends, const int32
         *faces = mesh->faces.data();
         *beyond = mesh->beyond.data();
     });
+}
+
+pw_status pw_hierarchy_convex_parts(pw_context* context, const pw_hierarchy* hierarchy,
+                                    const pw_convex_options* options, pw_convex_parts** parts) {
+    return guarded({{"hierarchy", hierarchy}, {"options", options}, {"parts", parts}}, [&] {
+        const pw_convex_options given = taken(*options);
+        require(given.error >= 0 && std::isfinite(given.error), "error must be 0 or a length.");
+        require((given.hulls > 0) != (given.error > 0), "Either hulls or error must be given: more than 0, and the other 0.");
+        require(given.hulls <= most_parts, "hulls must be at most 4096.");
+        require(given.max_vertices == 0 || given.max_vertices >= fewest_hull_vertices,
+                "max_vertices must be 0 for any number, or at least 8.");
+        Progress unwatched;
+        Progress& progress = context ? context->progress : unwatched;
+        const Watch watch(progress);
+        *parts = new pw_convex_parts{
+            convex_parts(*hierarchy, {given.hulls, given.error, given.max_vertices}, progress)};
+        progress.reach(1);
+    });
+}
+
+void pw_convex_parts_free(pw_convex_parts* parts) { delete parts; }
+
+pw_status pw_convex_parts_count(const pw_convex_parts* parts, size_t* count) {
+    return guarded({{"parts", parts}, {"count", count}}, [&] { *count = parts->parts.size(); });
+}
+
+pw_status pw_convex_parts_hull(const pw_convex_parts* parts, size_t index, const double** vertices,
+                               size_t* vertex_count, const int32_t** triangles, size_t* triangle_count, double* volume,
+                               double* error) {
+    return guarded({{"parts", parts}, {"vertices", vertices}, {"vertex_count", vertex_count}, {"triangles", triangles},
+                    {"triangle_count", triangle_count}, {"volume", volume}, {"error", error}},
+                   [&] {
+                       require(index < parts->parts.size(), "There is no hull of this index.");
+                       const ConvexPart& part = parts->parts[index];
+                       *vertices = part.hull.vertices.data()->data();
+                       *vertex_count = part.hull.vertices.size();
+                       *triangles = part.hull.triangles.data()->data();
+                       *triangle_count = part.hull.triangles.size();
+                       *volume = part.volume;
+                       *error = part.error;
+                   });
 }
 
 void pw_mesh_free(pw_mesh* mesh) { delete mesh; }

@@ -50,6 +50,28 @@ class Api(MeshTest):
         from partwheel import api as again
         self.assertIs(again, self.api)
 
+    def test_convex_hulls_are_children_that_hold_the_mesh(self):
+        obj = self.add(*read_off("hand"))
+        obj.location, obj.scale = (1, 2, 3), (2, 2, 2)
+        before = places(obj)
+        hulls = self.api.convex(obj, hulls=9, max_vertices=32)
+        self.assertEqual([each.name for each in hulls], [f"UCX_{obj.name}_{number:02}" for number in range(9)])
+        left, size = np.ones(len(before), bool), np.ptp(before, axis=0).max()
+        for each in hulls:
+            self.assertIs(each.parent, obj)
+            self.assertEqual(each.matrix_world, obj.matrix_world)
+            self.assertLessEqual(len(each.data.vertices), 32)
+            # Single precision turns the smallest facets anyhow.
+            facets = [polygon for polygon in each.data.polygons if polygon.area > 1e-5 * size ** 2]
+            normals = np.array([polygon.normal[:] for polygon in facets])
+            middles = np.array([polygon.center[:] for polygon in facets])
+            left &= (before @ normals.T - (middles * normals).sum(axis=1) > 1e-4 * size).any(axis=1)
+        self.assertFalse(left.any())
+        np.testing.assert_array_equal(places(obj), before)
+        with self.assertRaises(package().PartwheelError):
+            self.api.convex(obj)
+        self.assertEqual(len(self.api.convex(obj, error=0.2 * size)[0].users_collection), 1)
+
     def test_a_build_that_is_waited_for(self):
         obj = self.add(*read_off("hand"))
         for mode in self.in_both_modes(obj):

@@ -23,7 +23,7 @@ from partwheel.batch.run import Options, Run
 # More models and kills, by the hour: PARTWHEEL_KILLS=20 PARTWHEEL_MODELS=FOLDER
 KILLS = int(os.environ.get("PARTWHEEL_KILLS", 4))
 MORE = list(Path(os.environ["PARTWHEEL_MODELS"]).iterdir()) if os.environ.get("PARTWHEEL_MODELS") else []
-SETTINGS = {"outputs": ["hierarchy"], "build": {"mode": "regrouped"}, "parts": 0, "hulls": 0, "preview": 0}
+SETTINGS = {"outputs": ["hierarchy"], "build": {"mode": "regrouped"}, "parts": 0, "hulls": 0, "max_vertices": 0, "preview": 0}
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are kept on Linux only")
 
 
@@ -31,7 +31,8 @@ def test_what_is_made_of_a_model(tmp_path):
     trimesh = pytest.importorskip("trimesh")
     from PIL import Image
 
-    totals = run(HAND, "-o", tmp_path, "--make", "hierarchy,cut,objects,colliders,preview", "--hulls", 7)
+    totals = run(HAND, "-o", tmp_path, "--make", "hierarchy,cut,objects,colliders,preview", "--hulls", 7,
+                 "--max-vertices", 40)
     assert totals["made"] == 1 and totals["failed"] == {}
     report = reports(tmp_path)[str(HAND)]
     place = tmp_path / "models" / report["key"][:2] / report["key"]
@@ -55,6 +56,7 @@ def test_what_is_made_of_a_model(tmp_path):
     hulls = [trimesh.Trimesh(points, each) for each in np.split(corners, ends[:-1])]
     assert [line[1] for line in lines if line[0] == "o"] == [f"UCX_{number:02}" for number in range(7)]
     assert len(hulls) == report["hulls"] == 7 and all(hull.is_convex and hull.is_watertight for hull in hulls)
+    assert max(len(np.unique(hull.faces)) for hull in hulls) == 40
     assert built.summary.volume < sum(hull.volume for hull in hulls) < built.summary.hull_volume
     objects = trimesh.load(place / "objects.glb", force="scene")
     assert len(objects.geometry) == report["parts"] > 3

@@ -2,6 +2,8 @@
 """The command line: python3 -m partwheel build MODEL [-o FILE] [--json] [options]
                      python3 -m partwheel parts MODEL -o FOLDER [--parts N] [--formats glb,ply,stl,3mf] [options]
                          [--pegs MM or --flat, --wall MM, --size MM, --bed X,Y,Z]
+                     python3 -m partwheel convex MODEL -o FOLDER [--hulls N or --error E] [--max-vertices N]
+                         [--formats obj,glb,unreal,godot,urdf,mjcf] [options]
                      python3 -m partwheel batch IN... -o FOLDER [--make hierarchy,cut,...] [--shard I/N] [options]
                      python3 -m partwheel report FOLDER
 
@@ -14,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import meshes
+from . import convex, meshes
 from .batch import command as batch
 from .cut import Cut, files, printing
 from .hierarchy import Hierarchy
@@ -46,7 +48,18 @@ def parse(arguments):
                        help="glb and 3mf: all parts as objects of one file; stl: a file for each; ply: the model "
                             "itself, labelled and coloured (default: glb,ply; for a printer 3mf,stl)")
     _add_print_options(parts.add_argument_group("for a 3D printer", "needs pip install partwheel[printing]"))
-    for command in (build, parts):
+    hulls = commands.add_parser("convex", help="write convex hulls that cover the model and little else, for engines")
+    hulls.add_argument("-o", "--output", type=Path, metavar="FOLDER", required=True, help="write the files here")
+    many = hulls.add_mutually_exclusive_group()
+    many.add_argument("--hulls", type=int, default=16, metavar="N", help="how many (default: 16)")
+    many.add_argument("--error", type=length, default=0, metavar="E",
+                      help="as few as are found that go nowhere farther than this from the model, in its unit")
+    hulls.add_argument("--max-vertices", type=int, default=0, metavar="N",
+                       help="of a hull, 8 or more: PhysX takes 64 or 255 (default: any number)")
+    hulls.add_argument("--formats", type=hull_formats, default=["obj"], metavar="F,...",
+                       help="obj, glb: the hulls; unreal, godot: glb with the model and its hulls, named as these engines "
+                            "have it; urdf, mjcf: for robot simulators (default: obj)")
+    for command in (build, parts, hulls):
         command.add_argument("model", type=Path, help="a mesh file: OFF, or any other format that trimesh reads")
         command.add_argument("--json", action="store_true", help="print the report as JSON on one line")
         _add_build_options(command)
@@ -90,16 +103,20 @@ def rungs(text):
         raise ValueError(f"{error} is no rung") from error
 
 
-def formats(text):
+def formats(text, known=files.FORMATS):
     """For argparse: the formats named, each once."""
     names = list(dict.fromkeys(text.split(",")))
-    if not set(names) <= set(files.FORMATS):
-        raise argparse.ArgumentTypeError(f"formats are {', '.join(files.FORMATS)}")
+    if not set(names) <= set(known):
+        raise argparse.ArgumentTypeError(f"formats are {', '.join(known)}")
     return names
 
 
+def hull_formats(text):
+    return formats(text, convex.FORMATS)
+
+
 def length(text):
-    """For argparse: millimetres, not below 0."""
+    """For argparse: not below 0."""
     value = float(text)
     if not 0 <= value < float("inf"):
         raise ValueError(f"{text} is no length")
@@ -143,6 +160,11 @@ def build(options, report):
             report.update(pegs=len(pegs), notes=notes)
         written = files.write(options.output, options.model.stem, mesh, cut, options.formats or usual, printed=solids)
         report.update(parts=len(cut), files=list(map(str, written)))
+    elif options.command == "convex":
+        count = {"error": options.error} if options.error else {"hulls": options.hulls}
+        found = hierarchy.convex_parts(**count, max_vertices=options.max_vertices)
+        written = convex.write(options.output, options.model.stem, mesh, found, options.formats)
+        report.update(hulls=len(found), files=list(map(str, written)))
     elif options.output:
         options.output.write_bytes(hierarchy.save())
 
@@ -166,7 +188,7 @@ def describe(report):
     if report["welded_vertices"]:
         lines.append(f"This format does not share vertices: {report['welded_vertices']} exact copies were joined.")
     if report.get("files"):
-        lines += [f"{report['parts']} parts:", *(f"  {name}" for name in report["files"])]
+        lines += [f"{report['parts']} parts:" if "parts" in report else f"{report['hulls']} hulls:", *(f"  {name}" for name in report["files"])]
     if "pegs" in report:
         lines += [f"Pegs: {report['pegs']}", *report["notes"]]
     lines += [f"  {stage:<12} {seconds:9.3f} s" for stage, seconds in report["seconds"].items()]

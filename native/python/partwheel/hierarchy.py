@@ -2,13 +2,13 @@
 """Hierarchy: a mesh's tree of nearly convex parts, built by the native library, as numpy arrays and questions."""
 
 import operator
-from ctypes import byref, c_size_t, c_void_p
-from typing import NamedTuple
+from ctypes import byref, c_double, c_size_t, c_void_p
+from typing import NamedTuple, Optional
 
 import numpy as np
 
 from .library import (
-    Arrays, Build, BuildOptions, Context, Handle, Mode, PartwheelError, Rung, Status, SummaryStruct, check, load,
+    Arrays, Build, BuildOptions, Context, ConvexOptions, Handle, Mode, PartwheelError, Rung, Status, SummaryStruct, check, load,
     made, told,
 )
 
@@ -44,6 +44,17 @@ class Solid(NamedTuple):
     ends: np.ndarray
     faces: np.ndarray
     beyond: np.ndarray
+
+
+class ConvexPart(NamedTuple):
+    """A convex hull for a part of a solid. vertices (n,3), triangles (m,3): closed, convex, outward. volume: of the
+    hull's own part of the solid. error: the largest distance of its surface from the solid, at most; None if none
+    was asked for."""
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    volume: float
+    error: Optional[float]
 
 
 class _Memory:
@@ -251,6 +262,25 @@ class Hierarchy:
     def hull_of_slice(self, tet_first, tet_last):
         """The convex hull of tetrahedra[tet_first:tet_last], for a part of a cut: (vertices, triangles)."""
         return self._mesh(load().pw_hierarchy_hull, _number(tet_first), _number(tet_last))[1:]
+
+    def convex_parts(self, hulls=None, *, error=None, max_vertices=None, context=None):
+        """[ConvexPart, ...]: convex hulls that together contain the solid and little else, the largest first.
+
+        Either hulls, so many, at most 4096, fewer where more would gain nothing; or error, the largest distance from the
+        solid that any hull's surface may have, in the unit of the coordinates: as few as are found. max_vertices: of a
+        hull, 8 or more, as engines limit them; one that had more gets a convex polytope of fewer around it. context: a
+        Context, to cancel from another thread and to see the progress. See pw_hierarchy_convex_parts in
+        partwheel_edit.h."""
+        options = ConvexOptions(hulls=_number(hulls or 0), error=float(error or 0), max_vertices=_number(max_vertices or 0))
+        parts = Handle(load().pw_convex_parts_free,
+                       made(load().pw_hierarchy_convex_parts, context, self._handle, byref(options)))
+        types = [c_void_p, c_size_t, c_void_p, c_size_t, c_double, c_double]
+        found = []
+        for index in range(told([c_size_t], load().pw_convex_parts_count, parts)[0]):
+            vertices, n, triangles, m, volume, away = told(types, load().pw_convex_parts_hull, parts, index)
+            found.append(ConvexPart(_view(parts, vertices, (n, 3), np.float64),
+                                    _view(parts, triangles, (m, 3), np.int32), volume, away if away >= 0 else None))
+        return found
 
     def solid(self, node):
         """The closed, manifold surface around a node's tetrahedra: a Solid. Where polygons are not triangles,

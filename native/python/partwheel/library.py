@@ -86,6 +86,14 @@ class SummaryStruct(_Sized):
     ]
 
 
+class ConvexOptions(_Sized):
+    """pw_convex_options."""
+
+    _fields_ = [
+        ("struct_size", c_size_t), ("hulls", c_size_t), ("error", c_double), ("max_vertices", c_size_t),
+    ]
+
+
 class Address(c_void_p):
     """An argument: a number, a Handle, a buffer of ctypes, or an array of numpy's, which lives on meanwhile."""
 
@@ -121,6 +129,11 @@ FUNCTIONS = {
     "pw_hierarchy_cut_least_concavity": (c_int, [c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_cut_automatic": (c_int, [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)]),
     "pw_hierarchy_hull": (c_int, [c_void_p, c_size_t, c_size_t, POINTER(c_void_p)]),
+    "pw_hierarchy_convex_parts": (c_int, [c_void_p, c_void_p, POINTER(ConvexOptions), POINTER(c_void_p)]),
+    "pw_convex_parts_free": (None, [c_void_p]),
+    "pw_convex_parts_count": (c_int, [c_void_p, POINTER(c_size_t)]),
+    "pw_convex_parts_hull": (c_int, [c_void_p, c_size_t, POINTER(c_void_p), POINTER(c_size_t), POINTER(c_void_p),
+                                     POINTER(c_size_t), POINTER(c_double), POINTER(c_double)]),
     "pw_hierarchy_solid": (c_int, [c_void_p, c_size_t, c_size_t, c_void_p, c_size_t, POINTER(c_void_p)]),
     "pw_hierarchy_solid_of_slices": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, POINTER(c_void_p)]),
     "pw_hierarchy_solid_of_faces": (c_int, [c_void_p, c_size_t, c_size_t, c_void_p, c_size_t, POINTER(c_void_p)]),

@@ -41,6 +41,12 @@ void Progress::advance(double part) {
     raise_to(begin + (end - begin) * std::clamp(part, 0.0, 1.0));
 }
 
+void Progress::reach(double fraction) {
+    if (cancelled_.load(std::memory_order_relaxed))
+        throw Error(PW_ERROR_CANCELLED, "This was cancelled. Nothing was changed.");
+    raise_to(std::clamp(fraction, 0.0, 1.0));
+}
+
 void Progress::book() {
     const auto now = Clock::now();
     const pw_stage stage = stage_.load(std::memory_order_relaxed);

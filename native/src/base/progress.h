@@ -24,6 +24,9 @@ public:
     // for every few hundred steps of an inner loop.
     void advance(double part);
 
+    // The same where there are no stages: the part of all that is done.
+    void reach(double fraction);
+
     void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
     // Who asks for the fraction first and then for the stage never sees a stage that was over at that fraction.
     double fraction() const { return fraction_.load(std::memory_order_acquire); }

@@ -318,17 +318,8 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last) const {
     HullKernel kernel(points);
     const Hull hull = kernel.build(all);
 
-    TriangleMesh mesh;
-    std::vector<int32_t> number(points.size(), -1);
-    for (int32_t v : hull.vertices()) {
-        number[at(v)] = static_cast<int32_t>(mesh.vertices.size());
-        mesh.vertices.push_back(vertices_[at(used[at(v)])]);
-    }
-    for (const HullFacet& facet : hull.facets()) {
-        Triangle t = facet.corners;
-        for (int32_t& v : t) v = number[at(v)];
-        mesh.triangles.push_back(t);
-    }
+    TriangleMesh mesh = kernel.surface(hull);
+    for (size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i] = vertices_[at(used[at(hull.vertices()[i])])];
     return mesh;
 }
 

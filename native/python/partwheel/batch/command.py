@@ -27,6 +27,8 @@ def add_to(commands, add_build_options):
                        help=f"what is made of each model: {', '.join(OUTPUTS)} (default: hierarchy,cut)")
     batch.add_argument("--parts", type=count, default=0, metavar="N", help="of the cut (default: as people would take)")
     batch.add_argument("--hulls", type=count, default=16, metavar="N", help="convex hulls of colliders (default: 16)")
+    batch.add_argument("--max-vertices", type=int, default=0, metavar="N",
+                       help="of such a hull, 8 or more (default: any number)")
     batch.add_argument("--preview-size", type=count, default=192, metavar="PIXELS", help="of previews (default: 192)")
     batch.add_argument("--jobs", type=count, default=cores(), metavar="N", help="models at a time (default: all cores)")
     batch.add_argument("--memory", type=size, metavar="SIZE",
@@ -64,7 +66,7 @@ def settings(options):
             "build": {"quality": options.quality, "rungs": options.rungs, "open_surfaces": options.open_surfaces,
                       "mode": options.mode, "exactly": options.exactly}}
     made["parts"] = options.parts if set(options.make) & {"cut", "objects", "preview"} else 0
-    made["hulls"] = options.hulls if "colliders" in options.make else 0
+    made["hulls"], made["max_vertices"] = (options.hulls, options.max_vertices) if "colliders" in options.make else (0, 0)
     made["preview"] = options.preview_size if "preview" in options.make else 0
     return made
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from . import blend
-from .. import meshes
+from .. import convex, meshes
 from ..cut import Cut, files
 from ..library import Error, Mode
 from ..worker import Job
@@ -29,8 +29,8 @@ def make(path, folder, settings, *, memory=0, seconds=None, threads=1):
     """Makes what settings["outputs"] names, in the folder, and returns what is to be told of it.
 
     hierarchy: hierarchy.partwheel. cut: cut.json, the parts and the part of each face. objects: objects.glb, the parts
-    as closed objects. colliders: colliders.obj, settings["hulls"] convex hulls, UCX_00 and so on. preview: preview.png.
-    settings: as command.settings() gives them. memory: bytes that the worker process may take, 0: no limit. seconds: of
+    as closed objects. colliders: colliders.obj, settings["hulls"] convex hulls of settings["max_vertices"] at most (0: any
+    number), UCX_00 and so on. preview: preview.png. settings: as command.settings() gives them. memory: bytes that the worker process may take, 0: no limit. seconds: of
     its processor time; None: as Job has it. A model that the mesher refuses is drawn in grey, if a preview is wanted and
     can be: the error has the attribute pictured then. Returns {"account", "rung", sizes ..., "seconds": {stage:
     seconds}}; raises Error, OSError, MemoryError."""
@@ -70,7 +70,9 @@ def make(path, folder, settings, *, memory=0, seconds=None, threads=1):
             (folder / "objects.json").rename(folder / "cut.json")
         clock.lap("cut")
     if "colliders" in wanted:
-        report["hulls"] = _colliders(folder / "colliders.obj", hierarchy, settings["hulls"])
+        hulls = hierarchy.convex_parts(settings["hulls"], max_vertices=settings["max_vertices"])
+        convex.write_obj(folder / "colliders.obj", [(f"UCX_{number:02}", *hull[:2]) for number, hull in enumerate(hulls)])
+        report["hulls"] = len(hulls)
         clock.lap("colliders")
     if "preview" in wanted:
         _draw(folder, mesh, cut, settings, suffix)
@@ -90,20 +92,6 @@ def _sound(mesh):
     """Whether its numbers can be drawn at all, for the library may have refused them."""
     return (len(mesh.triangles) > 0 and np.isfinite(mesh.vertices).all() and mesh.triangles.min() >= 0
             and mesh.triangles.max() < len(mesh.vertices))
-
-
-def _colliders(path, hierarchy, count):
-    """Writes convex hulls of the cut that has the least concavity in total, and returns how many."""
-    bounds = hierarchy.cut_least_concavity(min(count, len(hierarchy.tetrahedra)))
-    start = 1
-    with open(path, "w", encoding="ascii") as file:
-        for number, (first, last) in enumerate(zip(bounds[:-1], bounds[1:])):
-            vertices, triangles = hierarchy.hull_of_slice(first, last)
-            file.write(f"o UCX_{number:02}\n")
-            file.writelines("v {!r} {!r} {!r}\n".format(*point) for point in vertices.tolist())
-            file.writelines("f {} {} {}\n".format(*corners) for corners in (triangles + start).tolist())
-            start += len(vertices)
-    return len(bounds) - 1
 
 
 class _Clock:

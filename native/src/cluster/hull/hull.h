@@ -75,6 +75,18 @@ public:
     // The points' coordinates should be at most some 1e80 in size, and their differences, where not 0, at least some 1e-80.
     explicit HullKernel(std::span<const Point> points);
 
+    // One point more: its number. forget() drops all from `count` on again; no hull made of such may be used after that.
+    int32_t add(const Point& point) {
+        points_.push_back({point});
+        return static_cast<int32_t>(points_.size() - 1);
+    }
+    void forget(size_t count) {
+        points_.resize(count);
+        surveyed_ = nullptr;  // numbers will mean other points
+    }
+    size_t point_count() const { return points_.size(); }
+    const Point& point(int32_t vertex) const { return at(vertex); }
+
     // conv of these vertices; repetitions are allowed.
     Hull build(std::span<const int32_t> vertices);
 
@@ -98,6 +110,8 @@ public:
     }
 
     Box bounds(const Hull& hull) const;
+    // Its vertices are the hull's, in the same order.
+    TriangleMesh surface(const Hull& hull) const;
 
 private:
     // A point that may be outside.
@@ -190,5 +204,8 @@ private:
     std::vector<int32_t> vertices_;
     std::vector<int32_t> unloaded_;
 };
+
+// The surface of the hull of points, by a kernel of its own. Its vertices are the extreme ones, in their order.
+TriangleMesh hull_of(std::span<const Point> points);
 
 }  // namespace partwheel

@@ -1,6 +1,8 @@
 // Hulls at rest, one block of memory each from the kernel's pool, and what takes them to work and back: unions.
 #include "cluster/hull/view.h"
 
+#include <numeric>
+
 namespace partwheel {
 
 size_t Hull::Block::bytes(size_t vertices, size_t facets) {
@@ -33,6 +35,26 @@ Hull HullKernel::allocate(std::span<const int32_t> vertices, size_t facets) {
     int32_t* const to = hull.block_->vertices();
     std::fill(std::copy(vertices.begin(), vertices.end(), to), to + whole_fours(vertices.size()), -1);
     return hull;
+}
+
+TriangleMesh HullKernel::surface(const Hull& hull) const {
+    TriangleMesh mesh;
+    const auto corners = hull.vertices();
+    for (const int32_t v : corners) mesh.vertices.push_back(at(v));
+    for (const HullFacet& facet : hull.facets()) {
+        Triangle t = facet.corners;
+        for (int32_t& v : t)
+            v = static_cast<int32_t>(std::lower_bound(corners.begin(), corners.end(), v) - corners.begin());
+        mesh.triangles.push_back(t);
+    }
+    return mesh;
+}
+
+TriangleMesh hull_of(std::span<const Point> points) {
+    HullKernel kernel(points);
+    std::vector<int32_t> all(points.size());
+    std::iota(all.begin(), all.end(), 0);
+    return kernel.surface(kernel.build(all));
 }
 
 void HullKernel::load(const Hull& hull) {

@@ -1,0 +1,428 @@
+// Convex parts: their pieces against exact predicates and CGAL's hulls, their errors against distances found by trying
+// every triangle.
+#include "base/predicates.h"
+#include "part/convex/convex_parts.h"
+#include "part/convex/fewer.h"
+#include "part/convex/search.h"
+#include "part/convex/tets/coarse.h"
+#include "support/built.h"
+#include "support/real_meshes.h"
+#include "support/reference_hull.h"
+#include "support/shapes.h"
+#include "support/sizes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+namespace partwheel::test {
+namespace {
+
+using namespace convex;
+using convex::Piece;
+using partwheel::operator+;
+using test::operator+;
+using partwheel::operator-;
+
+double volume(const TriangleMesh& mesh) {
+    double six = 0;
+    for (const auto& [a, b, c] : mesh.triangles)
+        six += six_volumes({}, mesh.vertices[at(a)], mesh.vertices[at(b)], mesh.vertices[at(c)]);
+    return six / 6;
+}
+
+double volume(std::span<const Tetrahedron> tetrahedra, const HullKernel& kernel) {
+    double six = 0;
+    for (const auto& [a, b, c, d] : tetrahedra)
+        six += std::fabs(six_volumes(kernel.point(a), kernel.point(b), kernel.point(c), kernel.point(d)));
+    return six / 6;
+}
+
+// Exactly.
+bool contains(const TriangleMesh& hull, const Point& p) {
+    return std::ranges::all_of(hull.triangles, [&](const Triangle& t) {
+        return orientation(hull.vertices[at(t[0])], hull.vertices[at(t[1])], hull.vertices[at(t[2])], p) <= 0;
+    });
+}
+
+// By barycentric coordinates, and each edge by itself: another way than the library's.
+double distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
+    const auto to_segment = [&](const Point& u, const Point& v) {
+        const double t = std::clamp(dot(p - u, v - u) / dot(v - u, v - u), 0.0, 1.0);
+        return length(p - u - t * (v - u));
+    };
+    double best = std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
+    const Point u = b - a, v = c - a, w = p - a;
+    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v), d = uu * vv - uv * uv;
+    const double s = (vv * wu - uv * wv) / d, t = (uu * wv - uv * wu) / d;
+    if (s >= 0 && t >= 0 && s + t <= 1) best = std::min(best, length(w - s * u - t * v));
+    return best;
+}
+
+bool contains(const TriangleMesh& hull, const Point& p, double near) {
+    return contains(hull, p) || std::ranges::any_of(hull.triangles, [&](const Triangle& t) {
+               return distance_to_triangle(p, hull.vertices[at(t[0])], hull.vertices[at(t[1])],
+                                           hull.vertices[at(t[2])]) <= near;
+           });
+}
+
+Hierarchy loaded(const TriMesh& mesh) {
+    const Handle handle = build(mesh, 0, PW_MODE_PAPER);
+    return Hierarchy::load(save(handle));
+}
+
+std::vector<ConvexPart> parts_of(const Hierarchy& hierarchy, const ConvexOptions& options) {
+    Progress progress;
+    return convex_parts(hierarchy, options, progress);
+}
+
+std::vector<TriMesh> models() {
+    std::vector<TriMesh> meshes;
+    for (const char* file : {"hand.off", "rotor.off", "elephant.off"}) meshes.push_back(real_mesh(file));
+    if (light()) meshes.resize(1);
+    return meshes;
+}
+
+// A part of the solid's volume is in each hull; none is left out: points of each tetrahedron are in some hull.
+void expect_cover(const Hierarchy& hierarchy, const std::vector<ConvexPart>& parts) {
+    double sum = 0;
+    for (const ConvexPart& part : parts) {
+        EXPECT_GE(volume(part.hull), part.volume * (1 - 1e-9));
+        sum += part.volume;
+    }
+    EXPECT_NEAR(sum / hierarchy.summary().volume, 1, 1e-9);
+    const auto vertices = hierarchy.vertices();
+    const double near = 1e-9 * Box::around(vertices).diagonal();
+    std::mt19937 random(1);
+    std::exponential_distribution<double> share;
+    size_t tried = 0;
+    for (size_t i = 0; i < hierarchy.tetrahedron_count(); i += 1 + hierarchy.tetrahedron_count() / 2000) {
+        double sum_of_shares = 0;
+        Point p{};
+        for (const int32_t v : hierarchy.tetrahedra()[i]) {
+            const double s = share(random);
+            p = p + s * vertices[at(v)];
+            sum_of_shares += s;
+        }
+        p = 1 / sum_of_shares * p;
+        EXPECT_TRUE(std::ranges::any_of(parts, [&](const ConvexPart& part) { return contains(part.hull, p, near); }))
+            << parts.size();
+        ++tried;
+    }
+    EXPECT_GT(tried, 0u);
+}
+
+TEST(Slice, PutsEachOnItsSideAndLosesNothing) {
+    const TetMesh mesh = perturbed(tets_of(block({0, 0, 0}, {3, 2, 2})), 0.05, 1);
+    std::mt19937 random(2);
+    std::normal_distribution<double> normal;
+    for (int i = 0; i < 50; ++i) {
+        HullKernel kernel(mesh.vertices);
+        Point n{normal(random), normal(random), normal(random)};
+        // Some through vertices.
+        const Point through = i % 2 ? mesh.vertices[random() % mesh.vertices.size()] : Point{1.5, 1, 1};
+        n = 1 / length(n) * n;
+        const CutPlane plane{n, dot(n, through)};
+        const Sliced sides = slice(mesh.tetrahedra, plane, kernel);
+        const double all = volume(mesh.tetrahedra, kernel);
+        EXPECT_NEAR(volume(sides.below, kernel) + volume(sides.above, kernel), all, 1e-12 * all);
+        for (const Tetrahedron& t : sides.below)
+            for (const int32_t v : t) EXPECT_LE(plane.height(kernel.point(v)), 1e-8);
+        for (const Tetrahedron& t : sides.above)
+            for (const int32_t v : t) EXPECT_GE(plane.height(kernel.point(v)), -1e-8);
+    }
+}
+
+TEST(Coarse, IsOfFewPointsAndKeepsThinParts) {
+    const TriMesh mesh = real_mesh("hand.off");
+    const Hierarchy hierarchy = loaded(mesh);
+    const auto representative = representatives(hierarchy.vertices(), 300);
+    const std::set<int32_t> used(representative.begin(), representative.end());
+    EXPECT_LE(used.size(), 300u);
+    EXPECT_GE(used.size(), 200u);
+    for (const int32_t v : used) EXPECT_EQ(representative[at(v)], v);
+    // No simplex is a part of another, and each tetrahedron's own is one or a part of one.
+    std::set<std::set<int32_t>> kept;
+    for (const Tetrahedron& t : coarse(hierarchy.tetrahedra(), representative))
+        EXPECT_TRUE(kept.insert({t.begin(), t.end()}).second);
+    std::set<std::set<int32_t>> covered;
+    for (const auto& simplex : kept) {
+        std::vector<int32_t> corners(simplex.begin(), simplex.end());
+        for (size_t bits = 1; bits + 1 < size_t{1} << corners.size(); ++bits) {
+            std::set<int32_t> part;
+            for (size_t k = 0; k < corners.size(); ++k)
+                if (bits >> k & 1) part.insert(corners[k]);
+            covered.insert(part);
+        }
+    }
+    for (const auto& simplex : kept) EXPECT_FALSE(covered.contains(simplex));
+    for (const Tetrahedron& t : hierarchy.tetrahedra()) {
+        std::set<int32_t> simplex;
+        for (const int32_t v : t) simplex.insert(representative[at(v)]);
+        EXPECT_TRUE(kept.contains(simplex) || covered.contains(simplex));
+    }
+}
+
+TEST(Pieces, HullsContainEachPointOfTheirPieceExactly) {
+    const TetMesh mesh = tets_of(block({0, 0, 0}, {6, 1, 1}) + block({0, 1, 0}, {1, 5, 1}) + block({0, 0, 1}, {1, 1, 4}));
+    Pieces made(mesh.vertices);
+    std::vector<Piece> pieces;
+    pieces.push_back(made.piece(mesh.tetrahedra));
+    for (size_t i = 0; i < 12; ++i) {
+        const Division best = made.best_division(pieces[i]);
+        if (best.cost == HUGE_VAL) continue;
+        auto [below, above] = made.divided(pieces[i].tetrahedra, best.plane);
+        if (below.tetrahedra.empty() || above.tetrahedra.empty()) continue;
+        // What the sweep measured is what comes out, but for the bulge.
+        EXPECT_NEAR(below.cost() + above.cost(), best.cost, 1e-3 * best.cost);
+        pieces.push_back(std::move(below));
+        pieces.push_back(std::move(above));
+    }
+    ASSERT_GT(pieces.size(), 12u);
+    pieces.push_back(made.joined(pieces[5], pieces[6]));
+    EXPECT_NEAR(pieces.back().cost(), made.joined_cost(pieces[5], pieces[6]), 1e-9);
+    for (const Piece& piece : pieces) {
+        const TriangleMesh hull = made.kernel().surface(piece.hull);
+        std::vector<Point> points;
+        for (const Tetrahedron& t : piece.tetrahedra)
+            for (const int32_t v : t) points.push_back(made.kernel().point(v));
+        for (const Point& p : points) ASSERT_TRUE(contains(hull, p));
+        EXPECT_NEAR(piece.cost(), static_cast<double>(reference_hull_volume(points)), 1e-9);
+    }
+}
+
+TEST(ConvexParts, OneIsTheHull) {
+    for (const TriMesh& model : models()) {
+        // Of coordinates of which no difference is rounded.
+        const TriMesh mesh = snapped(model, std::ldexp(1.0, std::ilogb(Box::around(model.vertices).diagonal()) - 20));
+        const auto parts = parts_of(loaded(mesh), {.hulls = 1});
+        ASSERT_EQ(parts.size(), 1u);
+        const ReferenceHull hull = reference_hull(mesh.vertices);
+        std::set<Point> expected;
+        for (const int32_t v : hull.extreme) expected.insert(mesh.vertices[at(v)]);
+        EXPECT_EQ(std::set<Point>(parts[0].hull.vertices.begin(), parts[0].hull.vertices.end()), expected);
+        EXPECT_NEAR(volume(parts[0].hull) / static_cast<double>(hull.volume), 1, 1e-9);
+        EXPECT_LT(parts[0].error, 0);
+    }
+}
+
+TEST(ConvexParts, CoverTheSolidWithLittleBesides) {
+    for (const TriMesh& mesh : models()) {
+        const Hierarchy hierarchy = loaded(mesh);
+        double before = HUGE_VAL;
+        for (const size_t hulls : {2u, 8u, 24u}) {
+            const auto parts = parts_of(hierarchy, {.hulls = hulls});
+            EXPECT_LE(parts.size(), hulls);
+            expect_cover(hierarchy, parts);
+            double sum = 0;
+            for (size_t i = 0; i < parts.size(); ++i) {
+                EXPECT_LE(volume(parts[i].hull), volume(parts[i > 0 ? i - 1 : 0].hull) * (1 + 1e-12));
+                sum += volume(parts[i].hull);
+            }
+            EXPECT_LT(sum, before);
+            before = sum;
+        }
+        // Less than the parts of the paper, as the hierarchy has them.
+        double papers = 0;
+        const auto cut = hierarchy.cut_least_concavity(24);
+        for (size_t k = 0; k + 1 < cut.size(); ++k)
+            papers += volume(hierarchy.hull(static_cast<size_t>(cut[k]), static_cast<size_t>(cut[k + 1])));
+        EXPECT_LT(before, papers) << mesh.name;
+    }
+}
+
+TEST(ConvexParts, OfBlocksAreTheBlocks) {
+    const TriMesh mesh = surface_of("jack", block({-1, 0, 0}, {2, 1, 1}) + block({0, -1, 0}, {1, 0, 1}) +
+                                                block({0, 1, 0}, {1, 2, 1}) + block({0, 0, -1}, {1, 1, 0}));
+    const auto parts = parts_of(loaded(mesh), {.hulls = 16});
+    double sum = 0;
+    for (const ConvexPart& part : parts) sum += volume(part.hull);
+    EXPECT_LE(sum, 1.05 * 6) << parts.size();
+    // What is convex is one, however many may be made.
+    EXPECT_EQ(parts_of(loaded(cube()), {.hulls = 16}).size(), 1u);
+}
+
+TEST(ConvexParts, OfSeveralPiecesHaveOneEach) {
+    const TriMesh mesh = together("two", cube(), moved(cube(), {3, 0.5, 0.25}));
+    const auto parts = parts_of(loaded(mesh), {.hulls = 2});
+    ASSERT_EQ(parts.size(), 2u);
+    for (const ConvexPart& part : parts) {
+        EXPECT_NEAR(volume(part.hull), 1, 1e-9);
+        EXPECT_EQ(part.hull.vertices.size(), 8u);
+    }
+}
+
+TEST(ConvexParts, HaveNoMoreVerticesThanAskedForAndStillCover) {
+    for (const TriMesh& mesh : models()) {
+        const Hierarchy hierarchy = loaded(mesh);
+        for (const size_t most : {8u, 20u, 64u}) {
+            const auto parts = parts_of(hierarchy, {.hulls = 8, .max_vertices = most});
+            for (const ConvexPart& part : parts) EXPECT_LE(part.hull.vertices.size(), most);
+            expect_cover(hierarchy, parts);
+        }
+    }
+}
+
+TEST(Fewer, IsAroundTheHullExactly) {
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal;
+    for (const Point& stretch : {Point{1, 1, 1}, Point{1, 10, 0.1}, Point{1e-3, 1e-3, 1}}) {
+        std::vector<Point> points;
+        for (int i = 0; i < 400; ++i) {
+            Point p{normal(random), normal(random), normal(random)};
+            p = 1 / length(p) * p;
+            points.push_back({5 + stretch[0] * p[0], stretch[1] * p[1], -7 + stretch[2] * p[2]});
+        }
+        const TriangleMesh hull = hull_of(points);
+        double before = HUGE_VAL;
+        for (const size_t most : {8u, 16u, 32u, 64u, 255u, 1000u}) {
+            const TriangleMesh fewer = fewer_around(hull, most);
+            EXPECT_LE(fewer.vertices.size(), most);
+            for (const Point& p : points) ASSERT_TRUE(contains(fewer, p)) << most << " " << stretch[1];
+            EXPECT_LT(volume(fewer), before);
+            before = volume(fewer);
+        }
+        EXPECT_EQ(before, volume(hull));
+        // A ball's: the best polytopes of so many corners around one have about as much.
+        EXPECT_LT(volume(fewer_around(hull, 64)) / before, 1.2);
+    }
+}
+
+// Of points all over the hulls, by every triangle of the surface and, inside, by the sum of angles.
+double sampled_error(const ConvexPart& part, const TriMesh& mesh, size_t samples) {
+    double most = 0;
+    std::mt19937 random(4);
+    std::exponential_distribution<double> share;
+    std::vector<double> areas;
+    for (const auto& [a, b, c] : part.hull.triangles)
+        areas.push_back(area(part.hull.vertices[at(a)], part.hull.vertices[at(b)], part.hull.vertices[at(c)]));
+    std::discrete_distribution<size_t> triangle(areas.begin(), areas.end());
+    for (size_t i = 0; i < samples; ++i) {
+        const Triangle& t = part.hull.triangles[triangle(random)];
+        const double x = share(random), y = share(random), z = share(random);
+        const Point p = 1 / (x + y + z) * (x * part.hull.vertices[at(t[0])] + y * part.hull.vertices[at(t[1])] +
+                                           z * part.hull.vertices[at(t[2])]);
+        double nearest = HUGE_VAL, angle = 0;
+        for (const auto& [i0, i1, i2] : mesh.triangles) {
+            const Point &a = mesh.vertices[at(i0)], &b = mesh.vertices[at(i1)], &c = mesh.vertices[at(i2)];
+            nearest = std::min(nearest, distance_to_triangle(p, a, b, c));
+            const Point u = a - p, v = b - p, w = c - p;
+            const double lu = length(u), lv = length(v), lw = length(w);
+            angle += 2 * std::atan2(dot(u, cross(v, w)), lu * lv * lw + dot(u, v) * lw + dot(v, w) * lu + dot(w, u) * lv);
+        }
+        if (angle < 2 * 3.14159265) most = std::max(most, nearest);
+    }
+    return most;
+}
+
+TEST(ConvexParts, KeepTheErrorThatIsAskedFor) {
+    const TriMesh mesh = real_mesh("hand.off");
+    const Hierarchy hierarchy = loaded(mesh);
+    const double size = Box::around(mesh.vertices).diagonal();
+    size_t before = 0;
+    for (const double error : {0.1 * size, 0.03 * size}) {
+        for (const size_t most : {size_t{0}, size_t{24}}) {
+            const auto parts = parts_of(hierarchy, {.error = error, .max_vertices = most});
+            EXPECT_GT(parts.size(), most ? 0 : before);
+            if (!most) before = parts.size();
+            expect_cover(hierarchy, parts);
+            double largest = 0, found = 0;
+            for (const ConvexPart& part : parts) {
+                EXPECT_GE(part.error, 0);
+                EXPECT_LE(part.error, error);
+                EXPECT_LE(part.hull.vertices.size(), most ? most : hierarchy.vertices().size());
+                const double sampled = sampled_error(part, mesh, light() ? 20 : 150);
+                EXPECT_LE(sampled, part.error * (1 + 1e-9));
+                largest = std::max(largest, part.error);
+                found = std::max(found, sampled);
+            }
+            EXPECT_GT(found, 0.4 * largest);  // it is not told far too high
+        }
+    }
+}
+
+void expect_same(const std::vector<ConvexPart>& a, const std::vector<ConvexPart>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (size_t i = 0; i < a.size(); ++i) {
+        EXPECT_EQ(a[i].hull.vertices, b[i].hull.vertices);
+        EXPECT_EQ(a[i].hull.triangles, b[i].hull.triangles);
+        EXPECT_EQ(a[i].volume, b[i].volume);
+        EXPECT_EQ(a[i].error, b[i].error);
+    }
+}
+
+TEST(ConvexParts, AreTheSameOnEachRunAndInWhateverOrder) {
+    const TriMesh mesh = real_mesh("hand.off");
+    const double error = 0.05 * Box::around(mesh.vertices).diagonal();
+    for (const ConvexOptions& options : {ConvexOptions{.hulls = 12, .max_vertices = 32}, ConvexOptions{.error = error}}) {
+        const auto parts = parts_of(loaded(mesh), options);
+        expect_same(parts, parts_of(loaded(mesh), options));
+        expect_same(parts, parts_of(loaded(shuffled(mesh, 5).mesh), options));
+    }
+    // In another unit, by a power of two: the same but for it.
+    const auto parts = parts_of(loaded(mesh), {.hulls = 12});
+    const auto large = parts_of(loaded(stretched(mesh, {1024, 1024, 1024})), {.hulls = 12});
+    ASSERT_EQ(parts.size(), large.size());
+    for (size_t i = 0; i < parts.size(); ++i)
+        for (size_t v = 0; v < parts[i].hull.vertices.size(); ++v)
+            EXPECT_EQ(1024 * parts[i].hull.vertices[v], large[i].hull.vertices[v]);
+}
+
+struct FreeParts {
+    void operator()(pw_convex_parts* parts) const { pw_convex_parts_free(parts); }
+};
+
+TEST(ConvexParts, CancelAndProgressThroughTheApi) {
+    pw_context* context = nullptr;
+    ASSERT_EQ(pw_context_create(&context), PW_OK);
+    const Handle handle = build(real_mesh("hand.off"));
+    const pw_convex_options options = {sizeof options, 8, 0, 0};
+    pw_convex_parts* made = nullptr;
+    ASSERT_EQ(pw_context_cancel(context), PW_OK);
+    EXPECT_EQ(pw_hierarchy_convex_parts(context, handle.get(), &options, &made), PW_ERROR_CANCELLED);
+    EXPECT_EQ(made, nullptr);
+    ASSERT_EQ(pw_hierarchy_convex_parts(context, handle.get(), &options, &made), PW_OK);
+    const std::unique_ptr<pw_convex_parts, FreeParts> parts(made);
+    double fraction = 0;
+    EXPECT_EQ(pw_context_progress(context, &fraction, nullptr), PW_OK);
+    EXPECT_EQ(fraction, 1);
+    pw_context_free(context);
+}
+
+TEST(ConvexParts, RefuseWhatCannotBe) {
+    const Handle handle = build(cube());
+    pw_convex_parts* made = nullptr;
+    const auto status = [&](pw_convex_options options) {
+        return pw_hierarchy_convex_parts(nullptr, handle.get(), &options, &made);
+    };
+    const size_t size = sizeof(pw_convex_options);
+    for (const pw_convex_options& options :
+         {pw_convex_options{size, 0, 0, 0}, pw_convex_options{size, 4, 0.1, 0}, pw_convex_options{size, 4097, 0, 0},
+          pw_convex_options{size, 0, -1, 0}, pw_convex_options{size, 0, HUGE_VAL, 0},
+          pw_convex_options{size, 0, std::nan(""), 0}, pw_convex_options{size, 4, 0, 7}, pw_convex_options{0, 4, 0, 0}}) {
+        EXPECT_EQ(status(options), PW_ERROR_ARGUMENT);
+        EXPECT_EQ(made, nullptr);
+    }
+    ASSERT_EQ(status({size, 4, 0, 8}), PW_OK);
+    const std::unique_ptr<pw_convex_parts, FreeParts> parts(made);
+    const double* vertices;
+    const int32_t* triangles;
+    size_t count, vertex_count, triangle_count;
+    double of_part, error;
+    ASSERT_EQ(pw_convex_parts_count(made, &count), PW_OK);
+    EXPECT_EQ(count, 1u);
+    const auto hull = [&](size_t index) {
+        return pw_convex_parts_hull(made, index, &vertices, &vertex_count, &triangles, &triangle_count, &of_part, &error);
+    };
+    EXPECT_EQ(hull(1), PW_ERROR_ARGUMENT);
+    ASSERT_EQ(hull(0), PW_OK);
+    EXPECT_EQ(vertex_count, 8u);
+    EXPECT_EQ(triangle_count, 12u);
+    EXPECT_EQ(of_part, 1);
+    EXPECT_LT(error, 0);
+}
+
+}  // namespace
+}  // namespace partwheel::test
