@@ -427,7 +427,10 @@ class Regrouped:
             measures = dict(
                 mine, parent_cost=parent_cost, cost_step=parent_cost - mine["own_cost"],
                 sibling_area=beside["area"] - mine["area"], parent_area=above["area"] - mine["area"],
-                sibling_gap=beside["gap"], sibling_thickness=beside["thickness"], parent_gap=above["gap"],
+                sibling_gap=beside["gap"], sibling_thickness=beside["thickness"], sibling_crease=beside["crease"],
+                sibling_length=beside["length_to_area"], sibling_cost=beside["own_cost"],
+                sibling_worst=beside["worst_cost"], sibling_dear=log(1 + len(dear[sibling.get(n, n)])),
+                parent_gap=above["gap"],
                 parent_crease=above["crease"], parent_concave=above["concave"], parent_curvature=above["curvature"],
                 root=float(root), gap_step=above["gap"] - mine["gap"], parts_when_made=log(parts_after(n)),
                 parts_when_joined=0.0 if root else log(parts_after(parent[n]) + 1),

@@ -11,13 +11,17 @@ bench quality_trace`.
 
 The pair cost is fitted to the likelihood that two faces, one of each part, lie in one part of a person's. Which pairs
 come up depends on the cost itself, so there are rounds: the first one with a cost by concavity and size alone, each
-later one with the pairs of the three rounds before. The node score is fitted to the overlap (intersection over union)
-with the segment that a click in the node is meant for, each segment being clicked equally often, on the nodes of the
-last three rounds: other trees are more data.
+later one with the pairs of the three rounds before. The node score is fitted on the nodes of the last three rounds
+(other trees are more data) to two things at once: each to the overlap (intersection over union) with the segment that
+a click in the node is meant for, each segment being clicked equally often; and those that hold one place against each
+other, so that what a click there takes has the most overlap (gain_of_clicks()).
+
+What is used of either is the mean of several networks from different starts. In the rounds before the last one it is
+one network, as trees that differ more are better data.
 
 Both are cross-validated: the categories are dealt into folds, and what is printed of a category comes from numbers that
 were fitted without it. A fit begins with weights by chance, and trees are greedy: the same fit from another seed moves
-`best` by 0.004 and 1-RI(K) by 0.008. So there are several, and the figures are their means; what differs less is no
+`best` by 0.004 and 1-RI(K) by 0.008. So there are several seeds, and the figures are their means; what differs less is no
 finding. Beside that are scored, on all models, the numbers in fitted.h and those fitted to all now: each to what it has
 seen. What is written (--write) is, of the latter, what has the best sum of `best` and `click`.
 
@@ -45,12 +49,14 @@ from regroup_names import NODE_NAMES, PAIR_NAMES, SOURCE, fitted_numbers  # noqa
 
 HEADER = SOURCE / "fitted.h"
 HEAD = "best   click  within2 stops  notches 1-RI(K) 1-RI(auto)"
-PAIR_RAMPS, NODE_RAMPS = 16, 12
+NETWORKS, PAIR_RAMPS, NODE_RAMPS = 4, 16, 12  # so many averaged; of each
 DIGITS = 4
 PAIRS_A_MODEL = 1200
 ROUNDS_SEEN = 3
 PRICE = 0.005  # as in likeliest_cut()
 MOST_OVERLAP = 0.85  # as in wheel_stops()
+CLICKS_A_MODEL, MOST_HOLDING = 64, 64
+CHANCE, CLICKS_COUNT = 0.04, 2  # see gain_of_clicks(); so much against the cross entropy
 # The measures in groups, by what they look at: --without leaves one out. Some names are those of pairs and of nodes.
 GROUPS = {
     "size": "area_s area_both volume_s volume_both area_step area volume sibling_area parent_area sibling_volume "
@@ -59,11 +65,12 @@ GROUPS = {
                  "halves_gap whole_gap",
     "section": "face_to_volume_s face_to_volume_l face_to_area_s face_share_s face_share_l face_to_thick_s "
                "face_to_thick_l outline face_to_volume face_to_area face_to_thick",
-    "length": "length_to_area_s length_share_s length_share_l length_to_area",
+    "length": "length_to_area_s length_share_s length_share_l length_to_area sibling_length",
     "thickness": "thickness_step thickness_s thickness_l thickness sibling_thickness whole_thickness",
-    "creases": "crease concave curvature parent_crease parent_concave parent_curvature",
+    "creases": "crease concave curvature parent_crease parent_concave parent_curvature "
+               "sibling_crease",
     "order": "own_cost worst_cost parent_cost cost_step root parts_when_made parts_when_joined cheapest_above "
-             "dearest_above halves_cost dear_below dear",
+             "dearest_above halves_cost dear_below dear sibling_cost sibling_worst sibling_dear",
 }
 
 
@@ -79,39 +86,50 @@ def likelihood_rational(z):
     return (1 + z / (1 + np.abs(z))) / 2, lambda error: 2 * error / (1 + 2 * np.abs(z))
 
 
-def fit(x, y, weight, told, seed, ramps, likelihood, epochs, batch, rate=3e-3, decay=1e-4):
-    """The numbers, as fitted.h has them, that make likelihood(sum of ramps of x) most like y. told: which columns of x
-    may count; the others get weights of 0."""
-    rng = np.random.default_rng(seed)
-    x = x[:, told]
-    middle = np.average(x, axis=0, weights=weight)
-    spread = np.sqrt(np.average((x - middle) ** 2, axis=0, weights=weight)) + 1e-6
-    z, y, weight = (a.astype(np.float32) for a in ((x - middle) / spread, y, weight / weight.mean()))
-    inputs = x.shape[1]
-    p = [a.astype(np.float32) for a in (
-        rng.normal(0, inputs ** -0.5, (inputs, ramps)), np.zeros(ramps), rng.normal(0, ramps ** -0.5, ramps), np.zeros(1))]
-    mean, square, step = [np.zeros_like(a) for a in p], [np.zeros_like(a) for a in p], 0
-    for epoch in range(epochs):
-        at, now = rng.permutation(len(y)), rate * (1.02 - epoch / epochs)
-        for i in range(0, len(y), batch):
-            k = at[i:i + batch]
-            ramp = z[k] @ p[0] + p[1]
-            size = 1 + np.abs(ramp)
-            value, slope = likelihood(ramp / size @ p[2] + p[3])
-            g = slope(value - y[k]) * weight[k] / len(k)
-            inner = np.outer(g, p[2]) / size ** 2
-            gradient = [z[k].T @ inner + decay * p[0], inner.sum(0), (ramp / size).T @ g + decay * p[2], g.sum()]
-            step += 1
-            for a, m, s, d in zip(p, mean, square, gradient):
-                m += 0.1 * (d - m)
-                s += 0.001 * (d * d - s)
-                a -= now * (m / (1 - 0.9 ** step)) / (np.sqrt(s / (1 - 0.999 ** step)) + 1e-8)
-    weights = p[0] / spread[:, None]
-    bias = p[1] - middle @ weights
-    rows = np.zeros((ramps, len(told) + 2))
-    rows[:, 0], rows[:, -1] = bias, p[2]
-    rows[:, 1 + np.flatnonzero(told)] = weights.T
-    return np.array([float(f"{number:.{DIGITS}g}") for number in [*rows.ravel(), p[3][0]]])
+class Networks:
+    """Several networks side by side, fitted to the same data from different starts; their mean is one network with the
+    ramps of all. told: which measures may count; the others get weights of 0."""
+
+    def __init__(self, x, weight, told, seed, ramps, networks):
+        self.told, self.ramps, self.networks = np.asarray(told), ramps, networks
+        self.rng = np.random.default_rng(seed)
+        self.middle = np.average(x[:, told], axis=0, weights=weight)
+        self.spread = np.sqrt(np.average((x[:, told] - self.middle) ** 2, axis=0, weights=weight)) + 1e-6
+        inputs, units = self.told.sum(), networks * ramps
+        self.p = [a.astype(np.float32) for a in (
+            self.rng.normal(0, inputs ** -0.5, (inputs, units)), np.zeros(units),
+            self.rng.normal(0, ramps ** -0.5, units), np.zeros(networks))]
+        self.mean, self.square, self.steps = [np.zeros_like(a) for a in self.p], [np.zeros_like(a) for a in self.p], 0
+
+    def inputs(self, x):
+        return ((x[:, self.told] - self.middle) / self.spread).astype(np.float32)
+
+    def sums(self, z):
+        """(rows, networks)"""
+        self.z, ramp = z, z @ self.p[0] + self.p[1]
+        self.size = 1 + np.abs(ramp)
+        self.ramp = ramp / self.size
+        return (self.ramp * self.p[2]).reshape(len(z), self.networks, self.ramps).sum(axis=2) + self.p[3]
+
+    def descend(self, g, rate, decay=1e-4):
+        """A step by Adam. g: the derivative of what is to be least by each of the sums last made."""
+        each = np.repeat(g, self.ramps, axis=1)
+        inner = each * self.p[2] / self.size ** 2
+        gradient = [self.z.T @ inner + decay * self.p[0], inner.sum(0), (self.ramp * each).sum(0) + decay * self.p[2],
+                    g.sum(0)]
+        self.steps += 1
+        for a, m, s, d in zip(self.p, self.mean, self.square, gradient):
+            m += 0.1 * (d - m)
+            s += 0.001 * (d * d - s)
+            a -= rate * (m / (1 - 0.9 ** self.steps)) / (np.sqrt(s / (1 - 0.999 ** self.steps)) + 1e-8)
+
+    def numbers(self):
+        """As fitted.h has them."""
+        weights = self.p[0] / self.spread[:, None]
+        rows = np.zeros((weights.shape[1], len(self.told) + 2))
+        rows[:, 0], rows[:, -1] = self.p[1] - self.middle @ weights, self.p[2] / self.networks
+        rows[:, 1 + np.flatnonzero(self.told)] = weights.T
+        return np.array([float(f"{number:.{DIGITS}g}") for number in [*rows.ravel(), self.p[3].mean()]])
 
 
 def apply(numbers, x):
@@ -221,8 +239,21 @@ class Trace(Traced):
         return (clicked * self.overlap).sum(axis=1) / np.maximum(clicked.sum(axis=1), 1e-300)
 
     def node_data(self):
+        """(measures, expected overlap, weight) of each node; then of each part that clicks fall into: (the nodes that
+        hold it, -1 where there are no more; the mean overlap of each with the segment of such a click), share of clicks."""
         weight = (self.area / self.area[-1]) ** 0.25
-        return self.node_measures, self.expected_overlap(), weight / weight.sum()
+        clicked = self.inside[:self.parts] / self.inside[-1]
+        share = clicked.sum(axis=1)
+        paths = np.full((self.parts, MOST_HOLDING), -1, np.int32)
+        overlap = np.zeros(paths.shape, np.float32)
+        at = np.arange(self.parts)
+        for k in range(MOST_HOLDING):
+            held = at >= 0
+            paths[held, k] = at[held]
+            overlap[held, k] = (clicked[held] * self.overlap[at[held]]).sum(axis=1) / np.maximum(share[held], 1e-300)
+            at = np.where(held, self.above[at], -1)
+        return (self.node_measures.astype(np.float32), self.expected_overlap().astype(np.float32),
+                (weight / weight.sum()).astype(np.float32), paths, overlap, share / share.sum())
 
     def measures(self, scores):
         """best, click, within2, stops, notches, cut, auto: what score.py would say."""
@@ -299,14 +330,55 @@ def told(names, without):
     return np.array([name not in left_out for name in names])
 
 
-def fit_pairs(data, without, seed):
+def fit_pairs(data, without, seed, networks):
     x, y, weight = (np.concatenate(column) for column in zip(*data))
-    return fit(x, 1 - y, weight, told(PAIR_NAMES, without), seed, PAIR_RAMPS, likelihood_logistic, 14, 2048)
+    networks = Networks(x, weight, told(PAIR_NAMES, without), seed, PAIR_RAMPS, networks)
+    z, y, weight = networks.inputs(x), (1 - y).astype(np.float32), (weight / weight.mean()).astype(np.float32)
+    epochs, batch = 14, 2048
+    for epoch in range(epochs):
+        at = networks.rng.permutation(len(y))
+        for i in range(0, len(y), batch):
+            k = at[i:i + batch]
+            value, slope = likelihood_logistic(networks.sums(z[k]))
+            networks.descend(slope(value - y[k, None]) * weight[k, None] / len(k), 3e-3 * (1.02 - epoch / epochs))
+    return networks.numbers()
 
 
-def fit_nodes(data, without, seed):
-    x, y, weight = (np.concatenate(column) for column in zip(*data))
-    return fit(x, y, weight, told(NODE_NAMES, without), seed, NODE_RAMPS, likelihood_rational, 24, 1024, 4e-3)
+def fit_nodes(data, without, seed, networks):
+    networks = Networks(*(np.concatenate(column) for column in zip(*((x, weight) for x, _, weight, *_ in data))),
+                        told(NODE_NAMES, without), seed, NODE_RAMPS, networks)
+    inputs, epochs, batch = [networks.inputs(each[0]) for each in data], 30, 4
+    for epoch in range(epochs):
+        order = networks.rng.permutation(len(data))
+        for i in range(0, len(order), batch):
+            z, y, weight, paths, overlap = [], [], [], [], []
+            for k in order[i:i + batch]:
+                clicked = networks.rng.choice(len(data[k][5]), CLICKS_A_MODEL, p=data[k][5])
+                path = data[k][3][clicked]
+                paths.append(np.where(path >= 0, path + sum(map(len, z)), -1))
+                overlap.append(data[k][4][clicked])
+                for column, each in zip((z, y, weight), (inputs[k], *data[k][1:3])):
+                    column.append(each)
+            y, weight, paths, overlap = map(np.concatenate, (y, weight, paths, overlap))
+            sums = networks.sums(np.concatenate(z))
+            score, slope = likelihood_rational(sums)
+            g = slope(score - y[:, None]) * (weight / weight.sum())[:, None]
+            g -= CLICKS_COUNT * gain_of_clicks(score, paths, overlap) / 2 / (1 + np.abs(sums)) ** 2
+            networks.descend(g, 4e-3 * (1.02 - epoch / epochs))
+    return networks.numbers()
+
+
+def gain_of_clicks(score, paths, overlap):
+    """(nodes, networks) the derivative by each score of the mean overlap at the click, were the node that a click takes
+    drawn by exp(score / CHANCE) of those that hold the place, and not that of the best score."""
+    held = paths >= 0
+    drawn = np.where(held[..., None], score[paths] / CHANCE, -np.inf)
+    drawn = np.exp(drawn - drawn.max(axis=1, keepdims=True))
+    drawn /= drawn.sum(axis=1, keepdims=True)
+    overlap = overlap[..., None]
+    gain = drawn * (overlap - (drawn * overlap).sum(axis=1, keepdims=True)) / CHANCE / len(paths)
+    return np.stack([np.bincount(paths[held], each, len(score)) for each in np.moveaxis(gain, 2, 0)[:, held]],
+                    axis=1).astype(np.float32)
 
 
 def build_tree(path, directory):
@@ -392,10 +464,10 @@ def main():
                                    for model in models], chunksize=8))
             return {model: Trace(directory / f"{model}.trace", people[model]) for model in models}
 
-        def fitted(fit, data, seed):
+        def fitted(fit, data, seed, networks):
             """The numbers of each fold, fitted to all the others; then those fitted to all."""
             return list(pool.map(fit, [[d for model, d in data if fold[model] != f] for f in range(args.folds)]
-                                 + [[d for _, d in data]], repeat(args.without), repeat(seed)))
+                                 + [[d for _, d in data]], repeat(args.without), repeat(seed), repeat(networks)))
 
         def measured(traces, node_numbers):
             scores = {model: likelihood_rational(apply(node_numbers[fold[model]], trace.node_measures))[0]
@@ -412,11 +484,11 @@ def main():
         for seed in range(args.seeds):
             seen, nodes_seen = [first], []
             for number in range(1, args.rounds + 1):
-                pairs = fitted(fit_pairs, sum(seen[-ROUNDS_SEEN:], []), seed)
+                pairs = fitted(fit_pairs, sum(seen[-ROUNDS_SEEN:], []), seed, NETWORKS if number == args.rounds else 1)
                 traces = traces_of(f"round{number}", pairs)
                 seen.append(pair_data(traces))
                 nodes_seen.append([(model, trace.node_data()) for model, trace in traces.items()])
-            nodes = fitted(fit_nodes, sum(nodes_seen[-ROUNDS_SEEN:], []), seed)
+            nodes = fitted(fit_nodes, sum(nodes_seen[-ROUNDS_SEEN:], []), seed, NETWORKS)
             held_back.append(measured(traces, nodes))
             after = measured(traces_of("after", pairs[-1:] * args.folds), nodes[-1:] * args.folds)
             fits.append((after.mean(axis=0), pairs[-1], nodes[-1]))

@@ -99,15 +99,12 @@ PairMeasures measures(const Parts& parts, const Pair& pair, double hull) {
 void look_below(Parts& parts) {
     std::vector<uint8_t> seen(parts.all.size(), 0);  // that have halves; the other joined ones are steps
     for (size_t n = 0; n < parts.all.size(); ++n) {
-        Part& part = parts.all[n];
-        if (n >= parts.fine && !seen[n]) continue;
-        part.dear += part.own_cost > 0 && part.own_cost < largest_cost;
-        if (part.above < 0) continue;
+        const Part& part = parts.all[n];
+        if (part.above < 0 || (n >= parts.fine && !seen[n])) continue;
         Part& above = parts[part.above];
         above.halves_cost = std::max(above.halves_cost, part.own_cost);
         above.halves_gap = std::max(above.halves_gap, convexity_gap(part.volume, part.hull_volume));
         above.least_half = std::min(above.least_half, part.log_area);
-        above.dear += part.dear;
         seen[at(part.above)] = 1;
     }
 }
@@ -135,6 +132,11 @@ NodeMeasures measures(const Parts& parts, size_t node) {
         .parent_area = parent.area - own.area,
         .sibling_gap = sibling.gap,
         .sibling_thickness = sibling.thickness,
+        .sibling_crease = sibling.crease,
+        .sibling_length = sibling.length_to_area,
+        .sibling_cost = sibling.own_cost,
+        .sibling_worst = sibling.worst_cost,
+        .sibling_dear = log2_of(1 + parts.all[side].dear),
         .parent_gap = parent.gap,
         .parent_crease = parent.crease,
         .parent_concave = parent.concave,

@@ -142,6 +142,7 @@ int32_t Regrouping::join(int32_t ia, int32_t ib, double cost) {
     u.low = std::min(a.low, b.low);
     u.own_cost = std::clamp(cost, -largest_cost, largest_cost);
     u.worst_cost = std::max({u.own_cost, a.worst_cost, b.worst_cost});
+    u.dear = a.dear + b.dear + (u.own_cost > 0 && u.own_cost < largest_cost);
     const auto [small, large] = std::minmax(a.hull, b.hull, fewer_facets);
     u.hull = kernel_.unite(large, small.vertices());
     u.hull_volume = u.hull.volume() / parts_.volume_unit;

@@ -82,6 +82,11 @@ struct NodeMeasures {
     double parent_area;        // area of the parent - area
     double sibling_gap;        // gap of the sibling
     double sibling_thickness;  // thickness of the sibling
+    double sibling_crease;     // crease of the sibling
+    double sibling_length;     // length_to_area of the sibling
+    double sibling_cost;       // own_cost of the sibling
+    double sibling_worst;      // worst_cost of the sibling
+    double sibling_dear;       // dear_below of the sibling
     double parent_gap;         // gap of the parent
     double parent_crease;      // crease of the parent
     double parent_concave;     // concave of the parent
