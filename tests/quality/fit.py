@@ -25,7 +25,7 @@ were fitted without it. A fit begins with weights by chance, and trees are greed
 finding. Beside that are scored, on all models, the numbers in fitted.h and those fitted to all now: each to what it has
 seen. What is written (--write) is, of the latter, what has the best sum of `best` and `click`.
 
---without: an ablation, the measures of one group are not told (GROUPS). One seed takes some two minutes on two idle
+--without: an ablation, the measures of one group are not told (GROUPS). One seed takes some four minutes on two idle
 cores, without the trees.
 """
 
