@@ -227,7 +227,8 @@ class Copy(SolidTest):
                 filled = numpy.abs(numpy.linalg.det(sides)).sum() / 6
                 self.assertLess(abs(volume(copy) / filled - 1), 1e-4, name)
                 own = [polygon for polygon, cap in zip(copy.polygons, caps(copy)) if not cap]
-                self.assertEqual(len(own), len(hierarchy.faces(node)))
+                # One beside an edge at which the part is pinched is halved, and its halves are caps.
+                self.assertIn(len(hierarchy.faces(node)) - len(own), {0, 1})
                 for polygon in own[::7]:
                     old = at[frozenset(tuple(copy.vertices[v].co) for v in polygon.vertices)]
                     uv = {tuple(mesh.vertices[mesh.loops[loop].vertex_index].co):

@@ -308,7 +308,7 @@ class Written(PartsCase):
                 surface = BVHTree.FromPolygons([vertex.co for vertex in new.data.vertices],
                                                [polygon.vertices[:] for polygon in new.data.polygons])
                 depth = numpy.array([surface.find_nearest(vertex.co)[3] for vertex in mesh.vertices])
-                self.assertGreater((depth < 1.5 * thick).mean(), 0.975, new.name)
+                self.assertGreater((depth < 1.5 * thick).mean(), 0.96, new.name)
         found, expected = numpy.sum(shells, axis=0)
         self.assertAlmostEqual(found / expected, 1, delta=0.25)  # edges are counted twice
 

@@ -235,7 +235,8 @@ def test_mirror_images_have_mirrored_bones():
     size = np.linalg.norm(np.ptp(mesh.vertices, axis=0))
     pairs = [(names.index(name), names.index(name.replace(".L", ".R"))) for name in names if ".L" in name]
     # What an arm hangs on is a matter of a triangle, too, where it borders two parts.
-    pairs = [(left, right) for left, right in pairs if names[found[left].parent][:-2] == names[found[right].parent][:-2]]
+    above = [names[bone.parent].removesuffix(".L").removesuffix(".R") for bone in found]
+    pairs = [(left, right) for left, right in pairs if above[left] == above[right]]
     assert len(pairs) >= 2  # legs and ears
     for left, right in pairs:
         # Of a part that is as wide as long which end is the farthest is a matter of a triangle.

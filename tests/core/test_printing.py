@@ -193,7 +193,9 @@ def test_no_two_solids_have_anything_in_common(name):
     bodies = {part: body(solid) for part, solid in made.solids.items()}
     for part in bodies:
         for other in range(part):
-            assert abs((bodies[part] ^ bodies[other]).volume()) < 1e-5 * bodies[other].volume(), (part, other)
+            # Reading a solid manifold3d mends its slivers: what that moves, no more, may meet the neighbour.
+            moved = sum(abs(bodies[each].volume() - volume(made.solids[each])) for each in (part, other))
+            assert abs((bodies[part] ^ bodies[other]).volume()) < 1e-5 * bodies[other].volume() + moved, (part, other)
     for peg in made.pegs:
         grown = manifold3d.Manifold.hull_points(prism(peg, 0, peg.length + GAP - 1e-6, GAP - 1e-6))
         assert abs((grown ^ bodies[peg.into]).volume()) < 1e-6 * grown.volume()
