@@ -191,8 +191,10 @@ double Distances::farthest(const TriangleMesh& surface, double slack, double eno
         if (least > enough && std::isfinite(enough)) return least;
         double farthest_corner = 0;
         for (const int32_t v : t) {
-            if (of_vertex[at(v)] < 0) of_vertex[at(v)] = length(surface.vertices[at(v)] - nearest(surface.vertices[at(v)], in_doubt() / 2));
-            farthest_corner = std::max(farthest_corner, of_vertex[at(v)]);
+            const Point& corner = surface.vertices[at(v)];
+            double& away = of_vertex[at(v)];
+            if (away < 0) away = length(corner - nearest(corner, in_doubt() / 2));
+            farthest_corner = std::max(farthest_corner, away);
         }
         if (farthest_corner + reach <= in_doubt())
             settled = std::max(settled, farthest_corner + reach);
@@ -206,7 +208,7 @@ double Distances::farthest(const TriangleMesh& surface, double slack, double eno
         areas.pop();
         // Halved across the longest side.
         size_t k = 0;
-        const auto side = [&](size_t i) { return squared(corners[(i + 1) % 3] - corners[i]); };
+        const auto side = [&own = corners](size_t i) { return squared(own[(i + 1) % 3] - own[i]); };
         for (size_t i = 1; i < 3; ++i)
             if (side(i) > side(k)) k = i;
         const Point &a = corners[k], &b = corners[(k + 1) % 3], &c = corners[(k + 2) % 3];
