@@ -2,6 +2,7 @@
 """Convex parts in Python and on the command line: their hulls by scipy's, their files by the readers that they are for."""
 
 import json
+import locale
 
 import numpy as np
 import pytest
@@ -103,7 +104,16 @@ def test_files_for_engines(written):
             assert len(scene.geometry["my_hand"].faces) == len(model.triangles)
 
 
-def test_mujoco_takes_the_hulls(written):
+@pytest.fixture
+def point():
+    """Numbers have a point: MuJoCo reads them as the host program's locale has them."""
+    before = locale.setlocale(locale.LC_NUMERIC)
+    locale.setlocale(locale.LC_NUMERIC, "C")
+    yield
+    locale.setlocale(locale.LC_NUMERIC, before)
+
+
+def test_mujoco_takes_the_hulls(written, point):
     mujoco = pytest.importorskip("mujoco")
     folder, volumes = written
     model = mujoco.MjModel.from_xml_path(str(folder / "my_hand.xml"))
