@@ -4,7 +4,7 @@ import numpy
 
 # What is dragged: where it is as shares of the model's extent, how many faces its part has at least, how far it goes as
 # shares of the viewport's height.
-STORY = [("nose", 0.02, 0.93, 300, -0.05, 0.10), ("tail", 0.95, 0.36, 700, -0.02, 0.30),
+STORY = [("nose", 0.02, 0.93, 300, -0.05, 0.10), ("tail", 0.95, 0.36, 300, -0.02, 0.15),
          ("head", 0.30, 0.99, 650, 0.08, 0.05), ("leg", 0.40, 0.01, 600, -0.10, 0.08)]
 
 
