@@ -17,6 +17,8 @@ from ..mesh.refusing import Refused
 WAYS = (("MANIFOLD", False), ("EXACT", False), ("EXACT", True))
 SAMPLES = 200  # vertices that are looked at to see whether a mesh lies inside another
 RAY = Vector((0.5377, 0.3141, 0.7823)).normalized()  # no model is likely to be built along it
+SUSPICIOUS = 0.1  # of the smaller volume: with more of it inside the other, what is missing is looked for
+MISSING = 0.05  # of the samples: a few may lie in faces of the other
 TOLERANCE = 1e-5  # of the sum of the volumes: coordinates are of 24 bits
 # How the properties begin that are a mesh's settings.
 SETTINGS = ("remesh_", "use_remesh_", "use_mirror_", "use_paint_", "use_auto_", "auto_smooth", "radial", "texspace")
@@ -135,15 +137,15 @@ def _united(base, operand, base_name, operand_name, slots):
 
 
 def _left_out(one, other, result):
-    """Whether vertices of one mesh that lie outside of the other, by the parity of crossings along a ray, are missing
-    from the surface of the result."""
+    """The share of the vertices of one mesh that lie outside of the other, by the parity of crossings along a ray, and are
+    missing from the surface of the result."""
     places = arrays.read(result.vertices, "co", np.float32, 3)
     surface = BVHTree.FromPolygons(places.tolist(), arrays.triangles(result)[0].tolist())
     near = TOLERANCE * float(np.linalg.norm(np.ptp(places, axis=0)))
     target = RayTarget(arrays.read(other.vertices, "co", np.float32, 3), arrays.triangles(other)[0])
     step = max(len(one.vertices) // SAMPLES, 1)
-    return any(surface.find_nearest(vertex.co)[3] > near and not _crossings(target, vertex.co) % 2
-               for vertex in list(one.vertices)[::step])
+    return np.mean([surface.find_nearest(vertex.co)[3] > near and not _crossings(target, vertex.co) % 2
+                    for vertex in list(one.vertices)[::step]])
 
 
 def _crossings(target, place):
@@ -166,14 +168,16 @@ def _set_apart(mesh):
 
 def _implausible(meshes, volumes, result):
     """What is wrong with a union's volume, by inclusion and exclusion: it is at least the larger volume and at most the
-    sum. It is the larger only if the other lies within, though faces of the one that is left may have been cut."""
+    sum. It is the larger only if the other lies within, though faces of the one that is left may have been cut; and where
+    it says that much of the smaller one lies within, not much of either may be missing."""
     united = volume(result)
     slack = TOLERANCE * sum(volumes)
     if not max(volumes) - slack <= united <= sum(volumes) + slack:
         return f"its volume would be {united:.6g}, of {volumes[0]:.6g} and {volumes[1]:.6g}"
-    if united <= max(volumes) + min(slack, min(volumes) / 2) and (
-            _left_out(*meshes, result) or _left_out(*meshes[::-1], result)):
-        return "one of them was left out"
+    if sum(volumes) - united > SUSPICIOUS * min(volumes):
+        allowed = 0 if united <= max(volumes) + min(slack, min(volumes) / 2) else MISSING
+        if max(_left_out(*meshes, result), _left_out(*meshes[::-1], result)) > allowed:
+            return "one of them was left out"
     return None
 
 
