@@ -45,11 +45,10 @@ public:
     NearestTriangle(std::span<const Point> vertices, std::span<const Triangle> triangles);
     ~NearestTriangle();
     Near operator()(const Point& p);
-    // By the parity of crossings along a ray in a direction that no model is likely to be built along. Not exact: it is
-    // asked of many samples, and only of those far from the surface.
     // Whether some triangle is at most so far from p: quicker than to find the nearest.
     bool within(const Point& p, double distance) const;
-
+    // By the parity of crossings along a ray in a direction that no model is likely to be built along. Not exact: it is
+    // asked of many samples, and only of those far from the surface.
     bool outside(const Point& p) const;
 
 private:

@@ -15,7 +15,6 @@ namespace {
 
 constexpr double rounding = 1e-12;  // a point that is no farther out of a facet may as well be in it
 
-
 double squared(const Point& p) { return dot(p, p); }
 
 double squared_to_box(const Point& p, const Box& box) {
