@@ -234,11 +234,23 @@ def test_mirror_images_have_mirrored_bones():
     (normal, offset), = mirror_planes(mesh.vertices, mesh.triangles)
     size = np.linalg.norm(np.ptp(mesh.vertices, axis=0))
     pairs = [(names.index(name), names.index(name.replace(".L", ".R"))) for name in names if ".L" in name]
-    # What an arm hangs on is a matter of a triangle, too, where it borders two parts.
+    assert len(pairs) >= 3  # legs, arms, eyes
     above = [names[bone.parent].removesuffix(".L").removesuffix(".R") for bone in found]
-    pairs = [(left, right) for left, right in pairs if above[left] == above[right]]
-    assert len(pairs) >= 2  # legs and ears
+    assert all(above[left] == above[right] for left, right in pairs)
     for left, right in pairs:
         # Of a part that is as wide as long which end is the farthest is a matter of a triangle.
         for one, other, near in zip(found[left][:2], found[right][:2], (0.01, 0.07)):
             assert np.linalg.norm(one - 2 * (one @ normal - offset) * normal - other) < near * size
+
+
+def test_what_lies_on_the_plane_hangs_together():
+    """Homer's neck is joined with an arm before either is with the trunk; his head would hang on that arm."""
+    mesh, cut, hung, _ = real("homer")
+    labels = cut.labels[mesh.faces]
+    middles = mesh.vertices[mesh.triangles].mean(axis=1)
+    (normal, offset), = mirror_planes(mesh.vertices, mesh.triangles)
+    away = np.array([np.median((middles[labels == part] @ normal - offset)) for part in range(len(cut))])
+    side = np.where(abs(away) < 0.05 * np.ptp(middles @ normal), 0, np.sign(away))
+    assert (side == 0).sum() >= 4  # trunk, neck, head, mouth
+    for part, link in enumerate(hung):
+        assert link.parent < 0 or side[link.parent] in (0, side[part])

@@ -11,7 +11,7 @@ from mathutils import Matrix, Vector
 from ..mesh import arrays, pieces
 from ..mesh.refusing import Refused
 from ..solid import composition, fitting, solids
-from partwheel.cut import borders, links
+from partwheel.cut import tree
 
 
 EXPLODE = "explode"  # the property of the root by which the others are moved apart
@@ -35,7 +35,7 @@ def made(obj, cut, names, options=Options()):
     """[object, ...], one for each part that has anything left, in a new collection; the object itself stays."""
     composition.update_matrices()
     mesh = arrays.up_to_date(obj)
-    tree, places, middles = _tree(mesh, cut)
+    hung, places, middles = _hung(mesh, cut)
     meshes = _closed(obj, cut, options.caps) if options.closed else [
         _open(mesh, cut, part) for part in range(len(cut))]
     collection = bpy.data.collections.new(f"{obj.name} parts")
@@ -43,18 +43,18 @@ def made(obj, cut, names, options=Options()):
     new = {part: composition.beside(obj, each, names[part], collection) for part, each in enumerate(meshes) if each}
     if options.origins:
         for part, each in new.items():
-            if tree[part].parent >= 0:
+            if hung[part].parent >= 0:
                 each.data.transform(Matrix.Translation(-places[part]), shape_keys=True)
                 each.matrix_world = obj.matrix_world @ Matrix.Translation(places[part])
     composition.update_matrices()
     for part, each in new.items():
-        parent = new.get(tree[part].parent)
+        parent = new.get(hung[part].parent)
         if parent:
             each.parent = parent
             each.matrix_parent_inverse = parent.matrix_world.inverted_safe()
             if options.explode:
-                away = obj.matrix_world.to_3x3() @ (middles[part] - middles[tree[part].parent])
-                _drive(each, new[_root(tree)], away, options.explode)
+                away = obj.matrix_world.to_3x3() @ (middles[part] - middles[hung[part].parent])
+                _drive(each, new[_root(hung)], away, options.explode)
         if options.shell and cut.volume(part) > options.shell * sum(face.area for face in each.data.polygons):
             shell = each.modifiers.new("Shell", "SOLIDIFY")
             shell.thickness, shell.offset = options.shell, -1
@@ -64,8 +64,8 @@ def made(obj, cut, names, options=Options()):
     return list(new.values())
 
 
-def _root(tree):
-    return next(part for part, link in enumerate(tree) if link.parent < 0)
+def _root(hung):
+    return next(part for part, link in enumerate(hung) if link.parent < 0)
 
 
 def _drive(obj, root, away, factor):
@@ -106,13 +106,13 @@ def _open(mesh, cut, part):
     return new
 
 
-def _tree(mesh, cut):
+def _hung(mesh, cut):
     """(the parts' Links, where each hangs on the other or else its middle, their middles)."""
     surface = arrays.surface(mesh)
     labels = cut.labels[surface.faces]
     low, high = (np.array([end(surface.vertices[surface.triangles[labels == part]], axis=(0, 1))
                            for part in range(len(cut))]) for end in (np.min, np.max))
     middles = (low + high) / 2
-    tree = links(cut, borders(surface.vertices, surface.triangles, labels), middles)
-    places = [Vector(link.border.center if link.border else middle) for link, middle in zip(tree, middles)]
-    return tree, places, [Vector(middle) for middle in middles]
+    hung = tree(cut, surface.vertices, surface.triangles, labels, middles)
+    places = [Vector(link.border.center if link.border else middle) for link, middle in zip(hung, middles)]
+    return hung, places, [Vector(middle) for middle in middles]

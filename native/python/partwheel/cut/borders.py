@@ -8,6 +8,7 @@ import numpy as np
 
 from ..deform import surface_distances
 from ..joint import MOST, groups
+from .names import images
 
 REACH = 2.0  # radii of a border in which weights fall, on either side: joints bend best so, see docs/bones.md
 
@@ -62,16 +63,20 @@ def _border(vertices, pair, edges):
     return Border(tuple(pair.tolist()), np.unique(edges), center, float(radius), float(length.sum()))
 
 
-def tree(cut, vertices, triangles, labels):
-    """The Links of a cut's parts on the surface that it is of. labels (T,) the part of each triangle."""
-    middles = np.array([vertices[triangles[labels == part]].mean(axis=(0, 1)) for part in range(len(cut))])
-    return links(cut, borders(vertices, triangles, labels), middles)
+def tree(cut, vertices, triangles, labels, middles=None):
+    """The Links of a cut's parts on the surface that it is of. labels (T,) the part of each triangle. middles
+    (parts,3): see links(); the means of their triangles unless given."""
+    if middles is None:
+        middles = np.array([vertices[triangles[labels == part]].mean(axis=(0, 1)) for part in range(len(cut))])
+    central = {part for part, image in images(vertices, triangles, labels)[0].items() if part == image}
+    return links(cut, borders(vertices, triangles, labels), middles, central)
 
 
-def links(cut, found, middles):
+def links(cut, found, middles, central=()):
     """The tree of parts, a Link for each: what the cut's own tree joins first hangs together, by the longest of the
-    Borders found there. The root is the part with the most volume. middles (parts,3): a loose piece goes with the
-    nearest of what it was joined with."""
+    Borders found there. But first, parts on the plane of a symmetric model, central, hang together: neck and head on the
+    trunk, not on an arm; and are as one for what hangs on them, on the one with the longest border. The root is the part
+    with the most volume. middles (parts,3): a loose piece goes with the nearest of what it was joined with."""
     joined = list(range(len(cut)))
 
     def at(part):
@@ -91,8 +96,13 @@ def links(cut, found, middles):
     def apart(one, other):
         return float(np.linalg.norm(middles[one] - middles[other]))
 
-    join(sorted(((cut.joined_at(*border.parts), -border.length, number, border.parts, border)
-                 for number, border in enumerate(found)), key=lambda way: way[:3]))
+    levels = [cut.joined_at(*border.parts) for border in found]
+    sides = [frozenset(border.parts).difference(central) for border in found]  # of which none, one or two are not central
+    first = {}
+    for side, level in zip(sides, levels):
+        first[side] = min(first.get(side, level), level)
+    join(sorted(((bool(side), first[side] if len(side) == 1 else level, -border.length, number, border.parts, border)
+                 for number, (border, side, level) in enumerate(zip(found, sides, levels))), key=lambda way: way[:4]))
     if len({at(part) for part in joined}) > 1:
         pairs = [(one, other) for one in range(len(cut)) for other in range(one) if at(one) != at(other)]
         join(sorted((cut.joined_at(*pair), apart(*pair), pair, None) for pair in pairs))

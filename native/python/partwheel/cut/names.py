@@ -40,11 +40,10 @@ def named(cut, vertices, triangles, faces, word="Part"):
     areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     size = np.bincount(labels, areas, len(cut))
     measures = np.array([_measures(corners[labels == part]) for part in range(len(cut))])
-    points, chosen = spread_over(corners, areas, SAMPLES)
     middles = np.array([np.average(corners[labels == part].mean(axis=1), axis=0, weights=areas[labels == part] + 1e-300)
                         for part in range(len(cut))])
-    pairs, normal = _mirrored(mirror_planes(vertices, triangles), points, labels[chosen], size)
-    image = dict([*pairs, *(pair[::-1] for pair in pairs)])
+    image, normal = images(vertices, triangles, labels)
+    image = {part: other for part, other in image.items() if part != other}
     names = [None] * len(cut)
     for number, kind in enumerate(_kinds(measures, size, image), 1):
         base = f"{word} {number}"
@@ -58,20 +57,25 @@ def named(cut, vertices, triangles, faces, word="Part"):
     return names
 
 
-def _mirrored(planes, points, labels, size):
-    """([(part, its mirror image), ...], the normal towards the left) by the plane across which the parts of the most
-    area have an image."""
-    best, most = ([], np.zeros(3)), 0.0
-    for normal, offset in planes:
+def images(vertices, triangles, labels):
+    """({part: the part that is its mirror image}, the normal towards the left) by the plane across which the parts of the
+    most area have another one as theirs. One that lies on both sides is its own. labels (T,) the part of each triangle."""
+    corners = np.asarray(vertices, np.float64)[triangles]
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    size = np.bincount(labels, areas)
+    points, chosen = spread_over(corners, areas, SAMPLES)
+    labels = labels[chosen]
+    best, most = ({}, np.zeros(3)), 0.0
+    for normal, offset in mirror_planes(vertices, triangles):
         votes = np.zeros((len(size), len(size)))
-        images = points - 2 * np.outer(points @ normal - offset, normal)
-        np.add.at(votes, (labels, labels[_nearest(images, points)]), 1)
-        likely = votes.argmax(axis=1)
-        pairs = [(part, other) for part, other in enumerate(likely.tolist()) if part < other and likely[other] == part
-                 and all(votes[a, b] > MIRRORED * votes[a].sum() for a, b in ((part, other), (other, part)))]
-        area = sum(size[part] + size[other] for part, other in pairs)
+        reflected = points - 2 * np.outer(points @ normal - offset, normal)
+        np.add.at(votes, (labels, labels[_nearest(reflected, points)]), 1)
+        likely = votes.argmax(axis=1).tolist()
+        image = {part: other for part, other in enumerate(likely) if likely[other] == part
+                 and all(votes[a, b] > MIRRORED * votes[a].sum() for a, b in ((part, other), (other, part)))}
+        area = sum(size[part] for part, other in image.items() if part != other)
         if area > most:
-            best, most = (pairs, normal * np.sign(normal[abs(normal).argmax()])), area
+            best, most = (image, normal * np.sign(normal[abs(normal).argmax()])), area
     return best
 
 
