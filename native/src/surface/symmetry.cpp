@@ -13,6 +13,7 @@ namespace {
 constexpr size_t fewest_samples = 64, few_samples = 256, many_samples = 1024;
 constexpr double promising = 0.4, doubt = 0.1;  // of the fewest: where a plane is worth moving; how far the few err
 constexpr int moves = 6;
+constexpr double as_good = 0.01;  // a plane is only moved if more than this share of the area has its image then
 constexpr double reach = 1.0 / 20;  // relative to the diagonal: how far off a counterpart is when a plane is moved
 constexpr double perpendicular = 0.1;  // less than this is the cosine between planes that are
 
@@ -44,15 +45,16 @@ Axes principal_axes(std::array<Point, 3> m) {
     return {axes[order[0]], axes[order[1]], axes[order[2]]};
 }
 
-void add_outer_product(std::array<Point, 3>& sum, const Point& p) {
-    for (size_t k = 0; k < 3; ++k) sum[k] = sum[k] + p[k] * p;
+void add_outer_product(std::array<Point, 3>& sum, const Point& p, double weight = 1) {
+    for (size_t k = 0; k < 3; ++k) sum[k] = sum[k] + weight * p[k] * p;
 }
 
 class Search {
 public:
     Search(std::span<const Point> vertices, std::span<const Triangle> triangles, Progress& progress)
-        : vertices_(vertices), triangles_(triangles), progress_(progress), nearest_(vertices, triangles) {
+        : vertices_(vertices), progress_(progress), nearest_(vertices, triangles) {
         diagonal_ = Box::around(vertices).diagonal();
+        put_in_order(triangles);
         fewest_ = spread(fewest_samples);
         few_ = spread(few_samples);
         many_ = spread(many_samples);
@@ -62,14 +64,14 @@ public:
         std::vector<Candidate> found;
         for (const Plane& plane : candidates()) {
             if (share(plane, fewest_) < promising) continue;
-            for (const Plane& each : {plane, moved(plane)})
-                if (share(each, few_) > least_mirrored - doubt) found.push_back({each, share(each, many_)});
+            for (const auto& [each, less] : {std::pair(plane, 0.0), {moved(plane), as_good}})
+                if (share(each, few_) > least_mirrored - doubt) found.push_back({each, share(each, many_), less});
         }
         std::vector<Plane> taken;
         while (taken.size() < 3) {
-            Candidate best{{}, 0};
+            Candidate best{{}, 0, 0};
             for (const Candidate& c : found)
-                if (c.share > best.share) best = c;
+                if (c.share >= least_mirrored && c.share - c.less > best.share - best.less) best = c;
             if (best.share < least_mirrored) break;
             taken.push_back(best.plane);
             // What is left is made exactly perpendicular to it.
@@ -90,10 +92,21 @@ public:
 private:
     struct Candidate {
         Plane plane;
-        double share;
+        double share, less;  // less: as much better it must be than others
     };
 
-    // Points spread evenly over the area: as many along the order of the triangles from each to the next.
+    // Triangles by their middles, each from its lowest corner on: how they were numbered does not matter.
+    void put_in_order(std::span<const Triangle> triangles) {
+        for (Triangle t : triangles) {
+            std::ranges::rotate(t, std::ranges::min_element(t, {}, [&](int32_t v) { return vertices_[at(v)]; }));
+            triangles_.push_back(t);
+        }
+        std::ranges::sort(triangles_, {}, [&](const Triangle& t) {
+            return std::array{corner(t, 0), corner(t, 1), corner(t, 2)};
+        });
+    }
+
+    // Points spread evenly over the area: as much of it, in the order of the triangles, from each to the next.
     std::vector<Point> spread(size_t count) {
         std::vector<double> until;
         double sum = 0;
@@ -115,9 +128,16 @@ private:
     }
 
     std::vector<Plane> candidates() {
+        std::vector<std::pair<Point, double>> middles;
+        double whole = 0;
+        for (const Triangle& t : triangles_) {
+            const Point &a = corner(t, 0), &b = corner(t, 1), &c = corner(t, 2);
+            middles.push_back({1.0 / 3 * (a + b + c), area(a, b, c)});
+            whole += middles.back().second;
+        }
+        for (const auto& [p, size] : middles) middle_ = middle_ + size / whole * p;
         std::array<Point, 3> spread_out{};
-        for (const Point& p : many_) middle_ = middle_ + 1.0 / many_samples * p;
-        for (const Point& p : many_) add_outer_product(spread_out, p - middle_);
+        for (const auto& [p, size] : middles) add_outer_product(spread_out, p - middle_, size);
         std::vector<Plane> planes;
         for (const Axes& axes : {principal_axes(spread_out), Axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}})
             for (const Point& normal : axes) {
@@ -126,8 +146,8 @@ private:
                     least = std::min(least, dot(normal, p));
                     most = std::max(most, dot(normal, p));
                 }
-                planes.push_back({normal, dot(normal, middle_)});
-                planes.push_back({normal, (least + most) / 2});
+                for (const double offset : {dot(normal, middle_), 0.0, (least + most) / 2})
+                    planes.push_back({normal, offset});
             }
         return planes;
     }
@@ -166,7 +186,7 @@ private:
     const Point& corner(const Triangle& t, size_t k) const { return vertices_[at(t[k])]; }
 
     std::span<const Point> vertices_;
-    std::span<const Triangle> triangles_;
+    std::vector<Triangle> triangles_;
     Progress& progress_;
     NearestTriangle nearest_;
     Point middle_{};

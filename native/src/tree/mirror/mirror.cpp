@@ -3,6 +3,7 @@
 
 #include "base/groups.h"
 #include "cluster/hull/hull.h"
+#include "tree/mirror/pieces.h"
 #include "tree/mirror/spread.h"
 
 #include <algorithm>
@@ -20,30 +21,12 @@ constexpr double fair_share = 0.25;
 constexpr double little_excess = 0.05;
 // What would tie on an exactly symmetric model, such as a tetrahedron in the plane, is not left to rounding.
 constexpr double rounding = 1e-7;
-constexpr int32_t unsettled = -1, elsewhere = -2;  // as parts: to be spread into; not to be touched
+constexpr int32_t elsewhere = -2;  // as a part: not to be touched
 
 Point centre(const TetMesh& mesh, size_t t) {
     Point sum{};
     for (const int32_t v : mesh.tetrahedra[t]) sum = sum + 0.25 * mesh.vertices[at(v)];
     return sum;
-}
-
-// Each part keeps its largest piece; what else is of it becomes unsettled.
-void keep_largest_pieces(const TetMesh& mesh, size_t count, std::vector<int32_t>& part) {
-    Joined pieces(part.size());
-    for (size_t t = 0; t < part.size(); ++t)
-        for (const int32_t n : mesh.neighbours[t])
-            if (n >= 0 && part[t] >= 0 && part[at(n)] == part[t]) pieces.join(t, at(n));
-    std::vector<double> size(part.size(), 0);
-    for (size_t t = 0; t < part.size(); ++t) size[pieces.find(t)] += volume(mesh, t);
-    std::vector<int32_t> largest(count, -1);
-    for (size_t t = 0; t < part.size(); ++t) {
-        if (part[t] < 0 || pieces.find(t) != t) continue;
-        int32_t& best = largest[at(part[t])];
-        if (best < 0 || static_cast<float>(size[t]) > static_cast<float>(size[at(best)])) best = static_cast<int32_t>(t);
-    }
-    for (size_t t = 0; t < part.size(); ++t)
-        if (part[t] >= 0 && at(largest[at(part[t])]) != pieces.find(t)) part[t] = unsettled;
 }
 
 double hull_volume(const std::vector<Point>& points) {
@@ -190,7 +173,9 @@ private:
                 if (claims.size() % 256 == 0) progress_.advance(0);
             }
         }
-        spread(mesh_, std::move(claims), part_, progress_);
+        settle(std::move(claims), part_);
+        connect_pieces(mesh_, 3 * old_.count, part_);
+        spread(mesh_, claims_of_neighbours(mesh_, part_), part_, progress_);
         keep_largest_pieces(mesh_, 3 * old_.count, part_);
         spread(mesh_, claims_of_neighbours(mesh_, part_), part_, progress_);
         for (size_t t = 0; t < near_.size(); ++t)  // a component that no triangle of is of

@@ -28,6 +28,10 @@ std::vector<Claim> claims_of_neighbours(const TetMesh& mesh, const std::vector<i
     return claims;
 }
 
+void settle(std::vector<Claim> claims, std::vector<int32_t>& part) {
+    settle_claims(std::move(claims), [&](int32_t t, int32_t p) { part[at(t)] = p; });
+}
+
 void spread(const TetMesh& mesh, std::vector<Claim> claims, std::vector<int32_t>& part, Progress& progress) {
     std::vector<int32_t> layer;
     while (!claims.empty()) {

@@ -11,6 +11,9 @@ namespace partwheel {
 // Of a facet: how much of it counts for who is behind.
 double facet_area(const TetMesh& mesh, size_t tetrahedron, size_t opposite);
 
+// Each tetrahedron that is claimed gets the part that claims most of it.
+void settle(std::vector<Claim> claims, std::vector<int32_t>& part);
+
 // Each tetrahedron of part -1 gets the part that claims most of it; then, layer by layer, those without a claim get that
 // of the neighbours behind most of their facets' area. Those that nothing reaches stay as they are.
 void spread(const TetMesh& mesh, std::vector<Claim> claims, std::vector<int32_t>& part, Progress& progress);
