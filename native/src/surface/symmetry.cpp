@@ -62,10 +62,17 @@ public:
 
     std::vector<Plane> planes() {
         std::vector<Candidate> found;
-        for (const Plane& plane : candidates()) {
-            if (share(plane, fewest_) < promising) continue;
-            for (const auto& [each, less] : {std::pair(plane, 0.0), {moved(plane), as_good}})
-                if (share(each, few_) > least_mirrored - doubt) found.push_back({each, share(each, many_), less});
+        for (const std::array<Plane, 3>& parallel : candidates()) {
+            std::array<double, 3> shares;
+            for (size_t i = 0; i < 3; ++i) shares[i] = share(parallel[i], fewest_);
+            const auto best = std::ranges::max_element(shares);
+            if (*best < promising) continue;
+            const auto consider = [&](const Plane& plane, double less) {
+                if (share(plane, few_) > least_mirrored - doubt) found.push_back({plane, share(plane, many_), less});
+            };
+            for (size_t i = 0; i < 3; ++i)
+                if (shares[i] >= promising) consider(parallel[i], 0);
+            consider(moved(parallel[static_cast<size_t>(best - shares.begin())]), as_good);
         }
         std::vector<Plane> taken;
         while (taken.size() < 3) {
@@ -97,13 +104,13 @@ private:
 
     // Triangles by their middles, each from its lowest corner on: how they were numbered does not matter.
     void put_in_order(std::span<const Triangle> triangles) {
+        std::vector<std::pair<Point, Triangle>> order;
         for (Triangle t : triangles) {
             std::ranges::rotate(t, std::ranges::min_element(t, {}, [&](int32_t v) { return vertices_[at(v)]; }));
-            triangles_.push_back(t);
+            order.push_back({centre(t), t});
         }
-        std::ranges::sort(triangles_, {}, [&](const Triangle& t) {
-            return std::array{corner(t, 0), corner(t, 1), corner(t, 2)};
-        });
+        std::ranges::sort(order, {}, [](const auto& each) -> const Point& { return each.first; });
+        for (const auto& each : order) triangles_.push_back(each.second);
     }
 
     // Points spread evenly over the area: as much of it, in the order of the triangles, from each to the next.
@@ -127,27 +134,27 @@ private:
         return points;
     }
 
-    std::vector<Plane> candidates() {
-        std::vector<std::pair<Point, double>> middles;
+    // Three parallel planes of each normal: through the middle, the origin, and the middle of the box.
+    std::vector<std::array<Plane, 3>> candidates() {
         double whole = 0;
         for (const Triangle& t : triangles_) {
-            const Point &a = corner(t, 0), &b = corner(t, 1), &c = corner(t, 2);
-            middles.push_back({1.0 / 3 * (a + b + c), area(a, b, c)});
-            whole += middles.back().second;
+            const double size = area(corner(t, 0), corner(t, 1), corner(t, 2));
+            middle_ = middle_ + size * centre(t);
+            whole += size;
         }
-        for (const auto& [p, size] : middles) middle_ = middle_ + size / whole * p;
+        middle_ = 1 / whole * middle_;
         std::array<Point, 3> spread_out{};
-        for (const auto& [p, size] : middles) add_outer_product(spread_out, p - middle_, size);
-        std::vector<Plane> planes;
-        for (const Axes& axes : {principal_axes(spread_out), Axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}})
+        for (const Triangle& t : triangles_)
+            add_outer_product(spread_out, centre(t) - middle_, area(corner(t, 0), corner(t, 1), corner(t, 2)));
+        std::vector<std::array<Plane, 3>> planes;
+        for (const Axes& axes : {Axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, principal_axes(spread_out)})
             for (const Point& normal : axes) {
                 double least = HUGE_VAL, most = -HUGE_VAL;
                 for (const Point& p : vertices_) {
                     least = std::min(least, dot(normal, p));
                     most = std::max(most, dot(normal, p));
                 }
-                for (const double offset : {dot(normal, middle_), 0.0, (least + most) / 2})
-                    planes.push_back({normal, offset});
+                planes.push_back({{{normal, dot(normal, middle_)}, {normal, 0}, {normal, (least + most) / 2}}});
             }
         return planes;
     }
@@ -184,6 +191,7 @@ private:
     }
 
     const Point& corner(const Triangle& t, size_t k) const { return vertices_[at(t[k])]; }
+    Point centre(const Triangle& t) const { return 1.0 / 3 * (corner(t, 0) + corner(t, 1) + corner(t, 2)); }
 
     std::span<const Point> vertices_;
     std::vector<Triangle> triangles_;

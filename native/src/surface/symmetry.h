@@ -21,7 +21,7 @@ inline constexpr double mirror_tolerance = 1.0 / 100;
 
 // The plane in which most of the surface has its mirror image, and those perpendicular to it and to each other: at
 // most three, in each of which `least_mirrored` of the area has. Candidates are the planes through the middle of the
-// area, the origin and the middle of the bounding box, normal to the principal and the coordinate axes; and each moved to
+// area, the origin and the middle of the bounding box, normal to the coordinate axes and the principal ones; and each moved to
 // where its two sides meet best, which is taken if clearly more of the surface has its mirror image then. How vertices and
 // triangles are numbered does not matter.
 inline constexpr double least_mirrored = 0.95;
