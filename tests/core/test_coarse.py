@@ -73,7 +73,7 @@ def test_parts_are_those_of_the_shape():
         ball = lower if lower[face] else ~lower
         stops, _ = built.wheel(face)
         held = [np.isin(np.arange(len(areas)), built.faces(stop)) for stop in stops]
-        assert max(overlap(areas, ball, part) for part in held) > 0.94
+        assert max(overlap(areas, ball, part) for part in held) > 0.9
 
 
 def test_neither_the_order_of_the_input_nor_threads_matter(elephant):

@@ -21,7 +21,7 @@ from test_command_line import run
 GAP, WALL = 0.2, 1.2
 COS = np.cos(np.pi / SIDES)
 MODELS = {"homer": 6, "elephant": 9, "man": 8, "cow": 8}  # into so many parts; the last two are broken
-ALL = {"homer", "elephant", "man"}  # in which each cut has a peg
+ALL = {"elephant", "man"}  # in which each cut has a peg; homer's neck is too narrow where his arms begin
 
 
 def bar(lengths, side=20.0):
