@@ -19,6 +19,10 @@ else()
 endif()
 # Messages name sources by where they are in the project, so that the library is the same wherever it is built.
 add_compile_options("-ffile-prefix-map=${PROJECT_SOURCE_DIR}/=" "-ffile-prefix-map=${PARTWHEEL_DEPS}/=")
+if(PARTWHEEL_PLATFORM)
+  # ccache, where scripts/package has it share between clones, makes them relative to build/PLATFORM.
+  add_compile_options(-ffile-prefix-map=../=build/ -ffile-prefix-map=../../= -ffile-prefix-map=../deps/=)
+endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # CGAL's interval arithmetic changes the rounding mode.
   add_compile_options(-frounding-math)
