@@ -53,6 +53,20 @@ def test_each_page_is_in_the_sites_menu_and_each_picture_on_a_page():
         assert f"images/{picture.name})" in text, picture
 
 
+def test_each_picture_is_made_by_what_the_table_says():
+    """The script, or a file of the folder of its parts, has the picture's name in it."""
+    table = (ROOT / "docs" / "commands.md").read_text().split("## Pictures")[1]
+    made = {name: by for names, by in re.findall(r"^\| (`.+`) \| (.+) \|$", table, re.M) for name in re.findall(r"`(.+?)`", names)}
+    assert set(made) == {picture.name for picture in (ROOT / "docs" / "images").iterdir()}
+    for name, by in made.items():
+        if by.startswith("by hand") and name.endswith(".svg"):
+            continue
+        script = ROOT / re.match(r"`(scripts/\w+)", by)[1]
+        parts = script.with_name("docs_parts" if script.name == "draw" else script.name + "_parts")
+        sources = [script, *parts.glob("*.py")]
+        assert any(re.search(rf"\b{name.split('.')[0]}\b", source.read_text()) for source in sources), (name, by)
+
+
 # What a newcomer asks: the links that are clicked from the README and from the site's first page, two at most, and what is
 # read where the last one leads.
 ASKED = {
