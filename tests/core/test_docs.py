@@ -10,6 +10,7 @@ from conftest import PLAIN, ROOT
 
 PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")])
 LONGEST_README = 150  # lines
+LINK = re.compile(r"(?<!!)\[([^]]+)\]\(([^)\s]+)\)")
 EXAMPLES = re.compile(r"```python\n(.*?)```", re.S)
 
 named = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
@@ -17,8 +18,11 @@ named = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to
 
 def anchors(page):
     """As GitHub and MkDocs make them of headings."""
-    headings = re.findall(r"^#+ (.+)$", page.read_text(), re.M)
-    return {re.sub(r"[^\w -]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
+    return {anchor_of(heading) for heading in re.findall(r"^#+ .+$", page.read_text(), re.M)}
+
+
+def anchor_of(heading):
+    return re.sub(r"[^\w -]", "", heading.lstrip("#").lower()).strip().replace(" ", "-")
 
 
 @named
@@ -47,6 +51,73 @@ def test_each_page_is_in_the_sites_menu_and_each_picture_on_a_page():
         assert page.relative_to(ROOT / "docs").as_posix() in menu
     for picture in (ROOT / "docs" / "images").iterdir():
         assert f"images/{picture.name})" in text, picture
+
+
+def test_each_picture_is_made_by_what_the_table_says():
+    """The script, or a file of the folder of its parts, has the picture's name in it."""
+    table = (ROOT / "docs" / "commands.md").read_text().split("## Pictures")[1]
+    made = {name: by for names, by in re.findall(r"^\| (`.+`) \| (.+) \|$", table, re.M) for name in re.findall(r"`(.+?)`", names)}
+    assert set(made) == {picture.name for picture in (ROOT / "docs" / "images").iterdir()}
+    for name, by in made.items():
+        if by.startswith("by hand") and name.endswith(".svg"):
+            continue
+        script = ROOT / re.match(r"`(scripts/\w+)", by)[1]
+        parts = script.with_name("docs_parts" if script.name == "draw" else script.name + "_parts")
+        sources = [script, *parts.glob("*.py")]
+        assert any(re.search(rf"\b{name.split('.')[0]}\b", source.read_text()) for source in sources), (name, by)
+
+
+# What a newcomer asks: the links that are clicked from the README and from the site's first page, two at most, and what is
+# read where the last one leads.
+ASKED = {
+    "install on Windows": (
+        ["On Windows"], ["On Windows"],
+        r"windows-x64\.zip.* drop the file on Blender's window"),
+    "mask a part while sculpting": (
+        ["Mask a part while sculpting"], ["Mask a part while sculpting"],
+        r"Mask > Mask from Part by Wheel.*\*\*click\*\*: it is masked"),
+    "get colliders into Godot": (
+        ["Godot"], ["Into Godot"],
+        r"partwheel convex chair\.obj -o folder --formats godot.*_godot\.glb.*Put that file into the Godot project"),
+    "call it from a script": (
+        ["Script it"], ["Script it"],
+        r"from partwheel import api.*api\.part\(obj, 42, level=2\)"),
+    "what to do when a model is refused": (
+        ["a model was refused"], ["A model was refused"],
+        r"\*Solidify\*.* press \*Take as Thin Solid\*"),
+    "why a part came out wrong": (
+        ["a part came out wrong"], ["a part came out wrong"],
+        r"found by shape alone.* What helps: click"),
+    "how to build it": (
+        [], ["Build it yourself"],
+        r"Debian 12 with git and root.*scripts/package "),
+    "where the wheel's stops are computed": (
+        ["Where to look"], ["Where to look"],
+        r"where the wheel stops.*`wheel_stops` in `native/src/tree/dendrogram\.cpp`"),
+}
+
+
+def section(page, anchor=""):
+    """What is read first where a link leads: a heading and all until the next one as high; without an anchor the page."""
+    lines = page.read_text().splitlines()
+    levels = {number: line.index(" ") for number, line in enumerate(lines) if re.match(r"#+ ", line)}
+    begin = next((number for number in levels if anchor_of(lines[number]) == anchor), 0)
+    end = next((number for number, level in levels.items() if number > begin and level <= levels[begin]), len(lines))
+    return re.sub(r"\s+", " ", " ".join(lines[begin:end]))
+
+
+@pytest.mark.parametrize("first", ["README.md", "docs/index.md"])
+@pytest.mark.parametrize("asked", ASKED)
+def test_two_clicks_answer_what_a_newcomer_asks(asked, first):
+    of_readme, of_site, answer = ASKED[asked]
+    clicks = of_readme if first == "README.md" else of_site
+    page, anchor = ROOT / first, ""
+    assert len(clicks) <= 2
+    for text in clicks:
+        links = {re.sub(r"\s+", " ", words): target for words, target in LINK.findall(page.read_text())}
+        path, _, anchor = links[text].partition("#")
+        page = (page.parent / path).resolve()
+    assert re.search(answer, section(page, anchor)), section(page, anchor)
 
 
 def test_the_readme_is_short():

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws convex parts, parts for a printer, and the paper's figures 4 and 9 for the docs.
+
+usage: draw.py MESHES IMAGES NAME...     NAME: convex, printing, figure4, figure9. Needs numpy, scipy, Pillow, manifold3d.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+from scipy.spatial import ConvexHull
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "native" / "python"), str(ROOT / "tests" / "quality")]
+
+from pictures import GREY, View  # noqa: E402  (found only now)
+
+from partwheel import Hierarchy, Mode, meshes  # noqa: E402
+from partwheel.cut import Cut, colors, printing  # noqa: E402
+
+FRONT, UP = (0, 0, -1), (0, 1, 0)  # of the armadillo
+APART = 0.45  # of the way from the middle of all, pieces are moved
+PARTS = 12
+
+
+def read(folder, name):
+    return meshes.read(folder / f"{name}.off")
+
+
+def painted(bodies, size, towards=FRONT, up=UP):
+    """A picture of bodies, [(vertices, triangles), ...], each in a colour of its own; of one alone in grey."""
+    counts = np.cumsum([0] + [len(vertices) for vertices, _ in bodies])
+    triangles = np.concatenate([triangles + first for (_, triangles), first in zip(bodies, counts)])
+    mesh = meshes.Mesh(np.concatenate([vertices for vertices, _ in bodies]), triangles, np.arange(len(triangles)),
+                       len(triangles), 0)
+    paint = colors(np.arange(len(bodies))) if len(bodies) > 1 else np.array([GREY])
+    which = np.repeat(np.arange(len(bodies)), [len(triangles) for _, triangles in bodies])
+    return View(mesh, towards, up, size).painted(paint[which])
+
+
+def save(cells, path):
+    """cells: rows of pictures of one size."""
+    picture = np.concatenate([np.concatenate(row, axis=1) for row in cells])
+    Image.fromarray((255 * picture).astype(np.uint8)).save(path, quality=88)
+
+
+def convex(folder, images):
+    """The armadillo, and its 4, 12 and 32 convex parts."""
+    mesh = read(folder, "armadillo")
+    hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles)
+    hulls = [[hull[:2] for hull in hierarchy.convex_parts(count)] for count in (4, 12, 32)]
+    save([[painted(bodies, 420) for bodies in [[(mesh.vertices, mesh.triangles)], *hulls]]], images / "convex.jpg")
+
+
+def printing_(folder, images):
+    """The armadillo's automatic parts with pegs and sockets, moved apart."""
+    mesh = read(folder, "armadillo")
+    cut = Cut.automatic(Hierarchy.build(mesh.vertices, mesh.triangles))
+    scale = 200 / np.ptp(mesh.vertices, axis=0).max()
+    made = printing.printable(cut, mesh.vertices, mesh.triangles, mesh.faces, printing.Options(scale, 0.2))
+    middle = np.mean([vertices.mean(axis=0) for vertices, _ in made.solids.values()], axis=0)
+    apart = [(vertices + APART * 2 * (vertices.mean(axis=0) - middle), triangles) for vertices, triangles in made.solids.values()]
+    save([[painted(apart, 900)]], images / "printing.jpg")
+
+
+# ---- The paper's figures
+
+
+def figure4(_, images):
+    """The tree of a simple shape before and after Listing 2: three tetrahedra around an axis, as the paper has three
+    triangles around a point. Heights are concavities: volume of the hull less the volume."""
+    angles = np.arange(3) * 2 * np.pi / 3
+    vertices = np.vstack([np.column_stack([np.cos(angles), np.sin(angles), 0 * angles]), [(0, 0, 0.3), (0, 0, -0.3)]])
+    triangles = [(a, (a + 1) % 3, 3) for a in range(3)] + [((a + 1) % 3, a, 4) for a in range(3)]
+    hierarchy = Hierarchy.build(vertices, np.array(triangles), mode=Mode.PAPER)
+    corners = hierarchy.vertices[hierarchy.tetrahedra]
+    volumes = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1])) / 6
+    count = len(corners)
+    held = [[tet] for tet in range(count)] + [None] * len(hierarchy.merges)
+    below = {}
+    for number, (one, other) in enumerate(hierarchy.merges.tolist(), count):
+        held[number], below[number] = held[one] + held[other], [one, other]
+    concavity = [abs(ConvexHull(corners[tets].reshape(-1, 3)).volume - volumes[tets].sum()) for tets in held]
+    pruned = {}
+    for node, parent in enumerate(hierarchy.parent.tolist()):
+        if parent >= 0:
+            pruned.setdefault(parent, []).append(node)
+    root = max(pruned)
+    heights = [concavity[tet] for tet in range(count)] + [concavity[-1]] * (root + 1 - count)
+    highest = max(concavity)
+
+    def drawn(children, top, heights, left, title):
+        def leaves(node):
+            return [leaf for child in children[node] for leaf in leaves(child)] if node in children else [node]
+
+        order = leaves(top)
+        at = {leaf: left + 40 + 110 * place for place, leaf in enumerate(order)}
+
+        def place(node):
+            x = np.mean([place(child)[0] for child in children[node]]) if node in children else at[node]
+            # What is as low as its children stands a little above them, so that the lines are seen.
+            level = max([place(child)[1] for child in children[node]], default=0) + 1 if node in children else 0
+            return x, level, 250 - 150 * heights[node] / highest - 24 * level
+
+        marks = []
+        for node in [*children, *order]:
+            x, _, y = place(node)
+            marks += [f'<path d="M{x:.0f} {y:.0f} L{place(child)[0]:.0f} {place(child)[2]:.0f}" stroke="#888" stroke-width="2"/>'
+                      for child in children.get(node, [])]
+        for node in [*children, *order]:
+            x, _, y = place(node)
+            held_here = "".join(str(leaf + 1) for leaf in sorted(leaves(node)))
+            marks += [f'<circle cx="{x:.0f}" cy="{y:.0f}" r="6" fill="{"#e07b00" if heights[node] > 1e-9 else "#607d8b"}"/>',
+                      f'<text x="{x + 11:.0f}" y="{y + 5:.0f}">{held_here}: {heights[node]:.3f}</text>']
+        return [*marks, f'<text x="{left + 40}" y="300">{title}</text>']
+
+    marks = (drawn(below, count + len(hierarchy.merges) - 1, concavity, 0, "the binary tree: node, concavity")
+             + drawn(pruned, root, heights, 380, "after Listing 2"))
+    (images / "figure4.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 320" font-family="sans-serif" font-size="14">\n'
+        '<rect width="760" height="320" fill="#fff"/>\n' + "\n".join(marks) + "\n</svg>\n")
+
+
+def figure9(folder, images):
+    """Two models in so many parts, in mode "paper" and in the default, without and with points inside."""
+    rows = []
+    for name, *seen in (("homer", (0, 0, 1), (0, 1, 0)), ("dino", (1, -0.4, 0.2), (0, 0, 1))):
+        mesh = read(folder, name)
+        row = [painted([(mesh.vertices, mesh.triangles)], 300, *seen)]
+        for mode in (Mode.PAPER, Mode.REGROUPED):
+            labels = []
+            for quality in (0, 1.4):
+                hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mode=mode, quality=quality)
+                bounds = hierarchy.cut_least_concavity(PARTS) if mode is Mode.PAPER else hierarchy.cut_parts(PARTS)
+                labels.append(hierarchy.face_labels(bounds))
+                print(f"{name}, {mode.name.lower()}, quality {quality}: {len(hierarchy.tetrahedra):,} tetrahedra, "
+                      f"{len(hierarchy.tetrahedra) / len(mesh.triangles):.2f} a triangle")
+            one, other = labels
+            other = alike(one, other)
+            row += [View(mesh, *seen, 300).painted(colors(each)) for each in (one, other)]
+            print(f"   faces in the same part of both: {np.mean(one == other):.0%}")
+        rows.append(row)
+    save(rows, images / "figure9.jpg")
+
+
+def alike(one, other):
+    """The labels of `other`, numbered so that as many faces as can be have the same as in `one`."""
+    from scipy.optimize import linear_sum_assignment
+    size = max(one.max(), other.max()) + 1
+    common = np.zeros((size, size), int)
+    np.add.at(common, (other, one), 1)
+    return linear_sum_assignment(-common)[1][other]
+
+
+if __name__ == "__main__":
+    for each in sys.argv[3:]:
+        {"convex": convex, "printing": printing_, "figure4": figure4, "figure9": figure9}[each](*map(Path, sys.argv[1:3]))

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The examples of docs/scripting.md that need Blender, as they stand there."""
+
+import re
+from pathlib import Path
+
+import bmesh
+import bpy
+import numpy as np
+from common import MeshTest, part, read_off, selected
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "scripting.md"
+ACTIVE, BY_API = [text for text in re.findall(r"```python\n(.*?)```", PAGE.read_text("utf-8"), re.S)
+                  if "bpy" in text or "import api" in text]
+
+
+def run(text, **scope):
+    exec(compile(text, str(PAGE), "exec"), scope)
+    return scope
+
+
+def with_42(name, face):
+    """(vertices, polygons) of an OFF file, in which this face, at the end of a limb, has become number 42."""
+    vertices, polygons = read_off(name)
+    polygons[42], polygons[face] = polygons[face], polygons[42]
+    return vertices, polygons
+
+
+class Examples(MeshTest):
+    def test_operator(self):
+        obj = self.add(*with_42("hand", 468))
+        run(ACTIVE, bpy=bpy)
+        self.assertEqual(bpy.context.mode, "EDIT_MESH")
+        found = part("api").part(obj, 42, level=2)
+        self.assertEqual(selected(obj), set(np.asarray(found.faces).tolist()))
+        self.assertTrue(0 < len(found.faces) < len(obj.data.polygons))
+
+    def test_functions(self):
+        other = self.add(*read_off("bear"), "other")
+        obj = self.add(*with_42("homer", 425), "obj")
+        faces, area = len(obj.data.polygons), sum(polygon.area for polygon in obj.data.polygons)
+        scope = run(BY_API, obj=obj, other=other)
+        arm, copy, whole = scope["arm"], scope["copy"], scope["whole"]
+        self.assertTrue(0 < len(arm.faces) < faces)
+        mesh = bmesh.new()
+        mesh.from_mesh(copy.data)
+        self.assertTrue(all(edge.is_manifold for edge in mesh.edges))
+        mesh.free()
+        self.assertEqual((len(scope["labels"]), len(np.unique(scope["labels"]))), (faces, 8))
+        made = [each for each in bpy.data.objects if each not in (obj, other, copy)]
+        self.assertEqual(sum(each.type == "MESH" for each in made), len(whole))
+        self.assertGreater(len(obj.vertex_groups), 1)
+        nodes, scores = zip(*scope["ranked"])
+        self.assertEqual(sorted(scores, reverse=True), list(scores))
+        self.assertNotEqual(sum(polygon.area for polygon in obj.data.polygons), area)  # another arm
+        built = scope["build"].result()
+        largest = int(built.wheel(0)[0][-1])
+        self.assertEqual(len(built.faces(largest)), len(other.data.polygons))
