@@ -211,12 +211,13 @@ setup_workflows() {
 setup_hooks() {
     start_setup && packages python3 python3-venv ca-certificates git shellcheck &&
         venv hooks /usr/bin/python3 pre-commit==4.7.0 || return
-    local done
-    done=$deps/hooks/$(sha256sum <"$root/.pre-commit-config.yaml" | cut -c 1-16)
-    [ -e "$done" ] && return
+    local ready
+    ready=$deps/hooks/$(sha256sum <"$root/.pre-commit-config.yaml" | cut -c 1-16)
+    [ -e "$ready" ] && return
     say "setup: the tools of .pre-commit-config.yaml"
-    mkdir -p "$deps/hooks" && cd "$root" &&
-        PRE_COMMIT_HOME=$deps/hooks logged "$root/build/venv/hooks/bin/pre-commit" install-hooks && touch "$done"
+    mkdir -p "$deps/hooks" && (
+        cd "$root" && PRE_COMMIT_HOME=$deps/hooks logged build/venv/hooks/bin/pre-commit install-hooks
+    ) && touch "$ready"
 }
 
 # CGAL 5.5 does not compile with the clang of later ones. wine and qemu run what is made for other machines.
