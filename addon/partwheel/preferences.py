@@ -85,7 +85,7 @@ def preferences():
     return addon.preferences if addon else Defaults
 
 
-Defaults = SimpleNamespace(**{name: each.keywords["default"] 
+Defaults = SimpleNamespace(**{name: each.keywords["default"]
                               for name, each in PartwheelPreferences.__annotations__.items()})
 
 

@@ -1,7 +1,8 @@
 """Makes the demo's pictures of the layers that perform.py left: paints them, puts them in a row, labels them.
 
 Run as: python paint.py FOLDER MODEL...   For each model that was built it writes FOLDER/MODEL.png, a row for each click
-with every wheel stop, and FOLDER/MODEL-parts.png, the dendrogram cut into convex polyhedra; and FOLDER/MODEL-ways.png of the ways of building.
+with every wheel stop, and FOLDER/MODEL-parts.png, the dendrogram cut into convex polyhedra; and FOLDER/MODEL-ways.png of the ways
+of building.
 """
 
 import json

@@ -189,6 +189,8 @@ def play_click(spot, thing, studio, whole, hierarchy, folder, report):
     seconds = (time.perf_counter() - began) / len(stops)
     bpy.ops.object.mode_set(mode="OBJECT")
 
+    if "partwheel_demo" not in thing:
+        thing["partwheel_demo"] = point[:]  # where open.py says to point: the first click
     polygons = [polygon.vertices for polygon in mesh.polygons]
     views, chosen = closer_views(studio, whole, corners(mesh), polygons, stops)
     for number, view in enumerate(views[1:], 1):

@@ -7,7 +7,6 @@ the source distribution; and a table of what was checked. Called by scripts/pack
 import argparse
 import hashlib
 import os
-import pathlib
 import shutil
 import subprocess
 import sys

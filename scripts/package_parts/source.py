@@ -41,7 +41,7 @@ def distribution(target, builds):
 def _included(build):
     """The headers under build/deps that were included, as ninja noted them down."""
     said = subprocess.run(["ninja", "-C", build, "-t", "deps"], check=True, capture_output=True, text=True).stdout
-    for name in set(re.findall(rf"^\s+(?:\S*/)?build/deps/(\S+)$", said, re.M)):
+    for name in set(re.findall(r"^\s+(?:\S*/)?build/deps/(\S+)$", said, re.M)):
         yield pathlib.Path(name)
 
 

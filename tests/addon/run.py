@@ -5,8 +5,8 @@
     build/venv/bpy-X/bin/python tests/addon/run.py -- ZIP RESULT.json [NAME ...]
 
 With names only the tests that have one of them in their own. Start it with a HOME of its own: it installs into the
-user's directories. RESULT.json: {"passed": n, "failed": n, "failures": [sentence, ...]}. Exit code: 0 if all passed, 1
-if a test failed.
+user's directories. RESULT.json: {"passed": n, "failed": n, "failures": [sentence, ...], "seconds": {test: s}}. Exit code: 0
+if all passed, 1 if a test failed.
 """
 
 import json
@@ -45,13 +45,15 @@ def installed(zip_path):
 class Timed(unittest.TextTestResult):
     """Says which tests take long."""
 
+    seconds = {}  # of each test
+
     def startTest(self, test):
         self.began = time.monotonic()
         super().startTest(test)
 
     def stopTest(self, test):
         super().stopTest(test)
-        seconds = time.monotonic() - self.began
+        seconds = self.seconds[test.id()] = time.monotonic() - self.began
         if seconds > SLOW:
             self.stream.writeln(f"({seconds:.1f} s: {test.id()})")
 
@@ -59,7 +61,7 @@ class Timed(unittest.TextTestResult):
 def main():
     zip_path, result_path, *names = sys.argv[sys.argv.index("--") + 1:]
     result_path = Path(result_path).resolve()
-    result = {"passed": 0, "failed": 1, "failures": []}
+    result = {"passed": 0, "failed": 1, "failures": [], "seconds": {}}
     try:
         import common
 
@@ -70,7 +72,8 @@ def main():
         run = unittest.TextTestRunner(stream=sys.stdout, verbosity=2, resultclass=Timed).run(suite)
         failures = [f"{test.id()}: {text.strip().splitlines()[-1]}" for test, text in run.failures + run.errors]
         failures += [f"{test.id()} was skipped: {reason}" for test, reason in run.skipped]
-        result = {"passed": run.testsRun - len(failures), "failed": len(failures), "failures": failures}
+        result = {"passed": run.testsRun - len(failures), "failed": len(failures), "failures": failures,
+                  "seconds": run.seconds}
     except Exception as error:  # whatever it is, the result must say so
         traceback.print_exc()
         result["failures"].append(f"The add-on could not be tested: {error}")

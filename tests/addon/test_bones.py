@@ -8,7 +8,7 @@ import bpy
 import numpy
 from common import part
 from mathutils import Matrix, Vector
-from test_parts_to import BROKEN, EXACT, PartsCase
+from test_parts_to import PartsCase
 
 
 def posed(obj):

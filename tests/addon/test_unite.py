@@ -70,7 +70,7 @@ class Unite(SolidTest):
     def test_random_placements(self):
         meshes = self.parts()
         rng = numpy.random.default_rng(SEED)
-        pairs, volumes, solvers = [], [], []
+        pairs, volumes = [], []
         for i in range(COUNT):
             first, second = (meshes[k].copy() for k in rng.integers(len(meshes), size=2))
             for mesh in (first, second):  # both of the size 1 about the origin

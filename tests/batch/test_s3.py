@@ -6,8 +6,9 @@ import json
 import pytest
 from conftest import run
 
-moto_server = pytest.importorskip("moto.server", reason="moto and s3fs are not installed: PARTWHEEL_RAY=1 scripts/test batch does it")
-pytest.importorskip("s3fs", reason="moto and s3fs are not installed: PARTWHEEL_RAY=1 scripts/test batch does it")
+MISSING = "moto and s3fs are not installed: PARTWHEEL_RAY=1 scripts/test batch does it"
+moto_server = pytest.importorskip("moto.server", reason=MISSING)
+pytest.importorskip("s3fs", reason=MISSING)
 
 
 @pytest.fixture

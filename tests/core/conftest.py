@@ -79,6 +79,5 @@ def meshes_directory():
 PLAIN = "libasan" not in os.environ.get("LD_PRELOAD", "")
 UNLIMITED = {} if PLAIN else {"memory_limit": 0}
 
-# Its large meshes stay in the memory of this process under AddressSanitizer, and what a child reports as its own peak
-# begins with that. The native tests watch the same room.
+# Its large meshes stay in the memory of this process under AddressSanitizer. The native tests watch the same room.
 collect_ignore = [] if PLAIN else ["test_border.py"]

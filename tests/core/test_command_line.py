@@ -41,6 +41,17 @@ def test_json_of_a_build(hand, tmp_path, build_shape):
     assert saved.read_bytes() == h.save()
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems don't begin with the caller's")
+def test_the_peak_is_the_programs_own(tmp_path):
+    """Whatever the process held that called it."""
+    caller = tmp_path / "caller.py"
+    caller.write_text("import subprocess, sys\nheld = bytearray(b'1') * 2**30\nsubprocess.run(sys.argv[1:])\n")
+    model = Path(__file__).parents[2] / "build" / "deps" / "meshes" / "hand.off"
+    told = subprocess.run([sys.executable, caller, sys.executable, "-m", "partwheel", "build", model, "--json"],
+                          capture_output=True, text=True, env={**os.environ, "PYTHONPATH": PACKAGES})
+    assert json.loads(told.stdout)["peak_memory_bytes"] < 2**30
+
+
 def test_words_of_a_build(hand):
     result = run("build", hand)
     assert result.returncode == 0 and result.stderr == ""

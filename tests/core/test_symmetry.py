@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 import shapes
-from partwheel import Hierarchy, Mode
+from partwheel import Hierarchy
 from scipy.spatial import cKDTree
 
 FINER = 3  # cells along the side of one of the figure's

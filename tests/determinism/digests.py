@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Builds the cases with the library that PARTWHEEL_LIBRARY names; prints {case: what was saved, as a digest} as JSON.
+"""Builds cases with the library that PARTWHEEL_LIBRARY names; prints {case: what was saved, as a digest} as JSON.
 
-Run as: python digests.py THREADS
+Run as: python digests.py THREADS CASE...
 """
 
 import hashlib
@@ -35,4 +35,4 @@ def digest(file, options, threads):
 
 
 if __name__ == "__main__":
-    print(json.dumps({name: digest(*case, int(sys.argv[1])) for name, case in CASES.items()}))
+    print(json.dumps({name: digest(*CASES[name], int(sys.argv[1])) for name in sys.argv[2:]}))

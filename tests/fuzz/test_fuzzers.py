@@ -8,7 +8,6 @@ run again by giving its file to the fuzzer. What was found before is in found/, 
 
 import os
 import re
-import shutil
 import subprocess
 
 import pytest
@@ -52,10 +51,9 @@ REACHED = {
 
 
 @pytest.fixture(scope="module")
-def corpora():
-    """Where the seeds are; what an earlier run found interesting stays beside them."""
-    directory = WORK / "seeds"
-    shutil.rmtree(directory, ignore_errors=True)
+def corpora(tmp_path_factory):
+    """Where the seeds are, for each process that runs tests; what an earlier run found interesting stays in WORK."""
+    directory = tmp_path_factory.mktemp("seeds")
     counts = seeds.write(directory)
     assert len(counts) == len(LIMITS) and min(counts) >= 10
     return directory

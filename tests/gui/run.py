@@ -6,7 +6,7 @@ Every file of scenarios/ is one scenario and runs in a Blender process and an X 
 with the add-on installed from ZIP into a home directory of its own (Blender saves preferences when it quits). A
 scenario passes if it reports no failure and at least one check, Blender quits without a crash, and the log holds no
 traceback. Screenshots and logs go to build/gui, and so does Blender's own report of a crash, which is printed as well.
-RESULT.json: {"passed": n, "failed": n, "failures": [sentence, ...]}. Exit code: 0 if all passed.
+RESULT.json: {"passed": n, "failed": n, "failures": [sentence, ...], "seconds": {scenario: s}}. Exit code: 0 if all passed.
 
 PARTWHEEL_BLENDER names another Blender than the one on the PATH.
 """
@@ -73,23 +73,24 @@ def main():
         environment = clean_environment(work)
         prepare_models(arguments.zip, work, names)
         install(arguments.zip, environment)
-        # As many at once as there are cores: each mostly waits for its own window.
-        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-            failures = [failure for failure in pool.map(lambda run: played(*run, work, environment), runs) if failure]
-
-    result = {"passed": len(runs) - len(failures), "failed": len(failures), "failures": failures}
+        # More at once than there are cores: each also waits for its own window.
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count() + 1) as pool:
+            plays = list(pool.map(lambda run: played(*run, work, environment), runs))
+    failures = [failure for failure, _ in plays if failure]
+    result = {"passed": len(runs) - len(failures), "failed": len(failures), "failures": failures,
+              "seconds": {f"{name} ({driver})": seconds for (name, driver), (_, seconds) in zip(runs, plays)}}
     arguments.result.write_text(json.dumps(result, indent=1) + "\n")
     print(f"GUI: {result['passed']} passed, {result['failed']} failed")
     return 1 if failures else 0
 
 
 def played(name, driver, work, environment):
-    """Runs a scenario and says how it went; returns the sentence that says what failed or ""."""
+    """Runs a scenario and says how it went; returns the sentence that says what failed or "", and the seconds."""
     began = time.monotonic()
     failure, checks = run_scenario(name, driver, work, environment)
     seconds = time.monotonic() - began
     print(f"{name} ({driver}): {failure or f'ok, {checks} checks'}, {seconds:.1f} s", flush=True)
-    return failure and f"{name} ({driver}): {failure}"
+    return failure and f"{name} ({driver}): {failure}", seconds
 
 
 def clean_environment(work):

@@ -18,6 +18,7 @@ import numpy as np
 
 from . import convex, meshes
 from .batch import command as batch
+from .batch.slot import memory
 from .cut import Cut, files, printing
 from .hierarchy import Hierarchy
 from .library import Error, Mode, Rung
@@ -26,13 +27,14 @@ BUILT, NAMED_ERROR, USAGE = 0, 1, 2
 
 
 def peak_memory():
-    """The most bytes of memory this process held so far, or None where the system does not tell."""
+    """The most bytes of memory this program held so far, or None where the system does not tell."""
+    if sys.platform == "linux":  # whose getrusage() begins with what the caller's process held
+        return memory("VmHWM") or None
     try:
         import resource
     except ImportError:  # Windows
         return None
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return peak if sys.platform == "darwin" else peak * 1024  # Linux counts KiB
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
 
 def parse(arguments):
@@ -188,7 +190,8 @@ def describe(report):
     if report["welded_vertices"]:
         lines.append(f"This format does not share vertices: {report['welded_vertices']} exact copies were joined.")
     if report.get("files"):
-        lines += [f"{report['parts']} parts:" if "parts" in report else f"{report['hulls']} hulls:", *(f"  {name}" for name in report["files"])]
+        lines += [f"{report['parts']} parts:" if "parts" in report else f"{report['hulls']} hulls:",
+                  *(f"  {name}" for name in report["files"])]
     if "pegs" in report:
         lines += [f"Pegs: {report['pegs']}", *report["notes"]]
     lines += [f"  {stage:<12} {seconds:9.3f} s" for stage, seconds in report["seconds"].items()]

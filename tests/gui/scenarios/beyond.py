@@ -1,4 +1,5 @@
-"""In Object Mode a part is picked with nothing changed, and Enter, Tab or any command enters Edit Mode with it; Sculpt Mode makes a face set of one, Weight Paint a vertex group."""
+"""In Object Mode a part is picked with nothing changed, and Enter, Tab or any command enters Edit Mode with it;
+Sculpt Mode makes a face set of one, Weight Paint a vertex group."""
 import bpy
 
 

@@ -89,7 +89,7 @@ def play(stage):
 
 def notched(stage, where, handle, draws, software):
     """{name: seconds} of notches up and down again."""
-    whole, sizes, drawing = [], [], []
+    whole, drawing = [], []
     for step in (1,) * NOTCHES + (-1,) * NOTCHES:
         forget((handle, draws, software))
         stage.mouse.wheel(step)

@@ -13,7 +13,7 @@ def play(stage):
     yield from stage.open("homer")
     yield from stage.until("Edit Mode", lambda: stage.object.mode == "EDIT")
     homer = stage.object
-    bear = yield from giver(stage)
+    yield from giver(stage)
     yield from picked_up_to(stage, 0.02, 0.62, 0.06)
     stage.mouse.key("RET")
     yield from stage.settle()

@@ -30,10 +30,10 @@ def make(path, folder, settings, *, memory=0, seconds=None, threads=1):
 
     hierarchy: hierarchy.partwheel. cut: cut.json, the parts and the part of each face. objects: objects.glb, the parts
     as closed objects. colliders: colliders.obj, settings["hulls"] convex hulls of settings["max_vertices"] at most (0: any
-    number), UCX_00 and so on. preview: preview.png. settings: as command.settings() gives them. memory: bytes that the worker process may take, 0: no limit. seconds: of
-    its processor time; None: as Job has it. A model that the mesher refuses is drawn in grey, if a preview is wanted and
-    can be: the error has the attribute pictured then. Returns {"account", "rung", sizes ..., "seconds": {stage:
-    seconds}}; raises Error, OSError, MemoryError."""
+    number), UCX_00 and so on. preview: preview.png. settings: as command.settings() gives them. memory: bytes that
+    the worker process may take, 0: no limit. seconds: of its processor time; None: as Job has it. A model that the mesher
+    refuses is drawn in grey, if a preview is wanted and can be: the error has the attribute pictured then. Returns
+    {"account", "rung", sizes ..., "seconds": {stage: seconds}}; raises Error, OSError, MemoryError."""
     clock = _Clock()
     suffix = Path(path).suffix.lower()
     mesh = blend.read(path, folder) if suffix == ".blend" else meshes.read(path)

@@ -165,14 +165,15 @@ def _lower(resource, kind, value):
 
 def _data():
     """Bytes of memory for data, as RLIMIT_DATA counts them; 0 where the system does not tell."""
-    return _status("VmData")
+    return memory("VmData")
 
 
 def _resident():
-    return _status("VmRSS")
+    return memory("VmRSS")
 
 
-def _status(name):
+def memory(name):
+    """A number of bytes that Linux tells of this process; 0 where the system does not tell."""
     try:
         with open("/proc/self/status", encoding="ascii") as lines:
             return next(int(line.split()[1]) * 1024 for line in lines if line.startswith(name + ":"))
