@@ -156,7 +156,7 @@ class Build(MeshTest):
     def test_a_mesh_without_faces(self):
         for vertices in ([], [(0, 0, 0), (1, 0, 0)]):
             self.add(vertices, [])
-            self.assertIn("empty", self.refusal())
+            self.assertIn("no faces", self.refusal())
 
     def test_not_a_mesh(self):
         bpy.ops.object.camera_add()

@@ -43,10 +43,10 @@ class OnPart(OnParts):
     """The same for operators that cut a part out: a node, or the one that was picked last."""
 
     snap: bpy.props.BoolProperty(
-        name="Snap Border", description="Move the border of the part to the creases nearby, as far as the tetrahedra "
-        "about it let it be there", default=True)
+        name="Snap Border", description="Move the border of the part to the creases nearby, as far as what is inside "
+        "lets it be there", default=True)
     node: bpy.props.IntProperty(
-        name="Node", description="The part, as a number of the hierarchy; -1: the part that was picked last",
+        name="Part", description="The part's number; -1: the part that was picked last",
         default=-1, min=-1, options={"SKIP_SAVE"})
 
     def hierarchy(self, obj):
