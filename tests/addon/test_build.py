@@ -121,7 +121,7 @@ class Build(MeshTest):
             def operator(self, name, text="", icon=""):
                 return offered.setdefault((name, text), types.SimpleNamespace())
 
-            def label(self, text="", icon=""):
+            def label(self, text="", icon="", **_):
                 texts.append(text)
 
             def separator(self):
