@@ -132,8 +132,12 @@ class Build(MeshTest):
 
             row = column
 
-        panel = types.SimpleNamespace(layout=Layout(), _describe=lambda *_: None)
-        bpy.types.VIEW3D_PT_partwheel.draw(panel, bpy.context)
+        panel = types.SimpleNamespace(layout=Layout())
+        context = types.SimpleNamespace(
+            region=types.SimpleNamespace(width=300),
+            preferences=types.SimpleNamespace(system=types.SimpleNamespace(ui_scale=1.0)),
+            **{name: getattr(bpy.context, name) for name in ("mode", "active_object", "edit_object", "scene")})
+        bpy.types.VIEW3D_PT_partwheel.draw(panel, context)
         return offered, texts
 
     def test_the_panel_offers_to_take_a_sheet(self):

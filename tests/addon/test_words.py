@@ -18,9 +18,15 @@ class Words(MeshTest):
         self.view = bpy.context.preferences.view
         self.addCleanup(self.speak, self.view.language)
 
+    def spoken(self):
+        """The languages of SAID that this Blender has: all, but for the Python module, which speaks none."""
+        if bpy.app.build_options.international:
+            return SAID
+        self.assertEqual(self.view.bl_rna.properties["language"].enum_items.keys(), ["DEFAULT"])
+        return {}
+
     def speak(self, language):
-        names = self.view.bl_rna.properties["language"].enum_items.keys()
-        if language == "zh_HANS" and language not in names:
+        if language == "zh_HANS" and bpy.app.version < (4, 0):
             language = "zh_CN"
         self.view.language = language
         for name in ("interface", "tooltips", "reports", "new_dataname"):
@@ -31,7 +37,7 @@ class Words(MeshTest):
         obj = self.add(*read_off("hand"))
         self.hierarchy(obj)
         self.edit(obj)
-        for language, (label, reason) in SAID.items():
+        for language, (label, reason) in self.spoken().items():
             with self.subTest(language):
                 self.speak(language)
                 said = part("words.say")
@@ -39,19 +45,21 @@ class Words(MeshTest):
                 self.assertEqual(said.iface_("Select Part by Wheel"), label)
                 with self.assertRaisesRegex(RuntimeError, reason):
                     bpy.ops.mesh.partwheel_deform()
-        self.speak("en_US")
-        self.assertEqual(said.iface_("Select Part by Wheel"), "Select Part by Wheel")
+        self.speak("en_US" if self.spoken() else "DEFAULT")
+        self.assertEqual(part("words.say").iface_("Select Part by Wheel"), "Select Part by Wheel")
 
     def test_values_are_filled_in_afterwards(self):
         obj = self.add(*read_off("hand"))
         obj.name = "{name}"  # no text of the user's is taken for one of ours
+        if not self.spoken():
+            return
         self.speak("de_DE")
         with self.assertRaises(part("mesh.refusing").Refused) as refused:
             part("parts.registry").needed(obj)
         self.assertEqual(str(refused.exception), "{name} hat keine Teile für sein Mesh, wie es jetzt ist. Erst Teile finden.")
 
     def test_a_reason_has_no_full_stop_in_any_language(self):
-        for language in SAID:
+        for language in self.spoken():
             self.speak(language)
             said = []
             operator = types.SimpleNamespace(poll_message_set=said.append)

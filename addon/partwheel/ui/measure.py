@@ -17,5 +17,5 @@ def sides(context, obj, hierarchy, node):
         known[node] = np.ptp(corners, axis=0) if len(corners) else np.zeros(3)
     units = context.scene.unit_settings
     lengths = known[node] * np.abs(obj.matrix_world.to_scale()) * units.scale_length
-    return [bpy.utils.units.to_string(units.system, "LENGTH", float(length), precision=3)
+    return [bpy.utils.units.to_string(units.system, "LENGTH", float(length), precision=3).strip()
             for length in sorted(lengths, reverse=True)]
