@@ -6,6 +6,7 @@ import bpy
 
 from ..mesh import kept
 from ..solid import composition
+from ..pick.build import waited_for
 from ..view import keys, previews
 from . import swapping
 from partwheel import Error
@@ -77,6 +78,9 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
     def _begin(self, context, _event):
         obj = context.active_object
         with waiting(context):
+            self.check(obj)
+            if not waited_for(self, context, obj):
+                return {"CANCELLED"}
             hierarchy = self.hierarchy(obj)
             other = kept.wanted(self.other)
             others = [other] if other else swapping.sources(context, obj)

@@ -160,7 +160,59 @@ def waited_for(operator, context, obj):
     return hierarchy
 
 
-class _Build(NeedsMesh, InView):
+class Beside(InView):
+    """Mixed into an operator, ahead of those with an execute(): where there is a window, parts are found beside Blender's
+    own work first, with Esc; then _found() goes on. One object after the other, the queue is made at once."""
+
+    buildings = ()
+
+    def invoke(self, context, event):
+        return self._started(context, event) if context.window and self._lacking(context) else self.execute(context)
+
+    def _lacking(self, context):
+        """The objects whose parts are to be found before it can go on."""
+        obj = context.active_object
+        return [] if registry.hierarchy(obj) else [obj]
+
+    def _start(self, obj):
+        return start(self, obj)
+
+    def _found(self, context):
+        """All are found, or some."""
+        return self.execute(context)
+
+    def _begin(self, context, _event):
+        self.object_name = context.active_object.name_full
+        self.buildings = list(filter(None, map(self._start, self._lacking(context))))
+        if not self.buildings:
+            return {"CANCELLED"}
+        self.buildings[0].watch(context)
+        return {"RUNNING_MODAL"}
+
+    def _still_there(self, _context):
+        return True  # the build itself knows
+
+    def _handle(self, context, event):
+        """While the parts are being found all but Esc goes to Blender itself."""
+        if not self.buildings[0].step(context, event):
+            return {"PASS_THROUGH"}
+        done, *self.buildings = self.buildings
+        if event.type == "ESC":
+            return {"CANCELLED"}
+        if self.buildings:
+            self.buildings[0].watch(context)
+            return {"PASS_THROUGH"}
+        obj = context.active_object
+        if not done.hierarchy or obj is None or obj.name_full != self.object_name or not self.poll(context):
+            return {"CANCELLED"}
+        return self._found(context)
+
+    def _take_back(self, context):
+        for building in self.buildings:
+            building.abandon(context)
+
+
+class _Build(NeedsMesh, Beside):
     """What building and finding have in common."""
 
     quality: bpy.props.FloatProperty(
@@ -175,45 +227,31 @@ class _Build(NeedsMesh, InView):
         default=False)
 
     def execute(self, context):
-        building = self._start(context)
-        return {"FINISHED"} if building and building.wait(context) else {"CANCELLED"}
+        buildings = list(filter(None, map(self._start, self._lacking(context))))
+        return {"FINISHED"} if [each for each in buildings if each.wait(context)] else {"CANCELLED"}
 
-    building = None
+    def _lacking(self, context):
+        return [context.active_object]
 
-    def invoke(self, context, event):
-        return self._started(context, event) if context.window else self.execute(context)
+    def _found(self, _context):
+        return {"FINISHED"}
 
-    def _begin(self, context, _event):
-        self.building = self._start(context)
-        if not self.building:
-            return {"CANCELLED"}
-        self.building.watch(context)
-        return {"RUNNING_MODAL"}
-
-    def _still_there(self, _context):
-        return True  # the build itself knows
-
-    def _handle(self, context, event):
-        if not self.building.step(context, event):
-            return {"PASS_THROUGH"}
-        building, self.building = self.building, None
-        return {"FINISHED"} if building.hierarchy else {"CANCELLED"}
-
-    def _take_back(self, context):
-        if self.building:
-            self.building.abandon(context)
-
-    def _start(self, context):
-        return start(self, context.active_object, quality=self.quality, open_surfaces=self.open_surfaces,
-                     exactly=self.exactly or None)
+    def _start(self, obj):
+        return start(self, obj, quality=self.quality, open_surfaces=self.open_surfaces, exactly=self.exactly or None)
 
 
 class MESH_OT_partwheel_build(_Build, bpy.types.Operator):
-    """Find the parts of the active mesh at all sizes, so that the wheel can step through them"""
+    """Find the parts of the active mesh, and of other selected ones that have none, at all sizes for the wheel"""
 
     bl_idname = "mesh.partwheel_build"
     bl_label = "Find Parts of Mesh"
     bl_options = {"REGISTER"}
+
+    def _lacking(self, context):
+        obj = context.active_object
+        meshes = {each.data: each for each in context.selected_objects if each.type == "MESH"}
+        meshes.pop(obj.data, None)
+        return [obj, *(each for each in meshes.values() if registry.state(each.data)[0] not in registry.USABLE)]
 
 
 class MESH_OT_partwheel_find(_Build, bpy.types.Operator):

@@ -20,7 +20,7 @@ SHEET = "A sheet, not a solid: thicken it, close it, or have it taken for a thin
 # What was done to the mesh, so that parts could be found; off: how far that is from it, as a share of its size.
 DONE = {
     "exact": "From the mesh as it is", "repaired": "From a repaired copy, {off} off",
-    "points": "From points on its surface, {off} off", "coarse": "From a coarser copy, {off} off",
+    "points": "From points on it, {off} off", "coarse": "From a coarser copy, {off} off",
 }
 
 
@@ -78,10 +78,10 @@ def _describe(context, column, hierarchy):
         for text in (told, size):
             column.label(text=text, translate=False)
     else:
-        told = iface_("Parts of all sizes, of {count:,} faces").format(count=len(hierarchy.order))
+        told = iface_("Parts of {count:,} faces").format(count=len(hierarchy.order))
         column.label(text=told, translate=False)
     done = iface_(DONE[hierarchy.summary.rung]).format(off=percent(hierarchy.summary.deviation))
-    column.label(text=done, translate=False)
+    trouble.draw_lines(context, column, done)
 
 
 def _say(context, column, text):

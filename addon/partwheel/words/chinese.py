@@ -362,6 +362,8 @@ WORDS = {
         "网格 {name} 已不存在，因此放弃其部件。",
     "{name} was edited while its parts were being found, so they were left aside. Find them again when the mesh is as you want it.":
         "{name} 在查找部件期间被编辑，因此放弃其部件。网格完成后请重新查找。",
+    "What is selected is no part. Pick one with Select Part by Wheel, and confirm it.":
+        "选中的不是部件。请用“滚轮选择部件”选取并确认。",
     "No part is picked. Pick one with Select Part by Wheel, and confirm it.":
         "尚未选取部件。请用“滚轮选择部件”选取并确认。",
     "There is no part {number}: there are {count}.":
@@ -400,8 +402,8 @@ WORDS = {
         "对超过 200,000 个三角形的网格，在全部三角形上而不是较粗的副本上查找部件：时间和内存约为十倍。插件偏好设置可对所有网格启用",
     "Find Parts of Mesh":
         "查找网格的部件",
-    "Find the parts of the active mesh at all sizes, so that the wheel can step through them":
-        "查找活动网格各种大小的部件，以便滚轮逐级切换",
+    "Find the parts of the active mesh, and of other selected ones that have none, at all sizes for the wheel":
+        "查找活动网格以及其他没有部件的选中网格的部件，各种大小供滚轮切换",
     "The same on behalf of an operator that made the mesh, which stays the last operation, with its panel":
         "代表创建网格的操作项执行同样的操作，该操作项及其面板仍为上一步操作",
     "Clear Parts":
@@ -696,7 +698,7 @@ WORDS = {
         "来自原网格",
     "From a repaired copy, {off} off":
         "来自修复的副本，偏差 {off}",
-    "From points on its surface, {off} off":
+    "From points on it, {off} off":
         "来自表面上的点，偏差 {off}",
     "From a coarser copy, {off} off":
         "来自较粗的副本，偏差 {off}",
@@ -712,8 +714,8 @@ WORDS = {
         "重新计算",
     "Part: {share} of the area":
         "部件：占面积 {share}",
-    "Parts of all sizes, of {count:,} faces":
-        "{count:,} 个面的各种大小的部件",
+    "Parts of {count:,} faces":
+        "{count:,} 个面的部件",
     "Part (Segment, Region, Island)":
         "部件（分段、区域、孤岛）",
     "Path of the Part":

@@ -362,6 +362,8 @@ WORDS = {
         "Das Mesh {name} ist nicht mehr da, seine Teile wurden verworfen.",
     "{name} was edited while its parts were being found, so they were left aside. Find them again when the mesh is as you want it.":
         "{name} wurde bearbeitet, während seine Teile gesucht wurden, sie wurden verworfen. Erneut suchen, wenn das Mesh ist, wie es sein soll.",
+    "What is selected is no part. Pick one with Select Part by Wheel, and confirm it.":
+        "Die Auswahl ist kein Teil. Eines mit „Teil per Mausrad auswählen“ wählen und bestätigen.",
     "No part is picked. Pick one with Select Part by Wheel, and confirm it.":
         "Kein Teil ist gewählt. Eines mit „Teil per Mausrad auswählen“ wählen und bestätigen.",
     "There is no part {number}: there are {count}.":
@@ -400,8 +402,8 @@ WORDS = {
         "Die Teile eines Meshs von mehr als 200.000 Dreiecken auf allen davon finden, nicht auf einer gröberen Kopie: etwa zehnmal so viel Zeit und Speicher. In den Einstellungen des Add-ons geht es für alle",
     "Find Parts of Mesh":
         "Teile des Meshs finden",
-    "Find the parts of the active mesh at all sizes, so that the wheel can step through them":
-        "Die Teile des aktiven Meshs in allen Größen finden, damit das Mausrad sie durchgehen kann",
+    "Find the parts of the active mesh, and of other selected ones that have none, at all sizes for the wheel":
+        "Die Teile des aktiven Meshs, und anderer ausgewählter ohne Teile, in allen Größen für das Mausrad finden",
     "The same on behalf of an operator that made the mesh, which stays the last operation, with its panel":
         "Dasselbe für einen Operator, der das Mesh gemacht hat und mit seinem Panel die letzte Operation bleibt",
     "Clear Parts":
@@ -696,8 +698,8 @@ WORDS = {
         "Aus dem Mesh, wie es ist",
     "From a repaired copy, {off} off":
         "Aus einer reparierten Kopie, {off} daneben",
-    "From points on its surface, {off} off":
-        "Aus Punkten auf der Oberfläche, {off} daneben",
+    "From points on it, {off} off":
+        "Aus Punkten darauf, {off} daneben",
     "From a coarser copy, {off} off":
         "Aus einer gröberen Kopie, {off} daneben",
     "Partwheel":
@@ -712,8 +714,8 @@ WORDS = {
         "Neu berechnen",
     "Part: {share} of the area":
         "Teil: {share} der Oberfläche",
-    "Parts of all sizes, of {count:,} faces":
-        "Teile aller Größen, aus {count:,} Flächen",
+    "Parts of {count:,} faces":
+        "Teile aus {count:,} Flächen",
     "Part (Segment, Region, Island)":
         "Teil (Segment, Region, Insel)",
     "Path of the Part":

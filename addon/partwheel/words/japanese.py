@@ -362,6 +362,8 @@ WORDS = {
         "メッシュ {name} がなくなったため、パーツを破棄しました。",
     "{name} was edited while its parts were being found, so they were left aside. Find them again when the mesh is as you want it.":
         "パーツの検出中に {name} が編集されたため、パーツを破棄しました。メッシュが完成したら、もう一度検出してください。",
+    "What is selected is no part. Pick one with Select Part by Wheel, and confirm it.":
+        "選択部分はパーツではありません。「ホイールでパーツを選択」で選び、確定してください。",
     "No part is picked. Pick one with Select Part by Wheel, and confirm it.":
         "パーツが選ばれていません。「ホイールでパーツを選択」で選び、確定してください。",
     "There is no part {number}: there are {count}.":
@@ -400,8 +402,8 @@ WORDS = {
         "20 万三角形を超えるメッシュのパーツを、粗いコピーではなくすべての三角形から検出します。時間とメモリは約 10 倍です。アドオンの設定ですべてに適用できます",
     "Find Parts of Mesh":
         "メッシュのパーツを検出",
-    "Find the parts of the active mesh at all sizes, so that the wheel can step through them":
-        "アクティブなメッシュのパーツをあらゆる大きさで検出し、ホイールで切り替えられるようにします",
+    "Find the parts of the active mesh, and of other selected ones that have none, at all sizes for the wheel":
+        "アクティブなメッシュと、パーツのない他の選択メッシュのパーツを、ホイール用にあらゆる大きさで検出します",
     "The same on behalf of an operator that made the mesh, which stays the last operation, with its panel":
         "メッシュを作成したオペレーターに代わって同じことを行います。そのオペレーターが最後の操作として残ります",
     "Clear Parts":
@@ -696,7 +698,7 @@ WORDS = {
         "元のメッシュから",
     "From a repaired copy, {off} off":
         "修復したコピーから、ずれ {off}",
-    "From points on its surface, {off} off":
+    "From points on it, {off} off":
         "面上の点から、ずれ {off}",
     "From a coarser copy, {off} off":
         "粗いコピーから、ずれ {off}",
@@ -712,8 +714,8 @@ WORDS = {
         "再計算",
     "Part: {share} of the area":
         "パーツ: 面積の {share}",
-    "Parts of all sizes, of {count:,} faces":
-        "{count:,} 面の、あらゆる大きさのパーツ",
+    "Parts of {count:,} faces":
+        "{count:,} 面のパーツ",
     "Part (Segment, Region, Island)":
         "パーツ (セグメント、領域、アイランド)",
     "Path of the Part":

@@ -362,6 +362,8 @@ WORDS = {
         "La malla {name} ya no está, así que sus partes se descartaron.",
     "{name} was edited while its parts were being found, so they were left aside. Find them again when the mesh is as you want it.":
         "{name} se editó mientras se buscaban sus partes, así que se descartaron. Buscarlas de nuevo cuando la malla esté como se desea.",
+    "What is selected is no part. Pick one with Select Part by Wheel, and confirm it.":
+        "Lo seleccionado no es una parte. Elegir una con «Seleccionar parte con la rueda» y confirmarla.",
     "No part is picked. Pick one with Select Part by Wheel, and confirm it.":
         "No hay ninguna parte elegida. Elegir una con «Seleccionar parte con la rueda» y confirmarla.",
     "There is no part {number}: there are {count}.":
@@ -400,8 +402,8 @@ WORDS = {
         "Encuentra las partes de una malla de más de 200.000 triángulos en todos ellos, no en una copia más basta: unas diez veces más tiempo y memoria. En las preferencias del complemento se puede fijar para todas",
     "Find Parts of Mesh":
         "Encontrar partes de la malla",
-    "Find the parts of the active mesh at all sizes, so that the wheel can step through them":
-        "Encuentra las partes de la malla activa en todos los tamaños, para que la rueda pueda recorrerlas",
+    "Find the parts of the active mesh, and of other selected ones that have none, at all sizes for the wheel":
+        "Encuentra las partes de la malla activa, y de otras seleccionadas que no tengan, en todos los tamaños para la rueda",
     "The same on behalf of an operator that made the mesh, which stays the last operation, with its panel":
         "Lo mismo para un operador que hizo la malla y que sigue siendo la última operación, con su panel",
     "Clear Parts":
@@ -696,8 +698,8 @@ WORDS = {
         "De la malla tal como está",
     "From a repaired copy, {off} off":
         "De una copia reparada, a {off}",
-    "From points on its surface, {off} off":
-        "De puntos de su superficie, a {off}",
+    "From points on it, {off} off":
+        "De puntos sobre ella, a {off}",
     "From a coarser copy, {off} off":
         "De una copia más basta, a {off}",
     "Partwheel":
@@ -712,8 +714,8 @@ WORDS = {
         "Recalcular",
     "Part: {share} of the area":
         "Parte: {share} del área",
-    "Parts of all sizes, of {count:,} faces":
-        "Partes de todo tamaño, de {count:,} caras",
+    "Parts of {count:,} faces":
+        "Partes de {count:,} caras",
     "Part (Segment, Region, Island)":
         "Parte (segmento, región, isla)",
     "Path of the Part":
