@@ -129,6 +129,17 @@ def _documented(tree):
             and isinstance(node.body[0], ast.Expr)}
 
 
+# What of the library's errors is about a mesh or a part, and the same each time.
+NATIVE = re.compile(r'Error\(PW_ERROR_(?:EMPTY|NOT_SOLID|NO_VOLUME|MEMORY|DEGENERATE|SELF_INTERSECTION|TETRAHEDRA|OPEN),'
+                    r'\s*((?:"[^"]*"\s*)+)\)')
+
+
+def of_the_library():
+    """What users may be told by the library, likewise."""
+    return [("report", "".join(re.findall('"([^"]*)"', each)), path.name)
+            for path in sorted((ROOT / "native" / "src").rglob("*.cpp")) for each in NATIVE.findall(path.read_text())]
+
+
 def sources():
     return [path for path in sorted(ADDON.rglob("*.py")) if path.name not in FOR_SCRIPTS]
 

@@ -8,7 +8,7 @@ import string
 import pytest
 import said
 
-SAID = [each for path in said.sources() for each in said.read(path)[0]]
+SAID = [each for path in said.sources() for each in said.read(path)[0]] + said.of_the_library()
 CATALOGUES = said.ADDON / "words"
 LANGUAGES = ["german", "spanish", "japanese", "chinese"]
 # Names in code, and numbers as programs write them.
@@ -70,6 +70,10 @@ def test_translations_fit_their_texts(language):
         assert text.endswith((".", "{reason}")) == meant.endswith((".", "。", "{reason}")) or (
             language in {"japanese", "chinese"} and "。" in meant), (text, meant)
         assert meant == meant.strip() and meant.count("\n") == text.count("\n"), (text, meant)
+
+
+def test_the_librarys_errors_are_found():
+    assert "The mesh has no faces. Choose a mesh object that has some." in {text for _, text, _ in said.of_the_library()}
 
 
 def test_placeholders_are_words():

@@ -124,13 +124,13 @@ class Building:
                 report({"INFO"}, rpt_("Cancelled: no parts were found."))
                 return
             where = [rpt_("The panel Partwheel in the sidebar does that.")] * (error.status == Status.NOT_SOLID)
-            report({"ERROR"}, " ".join([rpt_("No parts for {name}: {reason}").format(name=name, reason=error), *where]))
+            report({"ERROR"}, " ".join([rpt_("No parts for {name}: {reason}").format(name=name, reason=rpt_(str(error))), *where]))
             return
         except builds.Outdated as reason:
             report({"WARNING"}, str(reason))
             return
         for failure in self.build.job.failures:
-            report({"WARNING"}, rpt_("A way that was tried first failed: {reason}").format(reason=failure))
+            report({"WARNING"}, rpt_("A way that was tried first failed: {reason}").format(reason=rpt_(str(failure))))
         told = rpt_("{name}, {count:,} faces: its parts were found in {seconds:.1f} s.").format(
             name=name, count=len(self.hierarchy.order), seconds=time.perf_counter() - self.began)
         report({"INFO"}, f"{told} {self.hierarchy.account}".rstrip())
@@ -148,7 +148,7 @@ def start(operator, obj, **options):
 
 
 def _refuse(operator, obj, reason):
-    operator.report({"ERROR"}, rpt_("No parts for {name}: {reason}").format(name=obj.data.name, reason=reason))
+    operator.report({"ERROR"}, rpt_("No parts for {name}: {reason}").format(name=obj.data.name, reason=rpt_(str(reason))))
 
 
 def waited_for(operator, context, obj):

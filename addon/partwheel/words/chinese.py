@@ -806,4 +806,39 @@ WORDS = {
         "打印",
     "Another":
         "其他",
+    # Of the library
+    "This part is no solid: it has no face of the surface. Take a larger one.":
+        "该部件不是实体：它没有表面上的面。请取更大的部件。",
+    "The part has no faces: pick one that has some.":
+        "该部件没有面：请选取有面的部件。",
+    "There are no triangles: select a part with faces.":
+        "没有三角形：请选择有面的部件。",
+    "The part's faces are too thin to be deformed. Dissolve degenerate faces or merge vertices by distance first.":
+        "该部件的面过于细薄，无法变形。请先融并简并面，或按间距合并顶点。",
+    "The mesh has no area at all: only edges and points.":
+        "网格没有面积：只有边和点。",
+    "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then taken as thin solids.":
+        "网格是薄片而非实体：它是开放的，封闭它需要与现有同样多的新表面。请加厚（实体化）、封闭，或允许开放表面，将其视为薄实体。",
+    "The surface encloses no volume. Give it some thickness.":
+        "表面未包围任何体积。请赋予一定厚度。",
+    "The mesh is too broken to be repaired. Remesh it and try again.":
+        "网格损坏过于严重，无法修复。请重构网格后重试。",
+    "There is not enough memory to fill this mesh. Decimate it first.":
+        "内存不足，无法填充此网格。请先精简。",
+    "The mesh can't be filled: some faces are too close together to be told apart. Merge vertices by distance, or move the parts that almost touch further apart.":
+        "无法填充网格：某些面过于接近，无法区分。请按间距合并顶点，或将几乎接触的部分移开。",
+    "The mesher moved or merged vertices of the surface, for some are too close together. Merge vertices by distance.":
+        "某些顶点过于接近，填充时被移动或合并。请按间距合并顶点。",
+    "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.":
+        "填充时丢失了部分表面。请重构网格或稍作平滑后重试。",
+    "The mesh has no faces. Choose a mesh object that has some.":
+        "网格没有面。请选择有面的网格物体。",
+    "All vertices are at the same place. Choose a mesh that has an extent.":
+        "所有顶点都在同一位置。请选择有范围的网格。",
+    "The mesh has no part that can be closed. Give it a thickness (Solidify).":
+        "网格没有可以封闭的部分。请加厚（实体化）。",
+    "The surface passes through itself in ways that can't be repaired. Remesh it, or unite its parts with a Boolean.":
+        "表面以无法修复的方式自相交。请重构网格，或用布尔运算合并其各部分。",
+    "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.":
+        "无法填充网格：填充过程不会结束。请重构网格或稍作平滑后重试。",
 }

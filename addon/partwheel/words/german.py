@@ -806,4 +806,39 @@ WORDS = {
         "Drucken",
     "Another":
         "Anderes",
+    # Of the library
+    "This part is no solid: it has no face of the surface. Take a larger one.":
+        "Dieses Teil ist kein Volumenkörper: Es hat keine Fläche der Oberfläche. Ein größeres nehmen.",
+    "The part has no faces: pick one that has some.":
+        "Das Teil hat keine Flächen: eines wählen, das welche hat.",
+    "There are no triangles: select a part with faces.":
+        "Es gibt keine Dreiecke: ein Teil mit Flächen auswählen.",
+    "The part's faces are too thin to be deformed. Dissolve degenerate faces or merge vertices by distance first.":
+        "Die Flächen des Teils sind zu dünn zum Verformen. Erst degenerierte Flächen auflösen oder Vertices nach Abstand zusammenführen.",
+    "The mesh has no area at all: only edges and points.":
+        "Das Mesh hat keinerlei Fläche: nur Kanten und Punkte.",
+    "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then taken as thin solids.":
+        "Das Mesh ist eine Fläche, kein Volumenkörper: Es ist offen, und es zu schließen bräuchte so viel neue Oberfläche, wie es hat. Verdicken (Solidify), schließen oder offene Oberflächen zulassen, die dann als dünne Volumenkörper gelten.",
+    "The surface encloses no volume. Give it some thickness.":
+        "Die Oberfläche umschließt kein Volumen. Ihr eine Dicke geben.",
+    "The mesh is too broken to be repaired. Remesh it and try again.":
+        "Das Mesh ist zu beschädigt, um repariert zu werden. Remesh anwenden und erneut versuchen.",
+    "There is not enough memory to fill this mesh. Decimate it first.":
+        "Der Speicher reicht nicht, um dieses Mesh zu füllen. Erst dezimieren.",
+    "The mesh can't be filled: some faces are too close together to be told apart. Merge vertices by distance, or move the parts that almost touch further apart.":
+        "Das Mesh kann nicht gefüllt werden: Manche Flächen liegen zu dicht beieinander. Vertices nach Abstand zusammenführen oder was sich fast berührt, weiter auseinanderrücken.",
+    "The mesher moved or merged vertices of the surface, for some are too close together. Merge vertices by distance.":
+        "Beim Füllen wurden Vertices der Oberfläche verschoben oder vereint, da manche zu dicht beieinander liegen. Vertices nach Abstand zusammenführen.",
+    "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.":
+        "Beim Füllen ging ein Stück der Oberfläche verloren. Remesh anwenden oder das Mesh ein wenig glätten und erneut versuchen.",
+    "The mesh has no faces. Choose a mesh object that has some.":
+        "Das Mesh hat keine Flächen. Ein Mesh-Objekt wählen, das welche hat.",
+    "All vertices are at the same place. Choose a mesh that has an extent.":
+        "Alle Vertices liegen am selben Ort. Ein Mesh wählen, das eine Ausdehnung hat.",
+    "The mesh has no part that can be closed. Give it a thickness (Solidify).":
+        "Das Mesh hat kein Stück, das geschlossen werden kann. Ihm eine Dicke geben (Solidify).",
+    "The surface passes through itself in ways that can't be repaired. Remesh it, or unite its parts with a Boolean.":
+        "Die Oberfläche durchdringt sich so, dass sie nicht repariert werden kann. Remesh anwenden oder ihre Teile mit einem Boolean vereinigen.",
+    "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.":
+        "Das Mesh kann nicht gefüllt werden: Das Füllen kommt zu keinem Ende. Remesh anwenden oder ein wenig glätten und erneut versuchen.",
 }

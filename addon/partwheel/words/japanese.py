@@ -806,4 +806,39 @@ WORDS = {
         "印刷",
     "Another":
         "別のパーツ",
+    # Of the library
+    "This part is no solid: it has no face of the surface. Take a larger one.":
+        "このパーツはソリッドではありません。表面の面を含みません。より大きいパーツを選んでください。",
+    "The part has no faces: pick one that has some.":
+        "パーツに面がありません。面のあるパーツを選んでください。",
+    "There are no triangles: select a part with faces.":
+        "三角形がありません。面のあるパーツを選択してください。",
+    "The part's faces are too thin to be deformed. Dissolve degenerate faces or merge vertices by distance first.":
+        "パーツの面が細すぎて変形できません。先に縮退した面を溶解するか、頂点を距離でマージしてください。",
+    "The mesh has no area at all: only edges and points.":
+        "メッシュに面積がありません。辺と点だけです。",
+    "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then taken as thin solids.":
+        "メッシュはソリッドではなくシートです。開いていて、閉じるには今と同じだけの面が必要です。厚みを付ける (ソリッド化)、閉じる、または開いたサーフェスを許可して薄いソリッドとみなしてください。",
+    "The surface encloses no volume. Give it some thickness.":
+        "表面が体積を囲んでいません。厚みを付けてください。",
+    "The mesh is too broken to be repaired. Remesh it and try again.":
+        "メッシュの破損がひどく修復できません。リメッシュしてもう一度試してください。",
+    "There is not enough memory to fill this mesh. Decimate it first.":
+        "このメッシュを処理するメモリが足りません。先にデシメートしてください。",
+    "The mesh can't be filled: some faces are too close together to be told apart. Merge vertices by distance, or move the parts that almost touch further apart.":
+        "一部の面が近すぎて区別できず、メッシュを処理できません。頂点を距離でマージするか、ほぼ接している部分を離してください。",
+    "The mesher moved or merged vertices of the surface, for some are too close together. Merge vertices by distance.":
+        "近すぎる頂点があり、処理中に移動または結合されました。頂点を距離でマージしてください。",
+    "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.":
+        "処理中に表面の一部が失われました。リメッシュするか、メッシュを少しスムーズにしてもう一度試してください。",
+    "The mesh has no faces. Choose a mesh object that has some.":
+        "メッシュに面がありません。面のあるメッシュオブジェクトを選んでください。",
+    "All vertices are at the same place. Choose a mesh that has an extent.":
+        "すべての頂点が同じ位置にあります。広がりのあるメッシュを選んでください。",
+    "The mesh has no part that can be closed. Give it a thickness (Solidify).":
+        "メッシュに閉じられる部分がありません。厚みを付けてください (ソリッド化)。",
+    "The surface passes through itself in ways that can't be repaired. Remesh it, or unite its parts with a Boolean.":
+        "表面が修復できない形で自己交差しています。リメッシュするか、ブーリアンで各部分を合体してください。",
+    "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.":
+        "処理が終わらず、メッシュを処理できません。リメッシュするか、少しスムーズにしてもう一度試してください。",
 }

@@ -806,4 +806,39 @@ WORDS = {
         "Imprimir",
     "Another":
         "Otra",
+    # Of the library
+    "This part is no solid: it has no face of the surface. Take a larger one.":
+        "Esta parte no es un sólido: no tiene ninguna cara de la superficie. Tomar una más grande.",
+    "The part has no faces: pick one that has some.":
+        "La parte no tiene caras: elegir una que las tenga.",
+    "There are no triangles: select a part with faces.":
+        "No hay triángulos: seleccionar una parte con caras.",
+    "The part's faces are too thin to be deformed. Dissolve degenerate faces or merge vertices by distance first.":
+        "Las caras de la parte son demasiado finas para deformarlas. Antes, disolver caras degeneradas o fusionar vértices por distancia.",
+    "The mesh has no area at all: only edges and points.":
+        "La malla no tiene área: solo bordes y puntos.",
+    "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then taken as thin solids.":
+        "La malla es una lámina, no un sólido: está abierta y cerrarla exigiría tanta superficie nueva como la que tiene. Darle grosor (Solidificar), cerrarla o permitir superficies abiertas, que se toman por sólidos finos.",
+    "The surface encloses no volume. Give it some thickness.":
+        "La superficie no encierra volumen. Darle algo de grosor.",
+    "The mesh is too broken to be repaired. Remesh it and try again.":
+        "La malla está demasiado dañada para repararla. Rehacerla (Remallar) e intentarlo de nuevo.",
+    "There is not enough memory to fill this mesh. Decimate it first.":
+        "No hay memoria suficiente para llenar esta malla. Diezmarla antes.",
+    "The mesh can't be filled: some faces are too close together to be told apart. Merge vertices by distance, or move the parts that almost touch further apart.":
+        "La malla no se puede llenar: algunas caras están demasiado juntas para distinguirlas. Fusionar vértices por distancia o separar más las partes que casi se tocan.",
+    "The mesher moved or merged vertices of the surface, for some are too close together. Merge vertices by distance.":
+        "Al llenar se movieron o fusionaron vértices de la superficie, porque algunos están demasiado juntos. Fusionar vértices por distancia.",
+    "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.":
+        "Al llenar se perdió una parte de la superficie. Rehacer la malla o suavizarla un poco e intentarlo de nuevo.",
+    "The mesh has no faces. Choose a mesh object that has some.":
+        "La malla no tiene caras. Elegir un objeto de malla que las tenga.",
+    "All vertices are at the same place. Choose a mesh that has an extent.":
+        "Todos los vértices están en el mismo lugar. Elegir una malla que tenga extensión.",
+    "The mesh has no part that can be closed. Give it a thickness (Solidify).":
+        "La malla no tiene ninguna parte que se pueda cerrar. Darle grosor (Solidificar).",
+    "The surface passes through itself in ways that can't be repaired. Remesh it, or unite its parts with a Boolean.":
+        "La superficie se atraviesa a sí misma de un modo que no se puede reparar. Rehacer la malla o unir sus partes con una operación booleana.",
+    "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.":
+        "La malla no se puede llenar: el proceso no termina. Rehacerla o suavizarla un poco e intentarlo de nuevo.",
 }

@@ -66,10 +66,10 @@ class Watched:
 
 def watch_batches(parts):
     """Has all that an overlay.Parts draws timed by the Clock that this returns."""
-    for name in ("batch", "hull", "cut"):
+    for name in ("batch", "hull", "cut", "outline"):
         def watched(*arguments, inner=getattr(parts, name)):
-            shader, batch = inner(*arguments)
-            return shader, Watched(batch)
+            drawn = inner(*arguments)
+            return drawn and (drawn[0], Watched(drawn[1]))
         setattr(parts, name, watched)
     return Clock(Watched, "draw")
 
