@@ -167,7 +167,7 @@ class Beside(InView):
     buildings = ()
 
     def invoke(self, context, event):
-        return self._started(context, event) if context.window and self._lacking(context) else self.execute(context)
+        return self._started(context, event) if context.window else self.execute(context)
 
     def _lacking(self, context):
         """The objects whose parts are to be found before it can go on."""
@@ -182,8 +182,12 @@ class Beside(InView):
         return self.execute(context)
 
     def _begin(self, context, _event):
-        self.object_name = context.active_object.name_full
-        self.buildings = list(filter(None, map(self._start, self._lacking(context))))
+        self.object_name, self.buildings = context.active_object.name_full, []
+        lacking = self._lacking(context)
+        if not lacking:
+            return self.execute(context)
+        for obj in lacking:
+            self.buildings += filter(None, [self._start(obj)])
         if not self.buildings:
             return {"CANCELLED"}
         self.buildings[0].watch(context)

@@ -43,6 +43,10 @@ class OnParts(NeedsMesh):
             return {"CANCELLED"}
         return {"FINISHED"}
 
+    def _lacking(self, context):
+        self.check(context.active_object)
+        return super()._lacking(context)
+
     def check(self, obj):
         """Raises Refused for what can be told before its parts are found."""
 
@@ -92,7 +96,7 @@ class _Caps:
         return solids.Options(self.smooth, self.material)
 
 
-class MESH_OT_partwheel_copy(Beside, OnPart, _Caps, bpy.types.Operator):
+class MESH_OT_partwheel_copy(OnPart, Beside, _Caps, bpy.types.Operator):
     """Copy the picked part as a solid: a new object, closed where it was cut; Ctrl C, Ctrl V take it to other files"""
 
     bl_idname = "mesh.partwheel_copy"
@@ -102,7 +106,7 @@ class MESH_OT_partwheel_copy(Beside, OnPart, _Caps, bpy.types.Operator):
         only(context, [composition.copied(obj, hierarchy, self.node, self.caps(), self.snap)])
 
 
-class MESH_OT_partwheel_remove(Beside, OnPart, _Caps, bpy.types.Operator):
+class MESH_OT_partwheel_remove(OnPart, Beside, _Caps, bpy.types.Operator):
     """Take the picked part out of the mesh and close the hole"""
 
     bl_idname = "mesh.partwheel_remove"
@@ -117,7 +121,7 @@ class MESH_OT_partwheel_remove(Beside, OnPart, _Caps, bpy.types.Operator):
         composition.removed(obj, hierarchy, self.node, self.caps(), self.snap)
 
 
-class MESH_OT_partwheel_split(Beside, OnParts, _Caps, bpy.types.Operator):
+class MESH_OT_partwheel_split(OnParts, Beside, _Caps, bpy.types.Operator):
     """Make each part of a cut an object of its own: closed solids that fit each other exactly"""
 
     bl_idname = "mesh.partwheel_split"
