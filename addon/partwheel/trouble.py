@@ -50,6 +50,13 @@ def draw_lines(context, column, text, icon="NONE"):
 
 def lines(text, letters):
     """[line, ...] of at most so many letters. Those of East Asia are twice as wide, and a line may end after any."""
-    if not any(unicodedata.east_asian_width(letter) == "W" for letter in text):
+    widths = [2 if unicodedata.east_asian_width(letter) in "WF" else 1 for letter in text]
+    if sum(widths) == len(text):
         return textwrap.wrap(text, letters)
-    return [text[begin:begin + letters // 2] for begin in range(0, len(text), letters // 2)]
+    found, used = [""], 0
+    for letter, width in zip(text, widths):
+        if used + width > letters:
+            found, used = [*found, ""], 0
+        found[-1] += letter
+        used += width
+    return found

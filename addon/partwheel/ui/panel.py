@@ -19,8 +19,8 @@ STATES = {
 SHEET = "A sheet, not a solid: thicken it, close it, or have it taken for a thin solid"
 # What was done to the mesh, so that parts could be found; off: how far that is from it, as a share of its size.
 DONE = {
-    "exact": "From the mesh as it is", "repaired": "From a repaired copy, {off} off",
-    "points": "From points on it, {off} off", "coarse": "From a coarser copy, {off} off",
+    "exact": "From the mesh as it is", "repaired": "Repaired copy, {off} off",
+    "points": "Points on it, {off} off", "coarse": "Coarser copy, {off} off",
 }
 
 

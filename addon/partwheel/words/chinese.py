@@ -696,12 +696,12 @@ WORDS = {
         "这是薄片而非实体：请加厚、封闭，或将其视为薄实体",
     "From the mesh as it is":
         "来自原网格",
-    "From a repaired copy, {off} off":
-        "来自修复的副本，偏差 {off}",
-    "From points on it, {off} off":
-        "来自表面上的点，偏差 {off}",
-    "From a coarser copy, {off} off":
-        "来自较粗的副本，偏差 {off}",
+    "Repaired copy, {off} off":
+        "修复的副本，偏差 {off}",
+    "Points on it, {off} off":
+        "表面上的点，偏差 {off}",
+    "Coarser copy, {off} off":
+        "较粗的副本，偏差 {off}",
     "Partwheel":
         "Partwheel",
     "Duplicate Part":

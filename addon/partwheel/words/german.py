@@ -696,12 +696,12 @@ WORDS = {
         "Eine Fläche, kein Volumenkörper: dicker machen, schließen oder als dünnen Volumenkörper nehmen lassen",
     "From the mesh as it is":
         "Aus dem Mesh, wie es ist",
-    "From a repaired copy, {off} off":
-        "Aus einer reparierten Kopie, {off} daneben",
-    "From points on it, {off} off":
-        "Aus Punkten darauf, {off} daneben",
-    "From a coarser copy, {off} off":
-        "Aus einer gröberen Kopie, {off} daneben",
+    "Repaired copy, {off} off":
+        "Repariert, {off} daneben",
+    "Points on it, {off} off":
+        "Aus Punkten, {off} daneben",
+    "Coarser copy, {off} off":
+        "Vergröbert, {off} daneben",
     "Partwheel":
         "Partwheel",
     "Duplicate Part":

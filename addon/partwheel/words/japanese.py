@@ -696,12 +696,12 @@ WORDS = {
         "ソリッドではなくシートです。厚みを付けるか、閉じるか、薄いソリッドとみなしてください",
     "From the mesh as it is":
         "元のメッシュから",
-    "From a repaired copy, {off} off":
-        "修復したコピーから、ずれ {off}",
-    "From points on it, {off} off":
-        "面上の点から、ずれ {off}",
-    "From a coarser copy, {off} off":
-        "粗いコピーから、ずれ {off}",
+    "Repaired copy, {off} off":
+        "修復コピー、ずれ {off}",
+    "Points on it, {off} off":
+        "面上の点、ずれ {off}",
+    "Coarser copy, {off} off":
+        "粗いコピー、ずれ {off}",
     "Partwheel":
         "Partwheel",
     "Duplicate Part":

@@ -696,12 +696,12 @@ WORDS = {
         "Una lámina, no un sólido: darle grosor, cerrarla o hacer que se tome por un sólido fino",
     "From the mesh as it is":
         "De la malla tal como está",
-    "From a repaired copy, {off} off":
-        "De una copia reparada, a {off}",
-    "From points on it, {off} off":
-        "De puntos sobre ella, a {off}",
-    "From a coarser copy, {off} off":
-        "De una copia más basta, a {off}",
+    "Repaired copy, {off} off":
+        "Copia reparada, a {off}",
+    "Points on it, {off} off":
+        "Puntos sobre ella, a {off}",
+    "Coarser copy, {off} off":
+        "Copia más basta, a {off}",
     "Partwheel":
         "Partwheel",
     "Duplicate Part":
