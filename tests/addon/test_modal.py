@@ -673,7 +673,7 @@ class WhileBuilding(HeldWorkers):
         for over, answer in (("ESC", {"CANCELLED"}), ("TIMER", {"FINISHED"})):
             self.tool, self.context = Tool("build", quality=1.4), FakeContext()
             self.assertEqual(self.tool.invoke(self.context, event("A")), {"RUNNING_MODAL"})
-            self.job = self.tool.building.build.job
+            self.job = self.tool.buildings[0].build.job
             self.assertEqual(self.send("LEFTMOUSE"), {"PASS_THROUGH"})
             self.assertEqual(self.build_on() if over == "TIMER" else self.send(over), answer)
             self.nothing_runs()
