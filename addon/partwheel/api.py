@@ -438,7 +438,7 @@ def _mesh(obj, edited=True, changes=False):
     if obj is None or obj.type != "MESH":
         raise ValueError(f"{obj.name if obj else 'None'} is not a mesh object.")
     if changes and read_only(obj):
-        raise ValueError(f"{read_only(obj)}.")
+        raise ValueError(read_only(obj))
     if obj.mode == "EDIT" and not edited:
         raise ValueError(f"{obj.name} is in Edit Mode. Leave it before a script does this.")
 

@@ -39,7 +39,7 @@ def run(arguments):
 
 def _build(obj, options):
     built = api.build(obj, options.quality, options.open_surfaces, exactly=options.exactly or None)
-    return f"{obj.name}: {len(built.order)} faces, {len(built.tetrahedra)} tets. {built.account}".rstrip()
+    return f"{obj.name}: {len(built.order)} faces, their parts found. {built.account}".rstrip()
 
 
 def _cut(obj, options):

@@ -21,7 +21,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
                 "finds the part that was meant more often. Borders lie in creases, and the two sides of a model that is "
                 "its own mirror image are alike"),
                ("PAPER", "Nearly Convex", "By convexity alone, the most regular and the quickest: a click takes the "
-                "smallest piece there is, and each notch of the wheel one more step of the tree")],
+                "smallest piece there is, and each notch of the wheel takes one more step")],
         default="REGROUPED",
     )
     exactly: bpy.props.BoolProperty(

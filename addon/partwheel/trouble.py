@@ -2,6 +2,7 @@
 """What the user is told while the native library can't be loaded: in the preferences, in the panel, at a click."""
 
 import textwrap
+import unicodedata
 
 from partwheel import LibraryError
 from partwheel.library import load
@@ -42,6 +43,20 @@ def draw(context, layout):
 def draw_lines(context, column, text, icon="NONE"):
     """A text in lines as long as the region is wide."""
     width = context.region.width / context.preferences.system.ui_scale - PIXELS_BESIDE
-    for line in textwrap.wrap(text, max(int(width / PIXELS_A_LETTER), 20)):
-        column.label(text=line, icon=icon)
+    for line in lines(text, max(int(width / PIXELS_A_LETTER), 20)):
+        column.label(text=line, icon=icon, translate=False)
         icon = "BLANK1" if icon != "NONE" else icon
+
+
+def lines(text, letters):
+    """[line, ...] of at most so many letters. Those of East Asia are twice as wide, and a line may end after any."""
+    widths = [2 if unicodedata.east_asian_width(letter) in "WF" else 1 for letter in text]
+    if sum(widths) == len(text):
+        return textwrap.wrap(text, letters)
+    found, used = [""], 0
+    for letter, width in zip(text, widths):
+        if used + width > letters:
+            found, used = [*found, ""], 0
+        found[-1] += letter
+        used += width
+    return found

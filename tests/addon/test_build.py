@@ -121,7 +121,7 @@ class Build(MeshTest):
             def operator(self, name, text="", icon=""):
                 return offered.setdefault((name, text), types.SimpleNamespace())
 
-            def label(self, text="", icon=""):
+            def label(self, text="", icon="", **_):
                 texts.append(text)
 
             def separator(self):
@@ -132,8 +132,12 @@ class Build(MeshTest):
 
             row = column
 
-        panel = types.SimpleNamespace(layout=Layout(), _describe=lambda *_: None)
-        bpy.types.VIEW3D_PT_partwheel.draw(panel, bpy.context)
+        panel = types.SimpleNamespace(layout=Layout())
+        context = types.SimpleNamespace(
+            region=types.SimpleNamespace(width=300),
+            preferences=types.SimpleNamespace(system=types.SimpleNamespace(ui_scale=1.0)),
+            **{name: getattr(bpy.context, name) for name in ("mode", "active_object", "edit_object", "scene")})
+        bpy.types.VIEW3D_PT_partwheel.draw(panel, context)
         return offered, texts
 
     def test_the_panel_offers_to_take_a_sheet(self):
@@ -156,7 +160,7 @@ class Build(MeshTest):
     def test_a_mesh_without_faces(self):
         for vertices in ([], [(0, 0, 0), (1, 0, 0)]):
             self.add(vertices, [])
-            self.assertIn("empty", self.refusal())
+            self.assertIn("no faces", self.refusal())
 
     def test_not_a_mesh(self):
         bpy.ops.object.camera_add()

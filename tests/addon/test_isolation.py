@@ -65,7 +65,7 @@ class Isolation(MeshTest):
                     self.harm(fault, int(stage))
                     message = self.refusal(face_index=3)
                     self.assertIn(word, message)
-                    self.assertIn("crash", message)
+                    self.assertIn("The worker process", message)
                     self.unharmed(obj, before)
 
     def test_bad_memory_at_each_stage(self):
@@ -98,7 +98,7 @@ class Isolation(MeshTest):
             for fault in ("loop", "stop"):
                 with self.subTest(f"{fault} {stage.name}"):
                     self.harm(fault, int(stage))
-                    self.assertIn("time limit", self.refusal(face_index=3))
+                    self.assertIn("and was stopped", self.refusal(face_index=3))
                     self.unharmed(obj, before)
 
     def test_memory_at_each_stage(self):
@@ -110,7 +110,7 @@ class Isolation(MeshTest):
             with self.subTest(stage.name):
                 self.harm("fill", int(stage))
                 if stage < package().Stage.CLUSTER:
-                    self.assertRegex(self.refusal(face_index=3), "memory|crash")
+                    self.assertRegex(self.refusal(face_index=3), "memory|The worker process")
                     self.unharmed(obj, before)
                 else:  # little more memory is asked for, and the build may end well
                     self.refused_or_built(obj, before)

@@ -498,10 +498,10 @@ class WhileBuilding(HeldWorkers):
     def test_then_the_clicked_face_is_picked(self):
         self.begin("homer")
         self.assertEqual(self.send("TIMER"), {"PASS_THROUGH"})
-        self.assertIn(": 0% surface", self.context.status[-1])
+        self.assertIn(": 0%", self.context.status[-1])
         poll, self.job.poll = self.job.poll, lambda: (0.5, "cluster")
         self.send("TIMER")
-        self.assertIn(": 50% cluster", self.context.status[-1])
+        self.assertIn(": 50%", self.context.status[-1])
         self.job.poll = poll
         self.assertEqual(flags(self.obj), self.before)
         self.obj.matrix_world = Matrix.Translation((0, 0, 500)) @ self.obj.matrix_world  # as if the view had turned
@@ -673,7 +673,7 @@ class WhileBuilding(HeldWorkers):
         for over, answer in (("ESC", {"CANCELLED"}), ("TIMER", {"FINISHED"})):
             self.tool, self.context = Tool("build", quality=1.4), FakeContext()
             self.assertEqual(self.tool.invoke(self.context, event("A")), {"RUNNING_MODAL"})
-            self.job = self.tool.building.build.job
+            self.job = self.tool.buildings[0].build.job
             self.assertEqual(self.send("LEFTMOUSE"), {"PASS_THROUGH"})
             self.assertEqual(self.build_on() if over == "TIMER" else self.send(over), answer)
             self.nothing_runs()

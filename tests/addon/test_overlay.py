@@ -15,6 +15,7 @@ class Tints(MeshTest):
         self.obj = self.add(*read_off("homer"))
         self.h = part("api").build(self.obj)
         self.overlay = part("view.overlay")
+        self.colors = self.overlay.colors()
         self.parts = self.overlay.Parts(part("view.seen").seen(self.obj), self.h)
         self.obj.data.calc_loop_triangles()
         self.face_of = {frozenset(each.vertices): each.polygon_index for each in self.obj.data.loop_triangles}
@@ -24,10 +25,12 @@ class Tints(MeshTest):
         found = {}
 
         def draw(_context, _obj, layers):
-            for _, faces, color, _ in layers:
-                found[color] = sorted(found.get(color, []) + faces)
+            for layer in layers:
+                if not layer.width:
+                    found[layer.color] = sorted(found.get(layer.color, []) + layer.drawn[1])
 
-        self.replace(self.overlay, "_draw", draw)
+        self.replace(self.overlay.layers, "draw", draw)
+        self.replace(self.overlay.layers, "lines", lambda _positions, edges: (None, edges))
         self.replace(self.parts, "batch", lambda piece: (None, self.faces(self.parts.triangles[slice(*piece)])))
         self.replace(self.parts, "of_faces", lambda _name, faces: (None, sorted(faces.tolist())))
         self.overlay.draw_held(bpy.context, self.obj, self.parts, *what)
@@ -46,16 +49,38 @@ class Tints(MeshTest):
             for node, larger in zip(stops, stops[1:]):
                 inside, whole = (set(self.h.faces(each).tolist()) for each in (node, larger))
                 self.assertEqual(self.tinted(node, larger, None), {
-                    self.overlay.PART: sorted(inside), self.overlay.NEXT: sorted(whole - inside)})
+                    self.colors.part: sorted(inside), self.colors.next: sorted(whole - inside)})
             self.assertEqual(self.tinted(stops[-1], stops[-1], None), {
-                self.overlay.PART: list(range(len(self.h.order)))})
+                self.colors.part: list(range(len(self.h.order)))})
 
     def test_the_same_with_its_border_in_creases(self):
         stops, start = self.h.wheel(100)
         node, larger = stops[start], stops[start + 1]
         snapped = np.setdiff1d(self.h.faces(larger), self.h.faces(larger)[:5])
         self.assertEqual(self.tinted(node, larger, snapped), {
-            self.overlay.PART: sorted(snapped.tolist()), self.overlay.NEXT: sorted(self.h.faces(larger)[:5].tolist())})
+            self.colors.part: sorted(snapped.tolist()), self.colors.next: sorted(self.h.faces(larger)[:5].tolist())})
+
+    def test_the_outline_is_where_the_part_ends(self):
+        """Edges of the mesh that one face of the part has, and one beyond."""
+        stops, start = self.h.wheel(100)
+        for node in stops[start:start + 2]:
+            part_of, others = set(self.h.faces(node).tolist()), {}
+            for polygon in self.obj.data.polygons:
+                for edge in polygon.edge_keys:
+                    others.setdefault(edge, []).append(polygon.index in part_of)
+            expected = {edge for edge, inside in others.items() if len(set(inside)) == 2}
+            first, last = self.parts.slice(node)
+            found = part("view.layers").border(self.parts.triangles[first:last])
+            self.assertEqual({tuple(sorted(edge)) for edge in found.tolist()}, expected)
+            self.assertEqual(len(found), len(expected))
+        self.assertEqual(len(part("view.layers").border(self.parts.triangles)), 0)  # the model is closed
+
+    def test_colours_are_the_themes(self):
+        view = bpy.context.preferences.themes[0].view_3d
+        before = tuple(view.object_selected)
+        self.addCleanup(setattr, view, "object_selected", before)
+        view.object_selected = (0.1, 0.2, 0.9)
+        self.assertLess(np.abs(np.array(self.overlay.colors().part[:3]) - (0.1, 0.2, 0.9)).max(), 0.01)
 
 
 class State:
@@ -72,16 +97,23 @@ class State:
 class Drawing(MeshTest):
     def test_tints_are_blended_and_the_state_is_given_back(self):
         """The mesh shows through, what lies before it hides them, and who draws next finds all as it was."""
-        overlay, state, drawn = part("view.overlay"), State(), []
-        self.addCleanup(setattr, overlay, "gpu", overlay.gpu)
-        overlay.gpu = types.SimpleNamespace(state=state, types=types.SimpleNamespace(
+        layers, state, drawn = part("view.layers"), State(), []
+        self.addCleanup(setattr, layers, "gpu", layers.gpu)
+        layers.gpu = types.SimpleNamespace(state=state, types=types.SimpleNamespace(
             Buffer=lambda *what: what, GPUUniformBuf=lambda buffer: buffer))
         shader = types.SimpleNamespace(bind=lambda: None, uniform_block=lambda *_: None)
         batch = types.SimpleNamespace(draw=lambda _shader: drawn.append(dict(state.now)))
         before = dict(state.now)
         view = types.SimpleNamespace(is_perspective=True, view_matrix=Matrix(), perspective_matrix=Matrix(),
                                      use_clip_planes=False)
-        overlay._draw(types.SimpleNamespace(region_data=view), self.add(*BOX),
-                      [(shader, batch, overlay.PART, 0.0), (shader, batch, overlay.NEXT, 0.0)])
-        self.assertEqual(drawn, 2 * [{"blend": "ALPHA", "depth_test": "LESS_EQUAL", "depth_mask": False}])
-        self.assertEqual(state.now, before)
+        both = [layers.Layer((shader, batch), (1, 1, 1, 1)), layers.Layer((shader, batch), (1, 1, 1, 1), width=2.0)]
+        for solid, xray, depth, culling in (("SOLID", False, "LESS_EQUAL", "NONE"), ("SOLID", True, "ALWAYS", "BACK"),
+                                            ("MATERIAL", True, "LESS_EQUAL", "NONE"), ("WIREFRAME", False, "ALWAYS", "BACK")):
+            drawn.clear()
+            shading = types.SimpleNamespace(type=solid, show_xray=xray)
+            layers.draw(types.SimpleNamespace(
+                region_data=view, region=types.SimpleNamespace(width=100, height=50),
+                space_data=types.SimpleNamespace(shading=shading)), self.add(*BOX), both)
+            self.assertEqual(drawn, [{"blend": "ALPHA", "depth_test": depth, "depth_mask": False, "face_culling": each}
+                                     for each in (culling, "NONE")])
+            self.assertEqual(state.now, {**before, "face_culling": "NONE"})

@@ -133,7 +133,7 @@ class Paint(MeshTest):
 
     def test_refusals(self):
         self.begin("VERTEX_PAINT")
-        with self.assertRaisesRegex(RuntimeError, "no mask in this mode"):
+        with self.assertRaisesRegex(RuntimeError, "in this mode: Mask"):
             bpy.ops.mesh.partwheel_paint(face_index=900, write="MASK")
         with self.assertRaisesRegex(RuntimeError, "Face 5000"):
             bpy.ops.mesh.partwheel_paint(face_index=5000)

@@ -18,7 +18,7 @@ class Layout:
     def __init__(self, said=None):
         self.said = [] if said is None else said
 
-    def label(self, text="", icon="NONE"):
+    def label(self, text="", icon="NONE", **_):
         self.said.append(text)
 
     def __getattr__(self, name):

@@ -15,7 +15,7 @@ NATIVE, PACKAGE, ADDON = ROOT / "native" / "src", ROOT / "native" / "python" / "
 FLOWS = {
     NATIVE: ["base", "surface", "surface/prepare", "fill", "cluster/hull", "cluster", "tree/mirror", "tree/snap",
              "tree/regroup", "tree", "part", "api.cpp"],
-    ADDON: ["trouble.py", "preferences.py", "mesh", "view", "parts", "pick", "related", "solid", "cut", "compose", "deform", "ui",
+    ADDON: ["words", "trouble.py", "preferences.py", "mesh", "view", "parts", "pick", "related", "solid", "cut", "compose", "deform", "ui",
             "api.py", "command.py", "__init__.py"],
 }
 CODE = {".c", ".cpp", ".h", ".py"}

@@ -7,6 +7,7 @@ import bpy
 
 from ..view import keys
 from ..view.in_view import InView
+from ..words.say import iface_
 
 CONFIRM, CANCEL = keys.CLICK.events | keys.CONFIRM.events, keys.CANCEL.events
 SIZE_STEP, TURN_STEP, DEPTH_STEP = 1.05, math.radians(5), 0.05
@@ -55,4 +56,5 @@ class Adjusting(InView):
         return True
 
     def _adjustments(self):
-        return f"size {self.scale:.2f}, turn {math.degrees(self.angle):.0f}°, depth {self.depth:.2f}"
+        return iface_("size {size:.2f}, turn {turn:.0f}°, depth {depth:.2f}").format(
+            size=self.scale, turn=math.degrees(self.angle), depth=self.depth)

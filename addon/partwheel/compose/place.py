@@ -10,6 +10,7 @@ from ..solid import composition
 from ..view import keys
 from . import placement
 from ..view.picking import surface_under, under_mouse
+from ..words.say import iface_, rpt_
 from .adjusting import Adjusting
 
 
@@ -19,7 +20,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
     bl_idname = "object.partwheel_place"
     bl_label = "Place Part"
     bl_options = {"REGISTER", "UNDO"}
-    lost = "the part is no longer the active object"
+    lost = "{operator} stopped: the part is no longer the active object."
     transform = None  # its own, before
 
     target: bpy.props.StringProperty(name="Onto", description="The object that the part is placed on")
@@ -38,13 +39,13 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
     def poll(cls, context):
         obj = context.active_object
         return can(cls, context.mode == "OBJECT" and obj is not None and obj.type == "MESH",
-                   "In Object Mode, make the part to be placed the active object")
+                   "In Object Mode, make the part to be placed the active object.")
 
     def execute(self, context):
         part = context.active_object
         target = kept.wanted(self.target)
         if (self.fit or self.mirror) and (target is None or target.type != "MESH"):
-            self.report({"ERROR"}, "Say which mesh object the part is placed on.")
+            self.report({"ERROR"}, rpt_("Say which mesh object the part is placed on."))
             return {"CANCELLED"}
         try:
             mirrored = placement.place(part, target, self._pose(), self.mirror)
@@ -66,7 +67,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
         self.start, self.own = part.matrix_world.copy(), placement.anchor(part)
         self.target, self.scale = "", 1
         self._before_saving(self._put_back)
-        self._tell(context, "Move the mouse over a surface", keys.PLACING)
+        self._tell(context, iface_("Move the mouse over a surface"), keys.PLACING)
         self._moved(context, event)
         return {"RUNNING_MODAL"}
 
@@ -88,7 +89,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
 
     def _confirmed(self, context):
         if not self.target:
-            self._tell(context, "There is no surface under the mouse yet", keys.PLACING)
+            self._tell(context, iface_("There is no surface under the mouse yet"), keys.PLACING)
             return {"RUNNING_MODAL"}
         if self.mirror:
             composition.update_matrices()
@@ -121,8 +122,9 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
             placement.put(context.active_object, self.start, self.own, target, self._pose())
             self._tell(context, str(error), keys.PLACING)
             return
-        state = [f"Onto {target.name}", self._adjustments()]
-        self._tell(context, ", ".join(state + ["fitted"] * self.fit + ["with mirror copy"] * self.mirror), keys.PLACING)
+        state = [iface_("Onto {name}").format(name=target.name), self._adjustments()]
+        state += [iface_("fitted")] * self.fit + [iface_("with mirror copy")] * self.mirror
+        self._tell(context, ", ".join(state), keys.PLACING)
 
 
 CLASSES = (OBJECT_OT_partwheel_place,)

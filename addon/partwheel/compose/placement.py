@@ -80,7 +80,7 @@ def put(part, start, own, target, pose):
     if pose.fit:
         found = border(target, location)
         if not found:
-            raise Refused(f"{target.name} has no border to fit: no part was removed from it.")
+            raise Refused("{name} has no border to fit: no part was removed from it.", name=target.name)
         location, normal = Vector(found.middle), Vector(found.normal)
         scale *= found.radius / own.radius
     part.matrix_world = matrix(start, own, location, normal, scale, pose.angle, pose.depth)

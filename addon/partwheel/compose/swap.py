@@ -6,12 +6,14 @@ import bpy
 
 from ..mesh import kept
 from ..solid import composition
+from ..pick.build import waited_for
 from ..view import keys, previews
 from . import swapping
 from partwheel import Error
 from ..mesh.refusing import Refused, changeable
 from ..solid.copy_part import OnPart
 from ..view.in_view import waiting
+from ..words.say import iface_
 from .adjusting import Adjusting
 from .unite import find_parts
 
@@ -21,14 +23,14 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
 
     bl_idname = "mesh.partwheel_swap"
     bl_label = "Swap with Compatible Part"
-    lost = "the object is no longer the active one"
+    lost = "{operator} stopped: the object is no longer the active one."
     was_edited, preview, taken = False, None, keys.OFFER.events
 
     other: bpy.props.StringProperty(
         name="From", description="The object that the new part comes from; none: those selected, or else all others",
         options={"SKIP_SAVE"})
     other_node: bpy.props.IntProperty(
-        name="Part", description="The new part, as a number of that object's hierarchy; -1: the most compatible one",
+        name="Part", description="The new part's number in that object; -1: the most compatible one",
         default=-1, min=-1, options={"SKIP_SAVE"})
     whole: bpy.props.BoolProperty(
         name="All of It", description="The object is a part itself, copied as a solid before", default=False,
@@ -56,7 +58,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
         """The Offer that the options name."""
         other = kept.wanted(self.other) if self.other else None
         if self.other and (other is None or other.type != "MESH"):
-            raise Refused(f"There is no mesh object {self.other}.")
+            raise Refused("There is no mesh object {name}.", name=self.other)
         if other and (self.whole or self.other_node >= 0):
             return place.offer(other, None if self.whole else self.other_node)
         return place.offers([other] if other else swapping.sources(context, obj))[0]
@@ -76,6 +78,9 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
     def _begin(self, context, _event):
         obj = context.active_object
         with waiting(context):
+            self.check(obj)
+            if not waited_for(self, context, obj):
+                return {"CANCELLED"}
             hierarchy = self.hierarchy(obj)
             other = kept.wanted(self.other)
             others = [other] if other else swapping.sources(context, obj)
@@ -108,9 +113,9 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
     def _show(self, context, problem=""):
         offer = self.offers[self.index]
         self.preview.show(offer, self._adjustment())
-        state = [f"{offer.name}, part {self.index + 1} of {len(self.offers)}", f"{offer.score:.0%} alike",
-                 self._adjustments()]
-        self._tell(context, problem or ", ".join(state + ["mirrored"] * self.mirror), keys.SWAPPING)
+        state = [iface_("{name}, part {number} of {count}, {likeness:.0%} alike").format(
+            name=offer.name, number=self.index + 1, count=len(self.offers), likeness=offer.score), self._adjustments()]
+        self._tell(context, problem or ", ".join(state + [iface_("mirrored")] * self.mirror), keys.SWAPPING)
 
     def _confirmed(self, context):
         previews.end()

@@ -76,7 +76,7 @@ class Place:
                 if not self.snap:
                     self._fits[other.name_full, match.key, False] = match.matrix
         if not having:
-            raise Refused("No other object has parts. Build the parts of the one that the new part comes from, and "
+            raise Refused("No other object has parts. Find the parts of the one that the new part comes from, and "
                              "select it too; or paste a part that was copied as a solid.")
         if not found:
             raise Refused("No part there has a border that could be fitted to this one's.")
@@ -90,9 +90,9 @@ class Place:
         elif hierarchy and 0 <= node < len(hierarchy.parent):
             shape = _shape(other, hierarchy, node)
         else:
-            raise Refused(f"{other.name} has no part {node}.")
+            raise Refused("{name} has no part {number}.", name=other.name, number=node)
         if not shape:
-            raise Refused(f"That part of {other.name} has no border that could be fitted to this one's.")
+            raise Refused("That part of {name} has no border that could be fitted to this one's.", name=other.name)
         match = compatible.ranked(self.shape, [(node, shape)])[0]
         if not self.snap:
             self._fits[other.name_full, node, False] = match.matrix
@@ -156,7 +156,7 @@ def _hierarchy_of(offer):
     """Of the object that the offer's node is of. Raises Refused."""
     hierarchy = registry.hierarchy(named(offer.name))
     if not hierarchy or offer.node >= len(hierarchy.parent):
-        raise Refused(f"{offer.name} was changed and has other parts now. Start again.")
+        raise Refused("{name} was changed and has other parts now. Start again.", name=offer.name)
     return hierarchy
 
 

@@ -11,6 +11,7 @@ from ..mesh import arrays, pieces
 from . import pinches, seams
 from partwheel import RayTarget, polygon_faults
 from ..mesh.refusing import Refused
+from ..words.say import rpt_
 
 # (solver, whether it also unites what overlaps within one mesh), in the order tried. Blenders before 4.5 have no
 # MANIFOLD; some later ones have it and do nothing.
@@ -58,18 +59,19 @@ def unite(target, others, blend=0.0, instead=None):
 
 
 def problem(mesh):
-    """What keeps the mesh from being a closed, manifold, oriented surface, in words; None if nothing does."""
+    """What keeps the mesh from being a closed, manifold, oriented surface, as the end of a sentence; None if nothing
+    does."""
     if not len(mesh.polygons):
-        return "it has no faces"
+        return rpt_("it has no faces")
     begin, _ = arrays.polygon_sizes(mesh)
     faults = polygon_faults(arrays.read(mesh.loops, "vertex_index", np.int32), begin, len(mesh.vertices))
     open_edges = faults.open or abs(len(mesh.edges) - len(mesh.loops) // 2)  # or edges that no face has
     if open_edges:
-        return f"{open_edges} edges have not just two faces"
+        return rpt_("{count} edges have not just two faces").format(count=open_edges)
     if faults.against:
-        return f"at {faults.against} edges the faces wind against each other"
+        return rpt_("at {count} edges the faces wind against each other").format(count=faults.against)
     if faults.touching:
-        return f"{faults.touching} vertices are loose or join parts that only touch there"
+        return rpt_("{count} vertices are loose or join parts that only touch there").format(count=faults.touching)
     return None
 
 
@@ -97,7 +99,7 @@ def _input(obj, mesh, slots):
     """A copy of the mesh with its materials numbered by slots, a list of all materials, which grows."""
     wrong = problem(mesh)
     if wrong:
-        raise Refused(f"{obj.name} is no solid: {wrong}. Repair it, or copy its part anew.")
+        raise Refused("{name} is no solid: {reason}. Repair it, or copy its part anew.", name=obj.name, reason=wrong)
     own = [slot.material for slot in obj.material_slots] or [None]
     for material in own:
         if material not in slots:
@@ -118,7 +120,7 @@ def _united(base, operand, base_name, operand_name, slots):
     volumes = volume(base), volume(operand)
     for name, measured in zip((base_name, operand_name), volumes):
         if measured <= 0:
-            raise Refused(f"{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).")
+            raise Refused("{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).", name=name)
     reasons = []
     for solver, within in WAYS:
         if solver not in known:
@@ -130,10 +132,11 @@ def _united(base, operand, base_name, operand_name, slots):
         wrong = wrong or _implausible((base, operand), volumes, result)
         if not wrong:
             return result, solver
-        reasons.append(f"by {solver.title()}{' within' if within else ''}: {wrong}")
+        told = rpt_("by {solver} within: {reason}") if within else rpt_("by {solver}: {reason}")
+        reasons.append(told.format(solver=solver.title(), reason=wrong))
         bpy.data.meshes.remove(result)
-    raise Refused(f"{base_name} and {operand_name} can't be united ({'; '.join(reasons)}). Move one of them a "
-                    "little: faces that lie in each other are the usual cause.")
+    raise Refused("{one} and {other} can't be united ({reasons}). Move one of them a little: faces that lie in each other "
+                  "are the usual cause.", one=base_name, other=operand_name, reasons="; ".join(reasons))
 
 
 def _left_out(one, other, result):
@@ -173,11 +176,11 @@ def _implausible(meshes, volumes, result):
     united = volume(result)
     slack = TOLERANCE * sum(volumes)
     if not max(volumes) - slack <= united <= sum(volumes) + slack:
-        return f"its volume would be {united:.6g}, of {volumes[0]:.6g} and {volumes[1]:.6g}"
+        return rpt_("its volume would be {share:.0%} of that of the two").format(share=united / sum(volumes))
     if sum(volumes) - united > SUSPICIOUS * min(volumes):
         allowed = 0 if united <= max(volumes) + min(slack, min(volumes) / 2) else MISSING
         if max(_left_out(*meshes, result), _left_out(*meshes[::-1], result)) > allowed:
-            return "one of them was left out"
+            return rpt_("one of them was left out")
     return None
 
 

@@ -7,6 +7,7 @@ from ..parts import builds
 from . import union
 from partwheel import Error
 from ..mesh.refusing import can, changeable
+from ..words.say import rpt_
 
 NO_OTHERS = "Select the parts, and then the mesh object that they are to become part of, in Object Mode."
 
@@ -49,7 +50,7 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
     def execute(self, context):
         target, others = context.active_object, self.others(context)
         if not others:
-            self.report({"ERROR"}, NO_OTHERS)
+            self.report({"ERROR"}, rpt_(NO_OTHERS))
             return {"CANCELLED"}
         try:
             solver = union.unite(target, others, self.blend)
@@ -64,7 +65,8 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
                     bpy.data.meshes.remove(mesh)
         if self.build:
             find_parts(self)
-        self.report({"INFO"}, f"{target.name}: {len(target.data.polygons)} faces, closed (solver {solver.title()}).")
+        self.report({"INFO"}, rpt_("{name} is one closed mesh now, of {count:,} faces (solver {solver}).").format(
+            name=target.name, count=len(target.data.polygons), solver=solver.title()))
         return {"FINISHED"}
 
 

@@ -38,7 +38,7 @@ def check_locks(obj, names):
     """Raises Refused where vertex_groups() would replace a group that the user has locked."""
     for name in names:
         if name in obj.vertex_groups and obj.vertex_groups[name].lock_weight:
-            raise Refused(f"The vertex group {name} is locked. Unlock it, or give it another name.")
+            raise Refused("The vertex group {name} is locked. Unlock it, or give it another name.", name=name)
 
 
 def own_materials(obj, cut, names):

@@ -17,6 +17,7 @@ from ..solid import copy_part, solids
 from ..view import keys, overlay, picking
 from ..view.in_view import InView, waiting
 from ..view.seen import NO_FACE
+from ..words.say import iface_, rpt_
 from . import objects, printed, states, stored, writing
 from partwheel import Error
 from partwheel.cut import Cut
@@ -77,7 +78,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         default=(0, 0, 0), min=0, soft_max=1000, size=3)
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was divided", default=True)
 
-    lost = "the mesh is no longer as it was, or in another mode"
+    lost = "{operator} stopped: the mesh is no longer as it was, or in another mode."
     state = building = pressed = shown = None
     object_name, mode = "", ""
 
@@ -85,10 +86,10 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     def poll(cls, context):
         obj = context.active_object
         return (can(cls, context.mode in USUAL and obj is not None and obj.type == "MESH",
-                    "Needs an active mesh object, in Object, Edit or Sculpt Mode")
+                    "This is for an active mesh object, in Object, Edit or Sculpt Mode.")
                 and changeable(cls, obj)
                 and can(cls, not obj.use_dynamic_topology_sculpting,
-                        "Dynamic topology changes the faces all the time: switch it off first"))
+                        "Dynamic topology changes the faces all the time: switch it off first."))
 
     def draw(self, _context):
         layout = self.layout
@@ -126,7 +127,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         try:
             cut = Cut.of_parts(hierarchy, json.loads(self.clusters))
         except (ValueError, TypeError) as error:
-            raise Refused(f"These are no parts of {obj.name}: {error}") from error
+            raise Refused("These are no parts of {name}: {reason}", name=obj.name, reason=error) from error
         return cut.sized(self.count) if self.count else cut
 
     def _write(self, context, obj, cut):
@@ -157,8 +158,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         elif "BONES" in self.to and mode == "OBJECT":
             copy_part.only(context, [obj.find_armature()])
         self.count, self.clusters = len(cut), json.dumps(cut.parts)
-        self.report({"INFO"}, f"{obj.name} in {len(cut)} parts"
-                    + "".join(f", {LABELS[name][0]}" for name in TO if name in self.to))
+        self.report({"INFO"}, rpt_("{name} is in {count} parts now: {made}.").format(
+            name=obj.name, count=len(cut), made=self._results()))
         if plan and plan.printable.notes:
             self.report({"WARNING"}, " ".join(plan.printable.notes))
         return {"FINISHED"}
@@ -264,18 +265,22 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     def _show(self, context, state):
         self.state = state
-        made = ", ".join(LABELS[name][0] for name in TO if name in self.to) or "Kept in the Mesh"
-        number = state.typed + "_" if state.typed else len(state.cut)
-        one = ""
-        if state.part is not None:
-            labels = state.cut.labels
-            one = f", one of {np.count_nonzero(labels == state.part):,} faces"
-        self._tell(context, f"{number} parts{one}: {made}", keys.DIVIDING if state.part is None else keys.ON_ONE)
+        values = {"count": state.typed + "_" if state.typed else len(state.cut), "made": self._results()}
+        if state.part is None:
+            self._tell(context, iface_("{count} parts: {made}").format(**values), keys.DIVIDING)
+        else:
+            faces = np.count_nonzero(state.cut.labels == state.part)
+            self._tell(context, iface_("{count} parts, one of {faces:,} faces: {made}").format(faces=faces, **values),
+                       keys.ON_ONE)
         if not bpy.app.background:
             obj = kept.named(self.object_name)
             self.shown = prepared(obj).parts(obj)
             overlay.redraw()
         return {"RUNNING_MODAL"}
+
+    def _results(self):
+        """What the parts become, in words."""
+        return ", ".join(iface_(LABELS[name][0]) for name in TO if name in self.to) or iface_("Kept in the Mesh")
 
     def _draw(self):
         context, obj = bpy.context, kept.named(self.object_name)

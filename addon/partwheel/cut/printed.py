@@ -32,10 +32,10 @@ def planned(context, obj, cut, known, pegs=None, wall=1.2, bed=None):
     the scene's units and the object's scale have it. known: {clusters: name} of parts that have one. Raises an Error."""
     if not importlib.util.find_spec("manifold3d"):
         raise Refused("Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: "
-                      f"{sys.executable} -m pip install manifold3d")
+                      "{python} -m pip install manifold3d.", python=sys.executable)
     size = np.linalg.norm(np.array(obj.matrix_world.to_3x3()), axis=0)
     if np.ptp(size) > UNEVEN * size.max():
-        raise Refused(f"{obj.name} is scaled differently along its axes: apply its scale first.")
+        raise Refused("{name} is scaled differently along its axes: apply its scale first.", name=obj.name)
     scale = float(size.mean()) * context.scene.unit_settings.scale_length * MILLIMETRES
     surface = arrays.surface(obj.data)
     return Plan(printing.printable(cut, surface.vertices, surface.triangles, surface.faces,

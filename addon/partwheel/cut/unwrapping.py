@@ -19,7 +19,7 @@ def mark(obj, cut, unwrap):
     mesh = obj.data
     own = mesh.uv_layers.get(BESIDE) if mesh.uv_layers else None
     if unwrap and not own and len(mesh.uv_layers) == MOST_MAPS:
-        raise Refused(f"{obj.name} has {MOST_MAPS} UV maps, no more are possible: remove one.")
+        raise Refused("{name} has {count} UV maps, no more are possible: remove one.", name=obj.name, count=MOST_MAPS)
     before = arrays.read(mesh.edges, "use_seam", bool)
     added, active, old = None, mesh.uv_layers.active_index, None
     surface = arrays.surface(mesh)

@@ -14,6 +14,7 @@ from ..mesh.refusing import Refused
 from ..view import overlay
 from ..view.background import Background
 from ..view.picking import FaceTree
+from ..words.say import iface_
 from . import gizmo
 from .methods import METHODS
 from .pen import Pen, restore
@@ -263,5 +264,6 @@ class Held:
     def told(self):
         """What is held, in words."""
         count = len(self.patches[-1])
-        return {"RIGID": f"Handle of {count} {'vertex' if count == 1 else 'vertices'}", "PROPORTIONAL": "The Part",
-                "JOINT": f"Joint of {self.reach:.2g} radii"}[self.method]
+        one = iface_("Handle of one vertex") if count == 1 else iface_("Handle of {count:,} vertices")
+        return {"RIGID": one, "PROPORTIONAL": iface_("The whole part"), "JOINT": iface_("Joint of {reach:.1f} radii")}[
+            self.method].format(count=count, reach=self.reach)

@@ -11,6 +11,7 @@ from mathutils import Matrix, Vector
 from mathutils.geometry import intersect_line_line, intersect_line_plane
 
 from ..view import keys
+from ..words.say import iface_
 
 STEP_DEGREES, STEP_SCALE = 5.0, 0.1  # what Ctrl snaps to
 FINE = 0.1  # what Shift makes of the mouse's way, and of these steps
@@ -56,10 +57,11 @@ class Movement:
 
     def told(self):
         """In words: what moves how."""
-        words = {"G": "Move", "R": "Rotate", "S": "Scale"}[self.kind]
+        words = {"G": iface_("Move"), "R": iface_("Rotate"), "S": iface_("Scale")}[self.kind]
         if self.axis is not None:
-            which = "local" if self.local else "global"
-            words += f" {'in' if self.plane else 'along'} {which} {''.join('XYZ'[k] for k in self._free())}"
+            along = iface_("{movement} along local {axes}") if self.local else iface_("{movement} along global {axes}")
+            within = iface_("{movement} in local {axes}") if self.local else iface_("{movement} in global {axes}")
+            words = (within if self.plane else along).format(movement=words, axes="".join("XYZ"[k] for k in self._free()))
         return f"{words}: {self.typed}" if self.typed else words
 
     def track(self, region, view, mouse, shift):

@@ -13,6 +13,7 @@ from ..pick import borders
 from ..view import keys
 from ..view.in_view import InView, waiting
 from ..view.picking import under_mouse, view_of
+from ..words.say import iface_
 from . import gizmo
 from .held import Handle, Held, deform
 from .movement import DIGITS, Movement
@@ -40,7 +41,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     held = None
 
     node: bpy.props.IntProperty(
-        name="Part", description="Node of the hierarchy; -1: the part that was picked last", default=-1, min=-1,
+        name="Part", description="The part's number; -1: the part that was picked last", default=-1, min=-1,
         options={"SKIP_SAVE"})
     method: bpy.props.EnumProperty(
         name="Method",
@@ -69,7 +70,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         obj = context.edit_object
-        return (can(cls, context.mode == "EDIT_MESH" and obj, "Parts are deformed in Edit Mode of a mesh")
+        return (can(cls, context.mode == "EDIT_MESH" and obj, "Parts are deformed in Edit Mode of a mesh.")
                 and can(cls, registry.state(obj.data)[0] in registry.USABLE, picks.NO_PICK))
 
     def draw(self, _context):
@@ -245,7 +246,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     def _tell_state(self, context):
         what = self.movement.told() if self.movement else self.held.told()
         if self.held.task:
-            what += ": settling" if self.confirmed else ": getting ready"
+            what = (iface_("{state}: settling") if self.confirmed else iface_("{state}: getting ready")).format(state=what)
         self._tell(context, what, keys.MOVING if self.movement else keys.DEFORMING)
 
     # ---- The end

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..mesh import arrays
 from ..parts import picks, registry
+from ..words.say import rpt_
 
 REACH = 0.5  # beyond the part, by the square root of its area
 TICK = 0.05  # seconds between two looks for the end of Blender's tool
@@ -26,7 +27,7 @@ class MESH_OT_partwheel_move(picks.NeedsPick, bpy.types.Operator):
 
     def invoke(self, context, _event):
         if not picks.picked(context.edit_object):
-            self.report({"ERROR"}, picks.NO_PICK)
+            self.report({"ERROR"}, rpt_(picks.NO_PICK))
             return {"CANCELLED"}
         global _waiting
         unregister()  # or the reach that the last tool has left would be taken for the user's

@@ -55,6 +55,11 @@ def changed():
         _reading.clear()
 
 
+def written_back(obj):
+    """Within one_reading(): up_to_date(obj) was asked for in an earlier step, and nothing of its geometry has changed since."""
+    _reading[key(obj.data), obj.mode] = None
+
+
 def up_to_date(obj):
     """The object's mesh; in Edit Mode after Blender wrote the edits back into it. Same order of elements in both. Not to
     be called while Blender draws."""

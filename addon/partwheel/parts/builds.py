@@ -8,7 +8,9 @@ from ..mesh.kept import PerMesh, counts, key
 from ..preferences import preferences
 from . import registry
 from .stored import unopened
-from partwheel import Error, Mode, PartwheelError, Status
+from ..mesh.refusing import Told
+from ..words.say import rpt_
+from partwheel import Mode, PartwheelError, Status
 from partwheel.library import load
 from partwheel.worker import WAIT_SECONDS, Job, available_memory
 
@@ -16,8 +18,8 @@ _builds = {}  # those that have not ended, in the order in which they were asked
 _sheets = PerMesh()  # how many vertices and polygons a mesh had when it was refused for being a sheet
 
 
-class Outdated(Error):
-    """A build ended and its mesh is not there any more, or not as it was. str() is sentences for the user."""
+class Outdated(Told):
+    """A build ended and its mesh is not there any more, or not as it was."""
 
 
 def running():
@@ -88,11 +90,11 @@ class Build:
         return self.job is not None
 
     def poll(self):
-        """(fraction 0..1 that never falls, what is done or waited for); None once result() won't block."""
+        """(fraction 0..1 that never falls, what is done, or whose build is waited for); None once result() won't block."""
         turn = _turn()
         if self.job:
             return self.job.poll()
-        return None if self._cancelled or self._error else (0.0, f"after those of {turn.name}")
+        return None if self._cancelled or self._error else (0.0, turn.name)
 
     def wait(self, seconds):
         """Waits so long at most; whether result() won't block."""
@@ -128,7 +130,7 @@ class Build:
             raise
         self._leave()
         if self._cancelled:
-            raise PartwheelError(Status.CANCELLED, "The build was cancelled.")
+            raise PartwheelError(Status.CANCELLED, rpt_("The build was cancelled."))
         if self._error:
             raise self._error
         if not self._hierarchy:
@@ -146,11 +148,11 @@ class Build:
     def _keep(self, built):
         obj = _user(self._key)
         if obj is None:
-            raise Outdated(f"The mesh {self.name} is gone, so its parts were left aside.")
+            raise Outdated("The mesh {name} is gone, so its parts were left aside.", name=self.name)
         mesh, now = obj.data, arrays.present(obj)
         if now.topology != self._built.topology:
-            raise Outdated(f"{mesh.name} was edited while its parts were being built, so they were left aside. Build "
-                           "them again when the mesh is as you want it.")
+            raise Outdated("{name} was edited while its parts were being found, so they were left aside. Find them again when "
+                           "the mesh is as you want it.", name=mesh.name)
         for table in PerMesh.tables:
             table.drop_gone()
         unopened.pop(self._key, None)

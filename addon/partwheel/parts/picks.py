@@ -50,7 +50,7 @@ def chosen(obj, node):
     last. Raises Refused."""
     found = registry.needed(obj)
     if node >= len(found.parent):
-        raise Refused(f"There is no part {node}: the hierarchy has {len(found.parent)}.")
+        raise Refused("There is no part {number}: there are {count}.", number=node, count=len(found.parent))
     pick = picked(obj)
     if node < 0 and not pick:
         raise Refused(NO_PICK)

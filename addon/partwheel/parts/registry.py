@@ -69,7 +69,7 @@ def needed(obj):
     """The same. Raises Refused if there is none."""
     found = hierarchy(obj)
     if not found:
-        raise Refused(f"{obj.name} has no parts for its mesh as it is now. Build them first.")
+        raise Refused("{name} has no parts for its mesh as it is now. Find them first.", name=obj.name)
     return found
 
 

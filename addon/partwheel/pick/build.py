@@ -16,6 +16,7 @@ from ..mesh.kept import key
 from ..view import status
 from ..view.in_view import InView
 from ..mesh.refusing import NeedsMesh, can
+from ..words.say import iface_, rpt_
 
 TICK = 0.1  # seconds between two looks at the worker
 
@@ -31,8 +32,9 @@ class Building:
         self.began = time.perf_counter()
         self.build = builds.build(obj, **options)
         if stored.newer.pop(key(obj.data), False):
-            operator.report({"WARNING"}, f"The parts saved with {obj.data.name} are of a newer Partwheel than this one, "
-                                         "so they are found anew. Update Partwheel to have those of the file.")
+            operator.report({"WARNING"}, rpt_(
+                "The parts saved with {name} are of a newer Partwheel than this one, so they are found anew. Update "
+                "Partwheel to have those of the file.").format(name=obj.data.name))
         self.timer, self.line = None, status.Line()
         self.printed = 0
 
@@ -88,7 +90,11 @@ class Building:
         self.line.end(context)
 
     def _tell(self, context, fraction, stage):
-        self.line.say(context, f"Partwheel finds the parts of {self.build.name}: {fraction:.0%} {stage}   Esc: Cancel")
+        waits = stage and not self.build.job
+        said = (iface_("Partwheel finds the parts of {name} after those of {other}") if waits
+                else iface_("Partwheel finds the parts of {name}: {fraction:.0%}"))
+        said = said.format(name=self.build.name, other=stage, fraction=fraction)
+        self.line.say(context, "   ".join([said, iface_("Esc: Cancel")]))
 
     # ---- Both
 
@@ -114,18 +120,20 @@ class Building:
             self.hierarchy = self.build.result(progress)
         except PartwheelError as error:
             cancelled = error.name == "cancelled"
-            where = " The panel Partwheel in the sidebar does that." if error.status == Status.NOT_SOLID else ""
-            report({"INFO" if cancelled else "ERROR"}, "Cancelled: no parts were built." if cancelled
-                   else f"No parts for {name} ({error.name}): {error}{where}")
+            if cancelled:
+                report({"INFO"}, rpt_("Cancelled: no parts were found."))
+                return
+            where = [rpt_("The panel Partwheel in the sidebar does that.")] * (error.status == Status.NOT_SOLID)
+            report({"ERROR"}, " ".join([rpt_("No parts for {name}: {reason}").format(name=name, reason=rpt_(str(error))), *where]))
             return
         except builds.Outdated as reason:
             report({"WARNING"}, str(reason))
             return
         for failure in self.build.job.failures:
-            report({"WARNING"}, f"A way that was tried first failed ({failure.name}): {failure}")
-        seconds = time.perf_counter() - self.began
-        report({"INFO"}, f"{name}: {len(self.hierarchy.order)} faces, {len(self.hierarchy.tetrahedra)} tets, "
-                         f"{seconds:.1f} s. {self.hierarchy.account}".rstrip())
+            report({"WARNING"}, rpt_("A way that was tried first failed: {reason}").format(reason=rpt_(str(failure))))
+        told = rpt_("{name}, {count:,} faces: its parts were found in {seconds:.1f} s.").format(
+            name=name, count=len(self.hierarchy.order), seconds=time.perf_counter() - self.began)
+        report({"INFO"}, f"{told} {self.hierarchy.account}".rstrip())
 
 
 def start(operator, obj, **options):
@@ -133,10 +141,14 @@ def start(operator, obj, **options):
     try:
         return Building(operator, obj, **options)
     except LibraryError as error:
-        operator.report({"ERROR"}, f"No parts for {obj.data.name}: {trouble.logged(error)}")
+        _refuse(operator, obj, trouble.logged(error))
     except Error as error:
-        operator.report({"ERROR"}, f"No parts for {obj.data.name} ({error.name}): {error}")
+        _refuse(operator, obj, error)
     return None
+
+
+def _refuse(operator, obj, reason):
+    operator.report({"ERROR"}, rpt_("No parts for {name}: {reason}").format(name=obj.data.name, reason=rpt_(str(reason))))
 
 
 def waited_for(operator, context, obj):
@@ -148,12 +160,68 @@ def waited_for(operator, context, obj):
     return hierarchy
 
 
-class _Build(NeedsMesh, InView):
+class Beside(InView):
+    """Mixed into an operator, ahead of those with an execute(): where there is a window, parts are found beside Blender's
+    own work first, with Esc; then _found() goes on. One object after the other, the queue is made at once."""
+
+    buildings = ()
+
+    def invoke(self, context, event):
+        return self._started(context, event) if context.window else self.execute(context)
+
+    def _lacking(self, context):
+        """The objects whose parts are to be found before it can go on."""
+        obj = context.active_object
+        return [] if registry.hierarchy(obj) else [obj]
+
+    def _start(self, obj):
+        return start(self, obj)
+
+    def _found(self, context):
+        """All are found, or some."""
+        return self.execute(context)
+
+    def _begin(self, context, _event):
+        self.object_name, self.buildings = context.active_object.name_full, []
+        lacking = self._lacking(context)
+        if not lacking:
+            return self.execute(context)
+        for obj in lacking:
+            self.buildings += filter(None, [self._start(obj)])
+        if not self.buildings:
+            return {"CANCELLED"}
+        self.buildings[0].watch(context)
+        return {"RUNNING_MODAL"}
+
+    def _still_there(self, _context):
+        return True  # the build itself knows
+
+    def _handle(self, context, event):
+        """While the parts are being found all but Esc goes to Blender itself."""
+        if not self.buildings[0].step(context, event):
+            return {"PASS_THROUGH"}
+        done, *self.buildings = self.buildings
+        if event.type == "ESC":
+            return {"CANCELLED"}
+        if self.buildings:
+            self.buildings[0].watch(context)
+            return {"PASS_THROUGH"}
+        obj = context.active_object
+        if not done.hierarchy or obj is None or obj.name_full != self.object_name or not self.poll(context):
+            return {"CANCELLED"}
+        return self._found(context)
+
+    def _take_back(self, context):
+        for building in self.buildings:
+            building.abandon(context)
+
+
+class _Build(NeedsMesh, Beside):
     """What building and finding have in common."""
 
     quality: bpy.props.FloatProperty(
-        name="Quality", description="0 adds no points inside the mesh; from 1.1 on, bounds how stretched the "
-        "tetrahedra may be (1.4 is usual, smaller is slower)", default=0.0, min=0.0, soft_max=3.0)
+        name="Quality", description="0 is the quickest and right for nearly all; from 1.1 on the inside is divided "
+        "more evenly (1.4 is usual, smaller is slower)", default=0.0, min=0.0, soft_max=3.0)
     open_surfaces: bpy.props.BoolProperty(
         name="Open Surfaces", description="Take a surface that encloses nothing, such as cloth or a car's door, for a "
         "thin solid, instead of refusing it", default=False)
@@ -163,45 +231,31 @@ class _Build(NeedsMesh, InView):
         default=False)
 
     def execute(self, context):
-        building = self._start(context)
-        return {"FINISHED"} if building and building.wait(context) else {"CANCELLED"}
+        buildings = list(filter(None, map(self._start, self._lacking(context))))
+        return {"FINISHED"} if [each for each in buildings if each.wait(context)] else {"CANCELLED"}
 
-    building = None
+    def _lacking(self, context):
+        return [context.active_object]
 
-    def invoke(self, context, event):
-        return self._started(context, event) if context.window else self.execute(context)
+    def _found(self, _context):
+        return {"FINISHED"}
 
-    def _begin(self, context, _event):
-        self.building = self._start(context)
-        if not self.building:
-            return {"CANCELLED"}
-        self.building.watch(context)
-        return {"RUNNING_MODAL"}
-
-    def _still_there(self, _context):
-        return True  # the build itself knows
-
-    def _handle(self, context, event):
-        if not self.building.step(context, event):
-            return {"PASS_THROUGH"}
-        building, self.building = self.building, None
-        return {"FINISHED"} if building.hierarchy else {"CANCELLED"}
-
-    def _take_back(self, context):
-        if self.building:
-            self.building.abandon(context)
-
-    def _start(self, context):
-        return start(self, context.active_object, quality=self.quality, open_surfaces=self.open_surfaces,
-                     exactly=self.exactly or None)
+    def _start(self, obj):
+        return start(self, obj, quality=self.quality, open_surfaces=self.open_surfaces, exactly=self.exactly or None)
 
 
 class MESH_OT_partwheel_build(_Build, bpy.types.Operator):
-    """Find the parts of the active mesh at all sizes, so that the wheel can step through them"""
+    """Find the parts of the active mesh, and of other selected ones that have none, at all sizes for the wheel"""
 
     bl_idname = "mesh.partwheel_build"
-    bl_label = "Build Part Hierarchy"
+    bl_label = "Find Parts of Mesh"
     bl_options = {"REGISTER"}
+
+    def _lacking(self, context):
+        obj = context.active_object
+        meshes = {each.data: each for each in context.selected_objects if each.type == "MESH"}
+        meshes.pop(obj.data, None)
+        return [obj, *(each for each in meshes.values() if registry.state(each.data)[0] not in registry.USABLE)]
 
 
 class MESH_OT_partwheel_find(_Build, bpy.types.Operator):
@@ -216,14 +270,14 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
     """Let the parts of the active mesh go, also those saved with the file. The mesh stays as it is"""
 
     bl_idname = "mesh.partwheel_clear"
-    bl_label = "Clear Part Hierarchy"
+    bl_label = "Clear Parts"
     bl_options = {"REGISTER"}
 
     @classmethod
     def poll(cls, context):
         obj = context.active_object
         return can(cls, obj is not None and obj.type == "MESH" and registry.state(obj.data)[0] != registry.State.NONE,
-                   "The active object has no parts")
+                   "The active object has no parts.")
 
     def execute(self, context):
         picks.forget(context.active_object)

@@ -11,7 +11,7 @@ from .. import trouble
 from ..mesh import arrays, kept
 from ..view import overlay, picking
 from . import borders, states
-from .prepared import current, prepared
+from .prepared import current, lacking, prepared
 
 
 class Hover:
@@ -19,19 +19,52 @@ class Hover:
     snapped, else None; or None."""
 
     def __init__(self):
-        self.what = None
+        self.what, self._written, self._later = None, {}, None
 
     def move(self, context, point):
-        """The mouse is at a point of the context's region. Redraws if that changes what is shown."""
+        """The mouse is at a point of the context's region. Redraws if that changes what is shown.
+
+        After an edit it takes two steps: Blender writing its edits back into the meshes is more than half of it all, and
+        what is to be seen of the mouse meanwhile would come late."""
+        shown = [each for each in context.objects_in_mode_unique_data
+                 if each.type == "MESH" and each.visible_get(viewport=context.space_data)]
+        waiting = lacking(shown)
+        if waiting and waiting != self._written:
+            for each in waiting:
+                arrays.up_to_date(each)
+            self._written = lacking(waiting)
+            self._go_on(context, point)
+            return
         with arrays.one_reading():
-            found = self._found(context, point)
+            for each in waiting:
+                arrays.written_back(each)
+            found = self._found(context, shown, point)
+        self._written = {}
         if found is not self.what:
             self.what = found
             overlay.redraw()
 
-    def _found(self, context, point):
-        shown = [each for each in context.objects_in_mode_unique_data
-                 if each.type == "MESH" and each.visible_get(viewport=context.space_data)]
+    def _go_on(self, context, point):
+        """The second step follows once Blender has seen to what else there is."""
+        window, area, region = context.window, context.area, context.region
+
+        def move():
+            there = (window in list(bpy.context.window_manager.windows) and area in list(window.screen.areas)
+                     and region in list(area.regions))
+            if there and bpy.context.mode == "EDIT_MESH":
+                with bpy.context.temp_override(window=window, area=area, region=region):
+                    self.move(bpy.context, point)
+
+        self.stop()
+        self._later = move
+        bpy.app.timers.register(move, first_interval=0)
+
+    def stop(self):
+        if self._later and bpy.app.timers.is_registered(self._later):
+            bpy.app.timers.unregister(self._later)
+        self._later = None
+
+    def _found(self, context, shown, point):
         view = context.region, context.region_data, point
         obj, face = picking.nearest(shown, lambda each: prepared(each).tree(each), *view)
         parts = prepared(obj).parts(obj) if obj else None
@@ -91,3 +124,4 @@ CLASSES = (VIEW3D_GT_partwheel_hover, VIEW3D_GGT_partwheel_hover)
 
 def unregister():
     hover.what = None
+    hover.stop()

@@ -7,12 +7,14 @@ from ..mesh.refusing import Refused, can, changeable
 from .pick import PartPicker
 from .preview import Preview
 from .writers import WRITERS
+from ..words.say import iface_, rpt_
 
 # Mode of the context -> what a part can become there, the first by default.
 WAYS = {
     "SCULPT": ("FACE_SET", "MASK"), "PAINT_WEIGHT": ("VERTEX_GROUP", "PAINT_MASK"), "PAINT_VERTEX": ("PAINT_MASK",),
     "PAINT_TEXTURE": ("PAINT_MASK",),
 }
+BECOMES = {"FACE_SET": "Face Set", "MASK": "Mask", "VERTEX_GROUP": "Vertex Group", "PAINT_MASK": "Paint Mask"}
 
 
 class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
@@ -25,21 +27,21 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
     write: bpy.props.EnumProperty(
         name="Make It", default="AUTO", description="What the part becomes",
         items=(("AUTO", "Usual", "A face set in Sculpt Mode, a vertex group in Weight Paint, else a paint mask"),
-               ("FACE_SET", "Face Set", "A new face set"),
-               ("MASK", "Mask", "Masked against sculpting"),
-               ("VERTEX_GROUP", "Vertex Group", "Weight 1 in a new vertex group, named after the part; with Extend in "
+               ("FACE_SET", BECOMES["FACE_SET"], "A new face set"),
+               ("MASK", BECOMES["MASK"], "Masked against sculpting"),
+               ("VERTEX_GROUP", BECOMES["VERTEX_GROUP"], "Weight 1 in a new vertex group, named after the part; with Extend in "
                 "the active one, with Deselect none there"),
-               ("PAINT_MASK", "Paint Mask", "The only faces that can be painted on")),
+               ("PAINT_MASK", BECOMES["PAINT_MASK"], "The only faces that can be painted on")),
     )
 
     @classmethod
     def poll(cls, context):
         obj = context.active_object
         return (can(cls, context.mode in WAYS and obj is not None and obj.type == "MESH",
-                    "This is for Sculpt Mode and the paint modes of a mesh")
+                    "This is for Sculpt Mode and the paint modes of a mesh.")
                 and changeable(cls, obj)
                 and can(cls, not obj.use_dynamic_topology_sculpting,
-                        "Dynamic topology changes the faces all the time: switch it off first"))
+                        "Dynamic topology changes the faces all the time: switch it off first."))
 
     def _apply(self, context, obj, faces, picked):
         return self._write(context, obj, faces, picked.node)
@@ -57,7 +59,7 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         ways = WAYS[context.mode]
         way = ways[0] if self.write == "AUTO" else self.write
         if way not in ways:
-            self.report({"ERROR"}, f"There is no {way.replace('_', ' ').lower()} in this mode")
+            self.report({"ERROR"}, rpt_("Parts can't become this in this mode: {made}.").format(made=iface_(BECOMES[way])))
             return {"CANCELLED"}
         # Sculpt Mode keeps data of its own beside the mesh's: it reads the mesh anew when it is entered.
         sculpting = context.mode == "SCULPT"

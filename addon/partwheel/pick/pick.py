@@ -16,6 +16,7 @@ from .prepared import prepared
 from ..view.seen import NO_FACE
 from .build import start, waited_for
 from ..view.in_view import InView
+from ..words.say import iface_, label_of, percent, rpt_
 
 
 class PartPicker(InView):
@@ -75,7 +76,8 @@ class PartPicker(InView):
         try:
             picked = states.pick(hierarchy, self.face_index, self.level)
         except PartwheelError as error:
-            self.report({"ERROR"}, f"Face {self.face_index} can't be picked: {error}")
+            self.report({"ERROR"}, rpt_("Face {number} can't be picked: {reason}").format(
+                number=self.face_index, reason=error))
             return {"CANCELLED"}
         result = self._apply(context, obj, borders.faces(obj, hierarchy, picked.node, self.snap), picked)
         picks.remember(obj, picked.face, picked.node, self.snap)
@@ -94,7 +96,7 @@ class PartPicker(InView):
         self.scroll, self.drag = keys.Scroll(keys.SCROLL_STEP), None
         objects = self._objects(context)
         if not objects:
-            self.report({"WARNING"}, "This 3D view does not show the mesh that is being edited")
+            self.report({"WARNING"}, rpt_("This 3D view does not show the mesh that is being edited."))
             return {"CANCELLED"}
         obj, face = self._under(context, event)
         if obj is not None:
@@ -104,7 +106,7 @@ class PartPicker(InView):
         obj = objects[0]
         if self._parts(obj) is None:
             return self._build(context, obj, None)
-        return self._wait(context, "Click a face of the mesh")
+        return self._wait(context, iface_("Click a face of the mesh"))
 
     def _under(self, context, event):
         """(object, face index) under the mouse, or (None, None)."""
@@ -120,8 +122,8 @@ class PartPicker(InView):
         return obj, face
 
     def _made_by_modifiers(self, obj):
-        self.report({"INFO"}, f"What is seen there was made by the modifiers of {obj.name} and belongs to no face of "
-                              "its mesh")
+        self.report({"INFO"}, rpt_("What is seen there was made by the modifiers of {name} and belongs to no face of its "
+                                   "mesh.").format(name=obj.name))
 
     @staticmethod
     def _parts(obj):
@@ -161,11 +163,12 @@ class PartPicker(InView):
             return {"CANCELLED"}
         obj = self._object(context)
         if obj is None or context.area is None:
-            self.report({"INFO"}, f"The parts are built. Start {self.bl_label} again to pick them.")
+            self.report({"INFO"}, rpt_("The parts are found. Start {operator} again to pick them.").format(
+                operator=label_of(self)))
             return {"CANCELLED"}
         if face is not None:
             return self._hold(context, obj, states.pick(self.hierarchy, face))
-        return self._wait(context, "Click a face of the mesh")
+        return self._wait(context, iface_("Click a face of the mesh"))
 
     def _object(self, context):
         """The object that the part belongs to, if it can still be picked from."""
@@ -181,7 +184,7 @@ class PartPicker(InView):
         if isinstance(self.state, states.Building):
             return self._built_on(context, event)
         if self.target and registry.known(self._object(context).data) is not self.hierarchy:
-            self.report({"WARNING"}, "Partwheel stopped: the parts were found anew. Pick one of them.")
+            self.report({"WARNING"}, rpt_("Partwheel stopped: the parts were found anew. Pick one of them."))
             return {"CANCELLED"}
         if event.type in keys.SYSTEM:
             return {"PASS_THROUGH"}
@@ -209,7 +212,7 @@ class PartPicker(InView):
         if event.type == "LEFTMOUSE":
             obj, face = self._under(context, event)
             if obj is None:
-                return self._wait(context, "There is no face there")
+                return self._wait(context, iface_("There is no face there"))
             self.extend, self.deselect = self.extend or bool(event.shift), self.deselect or bool(event.ctrl)
             return self._pick(context, event, obj, face)
         return {"RUNNING_MODAL"}
@@ -256,8 +259,9 @@ class PartPicker(InView):
                                    self.faces if self.snap else None)
         share = self.hierarchy.area[state.node] / self.hierarchy.area[-1]
         number = state.typed + "_" if state.typed else state.index + 1
-        self._tell(context, f"Part {number} of {len(state.stops)}, {len(self.faces):,} faces, {share:.1%} of the area"
-                            + ", border in creases" * self.snap,
+        told = iface_("Part {number} of {count}, {faces:,} faces, {share} of the area").format(
+            number=number, count=len(state.stops), faces=len(self.faces), share=percent(share))
+        self._tell(context, ", ".join([told] + [iface_("border in creases")] * self.snap),
                    (keys.HELD if self.tool else keys.PICKED) + self.commands + keys.ENDS)
         return {"RUNNING_MODAL"}
 

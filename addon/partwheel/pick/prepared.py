@@ -37,6 +37,12 @@ class Prepared:
         return self._parts
 
 
+def lacking(objects):
+    """Of these in Edit Mode those that must be looked at anew, with what tells that they are as they are now."""
+    return {obj: _stamp(obj) for obj in objects if obj.mode == "EDIT"
+            and not ((kept := _kept.get(key(obj.data))) and kept.stamp == _stamp(obj))}
+
+
 def prepared(obj):
     """The Prepared of the object's mesh as it is now, as far as Blender has told of changes."""
     stamp, kept = _stamp(obj), _kept.get(key(obj.data))

@@ -12,6 +12,7 @@ from ..view.seen import NO_FACE
 from .pick import PartPicker
 from .prepared import prepared
 from .preview import Preview
+from ..words.say import rpt_
 
 
 class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
@@ -25,7 +26,7 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         return can(cls, context.mode == "EDIT_MESH" and context.edit_object,
-                   "Parts are selected in Edit Mode of a mesh")
+                   "Parts are selected in Edit Mode of a mesh.")
 
     def _apply(self, context, obj, faces, picked):
         self._aim(context, obj).select(obj, faces, picked.face, self.extend, self.deselect)
@@ -64,7 +65,7 @@ class OBJECT_OT_partwheel_select(PartPicker, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return can(cls, context.mode == "OBJECT", "This is for Object Mode")
+        return can(cls, context.mode == "OBJECT", "This is for Object Mode.")
 
     def _begin(self, context, event):
         obj = self._target(context, event)
@@ -81,9 +82,10 @@ class OBJECT_OT_partwheel_select(PartPicker, bpy.types.Operator):
         space = view[0].spaces.active if view else context.space_data
         shown = obj is not None and obj.visible_get(viewport=space)
         if obj is None or obj.type != "MESH" or not (hit or shown):
-            reason = "There is no mesh under the mouse"
+            reason = rpt_("There is no mesh under the mouse.")
         elif not shown:
-            reason = f"{obj.name} is an instance, and this 3D view does not show its original: edit it there"
+            reason = rpt_("{name} is an instance, and this 3D view does not show its original: edit it there.").format(
+                name=obj.name)
         else:
             reason = read_only(obj)
         if reason:

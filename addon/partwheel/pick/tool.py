@@ -30,7 +30,7 @@ class SelectPart(bpy.types.WorkSpaceTool):
         obj = context.edit_object
         state = registry.state(obj.data)[0] if obj else registry.State.NONE
         if state in {registry.State.NONE, registry.State.CHANGED}:
-            layout.label(text="Parts are built at the first click", icon="INFO")
+            layout.label(text="Parts are found at the first click", icon="INFO")
         layout.prop(tool.operator_properties("mesh.partwheel_select"), "snap")
         layout.popover("VIEW3D_PT_partwheel_overlays", text="Overlay")
 

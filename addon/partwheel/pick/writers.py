@@ -7,6 +7,7 @@ import numpy as np
 from ..mesh import arrays, pieces
 from ..mesh.refusing import Refused
 from ..mesh.selection import select_outside_edit_mode
+from ..words.say import rpt_
 
 FACE_SET = ".sculpt_face_set"
 MASK = ".sculpt_mask"  # an attribute from Blender 4.1 on
@@ -54,19 +55,19 @@ def _write_vertex_group(obj, faces, node, extend, deselect):
     part = np.flatnonzero(_part_vertices(obj.data, faces)).tolist()
     group = obj.vertex_groups.active if extend or deselect else None
     if group and group.lock_weight:
-        raise Refused(f"The vertex group {group.name} is locked. Unlock it, or pick the part alone: it gets a group "
-                         "of its own")
+        raise Refused("The vertex group {name} is locked. Unlock it, or pick the part alone: it gets a group of its own.",
+                      name=group.name)
     if deselect:
         if not group:
-            raise Refused(f"{obj.name} has no vertex group that the part could be taken out of")
+            raise Refused("{name} has no vertex group that the part could be taken out of.", name=obj.name)
         group.remove(part)
-        return f"The part was taken out of the vertex group {group.name}"
+        return rpt_("The part was taken out of the vertex group {name}.").format(name=group.name)
     if group:
         group.add(part, 1.0, "REPLACE")
-        return f"The part was added to the vertex group {group.name}"
+        return rpt_("The part was added to the vertex group {name}.").format(name=group.name)
     group = obj.vertex_groups.new(name=f"Part {node}")
     group.add(part, 1.0, "REPLACE")
-    return f"The part is the new vertex group {group.name}"
+    return rpt_("The part is the new vertex group {name}.").format(name=group.name)
 
 
 def _write_paint_mask(obj, faces, _node, extend, deselect):

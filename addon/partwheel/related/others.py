@@ -22,8 +22,8 @@ def images(obj, hierarchy, node):
     """
     found = _found("images", obj, hierarchy, node, lambda surface: likeness.mirrored(hierarchy, *surface[:3], node))
     if not found:
-        raise Refused(f"The part has no mirror image in {obj.name}: it lies across the plane of symmetry, or the model "
-                      "is not the same on both sides.")
+        raise Refused("The part has no mirror image in {name}: it lies across the plane of symmetry, or the model "
+                      "is not the same on both sides.", name=obj.name)
     return found
 
 

@@ -8,6 +8,7 @@ from ..mesh.selection import Selections
 from ..parts import picks, registry
 from ..pick import borders
 from ..view import overlay
+from ..words.say import iface_
 from . import remembered
 
 
@@ -19,7 +20,7 @@ class _InEditMode:
     @classmethod
     def poll(cls, context):
         return can(cls, context.mode == "EDIT_MESH" and context.edit_object,
-                   "Parts are remembered in Edit Mode of a mesh") and changeable(cls, context.edit_object)
+                   "Parts are remembered in Edit Mode of a mesh.") and changeable(cls, context.edit_object)
 
     def execute(self, context):
         try:
@@ -50,7 +51,7 @@ class MESH_OT_partwheel_remember(_InEditMode, bpy.types.Operator):
 
     def invoke(self, context, _event):
         taken, number = remembered.names(context.edit_object.data), 1
-        while (name := f"Part {number}") in taken:
+        while (name := iface_("Part {number}").format(number=number)) in taken:
             number += 1
         self.part = name
         return context.window_manager.invoke_props_dialog(self)

@@ -70,7 +70,7 @@ def node(obj, hierarchy, name):
     wanted = arrays.mask(len(hierarchy.order), faces(obj.data, name))
     found, overlap = nearest(hierarchy, wanted)
     if overlap < OVERLAP:
-        raise Refused(f"No part of {obj.name} as it is now is much like the one remembered as {name}.")
+        raise Refused("No part of {name} as it is now is much like the one remembered as {part}.", name=obj.name, part=name)
     if overlap == 1:
         return found, False
     snapped = borders.inside(obj, hierarchy, found)
@@ -79,7 +79,7 @@ def node(obj, hierarchy, name):
 
 def _needed(mesh, name):
     if name not in names(mesh):
-        raise Refused(f"No part of {mesh.name} is remembered as {name}.")
+        raise Refused("No part of {name} is remembered as {part}.", name=mesh.name, part=name)
 
 
 def _free(mesh, name):
@@ -87,7 +87,8 @@ def _free(mesh, name):
     if not name:
         raise Refused("A part is remembered by a name: it can't be empty.")
     if len(name.encode()) > LONGEST:
-        raise Refused(f"{name} is too long for a name: it can have {LONGEST} letters, fewer of some alphabets.")
+        raise Refused("{name} is too long for a name: it can have {count} letters, fewer of some alphabets.", name=name,
+                      count=LONGEST)
     if PREFIX + name in mesh.attributes:
-        raise Refused(f"There is a part that is remembered as {name}. Give another name, or forget that one first.")
+        raise Refused("There is a part that is remembered as {name}. Give another name, or forget that one first.", name=name)
     return name

@@ -11,6 +11,7 @@ from ..parts import picks
 from ..pick import borders
 from ..view import keys, picking
 from ..view.in_view import InView, waiting
+from ..words.say import iface_
 from . import others
 from partwheel.likeness import THRESHOLD
 
@@ -82,7 +83,8 @@ class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
             ends = [1.0, *(likeness for _, likeness in self.alike), 0.0]
             self.threshold = (ends[count] + ends[count + 1]) / 2
         self._show(context.edit_object, count)
-        self._tell(context, f"{count + 1} parts, alike from {self.threshold:.2f} on", keys.ALIKE)
+        self._tell(context, iface_("{count} parts, alike from {threshold:.2f} on").format(
+            count=count + 1, threshold=self.threshold), keys.ALIKE)
         return {"RUNNING_MODAL"}
 
     def _handle(self, context, event):

@@ -3,10 +3,15 @@
 
 import bpy
 
+from ..mesh import arrays
+from ..mesh.refusing import NeedsMesh, Refused, changeable
 from ..parts import picks, registry
+from ..pick.build import Beside, waited_for
 from . import composition, solids
 from partwheel import Error
-from ..mesh.refusing import NeedsMesh, changeable
+from partwheel.likeness import nearest
+
+OVERLAP = 0.9  # of what is selected with a part, to be taken for it
 
 
 class OnParts(NeedsMesh):
@@ -19,6 +24,9 @@ class OnParts(NeedsMesh):
         obj = context.active_object
         was_edited = obj.mode == "EDIT"
         try:
+            self.check(obj)
+            if not waited_for(self, context, obj):
+                return {"CANCELLED"}
             hierarchy = self.hierarchy(obj)
             if was_edited:
                 bpy.ops.object.mode_set(mode="OBJECT")
@@ -35,23 +43,44 @@ class OnParts(NeedsMesh):
             return {"CANCELLED"}
         return {"FINISHED"}
 
+    def _lacking(self, context):
+        self.check(context.active_object)
+        return super()._lacking(context)
+
+    def check(self, obj):
+        """Raises Refused for what can be told before its parts are found."""
+
     def hierarchy(self, obj):
         return registry.needed(obj)
 
 
 class OnPart(OnParts):
-    """The same for operators that cut a part out: a node, or the one that was picked last."""
+    """The same for operators that cut a part out: a node, or the one that was picked last, or else the selected one."""
 
     snap: bpy.props.BoolProperty(
-        name="Snap Border", description="Move the border of the part to the creases nearby, as far as the tetrahedra "
-        "about it let it be there", default=True)
+        name="Snap Border", description="Move the border of the part to the creases nearby, as far as what is inside "
+        "lets it be there", default=True)
     node: bpy.props.IntProperty(
-        name="Node", description="The part, as a number of the hierarchy; -1: the part that was picked last",
+        name="Part", description="The part's number; -1: the part that was picked last",
         default=-1, min=-1, options={"SKIP_SAVE"})
 
+    def check(self, obj):
+        if self.node < 0 and not picks.picked_as_told(obj) and not _selected(obj):
+            raise Refused(picks.NO_PICK)
+
     def hierarchy(self, obj):
+        if self.node < 0 and not picks.picked(obj) and _selected(obj):
+            found = registry.needed(obj)
+            self.node, overlap = nearest(found, arrays.read(obj.data.polygons, "select", bool))
+            if overlap < OVERLAP:
+                raise Refused("What is selected is no part. Pick one with Select Part by Wheel, and confirm it.")
         found, self.node = picks.chosen(obj, self.node)
         return found
+
+
+def _selected(obj):
+    """Whether faces are: where none was picked since the last edit, they say which part is meant."""
+    return obj.mode == "EDIT" and obj.data.total_face_sel > 0
 
 
 class _Caps:
@@ -67,7 +96,7 @@ class _Caps:
         return solids.Options(self.smooth, self.material)
 
 
-class MESH_OT_partwheel_copy(OnPart, _Caps, bpy.types.Operator):
+class MESH_OT_partwheel_copy(OnPart, Beside, _Caps, bpy.types.Operator):
     """Copy the picked part as a solid: a new object, closed where it was cut; Ctrl C, Ctrl V take it to other files"""
 
     bl_idname = "mesh.partwheel_copy"
@@ -77,7 +106,7 @@ class MESH_OT_partwheel_copy(OnPart, _Caps, bpy.types.Operator):
         only(context, [composition.copied(obj, hierarchy, self.node, self.caps(), self.snap)])
 
 
-class MESH_OT_partwheel_remove(OnPart, _Caps, bpy.types.Operator):
+class MESH_OT_partwheel_remove(OnPart, Beside, _Caps, bpy.types.Operator):
     """Take the picked part out of the mesh and close the hole"""
 
     bl_idname = "mesh.partwheel_remove"
@@ -92,7 +121,7 @@ class MESH_OT_partwheel_remove(OnPart, _Caps, bpy.types.Operator):
         composition.removed(obj, hierarchy, self.node, self.caps(), self.snap)
 
 
-class MESH_OT_partwheel_split(OnParts, _Caps, bpy.types.Operator):
+class MESH_OT_partwheel_split(OnParts, Beside, _Caps, bpy.types.Operator):
     """Make each part of a cut an object of its own: closed solids that fit each other exactly"""
 
     bl_idname = "mesh.partwheel_split"

@@ -89,8 +89,8 @@ def check_resolution(obj):
     """Raises Refused if the object's mesh can't be given other faces without a loss that nobody would expect."""
     if any(other.data == obj.data and any(each.type == "MULTIRES" and each.total_levels for each in other.modifiers)
            for other in bpy.data.objects):
-        raise Refused(f"{obj.name} is sculpted in several resolutions, which would be lost. Apply its "
-                        "Multiresolution modifier first, or copy the part.")
+        raise Refused("{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution modifier "
+                      "first, or copy the part.", name=obj.name)
 
 
 def _carved(mesh, hierarchy, solid, tet_first, tet_last, options, faces, alone):

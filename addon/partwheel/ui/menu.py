@@ -26,10 +26,11 @@ ENTRIES = (
                                             "mesh.partwheel_select")),
     ("VIEW3D_MT_edit_mesh_select_similar", _entries("mesh.partwheel_similar", "mesh.partwheel_mirrored")),
     ("VIEW3D_MT_select_object", _entries("object.partwheel_select")),
-    *((f"VIEW3D_MT_{menu}", _entries("mesh.partwheel_paint", write=write, text=f"{name} from Part by Wheel"))
-      for menu, write, name in (("face_sets", "FACE_SET", "Face Set"), ("mask", "MASK", "Mask"),
-                                ("paint_weight", "VERTEX_GROUP", "Vertex Group"),
-                                ("paint_vertex", "PAINT_MASK", "Paint Mask"))),
+    *((f"VIEW3D_MT_{menu}", _entries("mesh.partwheel_paint", write=write, text=text))
+      for menu, write, text in (("face_sets", "FACE_SET", "Face Set from Part by Wheel"),
+                                ("mask", "MASK", "Mask from Part by Wheel"),
+                                ("paint_weight", "VERTEX_GROUP", "Vertex Group from Part by Wheel"),
+                                ("paint_vertex", "PAINT_MASK", "Paint Mask from Part by Wheel"))),
 )
 
 

@@ -4,21 +4,23 @@
 import bpy
 
 from .. import trouble
-from ..parts import builds, registry
+from ..parts import builds, picks, registry
+from ..words.say import iface_, percent
+from . import measure
 
 State = registry.State
 STATES = {
-    State.NONE: ["No parts yet"],
-    State.UNOPENED: ["Parts came with the file"],
-    State.FITS: [],
-    State.MOVED: ["Vertices have moved since:", "the parts can be recomputed"],
-    State.CHANGED: ["The mesh has changed: its parts", "are built anew at the next use"],
+    State.NONE: "No parts yet",
+    State.UNOPENED: "Parts came with the file",
+    State.FITS: "",
+    State.MOVED: "Vertices have moved since: the parts can be recomputed",
+    State.CHANGED: "The mesh has changed: its parts are found anew at the next use",
 }
-SHEET = ["A sheet, not a solid: thicken it,", "close it, or have it taken for", "a thin solid"]
-BUILD = {State.FITS: "Recompute", State.MOVED: "Recompute", State.CHANGED: "Recompute"}
-RUNGS = {
-    "exact": "From the mesh as it is", "repaired": "From a repaired copy", "points": "From points on it",
-    "coarse": "From a coarser copy",
+SHEET = "A sheet, not a solid: thicken it, close it, or have it taken for a thin solid"
+# What was done to the mesh, so that parts could be found; off: how far that is from it, as a share of its size.
+DONE = {
+    "exact": "From the mesh as it is", "repaired": "Repaired copy, {off} off",
+    "points": "Points on it, {off} off", "coarse": "Coarser copy, {off} off",
 }
 
 
@@ -51,30 +53,40 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
         row.operator_context = "INVOKE_REGION_WIN"
         row.operator("mesh.partwheel_parts")
         state, entry = registry.state(context.active_object.data)
-        if entry:
-            self._describe(context, entry.hierarchy)
         column = layout.column(align=True)
-        for line in STATES[state]:
-            column.label(text=line)
+        if entry:
+            _describe(context, column, entry.hierarchy)
+        _say(context, column, STATES[state])
         if state in {State.NONE, State.CHANGED} and builds.refused_as_sheet(context.active_object.data):
-            for line in SHEET:
-                column.label(text=line)
+            _say(context, column, SHEET)
             column.operator("mesh.partwheel_build", text="Take as Thin Solid").open_surfaces = True
         if entry and entry.hierarchy.summary.rung == "coarse":
             column.operator("mesh.partwheel_build", text="Find Exactly").exactly = True
         row = layout.row(align=True)
-        row.operator("mesh.partwheel_build", text=BUILD.get(state, "Build"))
+        row.operator("mesh.partwheel_build", text="Recompute" if entry else "Find Parts")
         if state != State.NONE:
             row.operator("mesh.partwheel_clear", text="", icon="X")
 
-    def _describe(self, context, hierarchy):
-        column = self.layout.column(align=True)
-        column.label(text=f"{len(hierarchy.order):,} faces, {len(hierarchy.tetrahedra):,} tets")
-        seconds = sum(hierarchy.seconds.values())
-        column.label(text=f"Built in {seconds:.1f} s" if seconds else "Came with the file")
-        column.label(text=RUNGS[hierarchy.summary.rung])
-        if hierarchy.account:
-            trouble.draw_lines(context, column, hierarchy.account)
+
+def _describe(context, column, hierarchy):
+    """The part that was picked last, or else all; and what was done to the mesh, in a line."""
+    pick = picks.picked_as_told(context.edit_object) if context.mode == "EDIT_MESH" else None
+    if pick:
+        share = percent(hierarchy.area[pick.node] / hierarchy.area[-1])
+        told = iface_("Part: {share} of the area").format(share=share)
+        size = " × ".join(measure.sides(context, context.edit_object, hierarchy, pick.node))
+        for text in (told, size):
+            column.label(text=text, translate=False)
+    else:
+        told = iface_("Parts of {count:,} faces").format(count=len(hierarchy.order))
+        column.label(text=told, translate=False)
+    done = iface_(DONE[hierarchy.summary.rung]).format(off=percent(hierarchy.summary.deviation))
+    trouble.draw_lines(context, column, done)
+
+
+def _say(context, column, text):
+    if text:
+        trouble.draw_lines(context, column, iface_(text))
 
 
 CLASSES = (VIEW3D_PT_partwheel,)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The way through the dendrogram of the part that was picked last: each stop of the wheel, how large it is and what it
-costs. A click on one takes it."""
+"""The way of the wheel about the part that was picked last: each stop, its faces, its share of the area, its longest
+side. A click on one takes it."""
 
 import math
 
@@ -8,27 +8,20 @@ import bpy
 
 from ..parts import picks
 from ..pick import states
+from ..words.say import percent
+from . import measure
 
 SMALLEST = 0.25  # share of the width that the smallest part's bar takes
 
 
 def rows(pick):
-    """[(number from 1, node, faces, share of the area, cost as text, bar 0..1)] of a picks.Picked, growing."""
+    """[(number from 1, node, faces, share of the area, bar 0..1)] of a picks.Picked, growing."""
     hierarchy = pick.hierarchy
     picked = states.pick(hierarchy, pick.face)
     counts = [len(hierarchy.faces(node)) for node in picked.stops]
     low, high = math.log(counts[0]), math.log(max(counts[-1], counts[0] + 1))
-    return [(number, node, count, hierarchy.area[node] / hierarchy.area[-1], cost(hierarchy, node),
-             (math.log(count) - low) / (high - low))
+    return [(number, node, count, hierarchy.area[node] / hierarchy.area[-1], (math.log(count) - low) / (high - low))
             for number, (node, count) in enumerate(zip(picked.stops, counts), 1)]
-
-
-def cost(hierarchy, node):
-    """What joining the two halves of a node costs (Eq. 3 of the paper): the concavity, as a share of the volume of the
-    whole's hull, or nothing where they are convex together."""
-    if not hierarchy.cost_class[node]:
-        return "convex"
-    return f"{hierarchy.cost[node] / hierarchy.summary.hull_volume:.1e}"
 
 
 class VIEW3D_PT_partwheel_path(bpy.types.Panel):
@@ -44,7 +37,7 @@ class VIEW3D_PT_partwheel_path(bpy.types.Panel):
         return context.mode == "EDIT_MESH" and picks.picked_as_told(context.edit_object) is not None
 
     def draw(self, context):
-        draw_path(self.layout, context.edit_object)
+        draw_path(self.layout, context)
 
 
 class MESH_OT_partwheel_path(picks.NeedsPick, bpy.types.Operator):
@@ -58,28 +51,29 @@ class MESH_OT_partwheel_path(picks.NeedsPick, bpy.types.Operator):
         return context.window_manager.invoke_popup(self, width=380)
 
     def draw(self, context):
-        draw_path(self.layout, context.edit_object)
+        draw_path(self.layout, context)
 
     def execute(self, _context):
         return {"FINISHED"}
 
 
-def draw_path(layout, obj):
+def draw_path(layout, context):
+    obj = context.edit_object
     pick = picks.picked_as_told(obj)
     if not pick:
         return
     start = states.pick(pick.hierarchy, pick.face).start
     column = layout.column(align=True)
     column.operator_context = "EXEC_DEFAULT"
-    for number, node, count, share, text, bar in reversed(rows(pick)):
+    for number, node, count, share, bar in reversed(rows(pick)):
         split = column.split(factor=0.62, align=True)
         left = split.split(factor=SMALLEST + (1 - SMALLEST) * bar, align=True)
         button = left.operator("mesh.partwheel_select", text=f"{count:,}", depress=node == pick.node)
         button.face_index, button.level, button.snap = pick.face, number - 1 - start, pick.snap
         left.label(text="")
         right = split.row()
-        right.label(text=f"{share:.1%}")
-        right.label(text=text)
+        right.label(text=percent(share))
+        right.label(text=measure.sides(context, obj, pick.hierarchy, node)[0])
 
 
 CLASSES = (VIEW3D_PT_partwheel_path, MESH_OT_partwheel_path)

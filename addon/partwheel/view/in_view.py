@@ -11,12 +11,13 @@ from .. import trouble
 from partwheel import Error, LibraryError
 from . import overlay
 from . import status
+from ..words.say import label_of, rpt_
 
 
 class InView:
     """Mixed into an operator. Its steps answer as invoke() and modal() do; "CANCELLED" takes back what they did."""
 
-    lost = "the mesh is no longer being edited as it was"
+    lost = "{operator} stopped: the mesh is no longer being edited as it was."
 
     # ---- What operators differ in
 
@@ -39,7 +40,8 @@ class InView:
 
     def invoke(self, context, event):
         if context.window is None or context.area is None or context.area.type != "VIEW_3D":
-            self.report({"ERROR"}, f"{self.bl_label}: start this with the mouse over a 3D view.")
+            self.report({"ERROR"}, rpt_("{operator}: start this with the mouse over a 3D view.").format(
+                operator=label_of(self)))
             return {"CANCELLED"}
         return self._started(context, event)
 
@@ -65,7 +67,7 @@ class InView:
         if self._broken:
             raise self._broken[0]
         if not self._still_there(context):
-            self.report({"WARNING"}, f"{self.bl_label} stopped: {self.lost}.")
+            self.report({"WARNING"}, rpt_(self.lost).format(operator=label_of(self)))
             return {"CANCELLED"}
         return self._handle(context, event)
 
@@ -84,7 +86,8 @@ class InView:
             self.report({"ERROR"}, str(error))
         except Exception as error:  # any: a tool that dies in the middle leaves Blender with its keys and its changes
             traceback.print_exception(error)
-            self.report({"ERROR"}, f"Partwheel stopped: {error}. The full report is in the system console.")
+            self.report({"ERROR"}, rpt_("Partwheel stopped: {reason}. The full report is in the system console.").format(
+                reason=error))
         try:
             self._take_back(context)
         finally:

@@ -4,6 +4,7 @@ or how far a build is."""
 
 import bpy
 
+from ..words.say import iface_
 from . import keys
 
 # Some versions have more icons of keys than others.
@@ -46,12 +47,12 @@ def drawer(row):
 def _shown(key):
     """(icons, text), or None."""
     if isinstance(key, keys.Key):
-        return list(key.icons), f"{key.names}: {key.label}" if key.names else key.label
+        return list(key.icons), f"{iface_(key.names)}: {iface_(key.label)}" if key.names else iface_(key.label)
     item = _item(key)
     if item and f"EVENT_{item.type}" in ICONS:
         held = [f"EVENT_{name.upper()}" for name in ("shift", "ctrl", "alt") if getattr(item, name)]
-        return [*held, f"EVENT_{item.type}"], key.label
-    return item and ([], f"{item.to_string()}: {key.label}")
+        return [*held, f"EVENT_{item.type}"], iface_(key.label)
+    return item and ([], f"{item.to_string()}: {iface_(key.label)}")
 
 
 def _entry(layout, icons, text):

@@ -66,10 +66,10 @@ class Watched:
 
 def watch_batches(parts):
     """Has all that an overlay.Parts draws timed by the Clock that this returns."""
-    for name in ("batch", "hull", "cut"):
+    for name in ("batch", "hull", "cut", "outline"):
         def watched(*arguments, inner=getattr(parts, name)):
-            shader, batch = inner(*arguments)
-            return shader, Watched(batch)
+            drawn = inner(*arguments)
+            return drawn and (drawn[0], Watched(drawn[1]))
         setattr(parts, name, watched)
     return Clock(Watched, "draw")
 
@@ -94,7 +94,7 @@ def play(stage):
     stage.part("pick.prepared")._kept.clear()
     stage.mouse.move(*spots[0])
     yield from stage.until("hover has found a part", lambda: stage.hovered() is not None)
-    first_hover = sum(moves.take())
+    first_hover = max(moves.take())
     for x, y in spots:
         stage.mouse.move(x, y)
         yield from stage.settle()
@@ -140,7 +140,7 @@ def play(stage):
     measured = {"notch, median": statistics.median(notches), "notch, 95 %": notches[int(0.95 * len(notches))],
                 "hover, median": statistics.median(hovers) + hover_drawn, "start": max(starts),
                 "notch, border in creases, median": statistics.median(snapped)}
-    others = {"largest notch": notches[-1], "first hover after an edit": first_hover,
+    others = {"largest notch": notches[-1], "first hover after an edit, its longer step": first_hover,
               "first start after an edit": cold,
               "beside a notch, drawing in software, median": statistics.median(drawing)}
     print(f"felt | {len(stage.wheels.triangles):,} faces, {len(notches)} notches, {len(hovers)} hovers, {len(starts)} "

@@ -27,9 +27,9 @@ def play(stage):
     bmesh.ops.delete(bm, geom=[face for face in bm.faces if face != sheet], context="FACES")
     bmesh.update_edit_mesh(stage.object.data)
     stage.select([0])
-    stage.check("(not solid)" not in stage.reports(), "no such error before")
+    stage.check("is a sheet" not in stage.reports(), "no such error before")
     stage.shortcut("mesh.partwheel_select")
-    yield from stage.until("the error is reported", lambda: "(not solid)" in stage.reports())
+    yield from stage.until("the error is reported", lambda: "is a sheet" in stage.reports())
     yield from stage.screenshot("error")
     stage.mouse.key("ESC")  # it is shown until then
     stage.mouse.move(*stage.empty_spot())

@@ -1,4 +1,5 @@
 """What is drawn over the model: the part, the next notch, the hull, all parts; and nothing once it is over."""
+import bpy
 import numpy
 from view import picture
 
@@ -27,7 +28,21 @@ def play(stage):
     settings.show_hull, settings.show_cut = False, True
     cut = picture((yield from stage.screenshot("5-cut")))
     stage.check(changed(cut, bare) > 10000, "all parts are drawn")
-    settings.show_cut, settings.show_part, settings.show_next = False, True, True
+    settings.show_cut, settings.show_part, settings.show_next = False, True, False
+
+    yield from outlined(stage)
+    shading = stage.area.spaces.active.shading
+    for name, kind, more in (("xray", "SOLID", {"show_xray": True}), ("wireframe", "WIREFRAME", {}),
+                             ("matcap", "SOLID", {"light": "MATCAP"}), ("material", "MATERIAL", {})):
+        shading.type = kind
+        before = {each: getattr(shading, each) for each in more}
+        for each, value in more.items():
+            setattr(shading, each, value)
+        yield from outlined(stage, f"9-{name}")
+        for each, value in before.items():
+            setattr(shading, each, value)
+    shading.type = "SOLID"
+    settings.show_next = True
 
     stage.area.spaces.active.overlay.show_overlays = False
     stage.check(stage.drawn_things() == 1, "the overlay is on")
@@ -41,6 +56,27 @@ def play(stage):
     after = picture((yield from stage.screenshot("7-after")))
     rest = inside(stage, after, larger - part) - inside(stage, plain, larger - part)
     stage.check(numpy.abs(rest).mean() < 0.02, "the model looks as before")
+
+
+def outlined(stage, name="8-outline"):
+    """The part has an outline, which is as wide as the screen wants it."""
+    overlay, view = stage.part("view.overlay"), bpy.context.preferences.view
+    drawn, widths = overlay._outline, []
+    for line_width in ("THIN", "THICK") if name == "8-outline" else ("AUTO",):
+        view.ui_line_width = line_width
+        yield from stage.settle()
+        outline = picture((yield from stage.screenshot(f"{name}-{line_width}")))
+        overlay._outline = lambda *_: []
+        overlay.redraw()
+        plain = picture((yield from stage.screenshot(f"{name}-{line_width}-without")))
+        overlay._outline = drawn
+        overlay.redraw()
+        differs = numpy.abs(outline - plain).max(axis=2) > 0.1
+        runs = numpy.diff(numpy.flatnonzero(numpy.diff(numpy.pad(differs, ((0, 0), (1, 1))).ravel().astype(int))))[::2]
+        widths.append(float(numpy.median(runs)) if len(runs) else 0)
+        stage.check(differs.sum() > 200, f"{name}: outlined, by {differs.sum()} pixels, {widths[-1]} wide")
+    view.ui_line_width = "AUTO"
+    stage.check(len(widths) < 2 or 1 < widths[0] < widths[1] < 20, f"{name}: wider where lines are, {widths}")
 
 
 def seen(stage, faces):

@@ -53,7 +53,7 @@ def play(stage):
     gate.open()
     yield from stage.until("the build ends", lambda: not stage.builds.running())
     stage.check(stage.registry.state(stage.object.data)[0] == stage.registry.State.FITS, "the parts are kept")
-    stage.check("The parts are built" in stage.reports(), "that is reported")
+    stage.check("The parts are found" in stage.reports(), "that is reported")
     stage.mouse.key("TAB")
     yield from stage.until("Edit Mode is back", lambda: stage.object.mode == "EDIT")
     yield from stage.selected({3}, "after all that")

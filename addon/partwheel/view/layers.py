@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is drawn over a model, with the gpu module: tints, glass, lines of a constant width on the screen.
+
+Everything on the graphics card is made when it is first drawn: without a window there is none. Lines are rectangles that
+our own shader puts up, so all backends draw them alike and the clipping region cuts them.
+"""
+
+from typing import NamedTuple
+
+import gpu
+import numpy as np
+from mathutils import Matrix, Vector
+
+# How much nearer to the eye than the model tints and lines are drawn, as a share of the distance, so that the model's own
+# faces don't show through.
+NEARER, LINES_NEARER = 5e-4, 2e-3
+
+# "planes" are those of the clipping region; "size" is the region's, in pixels; "kind": 1 for glass, half a line's width,
+# how much nearer.
+UNIFORMS = "struct PartwheelLayer { mat4 matrix; mat4 planes; vec4 eye; vec4 color; vec4 kind; vec4 size; };"
+VERTEX = """
+vec4 seen(vec3 place)
+{
+  return layer.matrix * vec4(place + (layer.eye.xyz - place * layer.eye.w) * layer.kind.z, 1.0);
+}
+"""
+PAINT = VERTEX + """
+void main()
+{
+  gl_Position = seen(pos);
+  local = pos;
+  tint = COLOR;
+}
+"""
+LINE = VERTEX + """
+void main()
+{
+  vec4 here = seen(pos), there = seen(other);
+  vec2 along = (there.xy / there.w - here.xy / here.w) * layer.size.xy;
+  along *= layer.kind.y / max(length(along), 1e-6);
+  here.xy += 2.0 * here.w / layer.size.xy * (vec2(-along.y, along.x) * side - along);
+  gl_Position = here;
+  local = pos;
+  tint = layer.color;
+}
+"""
+FRAGMENT = """
+void main()
+{
+  if (any(lessThan(layer.planes * vec4(local, 1.0), vec4(0.0)))) {
+    discard;
+  }
+  fragColor = tint;
+  if (layer.kind.x > 0.0) {
+    vec3 normal = normalize(cross(dFdx(local), dFdy(local)));
+    float facing = abs(dot(normal, normalize(layer.eye.xyz - local * layer.eye.w)));
+    fragColor.a *= 0.15 + 0.85 * pow(1.0 - facing, 2.0);
+  }
+}
+"""
+# Attributes beside "pos", and how the vertices are put.
+KINDS = {"flat": ({}, PAINT), "colored": ({"color": 4}, PAINT), "line": ({"other": 3, "side": 1}, LINE)}
+_shaders = {}
+
+
+class Layer(NamedTuple):
+    """drawn: (shader, batch). Paint is flat, glass clear where seen from the front. width: of lines, in pixels."""
+
+    drawn: tuple
+    color: tuple
+    glass: bool = False
+    width: float = 0.0
+
+
+def shader(kind):
+    """One of KINDS; made at its first use."""
+    if kind not in _shaders:
+        attributes, source = KINDS[kind]
+        info = gpu.types.GPUShaderCreateInfo()
+        info.typedef_source(UNIFORMS)
+        info.uniform_buf(0, "PartwheelLayer", "layer")
+        info.vertex_in(0, "VEC3", "pos")
+        for place, (name, width) in enumerate(attributes.items(), 1):
+            info.vertex_in(place, "FLOAT" if width == 1 else f"VEC{width}", name)
+        passed = gpu.types.GPUStageInterfaceInfo(f"partwheel_{kind}")
+        passed.smooth("VEC3", "local")
+        passed.smooth("VEC4", "tint")
+        info.vertex_out(passed)
+        info.fragment_out(0, "VEC4", "fragColor")
+        info.define("COLOR", "color" if "color" in attributes else "layer.color")
+        info.vertex_source(source)
+        info.fragment_source(FRAGMENT)
+        _shaders[kind] = gpu.shader.create_from_info(info)
+    return _shaders[kind]
+
+
+def vertices(**attributes):
+    """A buffer of these (n, width) attributes."""
+    form = gpu.types.GPUVertFormat()
+    for name, values in attributes.items():
+        form.attr_add(id=name, comp_type="F32", len=values.shape[1], fetch_mode="FLOAT")
+    buffer = gpu.types.GPUVertBuf(form, len(attributes["pos"]))
+    for name, values in attributes.items():
+        buffer.attr_fill(name, np.ascontiguousarray(values, np.float32))
+    return buffer
+
+
+def batch(buffer, triangles):
+    return gpu.types.GPUBatch(type="TRIS", buf=buffer, elem=gpu.types.GPUIndexBuf(type="TRIS", seq=triangles))
+
+
+def lines(positions, edges):
+    """(shader, batch) of edges (n,2) of positions: a rectangle for each, whose corners know both ends and their side."""
+    ends = positions[edges]  # (n, 2, 3)
+    places = ends[:, (0, 0, 1, 1)].reshape(-1, 3)
+    others = ends[:, (1, 1, 0, 0)].reshape(-1, 3)
+    sides = np.tile([1.0, -1.0, 1.0, -1.0], len(edges))[:, None]
+    corners = 4 * np.arange(len(edges), dtype=np.int32)[:, None, None] + np.array([(0, 1, 2), (0, 2, 3)], np.int32)
+    return shader("line"), batch(vertices(pos=places, other=others, side=sides), corners.reshape(-1, 3))
+
+
+def border(triangles):
+    """(n,2) the edges that only one of the triangles (T,3) has."""
+    ends = np.concatenate([triangles[:, (0, 1)], triangles[:, (1, 2)], triangles[:, (2, 0)]]).astype(np.int64)
+    low, high = ends.min(axis=1), ends.max(axis=1)
+    count = int(high.max(initial=0)) + 1
+    keys = np.sort(low * count + high)
+    differs = np.concatenate([[True], keys[1:] != keys[:-1], [True]])
+    return np.column_stack(np.divmod(keys[differs[:-1] & differs[1:]] if len(keys) else keys, count))
+
+
+def see_through(context):
+    """Whether the view shows what lies behind, too: X-ray and wireframe. Then nothing hides what is drawn here."""
+    shading = context.space_data.shading if context.space_data else None
+    return shading is not None and (shading.type == "WIREFRAME" or shading.type == "SOLID" and shading.show_xray)
+
+
+def draw(context, obj, layers):
+    """Layers, one over the other in the context's view."""
+    view = context.region_data
+    to_local = obj.matrix_world.inverted_safe()
+    if view.is_perspective:
+        eye = (*(to_local @ view.view_matrix.inverted().translation), 1.0)
+    else:
+        away = view.view_matrix.inverted().to_3x3() @ Vector((0, 0, view.view_distance))
+        eye = (*(to_local.to_3x3() @ away), 0.0)
+    planes = Matrix([(0.0, 0.0, 0.0, 1.0)] * 4)
+    if view.use_clip_planes:
+        planes = Matrix(list(view.clip_planes)[:4]) @ obj.matrix_world
+    before = gpu.state.blend_get(), gpu.state.depth_test_get(), gpu.state.depth_mask_get()
+    through = see_through(context)
+    gpu.state.blend_set("ALPHA")
+    gpu.state.depth_test_set("ALWAYS" if through else "LESS_EQUAL")
+    gpu.state.depth_mask_set(False)
+    matrix = view.perspective_matrix @ obj.matrix_world
+    for (program, drawn), color, glass, width in layers:
+        gpu.state.face_culling_set("BACK" if through and not width else "NONE")  # or both sides would add up
+        kind = glass, width / 2, LINES_NEARER if width else NEARER, 0
+        values = np.concatenate([np.array(matrix.transposed()).ravel(), np.array(planes.transposed()).ravel(), eye,
+                                 color, kind, (context.region.width, context.region.height, 0, 0)]).astype(np.float32)
+        program.bind()
+        uniforms = gpu.types.GPUUniformBuf(gpu.types.Buffer("FLOAT", len(values), values))  # alive until it is drawn
+        program.uniform_block("layer", uniforms)
+        drawn.draw(program)
+    gpu.state.face_culling_set("NONE")
+    gpu.state.blend_set(before[0])
+    gpu.state.depth_test_set(before[1])
+    gpu.state.depth_mask_set(before[2])
+
+
+def unregister():
+    _shaders.clear()

@@ -1,0 +1,844 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Chinese, simplified."""
+
+WORDS = {
+    "Turn":
+        "旋转",
+    "About the border's normal":
+        "绕边界法线旋转",
+    "Depth":
+        "深度",
+    "How far it is sunk in, times the radius of its border":
+        "嵌入的深度，以其边界半径为单位",
+    "size {size:.2f}, turn {turn:.0f}°, depth {depth:.2f}":
+        "大小 {size:.2f}，旋转 {turn:.0f}°，深度 {depth:.2f}",
+    "Place Part":
+        "放置部件",
+    "Place the active part on a surface: it follows the mouse, its border on the surface and turned to it":
+        "将活动部件放置到表面上：部件跟随鼠标，边界贴合表面并朝向表面",
+    "{operator} stopped: the part is no longer the active object.":
+        "{operator} 已停止：该部件不再是活动物体。",
+    "Onto":
+        "目标",
+    "The object that the part is placed on":
+        "放置部件的物体",
+    "Location":
+        "位置",
+    "Where its border goes":
+        "边界所在的位置",
+    "Normal":
+        "法向",
+    "Of the surface there":
+        "该处表面的法线",
+    "Size":
+        "大小",
+    "Times the size that it had":
+        "相对原有大小的倍数",
+    "Fit Border":
+        "贴合边界",
+    "Onto the target's nearest border, where a part was removed, and of its size":
+        "贴合到目标上最近的、曾移除部件的边界，并采用其大小",
+    "Mirror Copy":
+        "镜像副本",
+    "Add the mirror image across the target's own X axis":
+        "添加沿目标自身 X 轴的镜像",
+    "In Object Mode, make the part to be placed the active object.":
+        "请在物体模式下，将要放置的部件设为活动物体。",
+    "Say which mesh object the part is placed on.":
+        "请指定部件要放置到哪个网格物体上。",
+    "Move the mouse over a surface":
+        "将鼠标移到表面上",
+    "There is no surface under the mouse yet":
+        "鼠标下还没有表面",
+    "Onto {name}":
+        "位于 {name}",
+    "fitted":
+        "已贴合",
+    "with mirror copy":
+        "带镜像副本",
+    "{name} has no border to fit: no part was removed from it.":
+        "{name} 没有可贴合的边界：没有从中移除过部件。",
+    "Swap with Compatible Part":
+        "交换为兼容部件",
+    "Exchange the picked part for one of another object that fits its border; the wheel goes through what there is":
+        "将选取的部件换成其他物体中适合其边界的部件；滚轮切换可用的部件",
+    "{operator} stopped: the object is no longer the active one.":
+        "{operator} 已停止：该物体不再是活动物体。",
+    "From":
+        "来源",
+    "The object that the new part comes from; none: those selected, or else all others":
+        "新部件所来自的物体；空：选中的物体，否则为其他所有物体",
+    "Part":
+        "部件",
+    "The new part's number in that object; -1: the most compatible one":
+        "新部件在该物体中的编号；-1：最兼容的部件",
+    "Times the size at which the borders fit":
+        "相对边界相符时大小的倍数",
+    "Mirror":
+        "镜像",
+    "Take the part's mirror image":
+        "使用部件的镜像",
+    "Blend":
+        "混合",
+    "Width of a smooth transition on either side of the seam, times its radius":
+        "接缝两侧平滑过渡的宽度，以接缝半径为单位",
+    "Find Parts":
+        "查找部件",
+    "Find the parts of the new mesh at once, in a process of its own":
+        "立即在单独的进程中查找新网格的部件",
+    "There is no mesh object {name}.":
+        "没有名为 {name} 的网格物体。",
+    "{name}, part {number} of {count}, {likeness:.0%} alike":
+        "{name}，部件 {number} / {count}，相似度 {likeness:.0%}",
+    "mirrored":
+        "已镜像",
+    "Leave Edit Mode":
+        "离开编辑模式",
+    "The part is the whole model: nothing would be left to put another part on. Pick a smaller one.":
+        "该部件是整个模型：没有剩余部分可供放置其他部件。请选取更小的部件。",
+    "The part has no border with the rest of the model, so there is nothing to fit another part to. Pick one that was grown from the model, not a piece of its own.":
+        "该部件与模型其余部分没有边界，因此无处可贴合其他部件。请选取从模型上长出的部件，而不是独立的块。",
+    "No other object has parts. Find the parts of the one that the new part comes from, and select it too; or paste a part that was copied as a solid.":
+        "没有其他物体有部件。请查找新部件来源物体的部件并一同选中；或粘贴一个复制为实体的部件。",
+    "No part there has a border that could be fitted to this one's.":
+        "没有部件的边界能与此部件的边界贴合。",
+    "{name} has no part {number}.":
+        "{name} 没有部件 {number}。",
+    "That part of {name} has no border that could be fitted to this one's.":
+        "{name} 的该部件没有能与此部件贴合的边界。",
+    "{name} was changed and has other parts now. Start again.":
+        "{name} 已更改，现在有不同的部件。请重新开始。",
+    "it has no faces":
+        "没有面",
+    "{count} edges have not just two faces":
+        "{count} 条边不是恰好连接两个面",
+    "at {count} edges the faces wind against each other":
+        "{count} 条边上的面方向相反",
+    "{count} vertices are loose or join parts that only touch there":
+        "{count} 个顶点是松散的，或连接仅在该处接触的部分",
+    "{name} is no solid: {reason}. Repair it, or copy its part anew.":
+        "{name} 不是实体：{reason}。请修复，或重新复制其部件。",
+    "{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).":
+        "{name} 不是实体：内外翻转了。请将面朝外（重新计算外侧）。",
+    "by {solver} within: {reason}":
+        "{solver}（含内部）：{reason}",
+    "by {solver}: {reason}":
+        "{solver}：{reason}",
+    "{one} and {other} can't be united ({reasons}). Move one of them a little: faces that lie in each other are the usual cause.":
+        "无法合并 {one} 与 {other}（{reasons}）。请稍微移动其中一个：通常是因为有面互相重叠。",
+    "its volume would be {share:.0%} of that of the two":
+        "其体积将为两者之和的 {share:.0%}",
+    "one of them was left out":
+        "其中一个被遗漏",
+    "Select the parts, and then the mesh object that they are to become part of, in Object Mode.":
+        "请在物体模式下，先选择部件，再选择要并入的网格物体。",
+    "Unite Solids":
+        "合并实体",
+    "Unite the other selected solids with the active one into a single closed mesh":
+        "将其他选中的实体与活动实体合并为一个封闭网格",
+    "Width of a smooth transition on either side of each seam, times the seam's radius; 0: the seam stays a crease":
+        "每条接缝两侧平滑过渡的宽度，以接缝半径为单位；0：接缝保持折痕",
+    "Find the parts of the united mesh at once, in a process of its own":
+        "立即在单独的进程中查找合并后网格的部件",
+    "Keep Parts":
+        "保留部件",
+    "Leave the other objects as they are":
+        "保持其他物体不变",
+    "{name} is one closed mesh now, of {count:,} faces (solver {solver}).":
+        "{name} 现在是一个封闭网格，有 {count:,} 个面（解算器 {solver}）。",
+    "The vertex group {name} is locked. Unlock it, or give it another name.":
+        "顶点组 {name} 已锁定。请解锁，或改用其他名称。",
+    "Face Sets":
+        "面组",
+    "One for each part, in place of all that there are":
+        "每个部件一个，替换现有的全部",
+    "Vertex Groups":
+        "顶点组",
+    "For an armature: they fall smoothly across the borders and add up to 1":
+        "用于骨架：在边界处平滑衰减，总和为 1",
+    "Materials in Colours":
+        "彩色材质",
+    "A material of its own colour for each part":
+        "每个部件一个不同颜色的材质",
+    "Material Slots":
+        "材质槽",
+    "The model's own materials, with a slot for each part":
+        "模型自身的材质，每个部件一个槽",
+    "Seams":
+        "缝合边",
+    "For unwrapping: along the borders, in creases, and where a part would not lie flat":
+        "用于展开：沿边界、在折痕处以及部件无法展平之处",
+    "Objects":
+        "物体",
+    "Each part an object that hangs on the next one":
+        "每个部件成为一个物体，以相邻部件为父级",
+    "Bones":
+        "骨骼",
+    "An armature with a bone for each part, and the vertex groups for it, ready to be posed":
+        "每个部件一根骨骼的骨架及其顶点组，可直接摆姿势",
+    "For Printing":
+        "用于打印",
+    "Closed objects with flat cuts, pegs and sockets, checked. Needs manifold3d":
+        "经过检查的封闭物体，带平整切面、销钉和插孔。需要 manifold3d",
+    "Parts to...":
+        "部件转为...",
+    "Divide the whole model into parts: the wheel changes how many, a click and the wheel one, a drag merges":
+        "将整个模型分为部件：滚轮更改数量，点击加滚轮更改单个部件，拖动可合并",
+    "Make Them":
+        "转为",
+    "What the parts become; none: they are only kept in the mesh":
+        "部件转换的结果；无：仅保存在网格中",
+    "Parts":
+        "部件",
+    "How many; 0: those that are kept in the mesh, or as people would most likely take them":
+        "数量；0：保存在网格中的部件，或人们最可能的划分",
+    "Closed":
+        "封闭",
+    "Close the objects where they were cut: solids that make the whole":
+        "封闭物体的切口：成为组成整体的实体",
+    "Smooth Caps":
+        "平滑封盖",
+    "Close them with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+        "用平滑的表面封闭，而不是内部与其余部分分隔的平面",
+    "Cap Material":
+        "封盖材质",
+    "Give the caps a material of their own":
+        "为封盖指定单独的材质",
+    "Origins at Borders":
+        "原点在边界",
+    "Each object turns about the middle of its border":
+        "每个物体绕其边界的中心旋转",
+    "Explode":
+        "爆炸",
+    "How far they are moved apart, by the distance of their middles. The largest one has this as a custom property, too, which can be changed later":
+        "按中心间距将部件移开的程度。最大的物体也将其作为自定义属性，可以之后更改",
+    "Shell":
+        "外壳",
+    "How thick their walls are, by a modifier; 0: solid":
+        "由修改器生成的壁厚；0：实心",
+    "Unwrap":
+        "展开",
+    "Unwrap the mesh along the seams, into a new UV map if it has others":
+        "沿缝合边展开网格，若已有其他 UV 贴图则展开到新的 UV 贴图",
+    "Pegs":
+        "销钉",
+    "A peg and a socket across each cut, where there is room":
+        "在有空间的每个切口处添加销钉和插孔",
+    "Clearance (mm)":
+        "间隙 (mm)",
+    "The gap around each peg, on all sides":
+        "每个销钉四周的间隙",
+    "Wall (mm)":
+        "壁厚 (mm)",
+    "What stays around a socket; thinner walls are told":
+        "插孔周围保留的厚度；更薄的壁会提示",
+    "Bed (mm)":
+        "打印床 (mm)",
+    "The printer's: parts that are larger are split further; 0: large enough":
+        "打印机的打印床：更大的部件会继续分割；0：足够大",
+    "Hide Original":
+        "隐藏原物体",
+    "Hide the object that was divided":
+        "隐藏被分割的物体",
+    "{operator} stopped: the mesh is no longer as it was, or in another mode.":
+        "{operator} 已停止：网格已改变，或处于其他模式。",
+    "This is for an active mesh object, in Object, Edit or Sculpt Mode.":
+        "需要处于物体、编辑或雕刻模式的活动网格物体。",
+    "Dynamic topology changes the faces all the time: switch it off first.":
+        "动态拓扑会不断改变面：请先将其关闭。",
+    "These are no parts of {name}: {reason}":
+        "这些不是 {name} 的部件：{reason}",
+    "{name} is in {count} parts now: {made}.":
+        "{name} 现在分为 {count} 个部件：{made}。",
+    "{count} parts: {made}":
+        "{count} 个部件：{made}",
+    "{count} parts, one of {faces:,} faces: {made}":
+        "{count} 个部件，其中一个有 {faces:,} 个面：{made}",
+    "Kept in the Mesh":
+        "保存在网格中",
+    "Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: {python} -m pip install manifold3d.":
+        "打印需要 Python 包 manifold3d，而 Blender 未包含。安装方法，运行：{python} -m pip install manifold3d。",
+    "{name} is scaled differently along its axes: apply its scale first.":
+        "{name} 沿各轴的缩放不同：请先应用缩放。",
+    "{name} has {count} UV maps, no more are possible: remove one.":
+        "{name} 有 {count} 个 UV 贴图，无法再添加：请移除一个。",
+    "Handle of one vertex":
+        "1 个顶点的手柄",
+    "Handle of {count:,} vertices":
+        "{count:,} 个顶点的手柄",
+    "The whole part":
+        "整个部件",
+    "Joint of {reach:.1f} radii":
+        "{reach:.1f} 倍半径的关节",
+    "The handle is the whole part, so nothing is left to follow it: make the handle smaller.":
+        "手柄占据了整个部件，没有可跟随的部分：请缩小手柄。",
+    "One handle covers another: make it smaller, or put it elsewhere.":
+        "手柄互相覆盖：请缩小，或放到其他位置。",
+    "No part of this limb is beyond its joint and not hidden: make the joint smaller.":
+        "该部分在关节之外没有可见的顶点：请缩小关节。",
+    "Move":
+        "移动",
+    "Rotate":
+        "旋转",
+    "Scale":
+        "缩放",
+    "{movement} along local {axes}":
+        "{movement} 沿局部 {axes} 轴",
+    "{movement} along global {axes}":
+        "{movement} 沿全局 {axes} 轴",
+    "{movement} in local {axes}":
+        "{movement} 在局部 {axes} 平面",
+    "{movement} in global {axes}":
+        "{movement} 在全局 {axes} 平面",
+    "Vertex":
+        "顶点",
+    "Radius":
+        "半径",
+    "Matrix":
+        "矩阵",
+    "Deform Part":
+        "变形部件",
+    "Drag a handle of the part that was picked last: the part follows like a soft body, all beyond it stays":
+        "拖动上次选取部件的手柄：部件像软体一样跟随，其外的一切保持不变",
+    "The part's number; -1: the part that was picked last":
+        "部件的编号；-1：上次选取的部件",
+    "Method":
+        "方法",
+    "As Rigid as Possible":
+        "尽可能刚性",
+    "The part follows the handle and keeps its details":
+        "部件跟随手柄并保留细节",
+    "Proportional":
+        "比例化",
+    "The part moves as a whole, less and less towards its border":
+        "部件整体移动，越靠近边界移动越少",
+    "At the Joint":
+        "在关节处",
+    "The part keeps its shape and turns about its border; what is near that, on either side, bends":
+        "部件保持形状并绕其边界旋转；边界两侧附近会弯曲",
+    "Rings":
+        "环",
+    "So many rings of faces around the part deform with it, for a softer join":
+        "部件周围随之变形的面环数，使衔接更柔和",
+    "Joint":
+        "关节",
+    "How far from the part's border it bends, in radii of the border":
+        "从部件边界起弯曲的范围，以边界半径为单位",
+    "Snap Border":
+        "吸附边界",
+    "Deform the part as far as the creases near its border, not as far as its own border; a part that was picked so is":
+        "变形到部件边界附近的折痕，而不是部件自身的边界；与以此方式选取的部件相同",
+    "Parts are deformed in Edit Mode of a mesh.":
+        "部件变形需在网格的编辑模式下进行。",
+    "There is no handle: drag one in the 3D view.":
+        "没有手柄：请在 3D 视图中拖动一个。",
+    "A handle is a vertex that the mesh doesn't have.":
+        "手柄的顶点在网格中不存在。",
+    "{state}: settling":
+        "{state}：正在稳定",
+    "{state}: getting ready":
+        "{state}：正在准备",
+    "Move Part Proportionally":
+        "比例移动部件",
+    "Move the part that was picked last; its surroundings follow, as far as suits its size. R turns and S scales it":
+        "移动上次选取的部件；周围按其大小跟随。R 旋转，S 缩放",
+    "The part has no vertex inside its border that is not hidden: pick a larger one.":
+        "部件的边界内没有可见的顶点：请选取更大的部件。",
+    "The part is the whole mesh, or a loose piece of it, without a border that would hold it: pick a smaller one, or move it as it is.":
+        "该部件是整个网格或其中松散的一块，没有可固定的边界：请选取更小的部件，或直接移动。",
+    "The faces of the part have no area: there is nothing to deform.":
+        "部件的面没有面积：没有可变形的内容。",
+    "That is not a point of the part.":
+        "该处不是部件上的点。",
+    "The mesh of {name} is linked from another file: make it local first (Object > Relations > Make Local).":
+        "{name} 的网格链接自其他文件：请先设为本地（物体 > 关系 > 设为本地）。",
+    "The mesh of {name} is a library override, which Blender does not edit: make it local first (Object > Relations > Make Local).":
+        "{name} 的网格是库重写，Blender 不会编辑：请先设为本地（物体 > 关系 > 设为本地）。",
+    "This is for an active mesh object, in Edit Mode or Object Mode.":
+        "需要处于编辑模式或物体模式的活动网格物体。",
+    "The build was cancelled.":
+        "查找已取消。",
+    "The mesh {name} is gone, so its parts were left aside.":
+        "网格 {name} 已不存在，因此放弃其部件。",
+    "{name} was edited while its parts were being found, so they were left aside. Find them again when the mesh is as you want it.":
+        "{name} 在查找部件期间被编辑，因此放弃其部件。网格完成后请重新查找。",
+    "What is selected is no part. Pick one with Select Part by Wheel, and confirm it.":
+        "选中的不是部件。请用“滚轮选择部件”选取并确认。",
+    "No part is picked. Pick one with Select Part by Wheel, and confirm it.":
+        "尚未选取部件。请用“滚轮选择部件”选取并确认。",
+    "There is no part {number}: there are {count}.":
+        "没有部件 {number}：共有 {count} 个。",
+    "{name} has no parts for its mesh as it is now. Find them first.":
+        "{name} 的当前网格没有部件。请先查找。",
+    "The parts saved with {name} are of a newer Partwheel than this one, so they are found anew. Update Partwheel to have those of the file.":
+        "与 {name} 一同保存的部件来自更新版本的 Partwheel，因此将重新查找。更新 Partwheel 即可使用文件中的部件。",
+    "Partwheel finds the parts of {name} after those of {other}":
+        "Partwheel 将在 {other} 之后查找 {name} 的部件",
+    "Partwheel finds the parts of {name}: {fraction:.0%}":
+        "Partwheel 正在查找 {name} 的部件：{fraction:.0%}",
+    "Esc: Cancel":
+        "Esc：取消",
+    "Cancelled: no parts were found.":
+        "已取消：未找到部件。",
+    "The panel Partwheel in the sidebar does that.":
+        "侧栏中的 Partwheel 面板可以完成此操作。",
+    "No parts for {name}: {reason}":
+        "{name} 没有部件：{reason}",
+    "A way that was tried first failed: {reason}":
+        "首先尝试的方法失败：{reason}",
+    "{name}, {count:,} faces: its parts were found in {seconds:.1f} s.":
+        "{name}，{count:,} 个面：在 {seconds:.1f} 秒内找到部件。",
+    "Quality":
+        "质量",
+    "0 is the quickest and right for nearly all; from 1.1 on the inside is divided more evenly (1.4 is usual, smaller is slower)":
+        "0 最快，几乎适用于所有情况；从 1.1 起内部划分更均匀（通常为 1.4，越小越慢）",
+    "Open Surfaces":
+        "开放表面",
+    "Take a surface that encloses nothing, such as cloth or a car's door, for a thin solid, instead of refusing it":
+        "将不封闭的表面（如布料或车门）视为薄实体，而不是拒绝",
+    "Exactly":
+        "精确",
+    "Find the parts of a mesh of more than 200,000 triangles on all of these, not on a coarser copy: some ten times the time and memory. The add-on's preferences can have it so for all":
+        "对超过 200,000 个三角形的网格，在全部三角形上而不是较粗的副本上查找部件：时间和内存约为十倍。插件偏好设置可对所有网格启用",
+    "Find Parts of Mesh":
+        "查找网格的部件",
+    "Find the parts of the active mesh, and of other selected ones that have none, at all sizes for the wheel":
+        "查找活动网格以及其他没有部件的选中网格的部件，各种大小供滚轮切换",
+    "The same on behalf of an operator that made the mesh, which stays the last operation, with its panel":
+        "代表创建网格的操作项执行同样的操作，该操作项及其面板仍为上一步操作",
+    "Clear Parts":
+        "清除部件",
+    "Let the parts of the active mesh go, also those saved with the file. The mesh stays as it is":
+        "丢弃活动网格的部件，包括随文件保存的部件。网格保持不变",
+    "The active object has no parts.":
+        "活动物体没有部件。",
+    "Part under the Mouse":
+        "鼠标下的部件",
+    "Face Set":
+        "面组",
+    "Mask":
+        "遮罩",
+    "Vertex Group":
+        "顶点组",
+    "Paint Mask":
+        "绘制遮罩",
+    "Part by Wheel":
+        "滚轮部件",
+    "Pick a part with a click and the mouse wheel, and make it a face set, a mask or a vertex group":
+        "用点击和滚轮选取部件，并将其设为面组、遮罩或顶点组",
+    "Make It":
+        "转为",
+    "What the part becomes":
+        "部件转换的结果",
+    "Usual":
+        "通常",
+    "A face set in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
+        "雕刻模式下为面组，权重绘制下为顶点组，否则为绘制遮罩",
+    "A new face set":
+        "新的面组",
+    "Masked against sculpting":
+        "不受雕刻影响",
+    "Weight 1 in a new vertex group, named after the part; with Extend in the active one, with Deselect none there":
+        "以部件命名的新顶点组，权重为 1；扩展时加入活动顶点组，取消选择时从中移除",
+    "The only faces that can be painted on":
+        "只能在这些面上绘制",
+    "This is for Sculpt Mode and the paint modes of a mesh.":
+        "需要处于网格的雕刻模式或绘制模式。",
+    "Parts can't become this in this mode: {made}.":
+        "此模式下部件不能转为：{made}。",
+    "Face":
+        "面",
+    "The face that was clicked":
+        "被点击的面",
+    "Level":
+        "级别",
+    "Notches of the wheel from the part that the click alone takes: up is positive":
+        "从点击所选部件起的滚轮格数：向上为正",
+    "Extend":
+        "扩展",
+    "Add the part to what is selected, instead of replacing it":
+        "将部件添加到选择项，而不是替换",
+    "Deselect":
+        "取消选择",
+    "Take the part away from what is selected":
+        "从选择项中移除部件",
+    "Move the border of the part to the creases nearby":
+        "将部件的边界移到附近的折痕",
+    "Face {number} can't be picked: {reason}":
+        "无法选取面 {number}：{reason}",
+    "This 3D view does not show the mesh that is being edited.":
+        "此 3D 视图未显示正在编辑的网格。",
+    "Click a face of the mesh":
+        "点击网格的一个面",
+    "What is seen there was made by the modifiers of {name} and belongs to no face of its mesh.":
+        "所见之处由 {name} 的修改器生成，不属于其网格的任何面。",
+    "The parts are found. Start {operator} again to pick them.":
+        "已找到部件。再次启动 {operator} 即可选取。",
+    "Partwheel stopped: the parts were found anew. Pick one of them.":
+        "Partwheel 已停止：部件已重新查找。请选取其中之一。",
+    "There is no face there":
+        "该处没有面",
+    "Part {number} of {count}, {faces:,} faces, {share} of the area":
+        "部件 {number} / {count}，{faces:,} 个面，占面积 {share}",
+    "border in creases":
+        "边界在折痕处",
+    "Select Part by Wheel":
+        "滚轮选择部件",
+    "Pick a part of the mesh with a click, then make it larger or smaller with the mouse wheel":
+        "点击选取网格的部件，然后用鼠标滚轮放大或缩小",
+    "Parts are selected in Edit Mode of a mesh.":
+        "部件选择需在网格的编辑模式下进行。",
+    "Pick a part of the mesh under the mouse, which stays as it is meanwhile, then enter Edit Mode with the part":
+        "选取鼠标下网格的部件（期间网格保持不变），然后带着该部件进入编辑模式",
+    "This is for Object Mode.":
+        "需要处于物体模式。",
+    "There is no mesh under the mouse.":
+        "鼠标下没有网格。",
+    "{name} is an instance, and this 3D view does not show its original: edit it there.":
+        "{name} 是实例，此 3D 视图未显示其原物体：请在原处编辑。",
+    "Toggle Edit Mode":
+        "切换编辑模式",
+    "Select Part":
+        "选择部件",
+    "Select a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "选择网格中有意义的部件。\n点击部件，然后转动滚轮切换到更大或更小的部件。Shift 添加，Ctrl 移除",
+    "Parts are found at the first click":
+        "部件将在首次点击时查找",
+    "Overlay":
+        "叠加层",
+    "The vertex group {name} is locked. Unlock it, or pick the part alone: it gets a group of its own.":
+        "顶点组 {name} 已锁定。请解锁，或单独选取部件：它将获得自己的顶点组。",
+    "{name} has no vertex group that the part could be taken out of.":
+        "{name} 没有可移除部件的顶点组。",
+    "The part was taken out of the vertex group {name}.":
+        "已从顶点组 {name} 中移除部件。",
+    "The part was added to the vertex group {name}.":
+        "已将部件添加到顶点组 {name}。",
+    "The part is the new vertex group {name}.":
+        "部件成为新的顶点组 {name}。",
+    "Save Parts in .blend Files":
+        "在 .blend 文件中保存部件",
+    "Parts that were built are there again when the file is opened. It grows by about 40 bytes a face":
+        "打开文件时恢复已找到的部件。每个面约增加 40 字节",
+    "How small parts are joined to larger ones in builds from now on":
+        "今后查找时，小部件如何合并为更大的部件",
+    "As People See Them":
+        "如人所见",
+    "By what people took for parts on some hundred models: a click alone finds the part that was meant more often. Borders lie in creases, and the two sides of a model that is its own mirror image are alike":
+        "依据人们在数百个模型上对部件的划分：仅点击就更常找到想要的部件。边界位于折痕处，对称模型的两侧相同",
+    "Nearly Convex":
+        "近似凸",
+    "By convexity alone, the most regular and the quickest: a click takes the smallest piece there is, and each notch of the wheel takes one more step":
+        "仅依据凸性，最规则也最快：点击选取最小的块，滚轮每格前进一步",
+    "Large Meshes Exactly":
+        "大型网格精确查找",
+    "Find the parts of meshes of more than 200,000 triangles on all of these, not on a coarser copy: some ten times the time and memory for parts that are mostly the same":
+        "对超过 200,000 个三角形的网格，在全部三角形上而不是较粗的副本上查找部件：时间和内存约为十倍，部件大多相同",
+    "Memory":
+        "内存",
+    "How much of the available memory a build may use (kept on Linux)":
+        "查找可使用的可用内存比例（在 Linux 上遵守）",
+    "Time Limit":
+        "时间限制",
+    "Minutes of processor time after which a build is stopped; 0: two, and two more for each 60,000 triangles, far more than builds take":
+        "超过此处理器时间（分钟）后停止查找；0：两分钟，每 60,000 个三角形再加两分钟，远超所需",
+    "Python":
+        "Python",
+    "The program that parts are found with, a Python 3, in a process of its own; empty: the one that Blender brings, or else one that is installed":
+        "在单独进程中查找部件的程序，需为 Python 3；空：Blender 自带的，否则为已安装的",
+    "Tint the part that is held":
+        "为当前部件着色",
+    "Next Part":
+        "下一个部件",
+    "Tint faintly what the next notch of the wheel adds":
+        "为滚轮下一格所添加的部分淡淡着色",
+    "Convex Hull":
+        "凸壳",
+    "Show the convex hull of the part that is held as glass":
+        "以玻璃形式显示当前部件的凸壳",
+    "All Parts":
+        "所有部件",
+    "Show the parts of the whole mesh at the size of the part that is held, each in a colour of its own":
+        "以当前部件的大小显示整个网格的部件，每个一种颜色",
+    "Pie Menu":
+        "饼菜单",
+    "The part has no mirror image in {name}: it lies across the plane of symmetry, or the model is not the same on both sides.":
+        "该部件在 {name} 中没有镜像：它跨越对称平面，或模型两侧不同。",
+    "Parts are remembered in Edit Mode of a mesh.":
+        "记住部件需在网格的编辑模式下进行。",
+    "The name under which it is remembered":
+        "记住部件所用的名称",
+    "Remember Part":
+        "记住部件",
+    "Give the part (segment, region) that was picked last a name, by which the panel's list selects it again":
+        "为上次选取的部件（分段、区域）命名，面板列表可凭此名称再次选择",
+    "Name":
+        "名称",
+    "The part's name":
+        "部件的名称",
+    "Part {number}":
+        "部件 {number}",
+    "Select Remembered Part":
+        "选择记住的部件",
+    "Select the part that is remembered under this name. Shift adds it to the selection, Ctrl takes it away":
+        "选择以此名称记住的部件。Shift 添加到选择项，Ctrl 从中移除",
+    "Rename Part":
+        "重命名部件",
+    "Give a remembered part another name":
+        "为记住的部件改名",
+    "New Name":
+        "新名称",
+    "The part's name from now on":
+        "部件今后的名称",
+    "Forget Part":
+        "忘记部件",
+    "Forget the name of a part; the mesh stays as it is":
+        "忘记部件的名称；网格保持不变",
+    "No part of {name} as it is now is much like the one remembered as {part}.":
+        "{name} 的当前部件中没有与记住的 {part} 足够相似的。",
+    "No part of {name} is remembered as {part}.":
+        "{name} 没有记住名为 {part} 的部件。",
+    "A part is remembered by a name: it can't be empty.":
+        "部件以名称记住：名称不能为空。",
+    "{name} is too long for a name: it can have {count} letters, fewer of some alphabets.":
+        "{name} 作为名称过长：最多 {count} 个字母，某些文字更少。",
+    "There is a part that is remembered as {name}. Give another name, or forget that one first.":
+        "已有部件以 {name} 记住。请换一个名称，或先忘记该部件。",
+    "Add to what is selected, instead of replacing it":
+        "添加到选择项，而不是替换",
+    "Select Similar Parts":
+        "选择相似部件",
+    "Select all parts (segments, regions) like the one picked last, in shape and size: fingers, legs, horns":
+        "选择与上次选取的部件形状和大小相似的所有部件（分段、区域）：手指、腿、角",
+    "Threshold":
+        "阈值",
+    "How alike parts are that are selected: 1 is the same shape and size, less is more parts":
+        "所选部件的相似程度：1 为形状和大小相同，越小部件越多",
+    "{count} parts, alike from {threshold:.2f} on":
+        "{count} 个部件，相似度不低于 {threshold:.2f}",
+    "Select Mirrored Part":
+        "选择镜像部件",
+    "Select the part (segment, region) on the other side of the model, across its own plane of symmetry":
+        "选择模型另一侧、关于其自身对称平面的部件（分段、区域）",
+    "Plane":
+        "平面",
+    "Of the planes in which the model is its own mirror image, the best one first":
+        "在模型自身镜像对称的平面中，从最佳的开始",
+    "Move the border of the part to the creases nearby, as far as what is inside lets it be there":
+        "在内部允许的范围内，将部件的边界移到附近的折痕",
+    "Close the part with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+        "用平滑的表面封闭部件，而不是内部与其余部分分隔的平面",
+    "Copy Part as Solid":
+        "将部件复制为实体",
+    "Copy the picked part as a solid: a new object, closed where it was cut; Ctrl C, Ctrl V take it to other files":
+        "将选取的部件复制为实体：一个在切口处封闭的新物体；Ctrl C、Ctrl V 可带到其他文件",
+    "Remove Part":
+        "移除部件",
+    "Take the picked part out of the mesh and close the hole":
+        "从网格中取出选取的部件并封闭孔洞",
+    "Split into Solids":
+        "分割为实体",
+    "Make each part of a cut an object of its own: closed solids that fit each other exactly":
+        "将划分的每个部件设为单独的物体：彼此精确相符的封闭实体",
+    "By":
+        "依据",
+    "What decides where to cut":
+        "决定切割位置的依据",
+    "Into so many parts, those that were joined last":
+        "分成这么多部件，即最后合并的那些",
+    "Into so many parts, those that are nearest to convex in total":
+        "分成这么多部件，即总体最接近凸的那些",
+    "Height":
+        "高度",
+    "Into the largest parts of at most this concavity":
+        "分成凹度不超过此值的最大部件",
+    "How many parts":
+        "部件数量",
+    "Largest concavity of a part: the volume between it and its convex hull":
+        "部件的最大凹度：部件与其凸壳之间的体积",
+    "How far the parts are moved apart, by their distance from the middle":
+        "按与中心的距离将部件移开的程度",
+    "Hide the object that was split":
+        "隐藏被分割的物体",
+    "This part has no face of the mesh. Take a larger one.":
+        "该部件没有网格的面。请取更大的部件。",
+    "{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution modifier first, or copy the part.":
+        "{name} 以多个分辨率雕刻，这些会丢失。请先应用其多级精度修改器，或复制部件。",
+    "This part can't be closed: its border crosses itself. Take a larger or smaller one.":
+        "该部件无法封闭：其边界自相交。请取更大或更小的部件。",
+    "Face Set from Part by Wheel":
+        "由滚轮部件创建面组",
+    "Mask from Part by Wheel":
+        "由滚轮部件创建遮罩",
+    "Vertex Group from Part by Wheel":
+        "由滚轮部件创建顶点组",
+    "Paint Mask from Part by Wheel":
+        "由滚轮部件创建绘制遮罩",
+    "Parts as Solids":
+        "部件作为实体",
+    "Deform":
+        "变形",
+    "Drag a Handle":
+        "拖动手柄",
+    "Turn at the Joint":
+        "在关节处旋转",
+    "Within the part, proportionally:":
+        "在部件内，按比例：",
+    "No parts yet":
+        "还没有部件",
+    "Parts came with the file":
+        "部件来自文件",
+    "Vertices have moved since: the parts can be recomputed":
+        "顶点已移动：可以重新计算部件",
+    "The mesh has changed: its parts are found anew at the next use":
+        "网格已更改：下次使用时重新查找部件",
+    "A sheet, not a solid: thicken it, close it, or have it taken for a thin solid":
+        "这是薄片而非实体：请加厚、封闭，或将其视为薄实体",
+    "From the mesh as it is":
+        "来自原网格",
+    "Repaired copy, {off} off":
+        "修复的副本，偏差 {off}",
+    "Points on it, {off} off":
+        "表面上的点，偏差 {off}",
+    "Coarser copy, {off} off":
+        "较粗的副本，偏差 {off}",
+    "Partwheel":
+        "Partwheel",
+    "Duplicate Part":
+        "复制部件",
+    "Take as Thin Solid":
+        "视为薄实体",
+    "Find Exactly":
+        "精确查找",
+    "Recompute":
+        "重新计算",
+    "Part: {share} of the area":
+        "部件：占面积 {share}",
+    "Parts of {count:,} faces":
+        "{count:,} 个面的部件",
+    "Part (Segment, Region, Island)":
+        "部件（分段、区域、孤岛）",
+    "Path of the Part":
+        "部件的路径",
+    "Show the parts that the wheel goes through, from the smallest to the whole, and click one to take it":
+        "显示滚轮经过的部件，从最小到整体，点击即可选取",
+    "Remembered Parts":
+        "记住的部件",
+    "{operator} stopped: the mesh is no longer being edited as it was.":
+        "{operator} 已停止：网格的编辑状态已改变。",
+    "{operator}: start this with the mouse over a 3D view.":
+        "{operator}：请将鼠标置于 3D 视图上再启动。",
+    "Partwheel stopped: {reason}. The full report is in the system console.":
+        "Partwheel 已停止：{reason}。完整报告见系统控制台。",
+    "Larger, Smaller":
+        "更大、更小",
+    "Wheel, ↑↓":
+        "滚轮、↑↓",
+    "Confirm":
+        "确认",
+    "Cancel":
+        "取消",
+    "Pick a Part":
+        "选取部件",
+    "Snap":
+        "吸附",
+    "Number":
+        "编号",
+    "Navigate":
+        "导航",
+    "Drag":
+        "拖动",
+    "Within":
+        "内部",
+    "Similar":
+        "相似",
+    "Copy":
+        "复制",
+    "Remove":
+        "移除",
+    "More, Fewer":
+        "更多、更少",
+    "Drag the Handle, or Put It Elsewhere":
+        "拖动手柄，或放到其他位置",
+    "One More":
+        "再加一个",
+    "Move, Rotate, Scale":
+        "移动、旋转、缩放",
+    "Handle Size":
+        "手柄大小",
+    "Wheel":
+        "滚轮",
+    "Confirm, Recompute Parts":
+        "确认并重新计算部件",
+    "Axis":
+        "轴",
+    "Type":
+        "输入",
+    "Precise":
+        "精确",
+    "Done":
+        "完成",
+    "Shift Wheel":
+        "Shift 滚轮",
+    "Page Up/Down":
+        "Page Up/Down",
+    "Next, Previous Part":
+        "下一个、上一个部件",
+    "Ctrl Wheel":
+        "Ctrl 滚轮",
+    "Swap":
+        "交换",
+    "A Part":
+        "单个部件",
+    "Merge":
+        "合并",
+    "Join, Split":
+        "合并、拆分",
+    "Automatic":
+        "自动",
+    "Groups":
+        "组",
+    "Colours":
+        "颜色",
+    "Slots":
+        "槽",
+    "Print":
+        "打印",
+    "Another":
+        "其他",
+    # Of the library
+    "This part is no solid: it has no face of the surface. Take a larger one.":
+        "该部件不是实体：它没有表面上的面。请取更大的部件。",
+    "The part has no faces: pick one that has some.":
+        "该部件没有面：请选取有面的部件。",
+    "There are no triangles: select a part with faces.":
+        "没有三角形：请选择有面的部件。",
+    "The part's faces are too thin to be deformed. Dissolve degenerate faces or merge vertices by distance first.":
+        "该部件的面过于细薄，无法变形。请先融并简并面，或按间距合并顶点。",
+    "The mesh has no area at all: only edges and points.":
+        "网格没有面积：只有边和点。",
+    "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then taken as thin solids.":
+        "网格是薄片而非实体：它是开放的，封闭它需要与现有同样多的新表面。请加厚（实体化）、封闭，或允许开放表面，将其视为薄实体。",
+    "The surface encloses no volume. Give it some thickness.":
+        "表面未包围任何体积。请赋予一定厚度。",
+    "The mesh is too broken to be repaired. Remesh it and try again.":
+        "网格损坏过于严重，无法修复。请重构网格后重试。",
+    "There is not enough memory to fill this mesh. Decimate it first.":
+        "内存不足，无法填充此网格。请先精简。",
+    "The mesh can't be filled: some faces are too close together to be told apart. Merge vertices by distance, or move the parts that almost touch further apart.":
+        "无法填充网格：某些面过于接近，无法区分。请按间距合并顶点，或将几乎接触的部分移开。",
+    "The mesher moved or merged vertices of the surface, for some are too close together. Merge vertices by distance.":
+        "某些顶点过于接近，填充时被移动或合并。请按间距合并顶点。",
+    "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.":
+        "填充时丢失了部分表面。请重构网格或稍作平滑后重试。",
+    "The mesh has no faces. Choose a mesh object that has some.":
+        "网格没有面。请选择有面的网格物体。",
+    "All vertices are at the same place. Choose a mesh that has an extent.":
+        "所有顶点都在同一位置。请选择有范围的网格。",
+    "The mesh has no part that can be closed. Give it a thickness (Solidify).":
+        "网格没有可以封闭的部分。请加厚（实体化）。",
+    "The surface passes through itself in ways that can't be repaired. Remesh it, or unite its parts with a Boolean.":
+        "表面以无法修复的方式自相交。请重构网格，或用布尔运算合并其各部分。",
+    "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.":
+        "无法填充网格：填充过程不会结束。请重构网格或稍作平滑后重试。",
+}

@@ -1,0 +1,844 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""German."""
+
+WORDS = {
+    "Turn":
+        "Drehung",
+    "About the border's normal":
+        "Um die Normale der Grenze",
+    "Depth":
+        "Tiefe",
+    "How far it is sunk in, times the radius of its border":
+        "Wie tief es eingesenkt wird, mal dem Radius seiner Grenze",
+    "size {size:.2f}, turn {turn:.0f}°, depth {depth:.2f}":
+        "Größe {size:.2f}, Drehung {turn:.0f}°, Tiefe {depth:.2f}",
+    "Place Part":
+        "Teil platzieren",
+    "Place the active part on a surface: it follows the mouse, its border on the surface and turned to it":
+        "Das aktive Teil auf eine Oberfläche setzen: Es folgt der Maus, mit seiner Grenze auf der Oberfläche und nach ihr ausgerichtet",
+    "{operator} stopped: the part is no longer the active object.":
+        "{operator} wurde beendet: Das Teil ist nicht mehr das aktive Objekt.",
+    "Onto":
+        "Auf",
+    "The object that the part is placed on":
+        "Das Objekt, auf das das Teil gesetzt wird",
+    "Location":
+        "Position",
+    "Where its border goes":
+        "Wohin seine Grenze kommt",
+    "Normal":
+        "Normale",
+    "Of the surface there":
+        "Der Oberfläche an dieser Stelle",
+    "Size":
+        "Größe",
+    "Times the size that it had":
+        "Mal der bisherigen Größe",
+    "Fit Border":
+        "Grenze einpassen",
+    "Onto the target's nearest border, where a part was removed, and of its size":
+        "Auf die nächste Grenze des Ziels, wo ein Teil entfernt wurde, und in deren Größe",
+    "Mirror Copy":
+        "Kopie spiegeln",
+    "Add the mirror image across the target's own X axis":
+        "Das Spiegelbild an der eigenen X-Achse des Ziels hinzufügen",
+    "In Object Mode, make the part to be placed the active object.":
+        "Im Objektmodus das Teil, das platziert werden soll, zum aktiven Objekt machen.",
+    "Say which mesh object the part is placed on.":
+        "Es muss angegeben werden, auf welches Mesh-Objekt das Teil gesetzt wird.",
+    "Move the mouse over a surface":
+        "Die Maus über eine Oberfläche bewegen",
+    "There is no surface under the mouse yet":
+        "Unter der Maus ist noch keine Oberfläche",
+    "Onto {name}":
+        "Auf {name}",
+    "fitted":
+        "eingepasst",
+    "with mirror copy":
+        "mit gespiegelter Kopie",
+    "{name} has no border to fit: no part was removed from it.":
+        "{name} hat keine Grenze zum Einpassen: Von dort wurde kein Teil entfernt.",
+    "Swap with Compatible Part":
+        "Gegen passendes Teil tauschen",
+    "Exchange the picked part for one of another object that fits its border; the wheel goes through what there is":
+        "Das gewählte Teil gegen eines von einem anderen Objekt tauschen, das zu seiner Grenze passt; das Mausrad geht durch, was es gibt",
+    "{operator} stopped: the object is no longer the active one.":
+        "{operator} wurde beendet: Das Objekt ist nicht mehr das aktive.",
+    "From":
+        "Von",
+    "The object that the new part comes from; none: those selected, or else all others":
+        "Das Objekt, von dem das neue Teil kommt; keines: die ausgewählten, sonst alle anderen",
+    "Part":
+        "Teil",
+    "The new part's number in that object; -1: the most compatible one":
+        "Die Nummer des neuen Teils in diesem Objekt; -1: das am besten passende",
+    "Times the size at which the borders fit":
+        "Mal der Größe, in der die Grenzen passen",
+    "Mirror":
+        "Spiegeln",
+    "Take the part's mirror image":
+        "Das Spiegelbild des Teils nehmen",
+    "Blend":
+        "Überblenden",
+    "Width of a smooth transition on either side of the seam, times its radius":
+        "Breite eines weichen Übergangs auf beiden Seiten der Naht, mal deren Radius",
+    "Find Parts":
+        "Teile finden",
+    "Find the parts of the new mesh at once, in a process of its own":
+        "Die Teile des neuen Meshs gleich finden, in einem eigenen Prozess",
+    "There is no mesh object {name}.":
+        "Es gibt kein Mesh-Objekt {name}.",
+    "{name}, part {number} of {count}, {likeness:.0%} alike":
+        "{name}, Teil {number} von {count}, zu {likeness:.0%} ähnlich",
+    "mirrored":
+        "gespiegelt",
+    "Leave Edit Mode":
+        "Bearbeitungsmodus verlassen",
+    "The part is the whole model: nothing would be left to put another part on. Pick a smaller one.":
+        "Das Teil ist das ganze Modell: Es bliebe nichts, worauf ein anderes Teil gesetzt werden könnte. Ein kleineres wählen.",
+    "The part has no border with the rest of the model, so there is nothing to fit another part to. Pick one that was grown from the model, not a piece of its own.":
+        "Das Teil hat keine Grenze zum übrigen Modell, also nichts, woran ein anderes Teil passen könnte. Eines wählen, das aus dem Modell herausgewachsen ist, kein Stück für sich.",
+    "No other object has parts. Find the parts of the one that the new part comes from, and select it too; or paste a part that was copied as a solid.":
+        "Kein anderes Objekt hat Teile. Die Teile dessen finden, von dem das neue Teil kommt, und es mit auswählen; oder ein Teil einfügen, das als Volumenkörper kopiert wurde.",
+    "No part there has a border that could be fitted to this one's.":
+        "Dort hat kein Teil eine Grenze, die in die von diesem passen würde.",
+    "{name} has no part {number}.":
+        "{name} hat kein Teil {number}.",
+    "That part of {name} has no border that could be fitted to this one's.":
+        "Dieses Teil von {name} hat keine Grenze, die in die von diesem passen würde.",
+    "{name} was changed and has other parts now. Start again.":
+        "{name} wurde geändert und hat jetzt andere Teile. Von vorn beginnen.",
+    "it has no faces":
+        "es hat keine Flächen",
+    "{count} edges have not just two faces":
+        "{count} Kanten haben nicht genau zwei Flächen",
+    "at {count} edges the faces wind against each other":
+        "an {count} Kanten sind die Flächen gegeneinander gerichtet",
+    "{count} vertices are loose or join parts that only touch there":
+        "{count} Vertices sind lose oder verbinden Teile, die sich dort nur berühren",
+    "{name} is no solid: {reason}. Repair it, or copy its part anew.":
+        "{name} ist kein Volumenkörper: {reason}. Reparieren oder das Teil neu kopieren.",
+    "{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).":
+        "{name} ist kein Volumenkörper: Innen ist außen. Die Flächen nach außen wenden (Normalen nach außen neu berechnen).",
+    "by {solver} within: {reason}":
+        "mit {solver}, innen: {reason}",
+    "by {solver}: {reason}":
+        "mit {solver}: {reason}",
+    "{one} and {other} can't be united ({reasons}). Move one of them a little: faces that lie in each other are the usual cause.":
+        "{one} und {other} können nicht vereinigt werden ({reasons}). Eines ein wenig bewegen: Meist liegt es an Flächen, die ineinander liegen.",
+    "its volume would be {share:.0%} of that of the two":
+        "sein Volumen wäre {share:.0%} von dem der beiden",
+    "one of them was left out":
+        "eines der beiden wurde ausgelassen",
+    "Select the parts, and then the mesh object that they are to become part of, in Object Mode.":
+        "Im Objektmodus die Teile auswählen, danach das Mesh-Objekt, zu dem sie gehören sollen.",
+    "Unite Solids":
+        "Volumenkörper vereinigen",
+    "Unite the other selected solids with the active one into a single closed mesh":
+        "Die anderen ausgewählten Volumenkörper mit dem aktiven zu einem einzigen geschlossenen Mesh vereinigen",
+    "Width of a smooth transition on either side of each seam, times the seam's radius; 0: the seam stays a crease":
+        "Breite eines weichen Übergangs auf beiden Seiten jeder Naht, mal deren Radius; 0: Die Naht bleibt ein Knick",
+    "Find the parts of the united mesh at once, in a process of its own":
+        "Die Teile des vereinigten Meshs gleich finden, in einem eigenen Prozess",
+    "Keep Parts":
+        "Teile behalten",
+    "Leave the other objects as they are":
+        "Die anderen Objekte lassen, wie sie sind",
+    "{name} is one closed mesh now, of {count:,} faces (solver {solver}).":
+        "{name} ist jetzt ein geschlossenes Mesh aus {count:,} Flächen (Löser {solver}).",
+    "The vertex group {name} is locked. Unlock it, or give it another name.":
+        "Die Vertex-Gruppe {name} ist gesperrt. Entsperren oder ihr einen anderen Namen geben.",
+    "Face Sets":
+        "Face Sets",
+    "One for each part, in place of all that there are":
+        "Eines für jedes Teil, anstelle aller vorhandenen",
+    "Vertex Groups":
+        "Vertex-Gruppen",
+    "For an armature: they fall smoothly across the borders and add up to 1":
+        "Für eine Armature: Sie fallen weich über die Grenzen ab und ergeben zusammen 1",
+    "Materials in Colours":
+        "Farbige Materialien",
+    "A material of its own colour for each part":
+        "Ein Material in eigener Farbe für jedes Teil",
+    "Material Slots":
+        "Material-Slots",
+    "The model's own materials, with a slot for each part":
+        "Die eigenen Materialien des Modells, mit einem Slot für jedes Teil",
+    "Seams":
+        "Nähte",
+    "For unwrapping: along the borders, in creases, and where a part would not lie flat":
+        "Zum Abwickeln: entlang der Grenzen, in Knicken und wo ein Teil sonst nicht flach läge",
+    "Objects":
+        "Objekte",
+    "Each part an object that hangs on the next one":
+        "Jedes Teil ein Objekt, das am nächsten hängt",
+    "Bones":
+        "Knochen",
+    "An armature with a bone for each part, and the vertex groups for it, ready to be posed":
+        "Eine Armature mit einem Knochen für jedes Teil und den Vertex-Gruppen dazu, bereit zum Posieren",
+    "For Printing":
+        "Zum Drucken",
+    "Closed objects with flat cuts, pegs and sockets, checked. Needs manifold3d":
+        "Geschlossene Objekte mit ebenen Schnitten, Zapfen und Löchern, geprüft. Braucht manifold3d",
+    "Parts to...":
+        "Teile zu ...",
+    "Divide the whole model into parts: the wheel changes how many, a click and the wheel one, a drag merges":
+        "Das ganze Modell in Teile zerlegen: Das Mausrad ändert, wie viele, ein Klick und das Rad eines, Ziehen vereint",
+    "Make Them":
+        "Machen zu",
+    "What the parts become; none: they are only kept in the mesh":
+        "Was aus den Teilen wird; nichts: Sie werden nur im Mesh gemerkt",
+    "Parts":
+        "Teile",
+    "How many; 0: those that are kept in the mesh, or as people would most likely take them":
+        "Wie viele; 0: die im Mesh gemerkten, oder wie Menschen sie am ehesten sehen würden",
+    "Closed":
+        "Geschlossen",
+    "Close the objects where they were cut: solids that make the whole":
+        "Die Objekte schließen, wo sie geschnitten wurden: Volumenkörper, die zusammen das Ganze ergeben",
+    "Smooth Caps":
+        "Glatte Deckel",
+    "Close them with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+        "Mit einer glatten Oberfläche schließen statt mit den ebenen Facetten im Inneren, die es vom Rest trennen",
+    "Cap Material":
+        "Deckel-Material",
+    "Give the caps a material of their own":
+        "Den Deckeln ein eigenes Material geben",
+    "Origins at Borders":
+        "Ursprünge an Grenzen",
+    "Each object turns about the middle of its border":
+        "Jedes Objekt dreht sich um die Mitte seiner Grenze",
+    "Explode":
+        "Explodieren",
+    "How far they are moved apart, by the distance of their middles. The largest one has this as a custom property, too, which can be changed later":
+        "Wie weit sie auseinandergerückt werden, im Verhältnis zum Abstand ihrer Mitten. Das größte hat dies auch als benutzerdefinierte Eigenschaft, die sich später ändern lässt",
+    "Shell":
+        "Schale",
+    "How thick their walls are, by a modifier; 0: solid":
+        "Wie dick ihre Wände sind, durch einen Modifikator; 0: massiv",
+    "Unwrap":
+        "Abwickeln",
+    "Unwrap the mesh along the seams, into a new UV map if it has others":
+        "Das Mesh entlang der Nähte abwickeln, in eine neue UV-Map, wenn es andere hat",
+    "Pegs":
+        "Zapfen",
+    "A peg and a socket across each cut, where there is room":
+        "Ein Zapfen und ein Loch an jedem Schnitt, wo Platz ist",
+    "Clearance (mm)":
+        "Spiel (mm)",
+    "The gap around each peg, on all sides":
+        "Der Spalt um jeden Zapfen, auf allen Seiten",
+    "Wall (mm)":
+        "Wand (mm)",
+    "What stays around a socket; thinner walls are told":
+        "Was um ein Loch stehen bleibt; dünnere Wände werden gemeldet",
+    "Bed (mm)":
+        "Druckbett (mm)",
+    "The printer's: parts that are larger are split further; 0: large enough":
+        "Das des Druckers: Größere Teile werden weiter zerlegt; 0: groß genug",
+    "Hide Original":
+        "Original ausblenden",
+    "Hide the object that was divided":
+        "Das zerlegte Objekt ausblenden",
+    "{operator} stopped: the mesh is no longer as it was, or in another mode.":
+        "{operator} wurde beendet: Das Mesh ist nicht mehr, wie es war, oder in einem anderen Modus.",
+    "This is for an active mesh object, in Object, Edit or Sculpt Mode.":
+        "Dies ist für ein aktives Mesh-Objekt, im Objekt-, Bearbeitungs- oder Skulpturmodus.",
+    "Dynamic topology changes the faces all the time: switch it off first.":
+        "Dynamische Topologie ändert die Flächen ständig: erst abschalten.",
+    "These are no parts of {name}: {reason}":
+        "Dies sind keine Teile von {name}: {reason}",
+    "{name} is in {count} parts now: {made}.":
+        "{name} ist jetzt in {count} Teilen: {made}.",
+    "{count} parts: {made}":
+        "{count} Teile: {made}",
+    "{count} parts, one of {faces:,} faces: {made}":
+        "{count} Teile, eines mit {faces:,} Flächen: {made}",
+    "Kept in the Mesh":
+        "Im Mesh gemerkt",
+    "Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: {python} -m pip install manifold3d.":
+        "Zum Drucken wird das Python-Paket manifold3d gebraucht, das Blender nicht hat. So wird es installiert: {python} -m pip install manifold3d.",
+    "{name} is scaled differently along its axes: apply its scale first.":
+        "{name} ist entlang seiner Achsen verschieden skaliert: erst die Skalierung anwenden.",
+    "{name} has {count} UV maps, no more are possible: remove one.":
+        "{name} hat {count} UV-Maps, mehr sind nicht möglich: eine entfernen.",
+    "Handle of one vertex":
+        "Griff aus einem Vertex",
+    "Handle of {count:,} vertices":
+        "Griff aus {count:,} Vertices",
+    "The whole part":
+        "Das ganze Teil",
+    "Joint of {reach:.1f} radii":
+        "Gelenk von {reach:.1f} Radien",
+    "The handle is the whole part, so nothing is left to follow it: make the handle smaller.":
+        "Der Griff ist das ganze Teil, nichts bleibt, was ihm folgen könnte: den Griff verkleinern.",
+    "One handle covers another: make it smaller, or put it elsewhere.":
+        "Ein Griff verdeckt einen anderen: verkleinern oder anderswo setzen.",
+    "No part of this limb is beyond its joint and not hidden: make the joint smaller.":
+        "Kein Teil dieses Glieds liegt jenseits des Gelenks und ist sichtbar: das Gelenk verkleinern.",
+    "Move":
+        "Bewegen",
+    "Rotate":
+        "Rotieren",
+    "Scale":
+        "Skalieren",
+    "{movement} along local {axes}":
+        "{movement} entlang lokal {axes}",
+    "{movement} along global {axes}":
+        "{movement} entlang global {axes}",
+    "{movement} in local {axes}":
+        "{movement} in lokal {axes}",
+    "{movement} in global {axes}":
+        "{movement} in global {axes}",
+    "Vertex":
+        "Vertex",
+    "Radius":
+        "Radius",
+    "Matrix":
+        "Matrix",
+    "Deform Part":
+        "Teil verformen",
+    "Drag a handle of the part that was picked last: the part follows like a soft body, all beyond it stays":
+        "Einen Griff des zuletzt gewählten Teils ziehen: Das Teil folgt wie ein weicher Körper, alles jenseits bleibt",
+    "The part's number; -1: the part that was picked last":
+        "Die Nummer des Teils; -1: das zuletzt gewählte",
+    "Method":
+        "Methode",
+    "As Rigid as Possible":
+        "So starr wie möglich",
+    "The part follows the handle and keeps its details":
+        "Das Teil folgt dem Griff und behält seine Details",
+    "Proportional":
+        "Proportional",
+    "The part moves as a whole, less and less towards its border":
+        "Das Teil bewegt sich als Ganzes, zu seiner Grenze hin immer weniger",
+    "At the Joint":
+        "Am Gelenk",
+    "The part keeps its shape and turns about its border; what is near that, on either side, bends":
+        "Das Teil behält seine Form und dreht sich um seine Grenze; was ihr auf beiden Seiten nahe ist, biegt sich",
+    "Rings":
+        "Ringe",
+    "So many rings of faces around the part deform with it, for a softer join":
+        "So viele Ringe von Flächen um das Teil verformen sich mit, für einen weicheren Übergang",
+    "Joint":
+        "Gelenk",
+    "How far from the part's border it bends, in radii of the border":
+        "Wie weit von der Grenze des Teils es sich biegt, in Radien der Grenze",
+    "Snap Border":
+        "Grenze einrasten",
+    "Deform the part as far as the creases near its border, not as far as its own border; a part that was picked so is":
+        "Das Teil bis zu den Knicken nahe seiner Grenze verformen, nicht bis zur eigenen Grenze; wie ein Teil, das so gewählt wurde",
+    "Parts are deformed in Edit Mode of a mesh.":
+        "Teile werden im Bearbeitungsmodus eines Meshs verformt.",
+    "There is no handle: drag one in the 3D view.":
+        "Es gibt keinen Griff: einen in der 3D-Ansicht ziehen.",
+    "A handle is a vertex that the mesh doesn't have.":
+        "Ein Griff ist ein Vertex, den das Mesh nicht hat.",
+    "{state}: settling":
+        "{state}: kommt zur Ruhe",
+    "{state}: getting ready":
+        "{state}: wird vorbereitet",
+    "Move Part Proportionally":
+        "Teil proportional bewegen",
+    "Move the part that was picked last; its surroundings follow, as far as suits its size. R turns and S scales it":
+        "Das zuletzt gewählte Teil bewegen; seine Umgebung folgt, so weit es seiner Größe entspricht. R rotiert und S skaliert es",
+    "The part has no vertex inside its border that is not hidden: pick a larger one.":
+        "Das Teil hat innerhalb seiner Grenze keinen sichtbaren Vertex: ein größeres wählen.",
+    "The part is the whole mesh, or a loose piece of it, without a border that would hold it: pick a smaller one, or move it as it is.":
+        "Das Teil ist das ganze Mesh oder ein loses Stück davon, ohne eine Grenze, die es halten würde: ein kleineres wählen oder es bewegen, wie es ist.",
+    "The faces of the part have no area: there is nothing to deform.":
+        "Die Flächen des Teils haben keinen Inhalt: Es gibt nichts zu verformen.",
+    "That is not a point of the part.":
+        "Dies ist kein Punkt des Teils.",
+    "The mesh of {name} is linked from another file: make it local first (Object > Relations > Make Local).":
+        "Das Mesh von {name} ist aus einer anderen Datei verknüpft: erst lokal machen (Objekt > Beziehungen > Lokal machen).",
+    "The mesh of {name} is a library override, which Blender does not edit: make it local first (Object > Relations > Make Local).":
+        "Das Mesh von {name} ist eine Bibliotheksüberschreibung, die Blender nicht bearbeitet: erst lokal machen (Objekt > Beziehungen > Lokal machen).",
+    "This is for an active mesh object, in Edit Mode or Object Mode.":
+        "Dies ist für ein aktives Mesh-Objekt, im Bearbeitungs- oder Objektmodus.",
+    "The build was cancelled.":
+        "Die Suche nach Teilen wurde abgebrochen.",
+    "The mesh {name} is gone, so its parts were left aside.":
+        "Das Mesh {name} ist nicht mehr da, seine Teile wurden verworfen.",
+    "{name} was edited while its parts were being found, so they were left aside. Find them again when the mesh is as you want it.":
+        "{name} wurde bearbeitet, während seine Teile gesucht wurden, sie wurden verworfen. Erneut suchen, wenn das Mesh ist, wie es sein soll.",
+    "What is selected is no part. Pick one with Select Part by Wheel, and confirm it.":
+        "Die Auswahl ist kein Teil. Eines mit „Teil per Mausrad auswählen“ wählen und bestätigen.",
+    "No part is picked. Pick one with Select Part by Wheel, and confirm it.":
+        "Kein Teil ist gewählt. Eines mit „Teil per Mausrad auswählen“ wählen und bestätigen.",
+    "There is no part {number}: there are {count}.":
+        "Es gibt kein Teil {number}: Es sind {count}.",
+    "{name} has no parts for its mesh as it is now. Find them first.":
+        "{name} hat keine Teile für sein Mesh, wie es jetzt ist. Erst Teile finden.",
+    "The parts saved with {name} are of a newer Partwheel than this one, so they are found anew. Update Partwheel to have those of the file.":
+        "Die mit {name} gespeicherten Teile sind von einem neueren Partwheel, darum werden sie neu gesucht. Partwheel aktualisieren, um die aus der Datei zu nutzen.",
+    "Partwheel finds the parts of {name} after those of {other}":
+        "Partwheel findet die Teile von {name} nach denen von {other}",
+    "Partwheel finds the parts of {name}: {fraction:.0%}":
+        "Partwheel findet die Teile von {name}: {fraction:.0%}",
+    "Esc: Cancel":
+        "Esc: Abbrechen",
+    "Cancelled: no parts were found.":
+        "Abgebrochen: Es wurden keine Teile gefunden.",
+    "The panel Partwheel in the sidebar does that.":
+        "Das geht im Panel Partwheel in der Seitenleiste.",
+    "No parts for {name}: {reason}":
+        "Keine Teile für {name}: {reason}",
+    "A way that was tried first failed: {reason}":
+        "Ein Weg, der zuerst versucht wurde, ist fehlgeschlagen: {reason}",
+    "{name}, {count:,} faces: its parts were found in {seconds:.1f} s.":
+        "{name}, {count:,} Flächen: Die Teile wurden in {seconds:.1f} s gefunden.",
+    "Quality":
+        "Qualität",
+    "0 is the quickest and right for nearly all; from 1.1 on the inside is divided more evenly (1.4 is usual, smaller is slower)":
+        "0 ist am schnellsten und für fast alles richtig; ab 1,1 wird das Innere gleichmäßiger geteilt (1,4 ist üblich, kleiner ist langsamer)",
+    "Open Surfaces":
+        "Offene Oberflächen",
+    "Take a surface that encloses nothing, such as cloth or a car's door, for a thin solid, instead of refusing it":
+        "Eine Oberfläche, die nichts umschließt, etwa Stoff oder eine Autotür, als dünnen Volumenkörper nehmen, statt sie abzulehnen",
+    "Exactly":
+        "Exakt",
+    "Find the parts of a mesh of more than 200,000 triangles on all of these, not on a coarser copy: some ten times the time and memory. The add-on's preferences can have it so for all":
+        "Die Teile eines Meshs von mehr als 200.000 Dreiecken auf allen davon finden, nicht auf einer gröberen Kopie: etwa zehnmal so viel Zeit und Speicher. In den Einstellungen des Add-ons geht es für alle",
+    "Find Parts of Mesh":
+        "Teile des Meshs finden",
+    "Find the parts of the active mesh, and of other selected ones that have none, at all sizes for the wheel":
+        "Die Teile des aktiven Meshs, und anderer ausgewählter ohne Teile, in allen Größen für das Mausrad finden",
+    "The same on behalf of an operator that made the mesh, which stays the last operation, with its panel":
+        "Dasselbe für einen Operator, der das Mesh gemacht hat und mit seinem Panel die letzte Operation bleibt",
+    "Clear Parts":
+        "Teile löschen",
+    "Let the parts of the active mesh go, also those saved with the file. The mesh stays as it is":
+        "Die Teile des aktiven Meshs vergessen, auch die mit der Datei gespeicherten. Das Mesh bleibt, wie es ist",
+    "The active object has no parts.":
+        "Das aktive Objekt hat keine Teile.",
+    "Part under the Mouse":
+        "Teil unter der Maus",
+    "Face Set":
+        "Face Set",
+    "Mask":
+        "Maske",
+    "Vertex Group":
+        "Vertex-Gruppe",
+    "Paint Mask":
+        "Malmaske",
+    "Part by Wheel":
+        "Teil per Mausrad",
+    "Pick a part with a click and the mouse wheel, and make it a face set, a mask or a vertex group":
+        "Ein Teil mit Klick und Mausrad wählen und es zu einem Face Set, einer Maske oder einer Vertex-Gruppe machen",
+    "Make It":
+        "Machen zu",
+    "What the part becomes":
+        "Was aus dem Teil wird",
+    "Usual":
+        "Üblich",
+    "A face set in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
+        "Ein Face Set im Skulpturmodus, eine Vertex-Gruppe beim Malen von Gewichten, sonst eine Malmaske",
+    "A new face set":
+        "Ein neues Face Set",
+    "Masked against sculpting":
+        "Vor dem Modellieren geschützt",
+    "Weight 1 in a new vertex group, named after the part; with Extend in the active one, with Deselect none there":
+        "Gewicht 1 in einer neuen Vertex-Gruppe mit dem Namen des Teils; mit Erweitern in der aktiven, mit Abwählen dort keines",
+    "The only faces that can be painted on":
+        "Nur auf diesen Flächen kann gemalt werden",
+    "This is for Sculpt Mode and the paint modes of a mesh.":
+        "Dies ist für den Skulpturmodus und die Malmodi eines Meshs.",
+    "Parts can't become this in this mode: {made}.":
+        "Dazu können Teile in diesem Modus nicht werden: {made}.",
+    "Face":
+        "Fläche",
+    "The face that was clicked":
+        "Die angeklickte Fläche",
+    "Level":
+        "Stufe",
+    "Notches of the wheel from the part that the click alone takes: up is positive":
+        "Rasten des Mausrads ab dem Teil, das der Klick allein nimmt: aufwärts ist positiv",
+    "Extend":
+        "Erweitern",
+    "Add the part to what is selected, instead of replacing it":
+        "Das Teil zur Auswahl hinzufügen, statt sie zu ersetzen",
+    "Deselect":
+        "Abwählen",
+    "Take the part away from what is selected":
+        "Das Teil aus der Auswahl nehmen",
+    "Move the border of the part to the creases nearby":
+        "Die Grenze des Teils in die Knicke nahebei verlegen",
+    "Face {number} can't be picked: {reason}":
+        "Die Fläche {number} kann nicht gewählt werden: {reason}",
+    "This 3D view does not show the mesh that is being edited.":
+        "Diese 3D-Ansicht zeigt das Mesh nicht, das bearbeitet wird.",
+    "Click a face of the mesh":
+        "Eine Fläche des Meshs anklicken",
+    "What is seen there was made by the modifiers of {name} and belongs to no face of its mesh.":
+        "Was dort zu sehen ist, haben die Modifikatoren von {name} gemacht, es gehört zu keiner Fläche des Meshs.",
+    "The parts are found. Start {operator} again to pick them.":
+        "Die Teile sind gefunden. {operator} erneut starten, um sie zu wählen.",
+    "Partwheel stopped: the parts were found anew. Pick one of them.":
+        "Partwheel wurde beendet: Die Teile wurden neu gefunden. Eines davon wählen.",
+    "There is no face there":
+        "Dort ist keine Fläche",
+    "Part {number} of {count}, {faces:,} faces, {share} of the area":
+        "Teil {number} von {count}, {faces:,} Flächen, {share} der Oberfläche",
+    "border in creases":
+        "Grenze in Knicken",
+    "Select Part by Wheel":
+        "Teil per Mausrad auswählen",
+    "Pick a part of the mesh with a click, then make it larger or smaller with the mouse wheel":
+        "Ein Teil des Meshs mit einem Klick wählen und dann mit dem Mausrad vergrößern oder verkleinern",
+    "Parts are selected in Edit Mode of a mesh.":
+        "Teile werden im Bearbeitungsmodus eines Meshs ausgewählt.",
+    "Pick a part of the mesh under the mouse, which stays as it is meanwhile, then enter Edit Mode with the part":
+        "Ein Teil des Meshs unter der Maus wählen, das dabei bleibt, wie es ist, und dann damit in den Bearbeitungsmodus wechseln",
+    "This is for Object Mode.":
+        "Dies ist für den Objektmodus.",
+    "There is no mesh under the mouse.":
+        "Unter der Maus ist kein Mesh.",
+    "{name} is an instance, and this 3D view does not show its original: edit it there.":
+        "{name} ist eine Instanz, und diese 3D-Ansicht zeigt ihr Original nicht: dort bearbeiten.",
+    "Toggle Edit Mode":
+        "Bearbeitungsmodus umschalten",
+    "Select Part":
+        "Teil auswählen",
+    "Select a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "Ein sinnvolles Teil des Meshs auswählen.\nEin Teil anklicken, dann mit dem Mausrad zum nächstgrößeren oder -kleineren drehen. Umschalt fügt hinzu, Strg nimmt weg",
+    "Parts are found at the first click":
+        "Die Teile werden beim ersten Klick gefunden",
+    "Overlay":
+        "Overlay",
+    "The vertex group {name} is locked. Unlock it, or pick the part alone: it gets a group of its own.":
+        "Die Vertex-Gruppe {name} ist gesperrt. Entsperren oder das Teil allein wählen: Es bekommt eine eigene Gruppe.",
+    "{name} has no vertex group that the part could be taken out of.":
+        "{name} hat keine Vertex-Gruppe, aus der das Teil genommen werden könnte.",
+    "The part was taken out of the vertex group {name}.":
+        "Das Teil wurde aus der Vertex-Gruppe {name} genommen.",
+    "The part was added to the vertex group {name}.":
+        "Das Teil wurde zur Vertex-Gruppe {name} hinzugefügt.",
+    "The part is the new vertex group {name}.":
+        "Das Teil ist die neue Vertex-Gruppe {name}.",
+    "Save Parts in .blend Files":
+        "Teile in .blend-Dateien speichern",
+    "Parts that were built are there again when the file is opened. It grows by about 40 bytes a face":
+        "Gefundene Teile sind wieder da, wenn die Datei geöffnet wird. Sie wächst um etwa 40 Byte je Fläche",
+    "How small parts are joined to larger ones in builds from now on":
+        "Wie ab jetzt kleine Teile zu größeren verbunden werden",
+    "As People See Them":
+        "Wie Menschen sie sehen",
+    "By what people took for parts on some hundred models: a click alone finds the part that was meant more often. Borders lie in creases, and the two sides of a model that is its own mirror image are alike":
+        "Nach dem, was Menschen bei einigen hundert Modellen für Teile hielten: Ein Klick allein findet öfter das gemeinte Teil. Grenzen liegen in Knicken, und die beiden Seiten eines spiegelgleichen Modells sind gleich",
+    "Nearly Convex":
+        "Nahezu konvex",
+    "By convexity alone, the most regular and the quickest: a click takes the smallest piece there is, and each notch of the wheel takes one more step":
+        "Nur nach Konvexität, am regelmäßigsten und schnellsten: Ein Klick nimmt das kleinste Stück, jede Raste des Mausrads geht einen Schritt weiter",
+    "Large Meshes Exactly":
+        "Große Meshes exakt",
+    "Find the parts of meshes of more than 200,000 triangles on all of these, not on a coarser copy: some ten times the time and memory for parts that are mostly the same":
+        "Die Teile von Meshes mit mehr als 200.000 Dreiecken auf allen davon finden, nicht auf einer gröberen Kopie: etwa zehnmal so viel Zeit und Speicher für meist dieselben Teile",
+    "Memory":
+        "Speicher",
+    "How much of the available memory a build may use (kept on Linux)":
+        "Wie viel des verfügbaren Speichers eine Suche nach Teilen nutzen darf (unter Linux eingehalten)",
+    "Time Limit":
+        "Zeitlimit",
+    "Minutes of processor time after which a build is stopped; 0: two, and two more for each 60,000 triangles, far more than builds take":
+        "Minuten Prozessorzeit, nach denen eine Suche abgebrochen wird; 0: zwei, und zwei weitere je 60.000 Dreiecke, weit mehr als nötig",
+    "Python":
+        "Python",
+    "The program that parts are found with, a Python 3, in a process of its own; empty: the one that Blender brings, or else one that is installed":
+        "Das Programm, mit dem Teile gefunden werden, ein Python 3, in einem eigenen Prozess; leer: das von Blender mitgebrachte, sonst ein installiertes",
+    "Tint the part that is held":
+        "Das gehaltene Teil einfärben",
+    "Next Part":
+        "Nächstes Teil",
+    "Tint faintly what the next notch of the wheel adds":
+        "Schwach einfärben, was die nächste Raste des Mausrads hinzufügt",
+    "Convex Hull":
+        "Konvexe Hülle",
+    "Show the convex hull of the part that is held as glass":
+        "Die konvexe Hülle des gehaltenen Teils als Glas zeigen",
+    "All Parts":
+        "Alle Teile",
+    "Show the parts of the whole mesh at the size of the part that is held, each in a colour of its own":
+        "Die Teile des ganzen Meshs in der Größe des gehaltenen zeigen, jedes in einer eigenen Farbe",
+    "Pie Menu":
+        "Kreismenü",
+    "The part has no mirror image in {name}: it lies across the plane of symmetry, or the model is not the same on both sides.":
+        "Das Teil hat kein Spiegelbild in {name}: Es liegt quer zur Symmetrieebene, oder das Modell ist nicht auf beiden Seiten gleich.",
+    "Parts are remembered in Edit Mode of a mesh.":
+        "Teile werden im Bearbeitungsmodus eines Meshs gemerkt.",
+    "The name under which it is remembered":
+        "Der Name, unter dem es gemerkt ist",
+    "Remember Part":
+        "Teil merken",
+    "Give the part (segment, region) that was picked last a name, by which the panel's list selects it again":
+        "Dem zuletzt gewählten Teil (Segment, Region) einen Namen geben, unter dem die Liste im Panel es wieder auswählt",
+    "Name":
+        "Name",
+    "The part's name":
+        "Der Name des Teils",
+    "Part {number}":
+        "Teil {number}",
+    "Select Remembered Part":
+        "Gemerktes Teil auswählen",
+    "Select the part that is remembered under this name. Shift adds it to the selection, Ctrl takes it away":
+        "Das unter diesem Namen gemerkte Teil auswählen. Umschalt fügt es zur Auswahl hinzu, Strg nimmt es weg",
+    "Rename Part":
+        "Teil umbenennen",
+    "Give a remembered part another name":
+        "Einem gemerkten Teil einen anderen Namen geben",
+    "New Name":
+        "Neuer Name",
+    "The part's name from now on":
+        "Der Name des Teils ab jetzt",
+    "Forget Part":
+        "Teil vergessen",
+    "Forget the name of a part; the mesh stays as it is":
+        "Den Namen eines Teils vergessen; das Mesh bleibt, wie es ist",
+    "No part of {name} as it is now is much like the one remembered as {part}.":
+        "Kein Teil von {name}, wie es jetzt ist, gleicht dem als {part} gemerkten.",
+    "No part of {name} is remembered as {part}.":
+        "Kein Teil von {name} ist als {part} gemerkt.",
+    "A part is remembered by a name: it can't be empty.":
+        "Ein Teil wird unter einem Namen gemerkt: Er darf nicht leer sein.",
+    "{name} is too long for a name: it can have {count} letters, fewer of some alphabets.":
+        "{name} ist als Name zu lang: Er kann {count} Buchstaben haben, in manchen Schriften weniger.",
+    "There is a part that is remembered as {name}. Give another name, or forget that one first.":
+        "Ein Teil ist schon als {name} gemerkt. Einen anderen Namen geben oder jenes erst vergessen.",
+    "Add to what is selected, instead of replacing it":
+        "Zur Auswahl hinzufügen, statt sie zu ersetzen",
+    "Select Similar Parts":
+        "Ähnliche Teile auswählen",
+    "Select all parts (segments, regions) like the one picked last, in shape and size: fingers, legs, horns":
+        "Alle Teile (Segmente, Regionen) wie das zuletzt gewählte auswählen, nach Form und Größe: Finger, Beine, Hörner",
+    "Threshold":
+        "Schwellenwert",
+    "How alike parts are that are selected: 1 is the same shape and size, less is more parts":
+        "Wie ähnlich Teile sind, die ausgewählt werden: 1 ist gleiche Form und Größe, weniger ergibt mehr Teile",
+    "{count} parts, alike from {threshold:.2f} on":
+        "{count} Teile, ab {threshold:.2f} ähnlich",
+    "Select Mirrored Part":
+        "Gespiegeltes Teil auswählen",
+    "Select the part (segment, region) on the other side of the model, across its own plane of symmetry":
+        "Das Teil (Segment, Region) auf der anderen Seite des Modells auswählen, über dessen eigene Symmetrieebene",
+    "Plane":
+        "Ebene",
+    "Of the planes in which the model is its own mirror image, the best one first":
+        "Von den Ebenen, an denen das Modell sein eigenes Spiegelbild ist, die beste zuerst",
+    "Move the border of the part to the creases nearby, as far as what is inside lets it be there":
+        "Die Grenze des Teils in die Knicke nahebei verlegen, so weit das Innere es zulässt",
+    "Close the part with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+        "Das Teil mit einer glatten Oberfläche schließen statt mit den ebenen Facetten im Inneren, die es vom Rest trennen",
+    "Copy Part as Solid":
+        "Teil als Volumenkörper kopieren",
+    "Copy the picked part as a solid: a new object, closed where it was cut; Ctrl C, Ctrl V take it to other files":
+        "Das gewählte Teil als Volumenkörper kopieren: ein neues Objekt, geschlossen, wo es geschnitten wurde; Strg C, Strg V bringen es in andere Dateien",
+    "Remove Part":
+        "Teil entfernen",
+    "Take the picked part out of the mesh and close the hole":
+        "Das gewählte Teil aus dem Mesh nehmen und das Loch schließen",
+    "Split into Solids":
+        "In Volumenkörper zerlegen",
+    "Make each part of a cut an object of its own: closed solids that fit each other exactly":
+        "Jedes Teil einer Zerlegung zu einem eigenen Objekt machen: geschlossene Volumenkörper, die genau aneinander passen",
+    "By":
+        "Nach",
+    "What decides where to cut":
+        "Was entscheidet, wo geschnitten wird",
+    "Into so many parts, those that were joined last":
+        "In so viele Teile, die zuletzt verbundenen",
+    "Into so many parts, those that are nearest to convex in total":
+        "In so viele Teile, die zusammen am ehesten konvex sind",
+    "Height":
+        "Höhe",
+    "Into the largest parts of at most this concavity":
+        "In die größten Teile von höchstens dieser Konkavität",
+    "How many parts":
+        "Wie viele Teile",
+    "Largest concavity of a part: the volume between it and its convex hull":
+        "Größte Konkavität eines Teils: das Volumen zwischen ihm und seiner konvexen Hülle",
+    "How far the parts are moved apart, by their distance from the middle":
+        "Wie weit die Teile auseinandergerückt werden, im Verhältnis zu ihrem Abstand von der Mitte",
+    "Hide the object that was split":
+        "Das zerlegte Objekt ausblenden",
+    "This part has no face of the mesh. Take a larger one.":
+        "Dieses Teil hat keine Fläche des Meshs. Ein größeres nehmen.",
+    "{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution modifier first, or copy the part.":
+        "{name} ist in mehreren Auflösungen modelliert, die verloren gingen. Erst den Multires-Modifikator anwenden oder das Teil kopieren.",
+    "This part can't be closed: its border crosses itself. Take a larger or smaller one.":
+        "Dieses Teil kann nicht geschlossen werden: Seine Grenze kreuzt sich. Ein größeres oder kleineres nehmen.",
+    "Face Set from Part by Wheel":
+        "Face Set aus Teil per Mausrad",
+    "Mask from Part by Wheel":
+        "Maske aus Teil per Mausrad",
+    "Vertex Group from Part by Wheel":
+        "Vertex-Gruppe aus Teil per Mausrad",
+    "Paint Mask from Part by Wheel":
+        "Malmaske aus Teil per Mausrad",
+    "Parts as Solids":
+        "Teile als Volumenkörper",
+    "Deform":
+        "Verformen",
+    "Drag a Handle":
+        "Einen Griff ziehen",
+    "Turn at the Joint":
+        "Am Gelenk drehen",
+    "Within the part, proportionally:":
+        "Im Teil, proportional:",
+    "No parts yet":
+        "Noch keine Teile",
+    "Parts came with the file":
+        "Teile kamen mit der Datei",
+    "Vertices have moved since: the parts can be recomputed":
+        "Seitdem wurden Vertices bewegt: Die Teile können neu berechnet werden",
+    "The mesh has changed: its parts are found anew at the next use":
+        "Das Mesh wurde geändert: Seine Teile werden bei der nächsten Nutzung neu gefunden",
+    "A sheet, not a solid: thicken it, close it, or have it taken for a thin solid":
+        "Eine Fläche, kein Volumenkörper: dicker machen, schließen oder als dünnen Volumenkörper nehmen lassen",
+    "From the mesh as it is":
+        "Aus dem Mesh, wie es ist",
+    "Repaired copy, {off} off":
+        "Repariert, {off} daneben",
+    "Points on it, {off} off":
+        "Aus Punkten, {off} daneben",
+    "Coarser copy, {off} off":
+        "Vergröbert, {off} daneben",
+    "Partwheel":
+        "Partwheel",
+    "Duplicate Part":
+        "Teil duplizieren",
+    "Take as Thin Solid":
+        "Als dünnen Körper nehmen",
+    "Find Exactly":
+        "Exakt finden",
+    "Recompute":
+        "Neu berechnen",
+    "Part: {share} of the area":
+        "Teil: {share} der Oberfläche",
+    "Parts of {count:,} faces":
+        "Teile aus {count:,} Flächen",
+    "Part (Segment, Region, Island)":
+        "Teil (Segment, Region, Insel)",
+    "Path of the Part":
+        "Weg des Teils",
+    "Show the parts that the wheel goes through, from the smallest to the whole, and click one to take it":
+        "Die Teile zeigen, durch die das Mausrad geht, vom kleinsten bis zum Ganzen, und per Klick eines nehmen",
+    "Remembered Parts":
+        "Gemerkte Teile",
+    "{operator} stopped: the mesh is no longer being edited as it was.":
+        "{operator} wurde beendet: Das Mesh wird nicht mehr bearbeitet wie zuvor.",
+    "{operator}: start this with the mouse over a 3D view.":
+        "{operator}: mit der Maus über einer 3D-Ansicht starten.",
+    "Partwheel stopped: {reason}. The full report is in the system console.":
+        "Partwheel wurde beendet: {reason}. Der ganze Bericht steht in der Systemkonsole.",
+    "Larger, Smaller":
+        "Größer, kleiner",
+    "Wheel, ↑↓":
+        "Mausrad, ↑↓",
+    "Confirm":
+        "Bestätigen",
+    "Cancel":
+        "Abbrechen",
+    "Pick a Part":
+        "Teil wählen",
+    "Snap":
+        "Einrasten",
+    "Number":
+        "Nummer",
+    "Navigate":
+        "Navigieren",
+    "Drag":
+        "Ziehen",
+    "Within":
+        "Innerhalb",
+    "Similar":
+        "Ähnliche",
+    "Copy":
+        "Kopieren",
+    "Remove":
+        "Entfernen",
+    "More, Fewer":
+        "Mehr, weniger",
+    "Drag the Handle, or Put It Elsewhere":
+        "Griff ziehen oder anderswo setzen",
+    "One More":
+        "Noch einer",
+    "Move, Rotate, Scale":
+        "Bewegen, Rotieren, Skalieren",
+    "Handle Size":
+        "Griffgröße",
+    "Wheel":
+        "Mausrad",
+    "Confirm, Recompute Parts":
+        "Bestätigen, Teile neu berechnen",
+    "Axis":
+        "Achse",
+    "Type":
+        "Eingeben",
+    "Precise":
+        "Präzise",
+    "Done":
+        "Fertig",
+    "Shift Wheel":
+        "Umschalt Mausrad",
+    "Page Up/Down":
+        "Bild auf/ab",
+    "Next, Previous Part":
+        "Nächstes, voriges Teil",
+    "Ctrl Wheel":
+        "Strg Mausrad",
+    "Swap":
+        "Tauschen",
+    "A Part":
+        "Ein Teil",
+    "Merge":
+        "Vereinen",
+    "Join, Split":
+        "Verbinden, teilen",
+    "Automatic":
+        "Automatisch",
+    "Groups":
+        "Gruppen",
+    "Colours":
+        "Farben",
+    "Slots":
+        "Slots",
+    "Print":
+        "Drucken",
+    "Another":
+        "Anderes",
+    # Of the library
+    "This part is no solid: it has no face of the surface. Take a larger one.":
+        "Dieses Teil ist kein Volumenkörper: Es hat keine Fläche der Oberfläche. Ein größeres nehmen.",
+    "The part has no faces: pick one that has some.":
+        "Das Teil hat keine Flächen: eines wählen, das welche hat.",
+    "There are no triangles: select a part with faces.":
+        "Es gibt keine Dreiecke: ein Teil mit Flächen auswählen.",
+    "The part's faces are too thin to be deformed. Dissolve degenerate faces or merge vertices by distance first.":
+        "Die Flächen des Teils sind zu dünn zum Verformen. Erst degenerierte Flächen auflösen oder Vertices nach Abstand zusammenführen.",
+    "The mesh has no area at all: only edges and points.":
+        "Das Mesh hat keinerlei Fläche: nur Kanten und Punkte.",
+    "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then taken as thin solids.":
+        "Das Mesh ist eine Fläche, kein Volumenkörper: Es ist offen, und es zu schließen bräuchte so viel neue Oberfläche, wie es hat. Verdicken (Solidify), schließen oder offene Oberflächen zulassen, die dann als dünne Volumenkörper gelten.",
+    "The surface encloses no volume. Give it some thickness.":
+        "Die Oberfläche umschließt kein Volumen. Ihr eine Dicke geben.",
+    "The mesh is too broken to be repaired. Remesh it and try again.":
+        "Das Mesh ist zu beschädigt, um repariert zu werden. Remesh anwenden und erneut versuchen.",
+    "There is not enough memory to fill this mesh. Decimate it first.":
+        "Der Speicher reicht nicht, um dieses Mesh zu füllen. Erst dezimieren.",
+    "The mesh can't be filled: some faces are too close together to be told apart. Merge vertices by distance, or move the parts that almost touch further apart.":
+        "Das Mesh kann nicht gefüllt werden: Manche Flächen liegen zu dicht beieinander. Vertices nach Abstand zusammenführen oder was sich fast berührt, weiter auseinanderrücken.",
+    "The mesher moved or merged vertices of the surface, for some are too close together. Merge vertices by distance.":
+        "Beim Füllen wurden Vertices der Oberfläche verschoben oder vereint, da manche zu dicht beieinander liegen. Vertices nach Abstand zusammenführen.",
+    "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.":
+        "Beim Füllen ging ein Stück der Oberfläche verloren. Remesh anwenden oder das Mesh ein wenig glätten und erneut versuchen.",
+    "The mesh has no faces. Choose a mesh object that has some.":
+        "Das Mesh hat keine Flächen. Ein Mesh-Objekt wählen, das welche hat.",
+    "All vertices are at the same place. Choose a mesh that has an extent.":
+        "Alle Vertices liegen am selben Ort. Ein Mesh wählen, das eine Ausdehnung hat.",
+    "The mesh has no part that can be closed. Give it a thickness (Solidify).":
+        "Das Mesh hat kein Stück, das geschlossen werden kann. Ihm eine Dicke geben (Solidify).",
+    "The surface passes through itself in ways that can't be repaired. Remesh it, or unite its parts with a Boolean.":
+        "Die Oberfläche durchdringt sich so, dass sie nicht repariert werden kann. Remesh anwenden oder ihre Teile mit einem Boolean vereinigen.",
+    "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.":
+        "Das Mesh kann nicht gefüllt werden: Das Füllen kommt zu keinem Ende. Remesh anwenden oder ein wenig glätten und erneut versuchen.",
+}

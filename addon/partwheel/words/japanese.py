@@ -1,0 +1,844 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Japanese."""
+
+WORDS = {
+    "Turn":
+        "回転",
+    "About the border's normal":
+        "境界の法線を軸とする回転",
+    "Depth":
+        "深さ",
+    "How far it is sunk in, times the radius of its border":
+        "境界の半径を単位とした、埋め込む深さ",
+    "size {size:.2f}, turn {turn:.0f}°, depth {depth:.2f}":
+        "サイズ {size:.2f}、回転 {turn:.0f}°、深さ {depth:.2f}",
+    "Place Part":
+        "パーツを配置",
+    "Place the active part on a surface: it follows the mouse, its border on the surface and turned to it":
+        "アクティブなパーツを面の上に配置します。境界を面に合わせ、面の向きに沿ってマウスについていきます",
+    "{operator} stopped: the part is no longer the active object.":
+        "{operator} を終了しました。パーツがアクティブオブジェクトではなくなりました。",
+    "Onto":
+        "配置先",
+    "The object that the part is placed on":
+        "パーツを配置するオブジェクト",
+    "Location":
+        "位置",
+    "Where its border goes":
+        "境界が置かれる位置",
+    "Normal":
+        "ノーマル",
+    "Of the surface there":
+        "その位置の面の法線",
+    "Size":
+        "サイズ",
+    "Times the size that it had":
+        "元のサイズに対する倍率",
+    "Fit Border":
+        "境界に合わせる",
+    "Onto the target's nearest border, where a part was removed, and of its size":
+        "パーツが取り除かれた、ターゲットの最も近い境界に、そのサイズで合わせます",
+    "Mirror Copy":
+        "ミラーコピー",
+    "Add the mirror image across the target's own X axis":
+        "ターゲット自身の X 軸で反転したものを追加します",
+    "In Object Mode, make the part to be placed the active object.":
+        "オブジェクトモードで、配置するパーツをアクティブオブジェクトにしてください。",
+    "Say which mesh object the part is placed on.":
+        "パーツを配置するメッシュオブジェクトを指定してください。",
+    "Move the mouse over a surface":
+        "マウスを面の上に移動してください",
+    "There is no surface under the mouse yet":
+        "マウスの下にまだ面がありません",
+    "Onto {name}":
+        "{name} の上",
+    "fitted":
+        "境界に合わせ済み",
+    "with mirror copy":
+        "ミラーコピーあり",
+    "{name} has no border to fit: no part was removed from it.":
+        "{name} には合わせる境界がありません。パーツが取り除かれていません。",
+    "Swap with Compatible Part":
+        "合うパーツと交換",
+    "Exchange the picked part for one of another object that fits its border; the wheel goes through what there is":
+        "選んだパーツを、境界に合う他のオブジェクトのパーツと交換します。ホイールで候補を切り替えます",
+    "{operator} stopped: the object is no longer the active one.":
+        "{operator} を終了しました。オブジェクトがアクティブではなくなりました。",
+    "From":
+        "交換元",
+    "The object that the new part comes from; none: those selected, or else all others":
+        "新しいパーツの元になるオブジェクト。空の場合は選択中のもの、なければ他のすべて",
+    "Part":
+        "パーツ",
+    "The new part's number in that object; -1: the most compatible one":
+        "そのオブジェクトでの新しいパーツの番号。-1: 最もよく合うもの",
+    "Times the size at which the borders fit":
+        "境界が合うサイズに対する倍率",
+    "Mirror":
+        "ミラー",
+    "Take the part's mirror image":
+        "パーツを反転して使います",
+    "Blend":
+        "ブレンド",
+    "Width of a smooth transition on either side of the seam, times its radius":
+        "継ぎ目の両側のなめらかな移行部の幅。継ぎ目の半径を単位とします",
+    "Find Parts":
+        "パーツを検出",
+    "Find the parts of the new mesh at once, in a process of its own":
+        "新しいメッシュのパーツを、別プロセスですぐに検出します",
+    "There is no mesh object {name}.":
+        "メッシュオブジェクト {name} がありません。",
+    "{name}, part {number} of {count}, {likeness:.0%} alike":
+        "{name}、パーツ {number} / {count}、類似度 {likeness:.0%}",
+    "mirrored":
+        "反転",
+    "Leave Edit Mode":
+        "編集モードを終了",
+    "The part is the whole model: nothing would be left to put another part on. Pick a smaller one.":
+        "このパーツはモデル全体です。他のパーツを付ける場所が残りません。より小さいパーツを選んでください。",
+    "The part has no border with the rest of the model, so there is nothing to fit another part to. Pick one that was grown from the model, not a piece of its own.":
+        "このパーツにはモデルの残りとの境界がなく、他のパーツを合わせる場所がありません。独立した部品ではなく、モデルから伸びたパーツを選んでください。",
+    "No other object has parts. Find the parts of the one that the new part comes from, and select it too; or paste a part that was copied as a solid.":
+        "他のオブジェクトにパーツがありません。新しいパーツの元になるオブジェクトのパーツを検出し、それも選択してください。または、ソリッドとしてコピーしたパーツを貼り付けてください。",
+    "No part there has a border that could be fitted to this one's.":
+        "このパーツの境界に合う境界を持つパーツがありません。",
+    "{name} has no part {number}.":
+        "{name} にパーツ {number} はありません。",
+    "That part of {name} has no border that could be fitted to this one's.":
+        "{name} のそのパーツには、このパーツの境界に合う境界がありません。",
+    "{name} was changed and has other parts now. Start again.":
+        "{name} が変更され、パーツが変わりました。もう一度始めてください。",
+    "it has no faces":
+        "面がありません",
+    "{count} edges have not just two faces":
+        "面がちょうど 2 つではない辺が {count} 個あります",
+    "at {count} edges the faces wind against each other":
+        "{count} 個の辺で面の向きが互いに逆です",
+    "{count} vertices are loose or join parts that only touch there":
+        "孤立した、または接しているだけの部分をつなぐ頂点が {count} 個あります",
+    "{name} is no solid: {reason}. Repair it, or copy its part anew.":
+        "{name} はソリッドではありません: {reason}。修復するか、パーツをコピーし直してください。",
+    "{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).":
+        "{name} はソリッドではありません。裏返しです。面を外側に向けてください (面の向きを外側に揃える)。",
+    "by {solver} within: {reason}":
+        "{solver} (内部あり): {reason}",
+    "by {solver}: {reason}":
+        "{solver}: {reason}",
+    "{one} and {other} can't be united ({reasons}). Move one of them a little: faces that lie in each other are the usual cause.":
+        "{one} と {other} は合体できません ({reasons})。どちらかを少し動かしてください。多くの場合、重なり合った面が原因です。",
+    "its volume would be {share:.0%} of that of the two":
+        "体積が 2 つの合計の {share:.0%} になります",
+    "one of them was left out":
+        "片方が抜け落ちました",
+    "Select the parts, and then the mesh object that they are to become part of, in Object Mode.":
+        "オブジェクトモードで、パーツを選択してから、それらを合体させるメッシュオブジェクトを選択してください。",
+    "Unite Solids":
+        "ソリッドを合体",
+    "Unite the other selected solids with the active one into a single closed mesh":
+        "選択した他のソリッドをアクティブなものと合体し、1 つの閉じたメッシュにします",
+    "Width of a smooth transition on either side of each seam, times the seam's radius; 0: the seam stays a crease":
+        "各継ぎ目の両側のなめらかな移行部の幅。継ぎ目の半径を単位とします。0: 継ぎ目は折り目のまま",
+    "Find the parts of the united mesh at once, in a process of its own":
+        "合体したメッシュのパーツを、別プロセスですぐに検出します",
+    "Keep Parts":
+        "パーツを残す",
+    "Leave the other objects as they are":
+        "他のオブジェクトをそのまま残します",
+    "{name} is one closed mesh now, of {count:,} faces (solver {solver}).":
+        "{name} は {count:,} 面の 1 つの閉じたメッシュになりました (ソルバー {solver})。",
+    "The vertex group {name} is locked. Unlock it, or give it another name.":
+        "頂点グループ {name} はロックされています。ロックを解除するか、別の名前を付けてください。",
+    "Face Sets":
+        "面セット",
+    "One for each part, in place of all that there are":
+        "パーツごとに 1 つ。既存のものはすべて置き換えます",
+    "Vertex Groups":
+        "頂点グループ",
+    "For an armature: they fall smoothly across the borders and add up to 1":
+        "アーマチュア用。境界でなめらかに減衰し、合計は 1 になります",
+    "Materials in Colours":
+        "色分けマテリアル",
+    "A material of its own colour for each part":
+        "パーツごとに固有の色のマテリアル",
+    "Material Slots":
+        "マテリアルスロット",
+    "The model's own materials, with a slot for each part":
+        "モデル自身のマテリアルを、パーツごとのスロットに割り当てます",
+    "Seams":
+        "シーム",
+    "For unwrapping: along the borders, in creases, and where a part would not lie flat":
+        "展開用。境界、折り目、および平らにならない箇所に沿って付けます",
+    "Objects":
+        "オブジェクト",
+    "Each part an object that hangs on the next one":
+        "各パーツを、隣のパーツを親とするオブジェクトにします",
+    "Bones":
+        "ボーン",
+    "An armature with a bone for each part, and the vertex groups for it, ready to be posed":
+        "パーツごとのボーンを持つアーマチュアとその頂点グループ。すぐにポーズを付けられます",
+    "For Printing":
+        "印刷用",
+    "Closed objects with flat cuts, pegs and sockets, checked. Needs manifold3d":
+        "平らな切断面、ピンと穴を持つ、検査済みの閉じたオブジェクト。manifold3d が必要です",
+    "Parts to...":
+        "パーツを変換...",
+    "Divide the whole model into parts: the wheel changes how many, a click and the wheel one, a drag merges":
+        "モデル全体をパーツに分割します。ホイールで数を、クリックとホイールで 1 つのパーツを変え、ドラッグで統合します",
+    "Make Them":
+        "変換先",
+    "What the parts become; none: they are only kept in the mesh":
+        "パーツの変換先。なし: メッシュ内に保持するだけ",
+    "Parts":
+        "パーツ",
+    "How many; 0: those that are kept in the mesh, or as people would most likely take them":
+        "パーツの数。0: メッシュに保持されているもの、または人が最も自然に分けるもの",
+    "Closed":
+        "閉じる",
+    "Close the objects where they were cut: solids that make the whole":
+        "切断箇所を閉じます。全体を構成するソリッドになります",
+    "Smooth Caps":
+        "なめらかなふた",
+    "Close them with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+        "残りとの間の平らな内部の面ではなく、なめらかな面で閉じます",
+    "Cap Material":
+        "ふたのマテリアル",
+    "Give the caps a material of their own":
+        "ふたに固有のマテリアルを割り当てます",
+    "Origins at Borders":
+        "原点を境界に",
+    "Each object turns about the middle of its border":
+        "各オブジェクトは境界の中心を軸に回転します",
+    "Explode":
+        "分解",
+    "How far they are moved apart, by the distance of their middles. The largest one has this as a custom property, too, which can be changed later":
+        "中心間の距離に対する、引き離す量。最大のオブジェクトにはカスタムプロパティとしても付き、後から変更できます",
+    "Shell":
+        "シェル",
+    "How thick their walls are, by a modifier; 0: solid":
+        "モディファイアーによる壁の厚さ。0: 中身あり",
+    "Unwrap":
+        "展開",
+    "Unwrap the mesh along the seams, into a new UV map if it has others":
+        "シームに沿ってメッシュを展開します。他に UV マップがあれば新しい UV マップに展開します",
+    "Pegs":
+        "ピン",
+    "A peg and a socket across each cut, where there is room":
+        "余裕のある切断面ごとに、ピンと穴を付けます",
+    "Clearance (mm)":
+        "クリアランス (mm)",
+    "The gap around each peg, on all sides":
+        "各ピンの周囲のすき間",
+    "Wall (mm)":
+        "壁 (mm)",
+    "What stays around a socket; thinner walls are told":
+        "穴の周囲に残る厚さ。これより薄い壁は通知します",
+    "Bed (mm)":
+        "ベッド (mm)",
+    "The printer's: parts that are larger are split further; 0: large enough":
+        "プリンターのベッド。それより大きいパーツはさらに分割します。0: 十分な大きさ",
+    "Hide Original":
+        "元を隠す",
+    "Hide the object that was divided":
+        "分割したオブジェクトを隠します",
+    "{operator} stopped: the mesh is no longer as it was, or in another mode.":
+        "{operator} を終了しました。メッシュが変わったか、モードが変わりました。",
+    "This is for an active mesh object, in Object, Edit or Sculpt Mode.":
+        "オブジェクト、編集、またはスカルプトモードのアクティブなメッシュオブジェクトが必要です。",
+    "Dynamic topology changes the faces all the time: switch it off first.":
+        "ダイナミックトポロジーは常に面を変更します。先にオフにしてください。",
+    "These are no parts of {name}: {reason}":
+        "{name} のパーツではありません: {reason}",
+    "{name} is in {count} parts now: {made}.":
+        "{name} は {count} 個のパーツになりました: {made}。",
+    "{count} parts: {made}":
+        "{count} パーツ: {made}",
+    "{count} parts, one of {faces:,} faces: {made}":
+        "{count} パーツ、うち 1 つは {faces:,} 面: {made}",
+    "Kept in the Mesh":
+        "メッシュに保持",
+    "Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: {python} -m pip install manifold3d.":
+        "印刷には Python パッケージ manifold3d が必要ですが、Blender には含まれていません。インストールするには次を実行してください: {python} -m pip install manifold3d。",
+    "{name} is scaled differently along its axes: apply its scale first.":
+        "{name} は軸ごとにスケールが異なります。先にスケールを適用してください。",
+    "{name} has {count} UV maps, no more are possible: remove one.":
+        "{name} には UV マップが {count} 個あり、これ以上作れません。1 つ削除してください。",
+    "Handle of one vertex":
+        "1 頂点のハンドル",
+    "Handle of {count:,} vertices":
+        "{count:,} 頂点のハンドル",
+    "The whole part":
+        "パーツ全体",
+    "Joint of {reach:.1f} radii":
+        "半径 {reach:.1f} 倍の関節",
+    "The handle is the whole part, so nothing is left to follow it: make the handle smaller.":
+        "ハンドルがパーツ全体を占め、追従する部分がありません。ハンドルを小さくしてください。",
+    "One handle covers another: make it smaller, or put it elsewhere.":
+        "ハンドル同士が重なっています。小さくするか、別の場所に置いてください。",
+    "No part of this limb is beyond its joint and not hidden: make the joint smaller.":
+        "この部分には、関節の先に見えている頂点がありません。関節を小さくしてください。",
+    "Move":
+        "移動",
+    "Rotate":
+        "回転",
+    "Scale":
+        "スケール",
+    "{movement} along local {axes}":
+        "{movement} ローカル {axes} 軸",
+    "{movement} along global {axes}":
+        "{movement} グローバル {axes} 軸",
+    "{movement} in local {axes}":
+        "{movement} ローカル {axes} 平面",
+    "{movement} in global {axes}":
+        "{movement} グローバル {axes} 平面",
+    "Vertex":
+        "頂点",
+    "Radius":
+        "半径",
+    "Matrix":
+        "行列",
+    "Deform Part":
+        "パーツを変形",
+    "Drag a handle of the part that was picked last: the part follows like a soft body, all beyond it stays":
+        "最後に選んだパーツのハンドルをドラッグします。パーツは柔らかい物体のように追従し、その外側は動きません",
+    "The part's number; -1: the part that was picked last":
+        "パーツの番号。-1: 最後に選んだパーツ",
+    "Method":
+        "方式",
+    "As Rigid as Possible":
+        "できるだけ剛体的に",
+    "The part follows the handle and keeps its details":
+        "パーツはディテールを保ったままハンドルに追従します",
+    "Proportional":
+        "プロポーショナル",
+    "The part moves as a whole, less and less towards its border":
+        "パーツ全体が動き、境界に近いほど動きが小さくなります",
+    "At the Joint":
+        "関節で",
+    "The part keeps its shape and turns about its border; what is near that, on either side, bends":
+        "パーツは形を保ったまま境界を中心に回転し、境界の両側の近くが曲がります",
+    "Rings":
+        "リング",
+    "So many rings of faces around the part deform with it, for a softer join":
+        "パーツの周囲で一緒に変形する面のリングの数。つながりがなめらかになります",
+    "Joint":
+        "関節",
+    "How far from the part's border it bends, in radii of the border":
+        "パーツの境界からどこまで曲がるか。境界の半径を単位とします",
+    "Snap Border":
+        "境界をスナップ",
+    "Deform the part as far as the creases near its border, not as far as its own border; a part that was picked so is":
+        "パーツ自身の境界ではなく、近くの折り目まで変形します。そのように選ばれたパーツと同じです",
+    "Parts are deformed in Edit Mode of a mesh.":
+        "パーツの変形はメッシュの編集モードで行います。",
+    "There is no handle: drag one in the 3D view.":
+        "ハンドルがありません。3D ビューでドラッグしてください。",
+    "A handle is a vertex that the mesh doesn't have.":
+        "ハンドルの頂点がメッシュにありません。",
+    "{state}: settling":
+        "{state}: 収束中",
+    "{state}: getting ready":
+        "{state}: 準備中",
+    "Move Part Proportionally":
+        "パーツをプロポーショナル移動",
+    "Move the part that was picked last; its surroundings follow, as far as suits its size. R turns and S scales it":
+        "最後に選んだパーツを移動します。周囲はその大きさに応じて追従します。R で回転、S でスケールします",
+    "The part has no vertex inside its border that is not hidden: pick a larger one.":
+        "パーツの境界の内側に、見えている頂点がありません。より大きいパーツを選んでください。",
+    "The part is the whole mesh, or a loose piece of it, without a border that would hold it: pick a smaller one, or move it as it is.":
+        "パーツがメッシュ全体か独立した部分で、固定する境界がありません。より小さいパーツを選ぶか、そのまま移動してください。",
+    "The faces of the part have no area: there is nothing to deform.":
+        "パーツの面に面積がなく、変形できません。",
+    "That is not a point of the part.":
+        "そこはパーツの点ではありません。",
+    "The mesh of {name} is linked from another file: make it local first (Object > Relations > Make Local).":
+        "{name} のメッシュは他のファイルからリンクされています。先にローカル化してください (オブジェクト > 関係 > ローカル化)。",
+    "The mesh of {name} is a library override, which Blender does not edit: make it local first (Object > Relations > Make Local).":
+        "{name} のメッシュは Blender が編集しないライブラリオーバーライドです。先にローカル化してください (オブジェクト > 関係 > ローカル化)。",
+    "This is for an active mesh object, in Edit Mode or Object Mode.":
+        "編集モードまたはオブジェクトモードのアクティブなメッシュオブジェクトが必要です。",
+    "The build was cancelled.":
+        "検出をキャンセルしました。",
+    "The mesh {name} is gone, so its parts were left aside.":
+        "メッシュ {name} がなくなったため、パーツを破棄しました。",
+    "{name} was edited while its parts were being found, so they were left aside. Find them again when the mesh is as you want it.":
+        "パーツの検出中に {name} が編集されたため、パーツを破棄しました。メッシュが完成したら、もう一度検出してください。",
+    "What is selected is no part. Pick one with Select Part by Wheel, and confirm it.":
+        "選択部分はパーツではありません。「ホイールでパーツを選択」で選び、確定してください。",
+    "No part is picked. Pick one with Select Part by Wheel, and confirm it.":
+        "パーツが選ばれていません。「ホイールでパーツを選択」で選び、確定してください。",
+    "There is no part {number}: there are {count}.":
+        "パーツ {number} はありません。全部で {count} 個です。",
+    "{name} has no parts for its mesh as it is now. Find them first.":
+        "{name} には現在のメッシュのパーツがありません。先に検出してください。",
+    "The parts saved with {name} are of a newer Partwheel than this one, so they are found anew. Update Partwheel to have those of the file.":
+        "{name} と共に保存されたパーツは、より新しい Partwheel のものなので、検出し直します。ファイルのパーツを使うには Partwheel を更新してください。",
+    "Partwheel finds the parts of {name} after those of {other}":
+        "Partwheel は {other} の後に {name} のパーツを検出します",
+    "Partwheel finds the parts of {name}: {fraction:.0%}":
+        "Partwheel が {name} のパーツを検出中: {fraction:.0%}",
+    "Esc: Cancel":
+        "Esc: キャンセル",
+    "Cancelled: no parts were found.":
+        "キャンセルしました。パーツは検出されませんでした。",
+    "The panel Partwheel in the sidebar does that.":
+        "サイドバーの Partwheel パネルで行えます。",
+    "No parts for {name}: {reason}":
+        "{name} のパーツはありません: {reason}",
+    "A way that was tried first failed: {reason}":
+        "最初に試した方法は失敗しました: {reason}",
+    "{name}, {count:,} faces: its parts were found in {seconds:.1f} s.":
+        "{name}、{count:,} 面: パーツを {seconds:.1f} 秒で検出しました。",
+    "Quality":
+        "品質",
+    "0 is the quickest and right for nearly all; from 1.1 on the inside is divided more evenly (1.4 is usual, smaller is slower)":
+        "0 が最も速く、ほとんどの場合に適しています。1.1 以上では内部をより均等に分割します (通常は 1.4、小さいほど遅い)",
+    "Open Surfaces":
+        "開いたサーフェス",
+    "Take a surface that encloses nothing, such as cloth or a car's door, for a thin solid, instead of refusing it":
+        "布や車のドアのように何も囲まない面を、拒否せずに薄いソリッドとみなします",
+    "Exactly":
+        "正確に",
+    "Find the parts of a mesh of more than 200,000 triangles on all of these, not on a coarser copy: some ten times the time and memory. The add-on's preferences can have it so for all":
+        "20 万三角形を超えるメッシュのパーツを、粗いコピーではなくすべての三角形から検出します。時間とメモリは約 10 倍です。アドオンの設定ですべてに適用できます",
+    "Find Parts of Mesh":
+        "メッシュのパーツを検出",
+    "Find the parts of the active mesh, and of other selected ones that have none, at all sizes for the wheel":
+        "アクティブなメッシュと、パーツのない他の選択メッシュのパーツを、ホイール用にあらゆる大きさで検出します",
+    "The same on behalf of an operator that made the mesh, which stays the last operation, with its panel":
+        "メッシュを作成したオペレーターに代わって同じことを行います。そのオペレーターが最後の操作として残ります",
+    "Clear Parts":
+        "パーツをクリア",
+    "Let the parts of the active mesh go, also those saved with the file. The mesh stays as it is":
+        "アクティブなメッシュのパーツを、ファイルに保存されたものも含めて破棄します。メッシュは変わりません",
+    "The active object has no parts.":
+        "アクティブオブジェクトにパーツがありません。",
+    "Part under the Mouse":
+        "マウスの下のパーツ",
+    "Face Set":
+        "面セット",
+    "Mask":
+        "マスク",
+    "Vertex Group":
+        "頂点グループ",
+    "Paint Mask":
+        "ペイントマスク",
+    "Part by Wheel":
+        "ホイールでパーツ",
+    "Pick a part with a click and the mouse wheel, and make it a face set, a mask or a vertex group":
+        "クリックとホイールでパーツを選び、面セット、マスク、または頂点グループにします",
+    "Make It":
+        "変換先",
+    "What the part becomes":
+        "パーツの変換先",
+    "Usual":
+        "標準",
+    "A face set in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
+        "スカルプトモードでは面セット、ウェイトペイントでは頂点グループ、それ以外はペイントマスク",
+    "A new face set":
+        "新しい面セット",
+    "Masked against sculpting":
+        "スカルプトから保護します",
+    "Weight 1 in a new vertex group, named after the part; with Extend in the active one, with Deselect none there":
+        "パーツにちなんだ名前の新しい頂点グループでウェイト 1。拡張ではアクティブなグループに追加、選択解除ではそこから除外します",
+    "The only faces that can be painted on":
+        "ペイントできる面をこれだけにします",
+    "This is for Sculpt Mode and the paint modes of a mesh.":
+        "メッシュのスカルプトモードまたはペイントモードが必要です。",
+    "Parts can't become this in this mode: {made}.":
+        "このモードではパーツをこれに変換できません: {made}。",
+    "Face":
+        "面",
+    "The face that was clicked":
+        "クリックした面",
+    "Level":
+        "レベル",
+    "Notches of the wheel from the part that the click alone takes: up is positive":
+        "クリックだけで選ばれるパーツからのホイールの段数。上が正",
+    "Extend":
+        "拡張",
+    "Add the part to what is selected, instead of replacing it":
+        "選択を置き換えず、パーツを追加します",
+    "Deselect":
+        "選択解除",
+    "Take the part away from what is selected":
+        "選択からパーツを除外します",
+    "Move the border of the part to the creases nearby":
+        "パーツの境界を近くの折り目に移動します",
+    "Face {number} can't be picked: {reason}":
+        "面 {number} は選べません: {reason}",
+    "This 3D view does not show the mesh that is being edited.":
+        "この 3D ビューには編集中のメッシュが表示されていません。",
+    "Click a face of the mesh":
+        "メッシュの面をクリックしてください",
+    "What is seen there was made by the modifiers of {name} and belongs to no face of its mesh.":
+        "そこに見えているものは {name} のモディファイアーが作ったもので、メッシュのどの面にも属しません。",
+    "The parts are found. Start {operator} again to pick them.":
+        "パーツを検出しました。選ぶには {operator} をもう一度開始してください。",
+    "Partwheel stopped: the parts were found anew. Pick one of them.":
+        "Partwheel を終了しました。パーツが検出し直されました。その中から選んでください。",
+    "There is no face there":
+        "そこには面がありません",
+    "Part {number} of {count}, {faces:,} faces, {share} of the area":
+        "パーツ {number} / {count}、{faces:,} 面、面積の {share}",
+    "border in creases":
+        "折り目に沿った境界",
+    "Select Part by Wheel":
+        "ホイールでパーツを選択",
+    "Pick a part of the mesh with a click, then make it larger or smaller with the mouse wheel":
+        "クリックでメッシュのパーツを選び、マウスホイールで大きくしたり小さくしたりします",
+    "Parts are selected in Edit Mode of a mesh.":
+        "パーツの選択はメッシュの編集モードで行います。",
+    "Pick a part of the mesh under the mouse, which stays as it is meanwhile, then enter Edit Mode with the part":
+        "マウスの下のメッシュのパーツを選び (その間メッシュは変わりません)、そのパーツで編集モードに入ります",
+    "This is for Object Mode.":
+        "オブジェクトモードが必要です。",
+    "There is no mesh under the mouse.":
+        "マウスの下にメッシュがありません。",
+    "{name} is an instance, and this 3D view does not show its original: edit it there.":
+        "{name} はインスタンスで、この 3D ビューには元のオブジェクトが表示されていません。元のほうで編集してください。",
+    "Toggle Edit Mode":
+        "編集モード切替え",
+    "Select Part":
+        "パーツを選択",
+    "Select a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "メッシュの意味のあるパーツを選択します。\nパーツをクリックし、ホイールで一段大きい、または小さいパーツに切り替えます。Shift で追加、Ctrl で除外",
+    "Parts are found at the first click":
+        "パーツは最初のクリックで検出されます",
+    "Overlay":
+        "オーバーレイ",
+    "The vertex group {name} is locked. Unlock it, or pick the part alone: it gets a group of its own.":
+        "頂点グループ {name} はロックされています。ロックを解除するか、パーツだけを選んでください。専用のグループになります。",
+    "{name} has no vertex group that the part could be taken out of.":
+        "{name} には、パーツを除外できる頂点グループがありません。",
+    "The part was taken out of the vertex group {name}.":
+        "パーツを頂点グループ {name} から除外しました。",
+    "The part was added to the vertex group {name}.":
+        "パーツを頂点グループ {name} に追加しました。",
+    "The part is the new vertex group {name}.":
+        "パーツは新しい頂点グループ {name} になりました。",
+    "Save Parts in .blend Files":
+        "パーツを .blend ファイルに保存",
+    "Parts that were built are there again when the file is opened. It grows by about 40 bytes a face":
+        "検出したパーツを、ファイルを開いたときに復元します。1 面あたり約 40 バイト増えます",
+    "How small parts are joined to larger ones in builds from now on":
+        "今後の検出で、小さいパーツを大きいパーツにまとめる方法",
+    "As People See Them":
+        "人が見るように",
+    "By what people took for parts on some hundred models: a click alone finds the part that was meant more often. Borders lie in creases, and the two sides of a model that is its own mirror image are alike":
+        "数百のモデルで人がパーツとみなしたものに基づきます。クリックだけで意図したパーツが見つかりやすくなります。境界は折り目に沿い、左右対称なモデルの両側は同じになります",
+    "Nearly Convex":
+        "ほぼ凸",
+    "By convexity alone, the most regular and the quickest: a click takes the smallest piece there is, and each notch of the wheel takes one more step":
+        "凸性だけに基づく、最も規則的で速い方法。クリックで最小の部分を選び、ホイールの 1 段ごとに一歩進みます",
+    "Large Meshes Exactly":
+        "大きいメッシュも正確に",
+    "Find the parts of meshes of more than 200,000 triangles on all of these, not on a coarser copy: some ten times the time and memory for parts that are mostly the same":
+        "20 万三角形を超えるメッシュのパーツを、粗いコピーではなくすべての三角形から検出します。時間とメモリは約 10 倍で、パーツはほとんど同じです",
+    "Memory":
+        "メモリ",
+    "How much of the available memory a build may use (kept on Linux)":
+        "使用可能なメモリのうち検出に使う割合 (Linux で有効)",
+    "Time Limit":
+        "制限時間",
+    "Minutes of processor time after which a build is stopped; 0: two, and two more for each 60,000 triangles, far more than builds take":
+        "検出を停止するまでのプロセッサー時間 (分)。0: 2 分と、6 万三角形ごとにさらに 2 分。実際よりはるかに長い時間です",
+    "Python":
+        "Python",
+    "The program that parts are found with, a Python 3, in a process of its own; empty: the one that Blender brings, or else one that is installed":
+        "別プロセスでパーツを検出するプログラム (Python 3)。空: Blender 付属のもの、なければインストール済みのもの",
+    "Tint the part that is held":
+        "保持中のパーツに色を付けます",
+    "Next Part":
+        "次のパーツ",
+    "Tint faintly what the next notch of the wheel adds":
+        "ホイールの次の段で加わる部分に薄く色を付けます",
+    "Convex Hull":
+        "凸包",
+    "Show the convex hull of the part that is held as glass":
+        "保持中のパーツの凸包をガラスのように表示します",
+    "All Parts":
+        "すべてのパーツ",
+    "Show the parts of the whole mesh at the size of the part that is held, each in a colour of its own":
+        "メッシュ全体のパーツを、保持中のパーツの大きさで色分け表示します",
+    "Pie Menu":
+        "パイメニュー",
+    "The part has no mirror image in {name}: it lies across the plane of symmetry, or the model is not the same on both sides.":
+        "パーツの鏡像が {name} にありません。対称面にまたがっているか、モデルの両側が同じではありません。",
+    "Parts are remembered in Edit Mode of a mesh.":
+        "パーツの記憶はメッシュの編集モードで行います。",
+    "The name under which it is remembered":
+        "記憶されている名前",
+    "Remember Part":
+        "パーツを記憶",
+    "Give the part (segment, region) that was picked last a name, by which the panel's list selects it again":
+        "最後に選んだパーツ (セグメント、領域) に名前を付けます。パネルのリストからその名前で再び選択できます",
+    "Name":
+        "名前",
+    "The part's name":
+        "パーツの名前",
+    "Part {number}":
+        "パーツ {number}",
+    "Select Remembered Part":
+        "記憶したパーツを選択",
+    "Select the part that is remembered under this name. Shift adds it to the selection, Ctrl takes it away":
+        "この名前で記憶したパーツを選択します。Shift で選択に追加、Ctrl で除外",
+    "Rename Part":
+        "パーツの名前を変更",
+    "Give a remembered part another name":
+        "記憶したパーツに別の名前を付けます",
+    "New Name":
+        "新しい名前",
+    "The part's name from now on":
+        "今後のパーツの名前",
+    "Forget Part":
+        "パーツを忘れる",
+    "Forget the name of a part; the mesh stays as it is":
+        "パーツの名前を忘れます。メッシュは変わりません",
+    "No part of {name} as it is now is much like the one remembered as {part}.":
+        "現在の {name} には、{part} として記憶したパーツに近いものがありません。",
+    "No part of {name} is remembered as {part}.":
+        "{name} には {part} として記憶したパーツがありません。",
+    "A part is remembered by a name: it can't be empty.":
+        "パーツは名前で記憶します。名前は空にできません。",
+    "{name} is too long for a name: it can have {count} letters, fewer of some alphabets.":
+        "{name} は名前として長すぎます。{count} 文字まで使えます (文字の種類によってはそれ以下)。",
+    "There is a part that is remembered as {name}. Give another name, or forget that one first.":
+        "{name} として記憶したパーツがすでにあります。別の名前を付けるか、先にそれを忘れてください。",
+    "Add to what is selected, instead of replacing it":
+        "選択を置き換えず、追加します",
+    "Select Similar Parts":
+        "類似パーツを選択",
+    "Select all parts (segments, regions) like the one picked last, in shape and size: fingers, legs, horns":
+        "最後に選んだパーツと形や大きさが似たすべてのパーツ (セグメント、領域) を選択します。指、脚、角など",
+    "Threshold":
+        "しきい値",
+    "How alike parts are that are selected: 1 is the same shape and size, less is more parts":
+        "選択するパーツの類似度。1 は同じ形と大きさで、小さいほど多くのパーツを選択します",
+    "{count} parts, alike from {threshold:.2f} on":
+        "{count} パーツ、類似度 {threshold:.2f} 以上",
+    "Select Mirrored Part":
+        "反対側のパーツを選択",
+    "Select the part (segment, region) on the other side of the model, across its own plane of symmetry":
+        "モデル自身の対称面をはさんで反対側のパーツ (セグメント、領域) を選択します",
+    "Plane":
+        "平面",
+    "Of the planes in which the model is its own mirror image, the best one first":
+        "モデルが対称になる平面のうち、最も良いものから順に",
+    "Move the border of the part to the creases nearby, as far as what is inside lets it be there":
+        "パーツの境界を、内部が許す範囲で近くの折り目に移動します",
+    "Close the part with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+        "残りとの間の平らな内部の面ではなく、なめらかな面でパーツを閉じます",
+    "Copy Part as Solid":
+        "パーツをソリッドとしてコピー",
+    "Copy the picked part as a solid: a new object, closed where it was cut; Ctrl C, Ctrl V take it to other files":
+        "選んだパーツをソリッドとしてコピーします。切断箇所が閉じた新しいオブジェクトで、Ctrl C、Ctrl V で他のファイルに移せます",
+    "Remove Part":
+        "パーツを削除",
+    "Take the picked part out of the mesh and close the hole":
+        "選んだパーツをメッシュから取り除き、穴を閉じます",
+    "Split into Solids":
+        "ソリッドに分割",
+    "Make each part of a cut an object of its own: closed solids that fit each other exactly":
+        "分割した各パーツを個別のオブジェクトにします。互いに正確に合う閉じたソリッドです",
+    "By":
+        "基準",
+    "What decides where to cut":
+        "切断する場所の決め方",
+    "Into so many parts, those that were joined last":
+        "この数のパーツに分割します。最後に結合されたものから分けます",
+    "Into so many parts, those that are nearest to convex in total":
+        "この数のパーツに分割します。全体として最も凸に近くなるように分けます",
+    "Height":
+        "高さ",
+    "Into the largest parts of at most this concavity":
+        "凹みがこの値以下の最大のパーツに分割します",
+    "How many parts":
+        "パーツの数",
+    "Largest concavity of a part: the volume between it and its convex hull":
+        "パーツの凹みの最大値。パーツとその凸包の間の体積",
+    "How far the parts are moved apart, by their distance from the middle":
+        "中心からの距離に対する、パーツを引き離す量",
+    "Hide the object that was split":
+        "分割したオブジェクトを隠します",
+    "This part has no face of the mesh. Take a larger one.":
+        "このパーツにはメッシュの面がありません。より大きいパーツを選んでください。",
+    "{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution modifier first, or copy the part.":
+        "{name} は複数の解像度でスカルプトされており、それが失われます。先に多重解像度モディファイアーを適用するか、パーツをコピーしてください。",
+    "This part can't be closed: its border crosses itself. Take a larger or smaller one.":
+        "境界が交差しているため、このパーツは閉じられません。より大きい、または小さいパーツを選んでください。",
+    "Face Set from Part by Wheel":
+        "ホイールで選んだパーツから面セット",
+    "Mask from Part by Wheel":
+        "ホイールで選んだパーツからマスク",
+    "Vertex Group from Part by Wheel":
+        "ホイールで選んだパーツから頂点グループ",
+    "Paint Mask from Part by Wheel":
+        "ホイールで選んだパーツからペイントマスク",
+    "Parts as Solids":
+        "ソリッドとしてのパーツ",
+    "Deform":
+        "変形",
+    "Drag a Handle":
+        "ハンドルをドラッグ",
+    "Turn at the Joint":
+        "関節で回転",
+    "Within the part, proportionally:":
+        "パーツ内でプロポーショナル:",
+    "No parts yet":
+        "パーツはまだありません",
+    "Parts came with the file":
+        "パーツはファイルに付属しています",
+    "Vertices have moved since: the parts can be recomputed":
+        "頂点が移動しました。パーツを再計算できます",
+    "The mesh has changed: its parts are found anew at the next use":
+        "メッシュが変わりました。次の使用時にパーツを検出し直します",
+    "A sheet, not a solid: thicken it, close it, or have it taken for a thin solid":
+        "ソリッドではなくシートです。厚みを付けるか、閉じるか、薄いソリッドとみなしてください",
+    "From the mesh as it is":
+        "元のメッシュから",
+    "Repaired copy, {off} off":
+        "修復コピー、ずれ {off}",
+    "Points on it, {off} off":
+        "面上の点、ずれ {off}",
+    "Coarser copy, {off} off":
+        "粗いコピー、ずれ {off}",
+    "Partwheel":
+        "Partwheel",
+    "Duplicate Part":
+        "パーツを複製",
+    "Take as Thin Solid":
+        "薄いソリッドとみなす",
+    "Find Exactly":
+        "正確に検出",
+    "Recompute":
+        "再計算",
+    "Part: {share} of the area":
+        "パーツ: 面積の {share}",
+    "Parts of {count:,} faces":
+        "{count:,} 面のパーツ",
+    "Part (Segment, Region, Island)":
+        "パーツ (セグメント、領域、アイランド)",
+    "Path of the Part":
+        "パーツの経路",
+    "Show the parts that the wheel goes through, from the smallest to the whole, and click one to take it":
+        "ホイールが通るパーツを、最小から全体まで表示します。クリックで選べます",
+    "Remembered Parts":
+        "記憶したパーツ",
+    "{operator} stopped: the mesh is no longer being edited as it was.":
+        "{operator} を終了しました。メッシュの編集状態が変わりました。",
+    "{operator}: start this with the mouse over a 3D view.":
+        "{operator}: マウスを 3D ビューの上に置いて開始してください。",
+    "Partwheel stopped: {reason}. The full report is in the system console.":
+        "Partwheel を終了しました: {reason}。詳細はシステムコンソールにあります。",
+    "Larger, Smaller":
+        "大きく、小さく",
+    "Wheel, ↑↓":
+        "ホイール、↑↓",
+    "Confirm":
+        "確定",
+    "Cancel":
+        "キャンセル",
+    "Pick a Part":
+        "パーツを選ぶ",
+    "Snap":
+        "スナップ",
+    "Number":
+        "番号",
+    "Navigate":
+        "ナビゲート",
+    "Drag":
+        "ドラッグ",
+    "Within":
+        "内部",
+    "Similar":
+        "類似",
+    "Copy":
+        "コピー",
+    "Remove":
+        "削除",
+    "More, Fewer":
+        "多く、少なく",
+    "Drag the Handle, or Put It Elsewhere":
+        "ハンドルをドラッグ、または別の場所に置く",
+    "One More":
+        "もう 1 つ",
+    "Move, Rotate, Scale":
+        "移動、回転、スケール",
+    "Handle Size":
+        "ハンドルのサイズ",
+    "Wheel":
+        "ホイール",
+    "Confirm, Recompute Parts":
+        "確定してパーツを再計算",
+    "Axis":
+        "軸",
+    "Type":
+        "入力",
+    "Precise":
+        "精密",
+    "Done":
+        "完了",
+    "Shift Wheel":
+        "Shift ホイール",
+    "Page Up/Down":
+        "Page Up/Down",
+    "Next, Previous Part":
+        "次、前のパーツ",
+    "Ctrl Wheel":
+        "Ctrl ホイール",
+    "Swap":
+        "交換",
+    "A Part":
+        "パーツ",
+    "Merge":
+        "統合",
+    "Join, Split":
+        "結合、分割",
+    "Automatic":
+        "自動",
+    "Groups":
+        "グループ",
+    "Colours":
+        "カラー",
+    "Slots":
+        "スロット",
+    "Print":
+        "印刷",
+    "Another":
+        "別のパーツ",
+    # Of the library
+    "This part is no solid: it has no face of the surface. Take a larger one.":
+        "このパーツはソリッドではありません。表面の面を含みません。より大きいパーツを選んでください。",
+    "The part has no faces: pick one that has some.":
+        "パーツに面がありません。面のあるパーツを選んでください。",
+    "There are no triangles: select a part with faces.":
+        "三角形がありません。面のあるパーツを選択してください。",
+    "The part's faces are too thin to be deformed. Dissolve degenerate faces or merge vertices by distance first.":
+        "パーツの面が細すぎて変形できません。先に縮退した面を溶解するか、頂点を距離でマージしてください。",
+    "The mesh has no area at all: only edges and points.":
+        "メッシュに面積がありません。辺と点だけです。",
+    "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then taken as thin solids.":
+        "メッシュはソリッドではなくシートです。開いていて、閉じるには今と同じだけの面が必要です。厚みを付ける (ソリッド化)、閉じる、または開いたサーフェスを許可して薄いソリッドとみなしてください。",
+    "The surface encloses no volume. Give it some thickness.":
+        "表面が体積を囲んでいません。厚みを付けてください。",
+    "The mesh is too broken to be repaired. Remesh it and try again.":
+        "メッシュの破損がひどく修復できません。リメッシュしてもう一度試してください。",
+    "There is not enough memory to fill this mesh. Decimate it first.":
+        "このメッシュを処理するメモリが足りません。先にデシメートしてください。",
+    "The mesh can't be filled: some faces are too close together to be told apart. Merge vertices by distance, or move the parts that almost touch further apart.":
+        "一部の面が近すぎて区別できず、メッシュを処理できません。頂点を距離でマージするか、ほぼ接している部分を離してください。",
+    "The mesher moved or merged vertices of the surface, for some are too close together. Merge vertices by distance.":
+        "近すぎる頂点があり、処理中に移動または結合されました。頂点を距離でマージしてください。",
+    "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.":
+        "処理中に表面の一部が失われました。リメッシュするか、メッシュを少しスムーズにしてもう一度試してください。",
+    "The mesh has no faces. Choose a mesh object that has some.":
+        "メッシュに面がありません。面のあるメッシュオブジェクトを選んでください。",
+    "All vertices are at the same place. Choose a mesh that has an extent.":
+        "すべての頂点が同じ位置にあります。広がりのあるメッシュを選んでください。",
+    "The mesh has no part that can be closed. Give it a thickness (Solidify).":
+        "メッシュに閉じられる部分がありません。厚みを付けてください (ソリッド化)。",
+    "The surface passes through itself in ways that can't be repaired. Remesh it, or unite its parts with a Boolean.":
+        "表面が修復できない形で自己交差しています。リメッシュするか、ブーリアンで各部分を合体してください。",
+    "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.":
+        "処理が終わらず、メッシュを処理できません。リメッシュするか、少しスムーズにしてもう一度試してください。",
+}

@@ -1,0 +1,844 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Spanish."""
+
+WORDS = {
+    "Turn":
+        "Giro",
+    "About the border's normal":
+        "Alrededor de la normal del borde",
+    "Depth":
+        "Profundidad",
+    "How far it is sunk in, times the radius of its border":
+        "Cuánto se hunde, por el radio de su borde",
+    "size {size:.2f}, turn {turn:.0f}°, depth {depth:.2f}":
+        "tamaño {size:.2f}, giro {turn:.0f}°, profundidad {depth:.2f}",
+    "Place Part":
+        "Colocar parte",
+    "Place the active part on a surface: it follows the mouse, its border on the surface and turned to it":
+        "Coloca la parte activa sobre una superficie: sigue al ratón, con su borde sobre la superficie y orientada hacia ella",
+    "{operator} stopped: the part is no longer the active object.":
+        "{operator} se detuvo: la parte ya no es el objeto activo.",
+    "Onto":
+        "Sobre",
+    "The object that the part is placed on":
+        "El objeto sobre el que se coloca la parte",
+    "Location":
+        "Posición",
+    "Where its border goes":
+        "Adónde va su borde",
+    "Normal":
+        "Normal",
+    "Of the surface there":
+        "De la superficie en ese punto",
+    "Size":
+        "Tamaño",
+    "Times the size that it had":
+        "Por el tamaño que tenía",
+    "Fit Border":
+        "Encajar borde",
+    "Onto the target's nearest border, where a part was removed, and of its size":
+        "En el borde más cercano del objetivo, donde se quitó una parte, y con su tamaño",
+    "Mirror Copy":
+        "Copia simétrica",
+    "Add the mirror image across the target's own X axis":
+        "Agrega la imagen simétrica respecto al eje X propio del objetivo",
+    "In Object Mode, make the part to be placed the active object.":
+        "En modo Objeto, hacer que la parte a colocar sea el objeto activo.",
+    "Say which mesh object the part is placed on.":
+        "Se debe indicar sobre qué objeto de malla se coloca la parte.",
+    "Move the mouse over a surface":
+        "Mover el ratón sobre una superficie",
+    "There is no surface under the mouse yet":
+        "Aún no hay ninguna superficie bajo el ratón",
+    "Onto {name}":
+        "Sobre {name}",
+    "fitted":
+        "encajada",
+    "with mirror copy":
+        "con copia simétrica",
+    "{name} has no border to fit: no part was removed from it.":
+        "{name} no tiene ningún borde donde encajar: no se le quitó ninguna parte.",
+    "Swap with Compatible Part":
+        "Cambiar por parte compatible",
+    "Exchange the picked part for one of another object that fits its border; the wheel goes through what there is":
+        "Cambia la parte elegida por una de otro objeto que encaje en su borde; la rueda recorre las que hay",
+    "{operator} stopped: the object is no longer the active one.":
+        "{operator} se detuvo: el objeto ya no es el activo.",
+    "From":
+        "Desde",
+    "The object that the new part comes from; none: those selected, or else all others":
+        "El objeto del que viene la nueva parte; ninguno: los seleccionados o, si no, todos los demás",
+    "Part":
+        "Parte",
+    "The new part's number in that object; -1: the most compatible one":
+        "El número de la nueva parte en ese objeto; -1: la más compatible",
+    "Times the size at which the borders fit":
+        "Por el tamaño con que encajan los bordes",
+    "Mirror":
+        "Simetría",
+    "Take the part's mirror image":
+        "Toma la imagen simétrica de la parte",
+    "Blend":
+        "Fundir",
+    "Width of a smooth transition on either side of the seam, times its radius":
+        "Anchura de una transición suave a cada lado de la costura, por su radio",
+    "Find Parts":
+        "Encontrar partes",
+    "Find the parts of the new mesh at once, in a process of its own":
+        "Encuentra enseguida las partes de la nueva malla, en un proceso aparte",
+    "There is no mesh object {name}.":
+        "No hay ningún objeto de malla {name}.",
+    "{name}, part {number} of {count}, {likeness:.0%} alike":
+        "{name}, parte {number} de {count}, parecida en un {likeness:.0%}",
+    "mirrored":
+        "simétrica",
+    "Leave Edit Mode":
+        "Salir del modo Edición",
+    "The part is the whole model: nothing would be left to put another part on. Pick a smaller one.":
+        "La parte es todo el modelo: no quedaría nada donde poner otra. Elegir una más pequeña.",
+    "The part has no border with the rest of the model, so there is nothing to fit another part to. Pick one that was grown from the model, not a piece of its own.":
+        "La parte no tiene borde con el resto del modelo, así que no hay nada donde encajar otra. Elegir una que salga del modelo, no una pieza suelta.",
+    "No other object has parts. Find the parts of the one that the new part comes from, and select it too; or paste a part that was copied as a solid.":
+        "Ningún otro objeto tiene partes. Encontrar las partes del objeto del que viene la nueva y seleccionarlo también; o pegar una parte copiada como sólido.",
+    "No part there has a border that could be fitted to this one's.":
+        "Ninguna parte de allí tiene un borde que encaje en el de esta.",
+    "{name} has no part {number}.":
+        "{name} no tiene ninguna parte {number}.",
+    "That part of {name} has no border that could be fitted to this one's.":
+        "Esa parte de {name} no tiene un borde que encaje en el de esta.",
+    "{name} was changed and has other parts now. Start again.":
+        "{name} fue modificado y ahora tiene otras partes. Empezar de nuevo.",
+    "it has no faces":
+        "no tiene caras",
+    "{count} edges have not just two faces":
+        "{count} bordes no tienen exactamente dos caras",
+    "at {count} edges the faces wind against each other":
+        "en {count} bordes las caras están orientadas una contra otra",
+    "{count} vertices are loose or join parts that only touch there":
+        "{count} vértices están sueltos o unen partes que solo se tocan ahí",
+    "{name} is no solid: {reason}. Repair it, or copy its part anew.":
+        "{name} no es un sólido: {reason}. Repararlo o copiar su parte de nuevo.",
+    "{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).":
+        "{name} no es un sólido: está del revés. Orientar sus caras hacia afuera (Recalcular hacia afuera).",
+    "by {solver} within: {reason}":
+        "con {solver}, por dentro: {reason}",
+    "by {solver}: {reason}":
+        "con {solver}: {reason}",
+    "{one} and {other} can't be united ({reasons}). Move one of them a little: faces that lie in each other are the usual cause.":
+        "{one} y {other} no se pueden unir ({reasons}). Mover un poco uno de ellos: la causa habitual son caras situadas una sobre otra.",
+    "its volume would be {share:.0%} of that of the two":
+        "su volumen sería el {share:.0%} del de ambos",
+    "one of them was left out":
+        "uno de ellos quedó fuera",
+    "Select the parts, and then the mesh object that they are to become part of, in Object Mode.":
+        "En modo Objeto, seleccionar las partes y después el objeto de malla del que deben formar parte.",
+    "Unite Solids":
+        "Unir sólidos",
+    "Unite the other selected solids with the active one into a single closed mesh":
+        "Une los demás sólidos seleccionados con el activo en una única malla cerrada",
+    "Width of a smooth transition on either side of each seam, times the seam's radius; 0: the seam stays a crease":
+        "Anchura de una transición suave a cada lado de cada costura, por el radio de esta; 0: la costura queda marcada",
+    "Find the parts of the united mesh at once, in a process of its own":
+        "Encuentra enseguida las partes de la malla unida, en un proceso aparte",
+    "Keep Parts":
+        "Conservar partes",
+    "Leave the other objects as they are":
+        "Deja los demás objetos como están",
+    "{name} is one closed mesh now, of {count:,} faces (solver {solver}).":
+        "{name} es ahora una malla cerrada de {count:,} caras (algoritmo {solver}).",
+    "The vertex group {name} is locked. Unlock it, or give it another name.":
+        "El grupo de vértices {name} está bloqueado. Desbloquearlo o darle otro nombre.",
+    "Face Sets":
+        "Conjuntos de caras",
+    "One for each part, in place of all that there are":
+        "Uno por cada parte, en lugar de todos los existentes",
+    "Vertex Groups":
+        "Grupos de vértices",
+    "For an armature: they fall smoothly across the borders and add up to 1":
+        "Para un esqueleto: disminuyen suavemente a través de los bordes y suman 1",
+    "Materials in Colours":
+        "Materiales de colores",
+    "A material of its own colour for each part":
+        "Un material de color propio para cada parte",
+    "Material Slots":
+        "Ranuras de material",
+    "The model's own materials, with a slot for each part":
+        "Los materiales propios del modelo, con una ranura por cada parte",
+    "Seams":
+        "Costuras",
+    "For unwrapping: along the borders, in creases, and where a part would not lie flat":
+        "Para desplegar: a lo largo de los bordes, en los pliegues y donde una parte no quedaría plana",
+    "Objects":
+        "Objetos",
+    "Each part an object that hangs on the next one":
+        "Cada parte, un objeto que cuelga del siguiente",
+    "Bones":
+        "Huesos",
+    "An armature with a bone for each part, and the vertex groups for it, ready to be posed":
+        "Un esqueleto con un hueso por cada parte y sus grupos de vértices, listo para posar",
+    "For Printing":
+        "Para imprimir",
+    "Closed objects with flat cuts, pegs and sockets, checked. Needs manifold3d":
+        "Objetos cerrados con cortes planos, espigas y encajes, comprobados. Requiere manifold3d",
+    "Parts to...":
+        "Partes a...",
+    "Divide the whole model into parts: the wheel changes how many, a click and the wheel one, a drag merges":
+        "Divide todo el modelo en partes: la rueda cambia cuántas, un clic y la rueda una sola, arrastrar las fusiona",
+    "Make Them":
+        "Convertirlas en",
+    "What the parts become; none: they are only kept in the mesh":
+        "En qué se convierten las partes; nada: solo se conservan en la malla",
+    "Parts":
+        "Partes",
+    "How many; 0: those that are kept in the mesh, or as people would most likely take them":
+        "Cuántas; 0: las que se conservan en la malla o como las vería la mayoría de la gente",
+    "Closed":
+        "Cerrados",
+    "Close the objects where they were cut: solids that make the whole":
+        "Cierra los objetos donde se cortaron: sólidos que forman el conjunto",
+    "Smooth Caps":
+        "Tapas suaves",
+    "Close them with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+        "Los cierra con una superficie suave, en lugar de las facetas planas del interior que los separan del resto",
+    "Cap Material":
+        "Material de tapas",
+    "Give the caps a material of their own":
+        "Da a las tapas un material propio",
+    "Origins at Borders":
+        "Orígenes en los bordes",
+    "Each object turns about the middle of its border":
+        "Cada objeto gira alrededor del centro de su borde",
+    "Explode":
+        "Explotar",
+    "How far they are moved apart, by the distance of their middles. The largest one has this as a custom property, too, which can be changed later":
+        "Cuánto se separan, según la distancia entre sus centros. El más grande lo tiene también como propiedad personalizada, que se puede cambiar después",
+    "Shell":
+        "Cáscara",
+    "How thick their walls are, by a modifier; 0: solid":
+        "El grosor de sus paredes, mediante un modificador; 0: macizos",
+    "Unwrap":
+        "Desplegar",
+    "Unwrap the mesh along the seams, into a new UV map if it has others":
+        "Despliega la malla por las costuras, en un nuevo mapa UV si tiene otros",
+    "Pegs":
+        "Espigas",
+    "A peg and a socket across each cut, where there is room":
+        "Una espiga y un encaje en cada corte, donde hay espacio",
+    "Clearance (mm)":
+        "Holgura (mm)",
+    "The gap around each peg, on all sides":
+        "El hueco alrededor de cada espiga, por todos los lados",
+    "Wall (mm)":
+        "Pared (mm)",
+    "What stays around a socket; thinner walls are told":
+        "Lo que queda alrededor de un encaje; se avisa de las paredes más finas",
+    "Bed (mm)":
+        "Base (mm)",
+    "The printer's: parts that are larger are split further; 0: large enough":
+        "La de la impresora: las partes más grandes se dividen más; 0: suficientemente grande",
+    "Hide Original":
+        "Ocultar original",
+    "Hide the object that was divided":
+        "Oculta el objeto que se dividió",
+    "{operator} stopped: the mesh is no longer as it was, or in another mode.":
+        "{operator} se detuvo: la malla ya no está como estaba o está en otro modo.",
+    "This is for an active mesh object, in Object, Edit or Sculpt Mode.":
+        "Esto es para un objeto de malla activo, en modo Objeto, Edición o Escultura.",
+    "Dynamic topology changes the faces all the time: switch it off first.":
+        "La topología dinámica cambia las caras todo el tiempo: desactivarla antes.",
+    "These are no parts of {name}: {reason}":
+        "Estas no son partes de {name}: {reason}",
+    "{name} is in {count} parts now: {made}.":
+        "{name} está ahora en {count} partes: {made}.",
+    "{count} parts: {made}":
+        "{count} partes: {made}",
+    "{count} parts, one of {faces:,} faces: {made}":
+        "{count} partes, una de {faces:,} caras: {made}",
+    "Kept in the Mesh":
+        "Conservadas en la malla",
+    "Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: {python} -m pip install manifold3d.":
+        "Para imprimir se necesita el paquete de Python manifold3d, que Blender no trae. Para instalarlo, ejecutar: {python} -m pip install manifold3d.",
+    "{name} is scaled differently along its axes: apply its scale first.":
+        "{name} tiene escalas distintas en sus ejes: aplicar antes la escala.",
+    "{name} has {count} UV maps, no more are possible: remove one.":
+        "{name} tiene {count} mapas UV, no caben más: eliminar uno.",
+    "Handle of one vertex":
+        "Asa de un vértice",
+    "Handle of {count:,} vertices":
+        "Asa de {count:,} vértices",
+    "The whole part":
+        "Toda la parte",
+    "Joint of {reach:.1f} radii":
+        "Articulación de {reach:.1f} radios",
+    "The handle is the whole part, so nothing is left to follow it: make the handle smaller.":
+        "El asa es toda la parte, así que no queda nada que la siga: reducir el asa.",
+    "One handle covers another: make it smaller, or put it elsewhere.":
+        "Un asa cubre a otra: reducirla o ponerla en otro lugar.",
+    "No part of this limb is beyond its joint and not hidden: make the joint smaller.":
+        "Ninguna parte de esta extremidad queda visible más allá de su articulación: reducir la articulación.",
+    "Move":
+        "Mover",
+    "Rotate":
+        "Rotar",
+    "Scale":
+        "Escalar",
+    "{movement} along local {axes}":
+        "{movement} en {axes} local",
+    "{movement} along global {axes}":
+        "{movement} en {axes} global",
+    "{movement} in local {axes}":
+        "{movement} en el plano {axes} local",
+    "{movement} in global {axes}":
+        "{movement} en el plano {axes} global",
+    "Vertex":
+        "Vértice",
+    "Radius":
+        "Radio",
+    "Matrix":
+        "Matriz",
+    "Deform Part":
+        "Deformar parte",
+    "Drag a handle of the part that was picked last: the part follows like a soft body, all beyond it stays":
+        "Arrastra un asa de la última parte elegida: la parte la sigue como un cuerpo blando y todo lo demás se queda",
+    "The part's number; -1: the part that was picked last":
+        "El número de la parte; -1: la última elegida",
+    "Method":
+        "Método",
+    "As Rigid as Possible":
+        "Lo más rígida posible",
+    "The part follows the handle and keeps its details":
+        "La parte sigue al asa y conserva sus detalles",
+    "Proportional":
+        "Proporcional",
+    "The part moves as a whole, less and less towards its border":
+        "La parte se mueve entera, cada vez menos hacia su borde",
+    "At the Joint":
+        "En la articulación",
+    "The part keeps its shape and turns about its border; what is near that, on either side, bends":
+        "La parte conserva su forma y gira alrededor de su borde; lo cercano a este, a ambos lados, se dobla",
+    "Rings":
+        "Anillos",
+    "So many rings of faces around the part deform with it, for a softer join":
+        "Cuántos anillos de caras alrededor de la parte se deforman con ella, para una unión más suave",
+    "Joint":
+        "Articulación",
+    "How far from the part's border it bends, in radii of the border":
+        "Hasta qué distancia del borde de la parte se dobla, en radios del borde",
+    "Snap Border":
+        "Ajustar borde",
+    "Deform the part as far as the creases near its border, not as far as its own border; a part that was picked so is":
+        "Deforma la parte hasta los pliegues cercanos a su borde, no hasta su propio borde; como una parte elegida así",
+    "Parts are deformed in Edit Mode of a mesh.":
+        "Las partes se deforman en el modo Edición de una malla.",
+    "There is no handle: drag one in the 3D view.":
+        "No hay ningún asa: arrastrar una en la vista 3D.",
+    "A handle is a vertex that the mesh doesn't have.":
+        "Un asa es un vértice que la malla no tiene.",
+    "{state}: settling":
+        "{state}: asentándose",
+    "{state}: getting ready":
+        "{state}: preparándose",
+    "Move Part Proportionally":
+        "Mover parte proporcionalmente",
+    "Move the part that was picked last; its surroundings follow, as far as suits its size. R turns and S scales it":
+        "Mueve la última parte elegida; su entorno la sigue, según su tamaño. R la rota y S la escala",
+    "The part has no vertex inside its border that is not hidden: pick a larger one.":
+        "La parte no tiene ningún vértice visible dentro de su borde: elegir una más grande.",
+    "The part is the whole mesh, or a loose piece of it, without a border that would hold it: pick a smaller one, or move it as it is.":
+        "La parte es toda la malla, o una pieza suelta de ella, sin un borde que la sujete: elegir una más pequeña o moverla tal cual.",
+    "The faces of the part have no area: there is nothing to deform.":
+        "Las caras de la parte no tienen área: no hay nada que deformar.",
+    "That is not a point of the part.":
+        "Ese no es un punto de la parte.",
+    "The mesh of {name} is linked from another file: make it local first (Object > Relations > Make Local).":
+        "La malla de {name} está vinculada desde otro archivo: hacerla local antes (Objeto > Relaciones > Hacer local).",
+    "The mesh of {name} is a library override, which Blender does not edit: make it local first (Object > Relations > Make Local).":
+        "La malla de {name} es una redefinición de biblioteca, que Blender no edita: hacerla local antes (Objeto > Relaciones > Hacer local).",
+    "This is for an active mesh object, in Edit Mode or Object Mode.":
+        "Esto es para un objeto de malla activo, en modo Edición o modo Objeto.",
+    "The build was cancelled.":
+        "Se canceló la búsqueda de partes.",
+    "The mesh {name} is gone, so its parts were left aside.":
+        "La malla {name} ya no está, así que sus partes se descartaron.",
+    "{name} was edited while its parts were being found, so they were left aside. Find them again when the mesh is as you want it.":
+        "{name} se editó mientras se buscaban sus partes, así que se descartaron. Buscarlas de nuevo cuando la malla esté como se desea.",
+    "What is selected is no part. Pick one with Select Part by Wheel, and confirm it.":
+        "Lo seleccionado no es una parte. Elegir una con «Seleccionar parte con la rueda» y confirmarla.",
+    "No part is picked. Pick one with Select Part by Wheel, and confirm it.":
+        "No hay ninguna parte elegida. Elegir una con «Seleccionar parte con la rueda» y confirmarla.",
+    "There is no part {number}: there are {count}.":
+        "No hay ninguna parte {number}: hay {count}.",
+    "{name} has no parts for its mesh as it is now. Find them first.":
+        "{name} no tiene partes para su malla tal como está. Encontrarlas antes.",
+    "The parts saved with {name} are of a newer Partwheel than this one, so they are found anew. Update Partwheel to have those of the file.":
+        "Las partes guardadas con {name} son de un Partwheel más nuevo que este, así que se buscan de nuevo. Actualizar Partwheel para tener las del archivo.",
+    "Partwheel finds the parts of {name} after those of {other}":
+        "Partwheel buscará las partes de {name} después de las de {other}",
+    "Partwheel finds the parts of {name}: {fraction:.0%}":
+        "Partwheel busca las partes de {name}: {fraction:.0%}",
+    "Esc: Cancel":
+        "Esc: Cancelar",
+    "Cancelled: no parts were found.":
+        "Cancelado: no se encontró ninguna parte.",
+    "The panel Partwheel in the sidebar does that.":
+        "El panel Partwheel de la barra lateral lo hace.",
+    "No parts for {name}: {reason}":
+        "No hay partes para {name}: {reason}",
+    "A way that was tried first failed: {reason}":
+        "Falló una vía que se probó primero: {reason}",
+    "{name}, {count:,} faces: its parts were found in {seconds:.1f} s.":
+        "{name}, {count:,} caras: se encontraron sus partes en {seconds:.1f} s.",
+    "Quality":
+        "Calidad",
+    "0 is the quickest and right for nearly all; from 1.1 on the inside is divided more evenly (1.4 is usual, smaller is slower)":
+        "0 es lo más rápido y adecuado para casi todo; a partir de 1,1 el interior se divide de forma más regular (1,4 es lo habitual, menos es más lento)",
+    "Open Surfaces":
+        "Superficies abiertas",
+    "Take a surface that encloses nothing, such as cloth or a car's door, for a thin solid, instead of refusing it":
+        "Toma una superficie que no encierra nada, como tela o la puerta de un coche, por un sólido fino, en lugar de rechazarla",
+    "Exactly":
+        "Exactamente",
+    "Find the parts of a mesh of more than 200,000 triangles on all of these, not on a coarser copy: some ten times the time and memory. The add-on's preferences can have it so for all":
+        "Encuentra las partes de una malla de más de 200.000 triángulos en todos ellos, no en una copia más basta: unas diez veces más tiempo y memoria. En las preferencias del complemento se puede fijar para todas",
+    "Find Parts of Mesh":
+        "Encontrar partes de la malla",
+    "Find the parts of the active mesh, and of other selected ones that have none, at all sizes for the wheel":
+        "Encuentra las partes de la malla activa, y de otras seleccionadas que no tengan, en todos los tamaños para la rueda",
+    "The same on behalf of an operator that made the mesh, which stays the last operation, with its panel":
+        "Lo mismo para un operador que hizo la malla y que sigue siendo la última operación, con su panel",
+    "Clear Parts":
+        "Borrar partes",
+    "Let the parts of the active mesh go, also those saved with the file. The mesh stays as it is":
+        "Olvida las partes de la malla activa, también las guardadas con el archivo. La malla queda como está",
+    "The active object has no parts.":
+        "El objeto activo no tiene partes.",
+    "Part under the Mouse":
+        "Parte bajo el ratón",
+    "Face Set":
+        "Conjunto de caras",
+    "Mask":
+        "Máscara",
+    "Vertex Group":
+        "Grupo de vértices",
+    "Paint Mask":
+        "Máscara de pintura",
+    "Part by Wheel":
+        "Parte con la rueda",
+    "Pick a part with a click and the mouse wheel, and make it a face set, a mask or a vertex group":
+        "Elige una parte con un clic y la rueda del ratón y la convierte en conjunto de caras, máscara o grupo de vértices",
+    "Make It":
+        "Convertirla en",
+    "What the part becomes":
+        "En qué se convierte la parte",
+    "Usual":
+        "Lo habitual",
+    "A face set in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
+        "Un conjunto de caras en modo Escultura, un grupo de vértices al pintar influencias, si no una máscara de pintura",
+    "A new face set":
+        "Un nuevo conjunto de caras",
+    "Masked against sculpting":
+        "Protegida al esculpir",
+    "Weight 1 in a new vertex group, named after the part; with Extend in the active one, with Deselect none there":
+        "Influencia 1 en un nuevo grupo de vértices con el nombre de la parte; con Extender, en el activo; con Deseleccionar, ninguna allí",
+    "The only faces that can be painted on":
+        "Las únicas caras sobre las que se puede pintar",
+    "This is for Sculpt Mode and the paint modes of a mesh.":
+        "Esto es para el modo Escultura y los modos de pintura de una malla.",
+    "Parts can't become this in this mode: {made}.":
+        "En este modo las partes no pueden convertirse en esto: {made}.",
+    "Face":
+        "Cara",
+    "The face that was clicked":
+        "La cara en que se hizo clic",
+    "Level":
+        "Nivel",
+    "Notches of the wheel from the part that the click alone takes: up is positive":
+        "Pasos de la rueda desde la parte que toma el clic por sí solo: hacia arriba es positivo",
+    "Extend":
+        "Extender",
+    "Add the part to what is selected, instead of replacing it":
+        "Agrega la parte a lo seleccionado, en lugar de reemplazarlo",
+    "Deselect":
+        "Deseleccionar",
+    "Take the part away from what is selected":
+        "Quita la parte de lo seleccionado",
+    "Move the border of the part to the creases nearby":
+        "Lleva el borde de la parte a los pliegues cercanos",
+    "Face {number} can't be picked: {reason}":
+        "La cara {number} no se puede elegir: {reason}",
+    "This 3D view does not show the mesh that is being edited.":
+        "Esta vista 3D no muestra la malla que se está editando.",
+    "Click a face of the mesh":
+        "Hacer clic en una cara de la malla",
+    "What is seen there was made by the modifiers of {name} and belongs to no face of its mesh.":
+        "Lo que se ve ahí lo hicieron los modificadores de {name} y no pertenece a ninguna cara de su malla.",
+    "The parts are found. Start {operator} again to pick them.":
+        "Las partes se encontraron. Iniciar {operator} de nuevo para elegirlas.",
+    "Partwheel stopped: the parts were found anew. Pick one of them.":
+        "Partwheel se detuvo: las partes se encontraron de nuevo. Elegir una de ellas.",
+    "There is no face there":
+        "Ahí no hay ninguna cara",
+    "Part {number} of {count}, {faces:,} faces, {share} of the area":
+        "Parte {number} de {count}, {faces:,} caras, {share} del área",
+    "border in creases":
+        "borde en pliegues",
+    "Select Part by Wheel":
+        "Seleccionar parte con la rueda",
+    "Pick a part of the mesh with a click, then make it larger or smaller with the mouse wheel":
+        "Elige una parte de la malla con un clic y luego la agranda o la reduce con la rueda del ratón",
+    "Parts are selected in Edit Mode of a mesh.":
+        "Las partes se seleccionan en el modo Edición de una malla.",
+    "Pick a part of the mesh under the mouse, which stays as it is meanwhile, then enter Edit Mode with the part":
+        "Elige una parte de la malla bajo el ratón, que entretanto queda como está, y entra con ella en modo Edición",
+    "This is for Object Mode.":
+        "Esto es para el modo Objeto.",
+    "There is no mesh under the mouse.":
+        "No hay ninguna malla bajo el ratón.",
+    "{name} is an instance, and this 3D view does not show its original: edit it there.":
+        "{name} es una instancia y esta vista 3D no muestra su original: editarlo allí.",
+    "Toggle Edit Mode":
+        "Alternar modo Edición",
+    "Select Part":
+        "Seleccionar parte",
+    "Select a meaningful part of the mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "Selecciona una parte con sentido de la malla.\nHacer clic en una parte y girar la rueda para la siguiente más grande o más pequeña. Mayús agrega, Ctrl quita",
+    "Parts are found at the first click":
+        "Las partes se buscan con el primer clic",
+    "Overlay":
+        "Sobreimpresos",
+    "The vertex group {name} is locked. Unlock it, or pick the part alone: it gets a group of its own.":
+        "El grupo de vértices {name} está bloqueado. Desbloquearlo o elegir la parte sola: tendrá un grupo propio.",
+    "{name} has no vertex group that the part could be taken out of.":
+        "{name} no tiene ningún grupo de vértices del que quitar la parte.",
+    "The part was taken out of the vertex group {name}.":
+        "La parte se quitó del grupo de vértices {name}.",
+    "The part was added to the vertex group {name}.":
+        "La parte se agregó al grupo de vértices {name}.",
+    "The part is the new vertex group {name}.":
+        "La parte es el nuevo grupo de vértices {name}.",
+    "Save Parts in .blend Files":
+        "Guardar partes en archivos .blend",
+    "Parts that were built are there again when the file is opened. It grows by about 40 bytes a face":
+        "Las partes encontradas vuelven a estar ahí al abrir el archivo, que crece unos 40 bytes por cara",
+    "How small parts are joined to larger ones in builds from now on":
+        "Cómo se unen las partes pequeñas en otras más grandes de ahora en adelante",
+    "As People See Them":
+        "Como las ve la gente",
+    "By what people took for parts on some hundred models: a click alone finds the part that was meant more often. Borders lie in creases, and the two sides of a model that is its own mirror image are alike":
+        "Según lo que la gente tomó por partes en varios cientos de modelos: un clic solo acierta más a menudo. Los bordes quedan en pliegues y los dos lados de un modelo simétrico son iguales",
+    "Nearly Convex":
+        "Casi convexas",
+    "By convexity alone, the most regular and the quickest: a click takes the smallest piece there is, and each notch of the wheel takes one more step":
+        "Solo por convexidad, lo más regular y rápido: un clic toma la pieza más pequeña que hay y cada paso de la rueda avanza uno",
+    "Large Meshes Exactly":
+        "Mallas grandes exactamente",
+    "Find the parts of meshes of more than 200,000 triangles on all of these, not on a coarser copy: some ten times the time and memory for parts that are mostly the same":
+        "Encuentra las partes de mallas de más de 200.000 triángulos en todos ellos, no en una copia más basta: unas diez veces más tiempo y memoria para partes casi siempre iguales",
+    "Memory":
+        "Memoria",
+    "How much of the available memory a build may use (kept on Linux)":
+        "Cuánta de la memoria disponible puede usar una búsqueda (se respeta en Linux)",
+    "Time Limit":
+        "Límite de tiempo",
+    "Minutes of processor time after which a build is stopped; 0: two, and two more for each 60,000 triangles, far more than builds take":
+        "Minutos de procesador tras los que se detiene una búsqueda; 0: dos, y dos más por cada 60.000 triángulos, mucho más de lo necesario",
+    "Python":
+        "Python",
+    "The program that parts are found with, a Python 3, in a process of its own; empty: the one that Blender brings, or else one that is installed":
+        "El programa con que se buscan las partes, un Python 3, en un proceso aparte; vacío: el que trae Blender o, si no, uno instalado",
+    "Tint the part that is held":
+        "Tiñe la parte que se sostiene",
+    "Next Part":
+        "Parte siguiente",
+    "Tint faintly what the next notch of the wheel adds":
+        "Tiñe débilmente lo que agrega el siguiente paso de la rueda",
+    "Convex Hull":
+        "Envolvente convexa",
+    "Show the convex hull of the part that is held as glass":
+        "Muestra como cristal la envolvente convexa de la parte que se sostiene",
+    "All Parts":
+        "Todas las partes",
+    "Show the parts of the whole mesh at the size of the part that is held, each in a colour of its own":
+        "Muestra las partes de toda la malla al tamaño de la que se sostiene, cada una de un color",
+    "Pie Menu":
+        "Menú circular",
+    "The part has no mirror image in {name}: it lies across the plane of symmetry, or the model is not the same on both sides.":
+        "La parte no tiene imagen simétrica en {name}: atraviesa el plano de simetría o el modelo no es igual a ambos lados.",
+    "Parts are remembered in Edit Mode of a mesh.":
+        "Las partes se recuerdan en el modo Edición de una malla.",
+    "The name under which it is remembered":
+        "El nombre con que se recuerda",
+    "Remember Part":
+        "Recordar parte",
+    "Give the part (segment, region) that was picked last a name, by which the panel's list selects it again":
+        "Da a la última parte elegida (segmento, región) un nombre con el que la lista del panel la vuelve a seleccionar",
+    "Name":
+        "Nombre",
+    "The part's name":
+        "El nombre de la parte",
+    "Part {number}":
+        "Parte {number}",
+    "Select Remembered Part":
+        "Seleccionar parte recordada",
+    "Select the part that is remembered under this name. Shift adds it to the selection, Ctrl takes it away":
+        "Selecciona la parte recordada con este nombre. Mayús la agrega a lo seleccionado, Ctrl la quita",
+    "Rename Part":
+        "Renombrar parte",
+    "Give a remembered part another name":
+        "Da otro nombre a una parte recordada",
+    "New Name":
+        "Nuevo nombre",
+    "The part's name from now on":
+        "El nombre de la parte de ahora en adelante",
+    "Forget Part":
+        "Olvidar parte",
+    "Forget the name of a part; the mesh stays as it is":
+        "Olvida el nombre de una parte; la malla queda como está",
+    "No part of {name} as it is now is much like the one remembered as {part}.":
+        "Ninguna parte de {name} tal como está se parece mucho a la recordada como {part}.",
+    "No part of {name} is remembered as {part}.":
+        "Ninguna parte de {name} se recuerda como {part}.",
+    "A part is remembered by a name: it can't be empty.":
+        "Una parte se recuerda por un nombre: no puede estar vacío.",
+    "{name} is too long for a name: it can have {count} letters, fewer of some alphabets.":
+        "{name} es demasiado largo para un nombre: puede tener {count} letras, menos en algunos alfabetos.",
+    "There is a part that is remembered as {name}. Give another name, or forget that one first.":
+        "Ya hay una parte recordada como {name}. Dar otro nombre u olvidar antes esa.",
+    "Add to what is selected, instead of replacing it":
+        "Agrega a lo seleccionado, en lugar de reemplazarlo",
+    "Select Similar Parts":
+        "Seleccionar partes similares",
+    "Select all parts (segments, regions) like the one picked last, in shape and size: fingers, legs, horns":
+        "Selecciona todas las partes (segmentos, regiones) como la última elegida, en forma y tamaño: dedos, patas, cuernos",
+    "Threshold":
+        "Umbral",
+    "How alike parts are that are selected: 1 is the same shape and size, less is more parts":
+        "Cuán parecidas son las partes que se seleccionan: 1 es la misma forma y tamaño, menos da más partes",
+    "{count} parts, alike from {threshold:.2f} on":
+        "{count} partes, parecidas desde {threshold:.2f}",
+    "Select Mirrored Part":
+        "Seleccionar parte simétrica",
+    "Select the part (segment, region) on the other side of the model, across its own plane of symmetry":
+        "Selecciona la parte (segmento, región) del otro lado del modelo, respecto a su propio plano de simetría",
+    "Plane":
+        "Plano",
+    "Of the planes in which the model is its own mirror image, the best one first":
+        "De los planos en que el modelo es su propia imagen simétrica, primero el mejor",
+    "Move the border of the part to the creases nearby, as far as what is inside lets it be there":
+        "Lleva el borde de la parte a los pliegues cercanos, hasta donde lo permite el interior",
+    "Close the part with a smooth surface, instead of the flat facets inside the solid that divide it from the rest":
+        "Cierra la parte con una superficie suave, en lugar de las facetas planas del interior que la separan del resto",
+    "Copy Part as Solid":
+        "Copiar parte como sólido",
+    "Copy the picked part as a solid: a new object, closed where it was cut; Ctrl C, Ctrl V take it to other files":
+        "Copia la parte elegida como sólido: un nuevo objeto, cerrado donde se cortó; Ctrl C y Ctrl V lo llevan a otros archivos",
+    "Remove Part":
+        "Eliminar parte",
+    "Take the picked part out of the mesh and close the hole":
+        "Quita de la malla la parte elegida y cierra el hueco",
+    "Split into Solids":
+        "Dividir en sólidos",
+    "Make each part of a cut an object of its own: closed solids that fit each other exactly":
+        "Hace de cada parte de un corte un objeto propio: sólidos cerrados que encajan exactamente",
+    "By":
+        "Según",
+    "What decides where to cut":
+        "Qué decide dónde cortar",
+    "Into so many parts, those that were joined last":
+        "En tantas partes, las que se unieron al final",
+    "Into so many parts, those that are nearest to convex in total":
+        "En tantas partes, las que en total son más convexas",
+    "Height":
+        "Altura",
+    "Into the largest parts of at most this concavity":
+        "En las partes más grandes con esta concavidad como máximo",
+    "How many parts":
+        "Cuántas partes",
+    "Largest concavity of a part: the volume between it and its convex hull":
+        "Concavidad máxima de una parte: el volumen entre ella y su envolvente convexa",
+    "How far the parts are moved apart, by their distance from the middle":
+        "Cuánto se separan las partes, según su distancia al centro",
+    "Hide the object that was split":
+        "Oculta el objeto que se dividió",
+    "This part has no face of the mesh. Take a larger one.":
+        "Esta parte no tiene ninguna cara de la malla. Tomar una más grande.",
+    "{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution modifier first, or copy the part.":
+        "{name} está esculpido en varias resoluciones, que se perderían. Aplicar antes su modificador Multirresolución o copiar la parte.",
+    "This part can't be closed: its border crosses itself. Take a larger or smaller one.":
+        "Esta parte no se puede cerrar: su borde se cruza consigo mismo. Tomar una más grande o más pequeña.",
+    "Face Set from Part by Wheel":
+        "Conjunto de caras de parte con la rueda",
+    "Mask from Part by Wheel":
+        "Máscara de parte con la rueda",
+    "Vertex Group from Part by Wheel":
+        "Grupo de vértices de parte con la rueda",
+    "Paint Mask from Part by Wheel":
+        "Máscara de pintura de parte con la rueda",
+    "Parts as Solids":
+        "Partes como sólidos",
+    "Deform":
+        "Deformar",
+    "Drag a Handle":
+        "Arrastrar un asa",
+    "Turn at the Joint":
+        "Girar en la articulación",
+    "Within the part, proportionally:":
+        "Dentro de la parte, proporcional:",
+    "No parts yet":
+        "Aún no hay partes",
+    "Parts came with the file":
+        "Las partes vinieron con el archivo",
+    "Vertices have moved since: the parts can be recomputed":
+        "Se han movido vértices: las partes se pueden recalcular",
+    "The mesh has changed: its parts are found anew at the next use":
+        "La malla cambió: sus partes se buscarán de nuevo la próxima vez",
+    "A sheet, not a solid: thicken it, close it, or have it taken for a thin solid":
+        "Una lámina, no un sólido: darle grosor, cerrarla o hacer que se tome por un sólido fino",
+    "From the mesh as it is":
+        "De la malla tal como está",
+    "Repaired copy, {off} off":
+        "Copia reparada, a {off}",
+    "Points on it, {off} off":
+        "Puntos sobre ella, a {off}",
+    "Coarser copy, {off} off":
+        "Copia más basta, a {off}",
+    "Partwheel":
+        "Partwheel",
+    "Duplicate Part":
+        "Duplicar parte",
+    "Take as Thin Solid":
+        "Tomar por sólido fino",
+    "Find Exactly":
+        "Encontrar exactamente",
+    "Recompute":
+        "Recalcular",
+    "Part: {share} of the area":
+        "Parte: {share} del área",
+    "Parts of {count:,} faces":
+        "Partes de {count:,} caras",
+    "Part (Segment, Region, Island)":
+        "Parte (segmento, región, isla)",
+    "Path of the Part":
+        "Recorrido de la parte",
+    "Show the parts that the wheel goes through, from the smallest to the whole, and click one to take it":
+        "Muestra las partes que recorre la rueda, de la más pequeña al conjunto; un clic toma una",
+    "Remembered Parts":
+        "Partes recordadas",
+    "{operator} stopped: the mesh is no longer being edited as it was.":
+        "{operator} se detuvo: la malla ya no se está editando como antes.",
+    "{operator}: start this with the mouse over a 3D view.":
+        "{operator}: iniciarlo con el ratón sobre una vista 3D.",
+    "Partwheel stopped: {reason}. The full report is in the system console.":
+        "Partwheel se detuvo: {reason}. El informe completo está en la consola del sistema.",
+    "Larger, Smaller":
+        "Más grande, más pequeña",
+    "Wheel, ↑↓":
+        "Rueda, ↑↓",
+    "Confirm":
+        "Confirmar",
+    "Cancel":
+        "Cancelar",
+    "Pick a Part":
+        "Elegir una parte",
+    "Snap":
+        "Ajustar",
+    "Number":
+        "Número",
+    "Navigate":
+        "Navegar",
+    "Drag":
+        "Arrastrar",
+    "Within":
+        "Dentro",
+    "Similar":
+        "Similares",
+    "Copy":
+        "Copiar",
+    "Remove":
+        "Eliminar",
+    "More, Fewer":
+        "Más, menos",
+    "Drag the Handle, or Put It Elsewhere":
+        "Arrastrar el asa o ponerla en otro lugar",
+    "One More":
+        "Una más",
+    "Move, Rotate, Scale":
+        "Mover, rotar, escalar",
+    "Handle Size":
+        "Tamaño del asa",
+    "Wheel":
+        "Rueda",
+    "Confirm, Recompute Parts":
+        "Confirmar y recalcular partes",
+    "Axis":
+        "Eje",
+    "Type":
+        "Escribir",
+    "Precise":
+        "Preciso",
+    "Done":
+        "Listo",
+    "Shift Wheel":
+        "Mayús rueda",
+    "Page Up/Down":
+        "Re Pág/Av Pág",
+    "Next, Previous Part":
+        "Parte siguiente, anterior",
+    "Ctrl Wheel":
+        "Ctrl rueda",
+    "Swap":
+        "Cambiar",
+    "A Part":
+        "Una parte",
+    "Merge":
+        "Fusionar",
+    "Join, Split":
+        "Unir, dividir",
+    "Automatic":
+        "Automático",
+    "Groups":
+        "Grupos",
+    "Colours":
+        "Colores",
+    "Slots":
+        "Ranuras",
+    "Print":
+        "Imprimir",
+    "Another":
+        "Otra",
+    # Of the library
+    "This part is no solid: it has no face of the surface. Take a larger one.":
+        "Esta parte no es un sólido: no tiene ninguna cara de la superficie. Tomar una más grande.",
+    "The part has no faces: pick one that has some.":
+        "La parte no tiene caras: elegir una que las tenga.",
+    "There are no triangles: select a part with faces.":
+        "No hay triángulos: seleccionar una parte con caras.",
+    "The part's faces are too thin to be deformed. Dissolve degenerate faces or merge vertices by distance first.":
+        "Las caras de la parte son demasiado finas para deformarlas. Antes, disolver caras degeneradas o fusionar vértices por distancia.",
+    "The mesh has no area at all: only edges and points.":
+        "La malla no tiene área: solo bordes y puntos.",
+    "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then taken as thin solids.":
+        "La malla es una lámina, no un sólido: está abierta y cerrarla exigiría tanta superficie nueva como la que tiene. Darle grosor (Solidificar), cerrarla o permitir superficies abiertas, que se toman por sólidos finos.",
+    "The surface encloses no volume. Give it some thickness.":
+        "La superficie no encierra volumen. Darle algo de grosor.",
+    "The mesh is too broken to be repaired. Remesh it and try again.":
+        "La malla está demasiado dañada para repararla. Rehacerla (Remallar) e intentarlo de nuevo.",
+    "There is not enough memory to fill this mesh. Decimate it first.":
+        "No hay memoria suficiente para llenar esta malla. Diezmarla antes.",
+    "The mesh can't be filled: some faces are too close together to be told apart. Merge vertices by distance, or move the parts that almost touch further apart.":
+        "La malla no se puede llenar: algunas caras están demasiado juntas para distinguirlas. Fusionar vértices por distancia o separar más las partes que casi se tocan.",
+    "The mesher moved or merged vertices of the surface, for some are too close together. Merge vertices by distance.":
+        "Al llenar se movieron o fusionaron vértices de la superficie, porque algunos están demasiado juntos. Fusionar vértices por distancia.",
+    "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.":
+        "Al llenar se perdió una parte de la superficie. Rehacer la malla o suavizarla un poco e intentarlo de nuevo.",
+    "The mesh has no faces. Choose a mesh object that has some.":
+        "La malla no tiene caras. Elegir un objeto de malla que las tenga.",
+    "All vertices are at the same place. Choose a mesh that has an extent.":
+        "Todos los vértices están en el mismo lugar. Elegir una malla que tenga extensión.",
+    "The mesh has no part that can be closed. Give it a thickness (Solidify).":
+        "La malla no tiene ninguna parte que se pueda cerrar. Darle grosor (Solidificar).",
+    "The surface passes through itself in ways that can't be repaired. Remesh it, or unite its parts with a Boolean.":
+        "La superficie se atraviesa a sí misma de un modo que no se puede reparar. Rehacer la malla o unir sus partes con una operación booleana.",
+    "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.":
+        "La malla no se puede llenar: el proceso no termina. Rehacerla o suavizarla un poco e intentarlo de nuevo.",
+}

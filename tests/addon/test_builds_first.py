@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What wants parts finds them by itself: at once for scripts, beside Blender's own work in a window; and goes on then."""
+
+import bpy
+from common import MeshTest, part, read_off, until
+from test_faults import operator
+from test_modal import FakeContext, event, show
+
+
+class First(MeshTest):
+    def setUp(self):
+        super().setUp()
+        self.obj = self.add(*read_off("hand"))
+        self.registry = part("parts.registry")
+
+    def select(self, faces):
+        """In Edit Mode, these faces of a mesh without parts."""
+        self.registry.forget_all()
+        bm = self.edit(self.obj)
+        bm.faces.ensure_lookup_table()
+        for face in faces.tolist():
+            bm.faces[face].select = True
+
+    def limb(self):
+        """(a node, its faces)"""
+        hierarchy = part("api").build(self.obj)
+        stops, start = hierarchy.wheel(700)
+        return int(stops[start]), hierarchy.faces(int(stops[start]))
+
+    def test_what_is_selected_tells_the_part(self):
+        node, faces = self.limb()
+        copied = part("solid.composition").copied(self.obj, part("api").build(self.obj), node, snap=True)
+        expected = len(copied.data.polygons)
+        bpy.data.objects.remove(copied)
+        self.select(faces)
+        self.assertEqual(bpy.ops.mesh.partwheel_copy(), {"FINISHED"})
+        self.assertEqual(len(bpy.context.active_object.data.polygons), expected)
+
+    def test_what_is_selected_may_be_no_part(self):
+        _, faces = self.limb()
+        self.select(faces[::3])
+        with self.assertRaisesRegex(RuntimeError, "selected is no part"):
+            bpy.ops.mesh.partwheel_remove()
+        self.assertEqual(self.obj.mode, "EDIT")
+
+    def test_without_a_selection_nothing_is_found_in_vain(self):
+        with self.assertRaisesRegex(RuntimeError, "No part is picked"):
+            bpy.ops.mesh.partwheel_copy()
+        self.assertIsNone(self.registry.known(self.obj.data))
+
+    def test_split(self):
+        self.assertEqual(bpy.ops.mesh.partwheel_split(parts=3), {"FINISHED"})
+        self.assertEqual(len(bpy.data.objects), 4)
+
+    def test_all_selected_meshes_queue(self):
+        other, beside = self.add(*read_off("homer"), "other"), self.add(*read_off("homer"), "beside")
+        for obj, chosen in ((self.obj, True), (other, True), (beside, False)):
+            obj.select_set(chosen)
+        bpy.context.view_layer.objects.active = self.obj
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+        self.assertEqual([self.registry.known(obj.data) is None for obj in (self.obj, other, beside)],
+                         [False, False, True])
+
+    def begin(self, name, **options):
+        show(self.obj)
+        tool, context = operator(part("solid.copy_part").__dict__[name], options, []), FakeContext()
+        self.assertEqual(tool.invoke(context, event("A")), {"RUNNING_MODAL"})
+        self.assertIn("finds the parts", context.status[-1])
+        return tool, context
+
+    def test_the_window_goes_on_meanwhile(self):
+        tool, context = self.begin("MESH_OT_partwheel_split", parts=3)
+        self.assertEqual(tool.modal(context, event("A")), {"PASS_THROUGH"})
+        until(lambda: tool.buildings[0].build.poll() is None)
+        self.assertEqual(tool.modal(context, event("TIMER")), {"FINISHED"})
+        self.assertEqual(len(bpy.data.objects), 4)
+        self.assertIsNone(context.status[-1])
+
+    def test_escape_ends_it(self):
+        tool, context = self.begin("MESH_OT_partwheel_split", parts=3)
+        self.assertEqual(tool.modal(context, event("ESC")), {"CANCELLED"})
+        self.assertFalse(part("parts.builds").running())
+        self.assertEqual((len(bpy.data.objects), context.timers), (1, []))

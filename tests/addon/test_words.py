@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The add-on in the user's language: Blender finds its texts there, reports and reasons are put together in it, and sizes
+are in the scene's units."""
+
+import types
+
+import bpy
+from common import MeshTest, part, read_off
+
+SAID = {"de_DE": ("Teil per Mausrad auswählen", "Kein Teil ist gewählt"),
+        "es": ("Seleccionar parte con la rueda", "No hay ninguna parte"),
+        "ja_JP": ("ホイールでパーツを選択", "パーツが選ばれていません"), "zh_HANS": ("滚轮选择部件", "尚未选取部件")}
+
+
+class Words(MeshTest):
+    def setUp(self):
+        super().setUp()
+        self.view = bpy.context.preferences.view
+        self.addCleanup(self.speak, self.view.language)
+
+    def spoken(self):
+        """The languages of SAID that this Blender has: all, but for the Python module, which speaks none."""
+        if bpy.app.build_options.international:
+            return SAID
+        self.assertEqual(self.view.bl_rna.properties["language"].enum_items.keys(), ["DEFAULT"])
+        return {}
+
+    def speak(self, language):
+        if language == "zh_HANS" and bpy.app.version < (4, 0):
+            language = "zh_CN"
+        self.view.language = language
+        for name in ("interface", "tooltips", "reports", "new_dataname"):
+            if hasattr(self.view, f"use_translate_{name}"):
+                setattr(self.view, f"use_translate_{name}", True)
+
+    def test_each_language(self):
+        obj = self.add(*read_off("hand"))
+        self.hierarchy(obj)
+        self.edit(obj)
+        for language, (label, reason) in self.spoken().items():
+            with self.subTest(language):
+                self.speak(language)
+                said = part("words.say")
+                self.assertEqual(said.label_of(bpy.types.MESH_OT_partwheel_select), label)
+                self.assertEqual(said.iface_("Select Part by Wheel"), label)
+                with self.assertRaisesRegex(RuntimeError, reason):
+                    bpy.ops.mesh.partwheel_deform()
+        self.speak("en_US" if self.spoken() else "DEFAULT")
+        self.assertEqual(part("words.say").iface_("Select Part by Wheel"), "Select Part by Wheel")
+
+    def test_values_are_filled_in_afterwards(self):
+        obj = self.add(*read_off("hand"))
+        obj.name = "{name}"  # no text of the user's is taken for one of ours
+        if not self.spoken():
+            return
+        self.speak("de_DE")
+        with self.assertRaises(part("mesh.refusing").Refused) as refused:
+            part("parts.registry").needed(obj)
+        self.assertEqual(str(refused.exception), "{name} hat keine Teile für sein Mesh, wie es jetzt ist. Erst Teile finden.")
+
+    def test_a_reason_has_no_full_stop_in_any_language(self):
+        for language in self.spoken():
+            self.speak(language)
+            said = []
+            operator = types.SimpleNamespace(poll_message_set=said.append)
+            self.assertFalse(part("mesh.refusing").can(operator, None, part("parts.picks").NO_PICK))
+            self.assertNotIn(said[0][-1], ".。")
+
+    def test_sizes_are_in_the_scenes_units(self):
+        obj = self.add(*read_off("hand"))
+        hierarchy = self.hierarchy(obj)
+        units, root = bpy.context.scene.unit_settings, len(hierarchy.parent) - 1
+        obj.scale = (2 / max(obj.dimensions),) * 3
+        bpy.context.view_layer.update()
+        sides = lambda: part("ui.measure").sides(bpy.context, obj, hierarchy, root)
+        for system, scale, longest in (("METRIC", 1, "2 m"), ("METRIC", 0.01, "2 cm"), ("IMPERIAL", 0.3048, "2'")):
+            units.system, units.scale_length = system, scale
+            self.assertEqual(sides()[0], longest)
+        units.system, units.scale_length = "NONE", 1
+        self.assertEqual(sides()[0], "2")
+        units.system = "METRIC"
+
+    def test_shares_are_never_in_powers_of_ten(self):
+        percent = part("words.say").percent
+        self.assertEqual([percent(share) for share in (0, 1.2e-5, 0.0004, 0.001, 0.25, 1)],
+                         ["0.0%", "< 0.1%", "< 0.1%", "0.1%", "25.0%", "100.0%"])
