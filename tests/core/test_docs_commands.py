@@ -16,6 +16,7 @@ from partwheel.__main__ import parse
 from test_docs import PAGES
 
 ELSEWHERE = re.compile(r"s3://|/data/")  # needs other machines
+SETTINGS = r"""(PARTWHEEL_\w+=("[^"]*"|\S+) )*"""
 TIERS = (ROOT / "scripts" / "test_tiers.py").read_text()
 # What the words behind a script are looked for in, if not in the script itself.
 OPTIONS = {"scripts/test": TIERS, "scripts/build": (ROOT / "CMakePresets.json").read_text()}
@@ -74,7 +75,7 @@ def test_commands_of_partwheel_run(meshes_directory, tmp_path):
     assert ran == {"build", "parts", "convex", "batch"} and (tmp_path / "results" / "report.html").exists()
 
 
-@pytest.mark.parametrize("page, command", commands(r"(PARTWHEEL_\S+ )*(scripts|tests/quality)/(?!partwheel.js)[a-z]"))
+@pytest.mark.parametrize("page, command", commands(SETTINGS + r"(scripts|tests/quality)/(?!partwheel.js)[a-z]"))
 def test_words_behind_a_script_are_known_to_it(page, command):
     words = [word for word in shlex.split(command) if not re.match(r"PARTWHEEL_", word)]
     text = OPTIONS.get(words[0], "") + (ROOT / words[0]).read_text()
@@ -83,7 +84,7 @@ def test_words_behind_a_script_are_known_to_it(page, command):
             assert re.search(rf"(?<![\w-]){re.escape(word)}(?![\w-])", text), word
 
 
-@pytest.mark.parametrize("page, command", commands(r"(PARTWHEEL_\S+ )*\S*python -m pytest"))
+@pytest.mark.parametrize("page, command", commands(SETTINGS + r"\S*python -m pytest"))
 def test_tests_that_are_named_are_there(page, command):
     words = shlex.split(command)
     word = words[words.index("-k") + 1]
