@@ -180,16 +180,21 @@ class Selections:
             each.restore(obj)
 
 
-def select_outside_edit_mode(mesh, faces, extend=False, deselect=False):
-    """The same for a mesh that is not in Edit Mode: its faces, and their edges and vertices, are selected."""
+def chosen_outside_edit_mode(mesh, faces, extend=False, deselect=False):
+    """(F,) bool: what would be selected, as Selection.select() has it, in a mesh that is not in Edit Mode."""
     chosen = arrays.mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
     before = arrays.read(mesh.polygons, "select", bool)
-    chosen = before & ~chosen if deselect else before | chosen if extend else chosen
+    return before & ~chosen if deselect else before | chosen if extend else chosen
+
+
+def select_outside_edit_mode(mesh, faces, active=None, extend=False, deselect=False):
+    """Selects that: the faces, and their edges and vertices."""
+    chosen = chosen_outside_edit_mode(mesh, faces, extend, deselect)
     mesh.polygons.foreach_set("select", chosen)
     mesh.vertices.foreach_set("select", arrays.of_faces(mesh, chosen, "vertices", "vertex_index"))
     _select_edges(mesh, arrays.of_faces(mesh, chosen, "edges", "edge_index"))
-    if len(faces):
-        mesh.polygons.active = int(faces[0])
+    if active is not None:
+        mesh.polygons.active = active
     mesh.update()
 
 

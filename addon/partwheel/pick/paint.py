@@ -6,13 +6,16 @@ import bpy
 from ..mesh.refusing import Refused, can, changeable
 from .pick import PartPicker
 from .preview import Preview
-from .writers import WRITERS
+from .writers import CLEARED, WRITERS
 
 # Mode of the context -> what a part can become there, the first by default.
 WAYS = {
-    "SCULPT": ("FACE_SET", "MASK"), "PAINT_WEIGHT": ("VERTEX_GROUP", "PAINT_MASK"), "PAINT_VERTEX": ("PAINT_MASK",),
+    "SCULPT": ("MASK", "FACE_SET"), "PAINT_WEIGHT": ("VERTEX_GROUP", "PAINT_MASK"), "PAINT_VERTEX": ("PAINT_MASK",),
     "PAINT_TEXTURE": ("PAINT_MASK",),
 }
+
+NAMES = {"MASK": "Mask", "FACE_SET": "Face Set", "VERTEX_GROUP": "Vertex Group", "PAINT_MASK": "Paint Mask"}
+DYNAMIC = "Dynamic topology changes the faces all the time: switch it off first"
 
 
 class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
@@ -24,7 +27,7 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
 
     write: bpy.props.EnumProperty(
         name="Make It", default="AUTO", description="What the part becomes",
-        items=(("AUTO", "Usual", "A face set in Sculpt Mode, a vertex group in Weight Paint, else a paint mask"),
+        items=(("AUTO", "Usual", "A mask in Sculpt Mode, a vertex group in Weight Paint, else a paint mask"),
                ("FACE_SET", "Face Set", "A new face set"),
                ("MASK", "Mask", "Masked against sculpting"),
                ("VERTEX_GROUP", "Vertex Group", "Weight 1 in a new vertex group, named after the part; with Extend in "
@@ -38,8 +41,7 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         return (can(cls, context.mode in WAYS and obj is not None and obj.type == "MESH",
                     "This is for Sculpt Mode and the paint modes of a mesh")
                 and changeable(cls, obj)
-                and can(cls, not obj.use_dynamic_topology_sculpting,
-                        "Dynamic topology changes the faces all the time: switch it off first"))
+                and can(cls, not obj.use_dynamic_topology_sculpting, DYNAMIC))
 
     def _apply(self, context, obj, faces, picked):
         return self._write(context, obj, faces, picked.node)
@@ -53,10 +55,19 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
     def _commit(self, context):
         return self._write(context, self._object(context), self.faces, self.state.node)
 
+    def _missed(self, context):
+        """As in Edit Mode: a click beside everything leaves nothing masked."""
+        obj = context.active_object
+        if self.extend or self.deselect or not CLEARED.get(self._way(context), lambda mesh: False)(obj.data):
+            return {"CANCELLED"}
+        return self._write(context, obj, [], -1)
+
+    def _way(self, context):
+        return WAYS[context.mode][0] if self.write == "AUTO" else self.write
+
     def _write(self, context, obj, faces, node):
-        ways = WAYS[context.mode]
-        way = ways[0] if self.write == "AUTO" else self.write
-        if way not in ways:
+        way = self._way(context)
+        if way not in WAYS[context.mode]:
             self.report({"ERROR"}, f"There is no {way.replace('_', ' ').lower()} in this mode")
             return {"CANCELLED"}
         # Sculpt Mode keeps data of its own beside the mesh's: it reads the mesh anew when it is entered.

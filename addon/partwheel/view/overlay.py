@@ -179,6 +179,11 @@ def draw_painted(context, obj, parts, name, paint):
     _draw(context, obj, [(*parts.painted(name, paint), PART, 0.0)])
 
 
+def draw_faces(context, obj, parts, name, faces):
+    """Any faces, kept under a name."""
+    _draw(context, obj, [(*parts.of_faces(name, faces), PART, 0.0)])
+
+
 def draw_hover(context, obj, parts, node, snapped):
     """The part that a click would take."""
     _draw(context, obj, _layer(parts, node, HOVER, snapped))
