@@ -96,6 +96,15 @@ class Selection:
                 bm.select_history.add(face)
         _redraw(obj)
 
+    def touched(self, obj, anew):
+        """(n,) the faces that have an element whose selection somebody else has changed since; anew: that is selected
+        now. The object's mesh must be up to date."""
+        now = arrays.read(getattr(obj.data, ELEMENTS[self.kind]), "select", bool)
+        changed = now if anew else now != self.before[self.kind]
+        if self.kind != "FACE":
+            changed = arrays.mask(len(self.visible), self.loop_face[changed[self.loop_element]])
+        return np.flatnonzero(changed & self.visible)
+
     def restore(self, obj):
         """Everything as it was: vertices, edges, faces, the active face and the history of picks."""
         bm = self._edited(obj)
@@ -174,6 +183,16 @@ class Selections:
                 each.select(obj, faces, active, extend, deselect)
             elif not (extend or deselect) and each.now.any():
                 each.select(other, [])
+
+    def select_in_each(self, faces, extend=False, deselect=False):
+        """faces: of each of the objects."""
+        for obj, each in self._objects():
+            each.select(obj, faces[obj], None, extend, deselect)
+
+    def touched(self, obj, anew):
+        """See Selection.touched()."""
+        arrays.up_to_date(obj)
+        return self._each[obj.name_full].touched(obj, anew)
 
     def restore(self):
         for obj, each in self._objects():

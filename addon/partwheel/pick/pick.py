@@ -160,7 +160,7 @@ class PartPicker(InView):
             # Which face was meant is known now: the user may turn the view while the parts are being built.
             return self._build(context, obj, face)
         picked = states.pick(self.hierarchy, face)
-        if event.type == "LEFTMOUSE":
+        if event.type == "LEFTMOUSE" and event.value == "PRESS":
             self.drag = event.mouse_y, picked.index
         return self._hold(context, obj, picked)
 

@@ -39,6 +39,28 @@ def _tool(mode):
     })
 
 
+def _gesture(name, operator, gesture):
+    """A tool of Edit Mode: a drag selects whole parts, a click is the other tool's."""
+    held = (({}, "SET", ()), ({"shift": True}, "ADD", [("extend", True)]), ({"ctrl": True}, "SUB", [("deselect", True)]))
+    return type(f"SelectParts_{name}", (bpy.types.WorkSpaceTool,), {
+        "bl_space_type": "VIEW_3D",
+        "bl_context_mode": "EDIT_MESH",
+        "bl_idname": f"partwheel.{name.lower()}",
+        "bl_label": f"Select Parts by {name}",
+        "bl_description": (f"Select all parts that a {name.lower()} touches, by as many notches as the part picked last.\n"
+                           "Shift adds, Ctrl takes away. A click picks a part as with Select Part"),
+        "bl_icon": f"ops.generic.select_{name.lower()}",
+        "bl_widget": "VIEW3D_GGT_partwheel_hover",
+        "bl_keymap": (
+            *((operator, {"type": "LEFTMOUSE", "value": "CLICK_DRAG", **keys},
+               {"properties": [(gesture, [("mode", mode)] + [("wait_for_input", False)] * (name == "Box")),
+                               ("MESH_OT_partwheel_gather", [("mode", mode)])]}) for keys, mode, _ in held),
+            *(("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "CLICK", **keys},
+               {"properties": [("tool", True), *what]}) for keys, _, what in held)),
+        "draw_settings": _draw_settings,
+    })
+
+
 def _draw_settings(context, layout, tool):
     obj, mode = context.active_object, context.mode
     if obj is None or obj.type != "MESH":
@@ -81,6 +103,10 @@ def register():
     for mode, after in AFTER.items():
         _tools.append(_tool(mode))
         bpy.utils.register_tool(_tools[-1], after={after} if after else None, separator=after is None, group=True)
+    for gesture in (("Box", "mesh.partwheel_box", "VIEW3D_OT_select_box"),
+                    ("Lasso", "mesh.partwheel_lasso", "VIEW3D_OT_select_lasso")):
+        _tools.append(_gesture(*gesture))
+        bpy.utils.register_tool(_tools[-1], after={"partwheel.select", "partwheel.box"})
 
 
 def unregister():

@@ -22,7 +22,7 @@ ENTRIES = (
     ("VIEW3D_MT_sculpt", _entries("mesh.partwheel_parts")),
     ("VIEW3D_MT_object", _entries("mesh.partwheel_parts", "mesh.partwheel_split", "mesh.partwheel_swap",
                                   "object.partwheel_place", "object.partwheel_unite")),
-    ("VIEW3D_MT_select_edit_mesh", _entries("mesh.partwheel_similar", "mesh.partwheel_mirrored",
+    ("VIEW3D_MT_select_edit_mesh", _entries("mesh.partwheel_similar", "mesh.partwheel_mirrored", "mesh.partwheel_box",
                                             "mesh.partwheel_select")),
     ("VIEW3D_MT_edit_mesh_select_similar", _entries("mesh.partwheel_similar", "mesh.partwheel_mirrored")),
     ("VIEW3D_MT_select_object", _entries("object.partwheel_select")),
