@@ -97,6 +97,10 @@ class Highlight:
         if not (self.what and self.what[0] == obj.name_full and current(obj, self.what[1])):
             self.show(obj, np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)))
 
+    def shows(self, obj):
+        """Whether it is on this object now."""
+        return bool(self.what and self.what[0] == obj.name_full and len(self.what[2]) and current(obj, self.what[1]))
+
     def show(self, obj, faces):
         self.what, self.shown = (obj.name_full, prepared(obj).parts(obj), faces), self.shown + 1
         overlay.redraw()

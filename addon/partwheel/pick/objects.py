@@ -8,6 +8,7 @@ import numpy as np
 from ..mesh import arrays, kept
 from ..mesh.refusing import can, read_only
 from ..mesh.selection import chosen_outside_edit_mode, select_outside_edit_mode
+from ..parts import picks
 from ..view import keys, picking
 from ..view.seen import NO_FACE
 from .hover import highlight
@@ -112,6 +113,7 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
         if self.extend or self.deselect or not arrays.read(obj.data.polygons, "select", bool).any():
             return {"CANCELLED"}
         select_outside_edit_mode(obj.data, [])
+        picks.drop(obj)
         context.view_layer.update()
         highlight.update(context)
         return {"FINISHED"}

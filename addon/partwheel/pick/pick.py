@@ -86,6 +86,7 @@ class PartPicker(InView):
             return {"CANCELLED"}
         result = self._apply(context, obj, borders.faces(obj, hierarchy, picked.node, self.snap), picked)
         picks.remember(obj, picked.face, picked.node, self.snap)
+        picks.settled(obj)
         return result
 
     # ---- With the mouse: from nothing to a part
@@ -313,7 +314,9 @@ class PartPicker(InView):
         # What the panel of the last operation, and Repeat Last, do again.
         self.face_index, self.level = self.state.face, self.state.level
         picks.remember(obj, self.state.face, self.state.node, self.snap)
-        return self._commit(context)
+        answer = self._commit(context)
+        picks.settled(obj)
+        return answer
 
     def _take_back(self, context):
         if isinstance(self.state, states.Building):
