@@ -206,14 +206,14 @@ def chosen_outside_edit_mode(mesh, faces, extend=False, deselect=False):
     return before & ~chosen if deselect else before | chosen if extend else chosen
 
 
-def select_outside_edit_mode(mesh, faces, active=None, extend=False, deselect=False):
-    """Selects that: the faces, and their edges and vertices."""
+def select_outside_edit_mode(mesh, faces, extend=False, deselect=False, active=None):
+    """Selects that: the faces, and their edges and vertices. active: the face to make the active one."""
     chosen = chosen_outside_edit_mode(mesh, faces, extend, deselect)
     mesh.polygons.foreach_set("select", chosen)
     mesh.vertices.foreach_set("select", arrays.of_faces(mesh, chosen, "vertices", "vertex_index"))
     _select_edges(mesh, arrays.of_faces(mesh, chosen, "edges", "edge_index"))
-    if active is not None:
-        mesh.polygons.active = active
+    if len(faces):
+        mesh.polygons.active = int(faces[0]) if active is None else active
     mesh.update()
 
 

@@ -16,7 +16,7 @@ from ..parts import picks, registry
 from ..view import overlay, picking
 from . import borders, states
 from ..view.seen import NO_FACE
-from .prepared import current, prepared
+from .prepared import current, prepared, ready, stop
 
 HOVERED = *registry.USABLE, registry.State.UNOPENED
 
@@ -60,10 +60,12 @@ class Hover:
             hit = picking.surface_under(context, context.area, *view)
             if not hit or hit.obj.type != "MESH" or registry.state(hit.obj.data)[0] not in HOVERED:
                 return None, None
-            found = prepared(hit.obj).tree(hit.obj).under(hit.matrix, *view)
+            kept = ready(hit.obj)
+            found = kept and kept.tree(hit.obj).under(hit.matrix, *view)
             return (hit.obj, found[0]) if found else (None, None)
         edited = context.objects_in_mode_unique_data if context.mode == "EDIT_MESH" else [context.active_object]
-        shown = [each for each in edited if each.type == "MESH" and each.visible_get(viewport=context.space_data)]
+        shown = [each for each in edited if each.type == "MESH" and each.visible_get(viewport=context.space_data)
+                 and ready(each)]
         return picking.nearest(shown, lambda each: prepared(each).tree(each), *view)
 
     def draw(self, context):
@@ -94,7 +96,7 @@ class Highlight:
         if context.mode != "OBJECT" or obj is None or obj.type != "MESH" or not picks.picked_as_told(obj):
             self.what = None
             return
-        if not (self.what and self.what[0] == obj.name_full and current(obj, self.what[1])):
+        if ready(obj) and not (self.what and self.what[0] == obj.name_full and current(obj, self.what[1])):
             self.show(obj, np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)))
 
     def shows(self, obj):
@@ -151,3 +153,4 @@ CLASSES = (VIEW3D_GT_partwheel_hover, VIEW3D_GGT_partwheel_hover)
 
 def unregister():
     hover.what = highlight.what = None
+    stop()

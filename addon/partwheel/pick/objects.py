@@ -123,9 +123,10 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
 
     def _apply(self, context, obj, faces, picked):
         _activate(context, obj)
-        select_outside_edit_mode(obj.data, faces, picked.face, self.extend, self.deselect)
+        select_outside_edit_mode(obj.data, faces, self.extend, self.deselect, picked.face)
         if not bpy.app.background:
             context.view_layer.update()
+            prepared(obj)
             highlight.update(context)
         return {"FINISHED"}
 

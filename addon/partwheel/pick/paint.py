@@ -6,7 +6,8 @@ import bpy
 from ..mesh.refusing import Refused, can, changeable
 from .pick import PartPicker
 from .preview import Preview
-from .writers import CLEARED, WRITERS
+from ..view.seen import sculpted_levels
+from .writers import CLEARED, WRITERS, mask_levels
 
 # Mode of the context -> what a part can become there, the first by default.
 WAYS = {
@@ -57,8 +58,9 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
 
     def _missed(self, context):
         """As in Edit Mode: a click beside everything leaves nothing masked."""
-        obj = context.active_object
-        if self.extend or self.deselect or not CLEARED.get(self._way(context), lambda mesh: False)(obj.data):
+        obj, way = context.active_object, self._way(context)
+        there = way in CLEARED and (CLEARED[way](obj.data) or way == "MASK" and sculpted_levels(obj))
+        if self.extend or self.deselect or not there:
             return {"CANCELLED"}
         return self._write(context, obj, [], -1)
 
@@ -75,7 +77,8 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         if sculpting:
             bpy.ops.object.mode_set(mode="OBJECT")
         try:
-            said = WRITERS[way](obj, faces, node, self.extend, self.deselect)
+            write = mask_levels if way == "MASK" and sculpted_levels(obj) else WRITERS[way]
+            said = write(obj, faces, node, self.extend, self.deselect)
         except Refused as reason:
             self.report({"ERROR"}, str(reason))
             return {"CANCELLED"}

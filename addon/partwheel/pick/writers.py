@@ -40,6 +40,25 @@ def _write_mask(obj, faces, _node, extend, deselect):
     values.foreach_set("value", _joined(before, _part_vertices(mesh, faces), extend, deselect))
 
 
+def mask_levels(obj, faces, _node, extend, deselect):
+    """The mask of a multires modifier's own levels, which Python can't write: Blender fills what is not hidden."""
+    polygons = obj.data.polygons
+    hidden = arrays.read(polygons, "hide", bool)
+    try:
+        if not (extend or deselect):
+            _fill_mask(0)
+        polygons.foreach_set("hide", ~arrays.mask(len(polygons), faces))
+        _fill_mask(0 if deselect else 1)
+    finally:
+        polygons.foreach_set("hide", hidden)
+
+
+def _fill_mask(value):
+    bpy.ops.object.mode_set(mode="SCULPT")
+    bpy.ops.paint.mask_flood_fill(mode="VALUE", value=value)
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
 def mask(mesh):
     """What holds the mask's value of each vertex, or None. Not of the levels that a multires modifier has of its own."""
     layers = mesh.attributes if bpy.app.version >= (4, 1) else mesh.vertex_paint_masks
@@ -76,8 +95,8 @@ def _write_vertex_group(obj, faces, node, extend, deselect):
 
 
 def _write_paint_mask(obj, faces, _node, extend, deselect):
-    select_outside_edit_mode(obj.data, faces, int(faces[0]) if len(faces) else None, extend, deselect)
-    obj.data.use_paint_mask = arrays.read(obj.data.polygons, "select", bool).any()
+    select_outside_edit_mode(obj.data, faces, extend, deselect)
+    obj.data.use_paint_mask = bool(arrays.read(obj.data.polygons, "select", bool).any())
 
 
 # What writes the faces of a node: functions of (obj, faces, node, extend, deselect).

@@ -19,6 +19,14 @@ def enter(stage, name):
     yield from stage.drawn()
 
 
+def hover(stage, x, y):
+    """Twice: the first time what is needed is made, as soon as Blender is ready for it."""
+    for aside in (6, 3):
+        stage.mouse.move(x - aside, y)
+        yield from stage.settle()
+    stage.mouse.move(x, y)
+
+
 def in_mode(stage, name, read, kind):
     """read(stage): what has become of the parts so far, as elements of this kind."""
     yield from enter(stage, name)
@@ -44,8 +52,7 @@ def in_mode(stage, name, read, kind):
     def shown(faces, when):
         yield from stage.until(f"{name}: the part is shown {when}", lambda: stage.held() == frozenset(faces))
 
-    stage.mouse.move(x - 3, y)
-    stage.mouse.move(x, y)
+    yield from hover(stage, x, y)
     yield from stage.until(f"{name}: hover shows the part of a click", lambda: stage.hovered() == stops[start])
     yield from stage.screenshot(f"{name}-0-hover")
     before = read(stage)
@@ -110,8 +117,7 @@ def weights(stage):
     yield from enter(stage, "WEIGHT_PAINT")
     x, y, face = stage.spot(0.5, 0.9, above=2)
     stops, start = stage.wheels.stops(face)
-    stage.mouse.move(x - 3, y)
-    stage.mouse.move(x, y)
+    yield from hover(stage, x, y)
     yield from stage.until("hover shows the part of a click", lambda: stage.hovered() == stops[start])
     yield from stage.screenshot("WEIGHT-0-hover")
 

@@ -2,6 +2,7 @@
 before; Parts to... begins with it; Tab has it selected; beside the model nothing is picked. Of two objects the one that
 was clicked becomes active."""
 import bpy
+from scenarios.modes import hover
 
 
 def play(stage):
@@ -23,8 +24,7 @@ def play(stage):
     model = lambda: bpy.data.objects["hand"]
 
     def click(x, y):
-        stage.mouse.move(x - 3, y)
-        stage.mouse.move(x, y)
+        yield from hover(stage, x, y)
         yield from stage.settle()
         stage.mouse.click()
         stage.mouse.key("RET")
@@ -43,13 +43,13 @@ def play(stage):
     node = picks.picked(model()).node
     stage.mouse.key("Z", ctrl=True)
     yield from stage.until("Ctrl Z goes back", lambda: picks.picked(model()).face == face)
-    stage.mouse.move(x + 1, y)
+    yield from hover(stage, x, y)
     yield from lit(stops[start], "after Ctrl Z")
     stage.mouse.key("Z", ctrl=True, shift=True)
     yield from stage.until("and Shift Ctrl Z on", lambda: picks.picked(model()).node == node)
     stage.mouse.key("Z", ctrl=True)
     yield from stage.until("and back", lambda: picks.picked(model()).face == face)
-    stage.mouse.move(x, y)
+    yield from hover(stage, x, y)
     yield from lit(stops[start], "after all that")
 
     stage.mouse.move(x, y)
@@ -59,7 +59,7 @@ def play(stage):
     stage.bar_fits((yield from stage.screenshot("1-parts-to")))
     stage.mouse.key("ESC")
     yield from stage.settle()
-    stage.mouse.move(x + 2, y)
+    yield from hover(stage, x, y)
     yield from lit(stops[start], "after Parts to... and Esc")
 
     before = set(bpy.data.objects.keys())
