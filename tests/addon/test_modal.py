@@ -204,7 +204,7 @@ class Modal(ToolTest):
         click = event("LEFTMOUSE", point)
         click.is_tablet = True
         self.tool.invoke(self.context, click)
-        scale = bpy.context.preferences.system.ui_scale
+        scale = bpy.context.preferences.system.ui_scale or 1
         for level, sign in ((1, 1), (2, 1), (1, -1)):
             self.assertEqual(self.send("LEFTMOUSE", [point[0] + 44 * scale, point[1] + sign * 18 * scale]), {"RUNNING_MODAL"})
             self.expect(face, level)

@@ -97,8 +97,7 @@ class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
 
 
 class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
-    """Pick a part of the mesh under the mouse for what is done with parts: copying, swapping, dividing. Edit Mode has it
-    selected"""
+    """Pick a part of the mesh under the mouse, to be copied, swapped or divided; Edit Mode has it selected"""
 
     bl_idname = "object.partwheel_pick"
     bl_label = "Pick Part by Wheel"

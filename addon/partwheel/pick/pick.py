@@ -13,7 +13,7 @@ from ..mesh import arrays
 from ..parts import builds, picks, registry
 from ..preferences import preferences
 from ..view import keys, overlay, picking
-from ..view.stepper import Stepper
+from ..view.stepper import Stepper, ui_scale
 from . import borders, states
 from partwheel import PartwheelError
 from .prepared import prepared
@@ -130,8 +130,8 @@ class PartPicker(InView):
         if not (view and self.clicked):
             return view is not None
         x, y, looked = self.clicked
-        moved = hypot(event.mouse_x - x, event.mouse_y - y) / context.preferences.system.ui_scale
-        return moved <= self.NEAR and view[2].perspective_matrix == looked
+        moved = hypot(event.mouse_x - x, event.mouse_y - y)
+        return moved <= self.NEAR * ui_scale() and view[2].perspective_matrix == looked
 
     def _under(self, context, event):
         """(object, face index) under the mouse, or (None, None)."""

@@ -13,11 +13,16 @@ BUTTON, SIGN = (0.12, 0.12, 0.12, 0.8), (0.95, 0.95, 0.95, 1.0)
 CORNERS = 24
 
 
+def ui_scale():
+    """Blender's resolution scale, which is 0 without a window."""
+    return bpy.context.preferences.system.ui_scale or 1.0
+
+
 class Stepper:
     """Larger is above the click's height, smaller below. x, y: the click's, in the window."""
 
     def __init__(self, x, y):
-        scale = bpy.context.preferences.system.ui_scale
+        scale = ui_scale()
         self._radius = RADIUS * scale
         self._middles = {sign: (x + ASIDE * scale, y + sign * 1.2 * self._radius) for sign in (1, -1)}
 
