@@ -37,6 +37,11 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
     python: bpy.props.StringProperty(
         name="Python", description="The program that parts are found with, a Python 3, in a process of its own; empty: "
         "the one that Blender brings, or else one that is installed", default="", subtype="FILE_PATH")
+    wheel: bpy.props.EnumProperty(
+        name="Wheel", description="When the wheel makes the part larger and smaller, after a click with the tool",
+        items=[("NEAR", "At the Click", "While the mouse is where it clicked; anywhere else it zooms as ever"),
+               ("HELD", "Until Enter", "Wherever the mouse is, until Enter or another key ends it")],
+        default="NEAR")
     show_part: bpy.props.BoolProperty(name="Part", description="Tint the part that is held", default=True)
     show_next: bpy.props.BoolProperty(
         name="Next Part", description="Tint faintly what the next notch of the wheel adds", default=True)
@@ -45,12 +50,15 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
     show_cut: bpy.props.BoolProperty(
         name="All Parts", description="Show the parts of the whole mesh at the size of the part that is held, each in "
         "a colour of its own", default=False)
+    show_steps: bpy.props.BoolProperty(
+        name="Buttons", description="Show two buttons beside the click, larger and smaller. With a pen they are always "
+        "there", default=False)
 
     def draw(self, context):
         trouble.draw(context, self.layout)
         column = self.layout.column()
         column.use_property_split = True
-        for name in ("parts", "exactly", "save_with_file", "memory_share", "time_limit", "python"):
+        for name in ("parts", "exactly", "save_with_file", "memory_share", "time_limit", "python", "wheel"):
             column.prop(self, name)
         draw_overlays(column)
         key = pie_key()
@@ -69,7 +77,7 @@ def pie_key():
                  and item.properties.name == PIE), None)
 
 
-OVERLAYS = ("show_part", "show_next", "show_hull", "show_cut")
+OVERLAYS = ("show_part", "show_next", "show_hull", "show_cut", "show_steps")
 
 
 def draw_overlays(layout):

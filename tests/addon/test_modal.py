@@ -79,7 +79,7 @@ def event(kind, point=None, value="PRESS", **modifiers):
     point = point or (region.width // 2, region.height // 2)
     held = {name: modifiers.get(name, False) for name in ("ctrl", "alt", "shift", "oskey")}
     return types.SimpleNamespace(type=kind, value=value, mouse_x=int(point[0] + region.x),
-                                 mouse_y=int(point[1] + region.y), **held)
+                                 mouse_y=int(point[1] + region.y), is_tablet=False, **held)
 
 
 class Tool:
@@ -174,6 +174,42 @@ class Modal(ToolTest):
         bpy.ops.mesh.select_all(action="DESELECT")
         bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", face_index=self.tool.face_index, level=self.tool.level)
         self.assertEqual(selected(self.obj), found)
+
+    def test_the_wheel_is_the_tool_s_at_the_click_alone(self):
+        """With the tool; elsewhere it zooms, and keys go on. As long as the user wants it so."""
+        self.start()
+        point, face = self.centre()
+        self.send("ESC")
+        wanted = part("preferences").preferences()
+        near, far = [point[0] + 20, point[1] - 20], [point[0] + 60, point[1]]
+        for wheel, answer, level in (("NEAR", {"PASS_THROUGH"}, 1), ("HELD", {"RUNNING_MODAL"}, 2)):
+            wanted.wheel = wheel
+            self.tool, self.context = Tool(tool=True), FakeContext()
+            self.assertEqual(self.tool.invoke(self.context, event("LEFTMOUSE", point)), {"RUNNING_MODAL"})
+            self.assertEqual(self.send("WHEELUPMOUSE", near), {"RUNNING_MODAL"})
+            self.expect(face, 1)
+            self.assertEqual(self.send("WHEELUPMOUSE", far), answer)
+            self.expect(face, level)
+            self.send("PAGE_UP", far)
+            self.expect(face, level + 1)
+            self.send("ESC")
+        wanted.wheel = "NEAR"
+
+    def test_buttons_beside_the_click(self):
+        """With a pen: larger above, smaller below."""
+        self.start()
+        point, face = self.centre()
+        self.send("ESC")
+        self.tool, self.context = Tool(tool=True), FakeContext()
+        click = event("LEFTMOUSE", point)
+        click.is_tablet = True
+        self.tool.invoke(self.context, click)
+        scale = bpy.context.preferences.system.ui_scale or 1
+        for level, sign in ((1, 1), (2, 1), (1, -1)):
+            self.assertEqual(self.send("LEFTMOUSE", [point[0] + 44 * scale, point[1] + sign * 18 * scale]), {"RUNNING_MODAL"})
+            self.expect(face, level)
+        self.assertEqual(self.send("LEFTMOUSE", [point[0] + 90 * scale, point[1]]), {"FINISHED", "PASS_THROUGH"})
+        self.expect(face, 1)
 
     def test_started_over_the_mesh_picks_at_once(self):
         self.start()

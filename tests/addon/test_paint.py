@@ -6,7 +6,7 @@ import tempfile
 
 import bmesh
 import bpy
-from common import BOX, MeshTest, part, read_off
+from common import BOX, MeshTest, part, read_off, selected
 
 
 class Paint(MeshTest):
@@ -42,8 +42,8 @@ class Paint(MeshTest):
 
     def test_face_sets(self):
         self.begin("SCULPT")
-        self.paint()
-        self.paint(1100)
+        self.paint(write="FACE_SET")
+        self.paint(1100, write="FACE_SET")
         self.assertEqual(self.obj.mode, "SCULPT")
         found = self.sets()
         first, second = self.faces
@@ -56,7 +56,7 @@ class Paint(MeshTest):
 
     def test_mask(self):
         self.begin("SCULPT")
-        self.paint(write="MASK")
+        self.paint()
         self.assertEqual(self.masked(), self.vertices[0])
         self.paint(1100, write="MASK", extend=True)
         self.assertEqual(self.masked(), self.vertices[0] | self.vertices[1])
@@ -130,6 +130,57 @@ class Paint(MeshTest):
             write(self.obj, faces, 0, *how)
             self.assertTrue(self.obj.data.use_paint_mask)
             self.assertEqual({p.index for p in self.obj.data.polygons if p.select}, expected)
+
+    def test_pick_in_object_mode(self):
+        """Selected in the mesh, and what copying takes."""
+        self.begin("OBJECT")
+        picks, first, second = part("parts.picks"), *self.faces
+
+        def pick(face=900, **how):
+            self.assertEqual(bpy.ops.object.partwheel_pick(face_index=face, **how), {"FINISHED"})
+            return {polygon.index for polygon in self.obj.data.polygons if polygon.select}
+
+        other = self.add(*BOX, "other")
+        bpy.context.view_layer.objects.active = self.obj
+        self.assertEqual(pick(), first)
+        self.assertEqual((self.obj.select_get(), other.select_get(), picks.picked(self.obj).face), (True, False, 900))
+        self.assertEqual(pick(1100, extend=True), first | second)
+        self.assertEqual(self.obj.data.polygons.active, 1100)
+        self.assertEqual(pick(deselect=True), second)
+        self.assertEqual(bpy.ops.mesh.partwheel_copy(), {"FINISHED"})
+        bpy.context.view_layer.objects.active = self.obj
+        bpy.ops.object.mode_set(mode="EDIT")
+        self.assertEqual(selected(self.obj), second)
+
+    def test_undo_brings_the_pick_before_back(self):
+        for mode in ("EDIT", "OBJECT"):
+            MeshTest.setUp(self)
+            self.begin(mode)
+            picks = part("parts.picks")
+            if mode == "EDIT":
+                bpy.ops.mesh.select_all(action="DESELECT")
+            bpy.ops.ed.undo_push(message="before")
+            operator = bpy.ops.mesh.partwheel_select if mode == "EDIT" else bpy.ops.object.partwheel_pick
+            for face in (900, 1100):
+                operator(face_index=face)
+                bpy.ops.ed.undo_push(message="Pick")
+            bpy.ops.ed.undo()
+            obj = bpy.context.view_layer.objects.active
+            self.assertEqual(picks.picked(obj).face, 900)
+            bpy.ops.ed.redo()
+            self.assertEqual(picks.picked(bpy.context.view_layer.objects.active).face, 1100)
+
+    def test_masks_of_multires_levels_leave_nothing_hidden(self):
+        self.begin("OBJECT")
+        modifier = self.obj.modifiers.new("multires", "MULTIRES")
+        bpy.ops.object.multires_subdivide(modifier="multires")
+        modifier.sculpt_levels = 1
+        self.obj.data.polygons[0].hide = True
+        bpy.ops.object.mode_set(mode="SCULPT")
+        self.paint()
+        self.paint(1100, extend=True)
+        self.assertEqual(self.obj.mode, "SCULPT")
+        self.assertEqual([polygon.index for polygon in self.obj.data.polygons if polygon.hide], [0])
 
     def test_refusals(self):
         self.begin("VERTEX_PAINT")

@@ -5,6 +5,7 @@ import tempfile
 import types
 from pathlib import Path
 
+import bmesh
 import bpy
 import numpy
 from common import BOX, flags, part, read_off, selected
@@ -232,6 +233,40 @@ class Related(ToolTest):
             few = obj.data.attributes.new("part: every other", "INT", "FACE")
             few.data.foreach_set("value", (numpy.arange(len(obj.data.polygons)) % 3 == 0).astype(numpy.int32))
             self.api.remembered(obj)
+
+    def test_a_gesture_takes_whole_parts(self):
+        """Those that a click takes, and a notch where the last pick was a notch away; what it grazes is left out."""
+        obj = self.add(*read_off("hand"))
+        h = self.hierarchy(obj)
+        self.edit(obj)
+
+        def part_of(face, level):
+            stops, start = h.wheel(face)
+            return set(h.faces(stops[max(start + level, 0)]).tolist())
+
+        def gesture(faces, mode):
+            bpy.ops.mesh.partwheel_gather_begin()
+            bm = bmesh.from_edit_mesh(obj.data)
+            bm.faces.ensure_lookup_table()
+            if mode == "SET":
+                for face in bm.faces:
+                    face.select_set(False)
+            for face in faces:
+                bm.faces[face].select_set(mode != "SUB")
+            bmesh.update_edit_mesh(obj.data)
+            self.assertEqual(bpy.ops.mesh.partwheel_gather(mode=mode), {"FINISHED"})
+            return selected(obj)
+
+        for level in (0, -1):
+            bpy.ops.mesh.partwheel_select(face_index=900, level=level)
+            first, second = part_of(900, level), part_of(1100, level)
+            self.assertFalse(first & second)
+            # Only faces that a click takes the same from: what others take is another question.
+            some, more = ([face for face in sorted(faces) if part_of(face, level) == faces] for faces in (first, second))
+            self.assertEqual(gesture(some[:20] + more[:20], "SET"), first | second)
+            self.assertEqual(gesture(some[:5], "SUB"), second)
+            self.assertEqual(gesture(some[:5], "ADD"), first | second)
+            self.assertEqual(gesture(some + more[:1], "SET"), first)
 
     def test_a_part_must_be_in_hand(self):
         self.edit(self.obj)

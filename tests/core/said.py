@@ -14,7 +14,8 @@ from conftest import ROOT
 ADDON = ROOT / "addon" / "partwheel"
 # Tables of texts that are looked up where they are drawn, by name of the variable.
 TABLES = {"STATES": "label", "SHEET": "label", "DONE": "label", "LABELS": "items", "BECOMES": "label", "NO_PICK": "report",
-          "NO_OTHERS": "report", "lost": "report"}
+          "NO_OTHERS": "report", "lost": "report", "TOOL": "label", "DESCRIPTIONS": "description", "GESTURES": "items",
+          "MODES": "items", "DYNAMIC": "poll"}
 CALLS = {"iface_": "label", "tip_": "poll", "rpt_": "report", "Refused": "report", "Outdated": "report", "Told": "report"}
 READABLE = re.compile(r"[^\W\d_]{2}").search  # "0-9" is the same in all languages
 FOR_SCRIPTS = {"api.py", "command.py"}  # they speak to those who write English anyway
@@ -62,7 +63,7 @@ class _Reader(ast.NodeVisitor):
         for name, value in own.items():
             if name in {"bl_label", "bl_description"}:
                 self.say(name[3:], value)
-        if "Operator" in bases:
+        if bases & {"Operator", "Macro"}:
             self.say("description", node.body[0].value)
         self.generic_visit(node)
 
@@ -118,7 +119,7 @@ class _Reader(ast.NodeVisitor):
         """Rows of a table that is gone through at once: the last of each is what is drawn."""
         for row in node.elts if isinstance(node, (ast.Tuple, ast.List)) else ():
             if isinstance(row, ast.Tuple) and len(row.elts) > 1 and any(
-                    text[0].isupper() for text in texts(row.elts[-1])):
+                    text[0].isupper() and "_OT_" not in text for text in texts(row.elts[-1])):
                 self.say("label", row.elts[-1])
 
 

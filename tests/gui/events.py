@@ -45,8 +45,9 @@ class Simulated(_Driver):
 
     def scroll(self, pixels):
         """Two fingers on a trackpad, upwards if pixels > 0."""
-        self._send("MOUSEMOVE", "NOTHING")  # a scroll is told from the place of the event before
-        self._window.event_simulate("TRACKPADPAN", "NOTHING", x=self.x, y=self.y + pixels)
+        # What a scroll tells is how far it is from the place of the event before.
+        self._window.event_simulate("MOUSEMOVE", "NOTHING", x=self.x, y=self.y - pixels)
+        self._send("TRACKPADPAN", "NOTHING")
 
 
 class Xdotool(_Driver):

@@ -7,6 +7,7 @@ How fast the machine is must not matter: nothing is bounded in seconds but what 
 """
 import importlib
 import json
+import os
 import re
 import subprocess
 import sys
@@ -25,7 +26,7 @@ from gate import Gate
 from model import Wheels
 from view import View, picture
 
-WAIT = 600  # seconds until something counts as never happening, far more than a machine under load needs for it
+WAIT = int(os.environ.get("PARTWHEEL_WAIT", 600))  # seconds until something counts as never happening, far more than a machine under load needs for it
 TICK = 0.01
 SLOW = 1.0  # seconds for one step; the log tells which took longer
 FILL = 0.8  # share of the viewport's height or width that an opened model takes
@@ -273,6 +274,11 @@ class Stage:
     def hovered(self):
         """The faces of the part that hover shows, or None."""
         what = self.part("pick.hover").hover.what
+        return what and frozenset(what[1].hierarchy.faces(what[2]).tolist())
+
+    def held(self):
+        """The faces of the part that is shown as held, or None."""
+        what = self.part("view.overlay").shown._what
         return what and frozenset(what[1].hierarchy.faces(what[2]).tolist())
 
     def drawn_things(self):

@@ -10,8 +10,9 @@ import numpy as np
 from ..mesh import kept
 from ..mesh.kept import counts
 from ..mesh.refusing import Refused, can, changeable
-from ..parts import builds, registry
+from ..parts import builds, picks, registry
 from ..pick.build import start, waited_for
+from ..pick.hover import highlight
 from ..pick.prepared import current, prepared
 from ..solid import copy_part, solids
 from ..view import keys, overlay, picking
@@ -187,6 +188,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     def _hold(self, context, obj, hierarchy):
         self.state = states.Cutting(_first(obj, hierarchy, self.count))
+        if highlight.shows(obj):
+            self.state = self.state.clicked(picks.picked(obj).face)
         self.counts = counts(obj.data)
         self._draw_with(self._draw)
         return self._show(context, self.state)

@@ -96,6 +96,15 @@ class Selection:
                 bm.select_history.add(face)
         _redraw(obj)
 
+    def touched(self, obj, anew):
+        """(n,) the faces that have an element whose selection somebody else has changed since; anew: that is selected
+        now. The object's mesh must be up to date."""
+        now = arrays.read(getattr(obj.data, ELEMENTS[self.kind]), "select", bool)
+        changed = now if anew else now != self.before[self.kind]
+        if self.kind != "FACE":
+            changed = arrays.mask(len(self.visible), self.loop_face[changed[self.loop_element]])
+        return np.flatnonzero(changed & self.visible)
+
     def restore(self, obj):
         """Everything as it was: vertices, edges, faces, the active face and the history of picks."""
         bm = self._edited(obj)
@@ -175,21 +184,36 @@ class Selections:
             elif not (extend or deselect) and each.now.any():
                 each.select(other, [])
 
+    def select_in_each(self, faces, extend=False, deselect=False):
+        """faces: of each of the objects."""
+        for obj, each in self._objects():
+            each.select(obj, faces[obj], None, extend, deselect)
+
+    def touched(self, obj, anew):
+        """See Selection.touched()."""
+        arrays.up_to_date(obj)
+        return self._each[obj.name_full].touched(obj, anew)
+
     def restore(self):
         for obj, each in self._objects():
             each.restore(obj)
 
 
-def select_outside_edit_mode(mesh, faces, extend=False, deselect=False):
-    """The same for a mesh that is not in Edit Mode: its faces, and their edges and vertices, are selected."""
+def chosen_outside_edit_mode(mesh, faces, extend=False, deselect=False):
+    """(F,) bool: what would be selected, as Selection.select() has it, in a mesh that is not in Edit Mode."""
     chosen = arrays.mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
     before = arrays.read(mesh.polygons, "select", bool)
-    chosen = before & ~chosen if deselect else before | chosen if extend else chosen
+    return before & ~chosen if deselect else before | chosen if extend else chosen
+
+
+def select_outside_edit_mode(mesh, faces, extend=False, deselect=False, active=None):
+    """Selects that: the faces, and their edges and vertices. active: the face to make the active one."""
+    chosen = chosen_outside_edit_mode(mesh, faces, extend, deselect)
     mesh.polygons.foreach_set("select", chosen)
     mesh.vertices.foreach_set("select", arrays.of_faces(mesh, chosen, "vertices", "vertex_index"))
     _select_edges(mesh, arrays.of_faces(mesh, chosen, "edges", "edge_index"))
     if len(faces):
-        mesh.polygons.active = int(faces[0])
+        mesh.polygons.active = int(faces[0]) if active is None else active
     mesh.update()
 
 

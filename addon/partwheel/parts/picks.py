@@ -1,8 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The part that was picked last in each mesh, and confirmed."""
+"""The part that was picked last in each mesh, and confirmed. Undo brings the one before back."""
 
 from typing import NamedTuple
 
+import bmesh
+import bpy
+import numpy as np
+from bpy.app.handlers import persistent
+
+from ..mesh import arrays
 from ..mesh.kept import PerMesh, key
 from ..mesh.refusing import Refused, can
 from . import registry
@@ -21,12 +27,49 @@ class Picked(NamedTuple):
     snap: bool
 
 
+REMEMBERED = 32  # picks of a mesh that undo may come back to
+_past = PerMesh()  # [(_mark() after the pick, Picked), ...], the newest last
 _picks = PerMesh(gone=lambda picks, gone: registry.retired(picks[gone].hierarchy) or picks.pop(gone))
 
 
 def remember(obj, face, node, snap=False):
     """The user has chosen this part of the object's mesh, which has a hierarchy."""
     _picks[key(obj.data)] = Picked(int(node), int(face), registry.known(obj.data), bool(snap))
+
+
+def settled(obj):
+    """What the pick has made of the mesh's selection is there now."""
+    mesh = obj.data
+    pick, past = _picks.get(key(mesh)), _past.setdefault(key(mesh), [])
+    if pick:
+        past[:] = [each for each in past if each[1].hierarchy is pick.hierarchy][1 - REMEMBERED:] + [(_mark(mesh), pick)]
+
+
+def _mark(mesh):
+    """(active face, how many are selected): what tells the picks of a mesh apart."""
+    if mesh.is_editmode:
+        active = bmesh.from_edit_mesh(mesh).faces.active
+        return active.index if active else -1, mesh.total_face_sel
+    return mesh.polygons.active, int(np.count_nonzero(arrays.read(mesh.polygons, "select", bool)))
+
+
+@persistent
+def _undone(*_):
+    """The newest pick after which the selection was as it is now; in Object Mode none where nothing is. Else it stays."""
+    for mesh in bpy.data.meshes:
+        past = _past.get(key(mesh))
+        if past:
+            mark = _mark(mesh)
+            pick = next((pick for before, pick in reversed(past) if before == mark), None)
+            if pick:
+                _picks[key(mesh)] = pick
+            elif not (mesh.is_editmode or mark[1]):
+                _picks.pop(key(mesh), None)
+
+
+def drop(obj):
+    """No part of the object's mesh is picked any more."""
+    _picks.pop(key(obj.data), None)
 
 
 def picked(obj):
@@ -68,4 +111,8 @@ class NeedsPick:
 def forget(obj):
     """Lets the hierarchy of the object's mesh go, and with it the part."""
     registry.forget(obj.data)
-    _picks.pop(key(obj.data), None)
+    _past.pop(key(obj.data), None)
+    drop(obj)
+
+
+HANDLERS = {"undo_post": _undone, "redo_post": _undone}

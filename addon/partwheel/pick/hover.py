@@ -1,17 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The part that a click would take, drawn while the mouse moves over the model and the tool is active.
+"""The part that a click would take, drawn while the mouse moves over the model and the tool is active; and in Object
+Mode, where nothing else shows them, the faces that were picked.
 
 A gizmo, as in Blender's own tools that show what is under the mouse: Blender asks it at every move of the mouse and
 draws it in every 3D view, for as long as the tool is active and no longer. It never takes an event.
 """
 
 import bpy
+import numpy as np
 
 from .. import trouble
 from ..mesh import arrays, kept
+from ..parts import picks, registry
 from ..view import overlay, picking
+from ..view.seen import NO_FACE
 from . import borders, states
-from .prepared import current, lacking, prepared
+from .prepared import current, lacking, prepared, ready, stop
+
+HOVERED = *registry.USABLE, registry.State.UNOPENED
+
+# Mode of the context -> the tool's operator there.
+OPERATORS = {
+    "EDIT_MESH": "mesh.partwheel_select", "OBJECT": "object.partwheel_pick", "SCULPT": "mesh.partwheel_paint",
+    "PAINT_WEIGHT": "mesh.partwheel_paint", "PAINT_VERTEX": "mesh.partwheel_paint",
+    "PAINT_TEXTURE": "mesh.partwheel_paint",
+}
 
 
 class Hover:
@@ -26,9 +39,7 @@ class Hover:
 
         After an edit it takes two steps: Blender writing its edits back into the meshes is more than half of it all, and
         what is to be seen of the mouse meanwhile would come late."""
-        shown = [each for each in context.objects_in_mode_unique_data
-                 if each.type == "MESH" and each.visible_get(viewport=context.space_data)]
-        waiting = lacking(shown)
+        waiting = lacking(_edited(context))
         if waiting and waiting != self._written:
             for each in waiting:
                 arrays.up_to_date(each)
@@ -38,7 +49,8 @@ class Hover:
         with arrays.one_reading():
             for each in waiting:
                 arrays.written_back(each)
-            found = self._found(context, shown, point)
+            found = self._found(context, point)
+            highlight.update(context)
         self._written = {}
         if found is not self.what:
             self.what = found
@@ -64,10 +76,9 @@ class Hover:
             bpy.app.timers.unregister(self._later)
         self._later = None
 
-    def _found(self, context, shown, point):
-        view = context.region, context.region_data, point
-        obj, face = picking.nearest(shown, lambda each: prepared(each).tree(each), *view)
-        parts = prepared(obj).parts(obj) if obj else None
+    def _found(self, context, point):
+        obj, face = self._under(context, context.region, context.region_data, point)
+        parts = prepared(obj).parts(obj) if obj and face != NO_FACE else None
         if not parts:
             return None
         node, snap = states.pick(parts.hierarchy, face).node, snaps(context)
@@ -75,22 +86,73 @@ class Hover:
             return self.what
         return obj.name_full, parts, node, borders.faces(obj, parts.hierarchy, node, True) if snap else None
 
+    def _under(self, context, *view):
+        """(object, face), (None, None) where nothing is that has faces to be picked."""
+        if context.mode == "OBJECT":
+            hit = picking.surface_under(context, context.area, *view)
+            if not hit or hit.obj.type != "MESH" or registry.state(hit.obj.data)[0] not in HOVERED:
+                return None, None
+            kept = ready(hit.obj)
+            found = kept and kept.tree(hit.obj).under(hit.matrix, *view)
+            return (hit.obj, found[0]) if found else (None, None)
+        shown = [each for each in _edited(context) if ready(each)]
+        return picking.nearest(shown, lambda each: prepared(each).tree(each), *view)
+
     def draw(self, context):
         if not self.what or overlay.shown.on:
             return
         name, parts, node, snapped = self.what
         obj = kept.named(name)
-        if obj and obj.mode == "EDIT" and overlay.visible(context, obj) and current(obj, parts):
+        if obj and overlay.visible(context, obj) and current(obj, parts):
             overlay.draw_hover(context, obj, parts, node, snapped)
+
+
+def _edited(context):
+    """The meshes of the context's mode that are seen in its view."""
+    edited = context.objects_in_mode_unique_data if context.mode == "EDIT_MESH" else [context.active_object]
+    return [each for each in edited if each and each.type == "MESH" and each.visible_get(viewport=context.space_data)]
 
 
 def snaps(context):
     """Whether the tool is set to snap borders."""
     tool = context.workspace.tools.from_space_view3d_mode(context.mode)
-    return bool(tool and tool.operator_properties("mesh.partwheel_select").snap)
+    return bool(tool and tool.operator_properties(OPERATORS[context.mode]).snap)
 
 
-hover = Hover()
+class Highlight:
+    """The faces of the active object that are selected in Object Mode, once a part of it was picked."""
+
+    def __init__(self):
+        self.what = None  # as in Hover: an object's full name, its overlay.Parts, the faces
+        self.shown = 0  # how often others have been
+
+    def update(self, context):
+        """To what is selected now."""
+        obj = context.active_object
+        if context.mode != "OBJECT" or obj is None or obj.type != "MESH" or not picks.picked_as_told(obj):
+            self.what = None
+            return
+        if ready(obj) and not (self.what and self.what[0] == obj.name_full and current(obj, self.what[1])):
+            self.show(obj, np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)))
+
+    def shows(self, obj):
+        """Whether it is on this object now."""
+        return bool(self.what and self.what[0] == obj.name_full and len(self.what[2]) and current(obj, self.what[1]))
+
+    def show(self, obj, faces):
+        self.what, self.shown = (obj.name_full, prepared(obj).parts(obj), faces), self.shown + 1
+        overlay.redraw()
+
+    def draw(self, context):
+        if not self.what:
+            return
+        name, parts, faces = self.what
+        obj = kept.named(name)
+        if context.mode == "OBJECT" and obj and len(faces) and overlay.visible(context, obj) and current(obj, parts):
+            overlay.draw_faces(context, obj, parts, ("chosen", self.shown), faces)
+
+
+hover, highlight = Hover(), Highlight()
 
 
 class VIEW3D_GT_partwheel_hover(bpy.types.Gizmo):
@@ -101,6 +163,7 @@ class VIEW3D_GT_partwheel_hover(bpy.types.Gizmo):
         return -1
 
     def draw(self, context):
+        highlight.draw(context)
         hover.draw(context)
 
 
@@ -113,7 +176,9 @@ class VIEW3D_GGT_partwheel_hover(bpy.types.GizmoGroup):
 
     @classmethod
     def poll(cls, context):
-        return context.mode == "EDIT_MESH" and not trouble.of_library()
+        obj = context.active_object
+        return (context.mode in OPERATORS and not trouble.of_library()
+                and not (context.mode == "SCULPT" and obj.use_dynamic_topology_sculpting))
 
     def setup(self, _context):
         self.gizmos.new(VIEW3D_GT_partwheel_hover.bl_idname)
@@ -123,5 +188,6 @@ CLASSES = (VIEW3D_GT_partwheel_hover, VIEW3D_GGT_partwheel_hover)
 
 
 def unregister():
-    hover.what = None
+    hover.what = highlight.what = None
     hover.stop()
+    stop()

@@ -6,15 +6,17 @@ import bpy
 from ..mesh.refusing import Refused, can, changeable
 from .pick import PartPicker
 from .preview import Preview
-from .writers import WRITERS
+from ..view.seen import sculpted_levels
 from ..words.say import iface_, rpt_
+from .writers import CLEARED, WRITERS, mask_levels
 
 # Mode of the context -> what a part can become there, the first by default.
 WAYS = {
-    "SCULPT": ("FACE_SET", "MASK"), "PAINT_WEIGHT": ("VERTEX_GROUP", "PAINT_MASK"), "PAINT_VERTEX": ("PAINT_MASK",),
+    "SCULPT": ("MASK", "FACE_SET"), "PAINT_WEIGHT": ("VERTEX_GROUP", "PAINT_MASK"), "PAINT_VERTEX": ("PAINT_MASK",),
     "PAINT_TEXTURE": ("PAINT_MASK",),
 }
-BECOMES = {"FACE_SET": "Face Set", "MASK": "Mask", "VERTEX_GROUP": "Vertex Group", "PAINT_MASK": "Paint Mask"}
+BECOMES = {"MASK": "Mask", "FACE_SET": "Face Set", "VERTEX_GROUP": "Vertex Group", "PAINT_MASK": "Paint Mask"}
+DYNAMIC = "Dynamic topology changes the faces all the time: switch it off first."
 
 
 class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
@@ -26,9 +28,9 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
 
     write: bpy.props.EnumProperty(
         name="Make It", default="AUTO", description="What the part becomes",
-        items=(("AUTO", "Usual", "A face set in Sculpt Mode, a vertex group in Weight Paint, else a paint mask"),
-               ("FACE_SET", BECOMES["FACE_SET"], "A new face set"),
+        items=(("AUTO", "Usual", "A mask in Sculpt Mode, a vertex group in Weight Paint, else a paint mask"),
                ("MASK", BECOMES["MASK"], "Masked against sculpting"),
+               ("FACE_SET", BECOMES["FACE_SET"], "A new face set"),
                ("VERTEX_GROUP", BECOMES["VERTEX_GROUP"], "Weight 1 in a new vertex group, named after the part; with Extend in "
                 "the active one, with Deselect none there"),
                ("PAINT_MASK", BECOMES["PAINT_MASK"], "The only faces that can be painted on")),
@@ -40,8 +42,7 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         return (can(cls, context.mode in WAYS and obj is not None and obj.type == "MESH",
                     "This is for Sculpt Mode and the paint modes of a mesh.")
                 and changeable(cls, obj)
-                and can(cls, not obj.use_dynamic_topology_sculpting,
-                        "Dynamic topology changes the faces all the time: switch it off first."))
+                and can(cls, not obj.use_dynamic_topology_sculpting, DYNAMIC))
 
     def _apply(self, context, obj, faces, picked):
         return self._write(context, obj, faces, picked.node)
@@ -55,10 +56,20 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
     def _commit(self, context):
         return self._write(context, self._object(context), self.faces, self.state.node)
 
+    def _missed(self, context):
+        """As in Edit Mode: a click beside everything leaves nothing masked."""
+        obj, way = context.active_object, self._way(context)
+        there = way in CLEARED and (CLEARED[way](obj.data) or way == "MASK" and sculpted_levels(obj))
+        if self.extend or self.deselect or not there:
+            return {"CANCELLED"}
+        return self._write(context, obj, [], -1)
+
+    def _way(self, context):
+        return WAYS[context.mode][0] if self.write == "AUTO" else self.write
+
     def _write(self, context, obj, faces, node):
-        ways = WAYS[context.mode]
-        way = ways[0] if self.write == "AUTO" else self.write
-        if way not in ways:
+        way = self._way(context)
+        if way not in WAYS[context.mode]:
             self.report({"ERROR"}, rpt_("Parts can't become this in this mode: {made}.").format(made=iface_(BECOMES[way])))
             return {"CANCELLED"}
         # Sculpt Mode keeps data of its own beside the mesh's: it reads the mesh anew when it is entered.
@@ -66,7 +77,8 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         if sculpting:
             bpy.ops.object.mode_set(mode="OBJECT")
         try:
-            said = WRITERS[way](obj, faces, node, self.extend, self.deselect)
+            write = mask_levels if way == "MASK" and sculpted_levels(obj) else WRITERS[way]
+            said = write(obj, faces, node, self.extend, self.deselect)
         except Refused as reason:
             self.report({"ERROR"}, str(reason))
             return {"CANCELLED"}

@@ -5,11 +5,15 @@ the part around it, until it is confirmed or cancelled.
 What happens to the part meanwhile, and once it is confirmed, is the business of a target (see PartPicker._aim).
 """
 
+from math import hypot
+
 import bpy
 
 from ..mesh import arrays
 from ..parts import builds, picks, registry
+from ..preferences import preferences
 from ..view import keys, overlay, picking
+from ..view.stepper import Stepper, ui_scale
 from . import borders, states
 from partwheel import PartwheelError
 from .prepared import prepared
@@ -62,9 +66,12 @@ class PartPicker(InView):
         states.Picked."""
         raise NotImplementedError
 
+    NEAR = 30  # pixels, at a resolution scale of 1, that a hand may move a mouse by while it turns the wheel
+
     begun = 0  # how many picks have begun, with the mouse, by whichever operator
     commands = ()  # keys.COMMANDS that the status bar shows while a part is held
     state, target, object_name = states.Waiting(), None, ""
+    clicked, stepper, wheeling = None, None, True
 
     # ---- Without a window
 
@@ -81,6 +88,7 @@ class PartPicker(InView):
             return {"CANCELLED"}
         result = self._apply(context, obj, borders.faces(obj, hierarchy, picked.node, self.snap), picked)
         picks.remember(obj, picked.face, picked.node, self.snap)
+        picks.settled(obj)
         return result
 
     # ---- With the mouse: from nothing to a part
@@ -94,6 +102,8 @@ class PartPicker(InView):
         PartPicker.begun += 1
         self.number = PartPicker.begun
         self.scroll, self.drag = keys.Scroll(keys.SCROLL_STEP), None
+        if self.tool:
+            self._click(context, event)
         objects = self._objects(context)
         if not objects:
             self.report({"WARNING"}, rpt_("This 3D view does not show the mesh that is being edited."))
@@ -107,6 +117,23 @@ class PartPicker(InView):
         if self._parts(obj) is None:
             return self._build(context, obj, None)
         return self._wait(context, iface_("Click a face of the mesh"))
+
+    def _click(self, context, event):
+        """The wheel is ours as long as the mouse is there, and the view as it is."""
+        view = picking.under_mouse(context, event)
+        if view and preferences().wheel == "NEAR":
+            self.clicked = event.mouse_x, event.mouse_y, view[2].perspective_matrix.copy()
+        if event.is_tablet or preferences().show_steps:
+            self.stepper = Stepper(event.mouse_x, event.mouse_y)
+
+    def _at_click(self, context, event):
+        """Whether the wheel is ours."""
+        view = picking.under_mouse(context, event)
+        if not (view and self.clicked):
+            return view is not None
+        x, y, looked = self.clicked
+        moved = hypot(event.mouse_x - x, event.mouse_y - y)
+        return moved <= self.NEAR * ui_scale() and view[2].perspective_matrix == looked
 
     def _under(self, context, event):
         """(object, face index) under the mouse, or (None, None)."""
@@ -136,13 +163,15 @@ class PartPicker(InView):
             # Which face was meant is known now: the user may turn the view while the parts are being built.
             return self._build(context, obj, face)
         picked = states.pick(self.hierarchy, face)
-        if event.type == "LEFTMOUSE":
+        if event.type == "LEFTMOUSE" and event.value == "PRESS":
             self.drag = event.mouse_y, picked.index
         return self._hold(context, obj, picked)
 
     def _hold(self, context, obj, picked):
         self.object_name, self.target, self.shown = obj.name_full, self._aim(context, obj), None
         self._at_end.callback(overlay.shown.hide)
+        if self.stepper:
+            self._draw_with(self.stepper.draw, "POST_PIXEL")
         return self._show(context, picked)
 
     def _build(self, context, obj, face):
@@ -193,11 +222,12 @@ class PartPicker(InView):
             return self._dragged(context, event)
         over = picking.under_mouse(context, event) is not None
         plain = not (event.alt or event.oskey or event.ctrl and not (self.deselect or event.type == "LEFTMOUSE"))
-        if event.type == "TRACKPADPAN" and holding and over and plain and not event.shift:
+        at_click = holding and self._at_click(context, event)
+        if event.type == "TRACKPADPAN" and at_click and plain and not event.shift:
             notches = self.scroll.notches(event.mouse_y - event.mouse_prev_y)
             return self._show(context, self.state.turned(notches))
         wheeled = event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE"}
-        if event.type in keys.NAVIGATE.events or (wheeled and not over) or (
+        if event.type in keys.NAVIGATE.events or (wheeled and not (at_click if holding else over)) or (
                 not plain and (event.type in keys.TURNS or event.type in keys.BUTTONS)):
             return {"PASS_THROUGH"}
         if event.type == "LEFTMOUSE" and event.value == "RELEASE":
@@ -218,6 +248,9 @@ class PartPicker(InView):
         return {"RUNNING_MODAL"}
 
     def _key_while_holding(self, context, event, over):
+        step = self.stepper.sign(event) if self.stepper and event.type == "LEFTMOUSE" else 0
+        if step:
+            return self._show(context, self.state.turned(step))
         if event.type in keys.TURNS:
             return self._show(context, self.state.turned(keys.TURNS[event.type]))
         if event.type in keys.DIGITS and not self.tool:
@@ -243,6 +276,9 @@ class PartPicker(InView):
             index += int((event.mouse_y - begin) / keys.DRAG_STEP)
             if index != self.state.index:
                 return self._show(context, self.state.at(index))
+        if self.tool and self.target and self.wheeling != self._at_click(context, event):
+            self.wheeling = not self.wheeling
+            return self._say(context, self.state)
         return {"RUNNING_MODAL"}
 
     def _show(self, context, state):
@@ -257,12 +293,16 @@ class PartPicker(InView):
             if parts:
                 overlay.shown.show(self._drawing, obj, parts, state.node, state.next,
                                    self.faces if self.snap else None)
+        return self._say(context, state)
+
+    def _say(self, context, state):
         share = self.hierarchy.area[state.node] / self.hierarchy.area[-1]
         number = state.typed + "_" if state.typed else state.index + 1
         told = iface_("Part {number} of {count}, {faces:,} faces, {share} of the area").format(
             number=number, count=len(state.stops), faces=len(self.faces), share=percent(share))
         self._tell(context, ", ".join([told] + [iface_("border in creases")] * self.snap),
-                   (keys.HELD if self.tool else keys.PICKED) + self.commands + keys.ENDS)
+                   (keys.PICKED if not self.tool else keys.HELD if self.wheeling else keys.LEFT) + self.commands
+                   + keys.ENDS)
         return {"RUNNING_MODAL"}
 
     def _tool_snaps(self, context):
@@ -278,7 +318,9 @@ class PartPicker(InView):
         # What the panel of the last operation, and Repeat Last, do again.
         self.face_index, self.level = self.state.face, self.state.level
         picks.remember(obj, self.state.face, self.state.node, self.snap)
-        return self._commit(context)
+        answer = self._commit(context)
+        picks.settled(obj)
+        return answer
 
     def _take_back(self, context):
         if isinstance(self.state, states.Building):

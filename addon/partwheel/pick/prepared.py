@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What hovering, picking and drawing need of a mesh, made at its first use and kept while the mesh stays as it is."""
 
+import functools
+
+import bpy
+
 from ..mesh import arrays
-from ..mesh.kept import PerMesh, counts, key
+from ..mesh.kept import PerMesh, counts, key, named
 from ..parts import changes, registry
 from ..view import overlay, picking, seen
 
 _kept = PerMesh()  # Prepared
+_soon = {}  # full name of an object -> the timer that makes its Prepared
 
 
 class Prepared:
@@ -50,6 +55,33 @@ def prepared(obj):
         _kept.drop_gone()
         kept = _kept[key(obj.data)] = Prepared(obj, stamp)
     return kept
+
+
+def ready(obj):
+    """The same for gizmos, while Blender asks which it must not be given new data: outside Edit Mode None as long as it
+    isn't there, and then it will be soon."""
+    kept = _kept.get(key(obj.data))
+    if obj.mode == "EDIT" or kept and kept.stamp == _stamp(obj):
+        return prepared(obj)
+    if obj.name_full not in _soon:
+        _soon[obj.name_full] = functools.partial(_make, obj.name_full)
+        bpy.app.timers.register(_soon[obj.name_full])
+    return None
+
+
+def _make(name):
+    _soon.pop(name)
+    obj = named(name)
+    if obj:
+        prepared(obj)
+
+
+def stop():
+    """Makes none any more."""
+    for make in _soon.values():
+        if bpy.app.timers.is_registered(make):
+            bpy.app.timers.unregister(make)
+    _soon.clear()
 
 
 def current(obj, parts):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The toolbar's tool in Edit Mode: each click picks a part, the wheel grows and shrinks it."""
+"""The toolbar's tool in each mode that has parts: each click picks one, the wheel grows and shrinks it."""
 
 from pathlib import Path
 
@@ -7,32 +7,96 @@ import bpy
 
 from ..parts import registry
 from ..preferences import draw_overlays
+from ..words.say import iface_
+from .hover import OPERATORS
+from .paint import BECOMES, DYNAMIC, WAYS
 
 ICON = str(Path(__file__).with_name("partwheel.select"))  # Blender adds ".dat"
 
 
-class SelectPart(bpy.types.WorkSpaceTool):
-    bl_space_type = "VIEW_3D"
-    bl_context_mode = "EDIT_MESH"
-    bl_idname = "partwheel.select"
-    bl_label = "Select Part"
-    bl_description = ("Select a meaningful part of the mesh.\n"
-                      "Click a part, then turn the wheel for the next larger or smaller one. "
-                      "Shift adds, Ctrl takes away")
-    bl_icon = ICON
-    bl_widget = "VIEW3D_GGT_partwheel_hover"
-    bl_keymap = tuple(
-        ("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "PRESS", **held},
-         {"properties": [("tool", True), *what]})
-        for held, what in (({}, ()), ({"shift": True}, [("extend", True)]), ({"ctrl": True}, [("deselect", True)])))
+# Mode of the context -> the tool of Blender's that it stands behind in the toolbar.
+AFTER = {"EDIT_MESH": "builtin.select", "OBJECT": "builtin.select", "SCULPT": "builtin.box_mask",
+         "PAINT_WEIGHT": "builtin.gradient", "PAINT_VERTEX": None, "PAINT_TEXTURE": None}
+TOOL = "Select Part"
+# What is said of it there. A click, the wheel, Shift and Ctrl mean the same in all.
+DESCRIPTIONS = {
+    "EDIT_MESH": "Select a meaningful part of the mesh.\n"
+                 "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away",
+    "OBJECT": "Pick a meaningful part of a mesh.\n"
+              "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away",
+    "SCULPT": "Mask a meaningful part of the mesh, or make it a face set.\n"
+              "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away",
+    "PAINT_WEIGHT": "Make a meaningful part of the mesh a vertex group.\n"
+                    "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away",
+    "PAINT_VERTEX": "Paint on a meaningful part of the mesh alone.\n"
+                    "Click a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away",
+}
+DESCRIPTIONS["PAINT_TEXTURE"] = DESCRIPTIONS["PAINT_VERTEX"]
+GESTURES = {
+    "Box": ("Select Parts by Box",
+            "Select all parts that a box touches, by as many notches as the part picked last.\n"
+            "Shift adds, Ctrl takes away. A click picks a part as with Select Part"),
+    "Lasso": ("Select Parts by Lasso",
+              "Select all parts that a lasso touches, by as many notches as the part picked last.\n"
+              "Shift adds, Ctrl takes away. A click picks a part as with Select Part"),
+}
 
-    def draw_settings(context, layout, tool):
-        obj = context.edit_object
-        state = registry.state(obj.data)[0] if obj else registry.State.NONE
-        if state in {registry.State.NONE, registry.State.CHANGED}:
-            layout.label(text="Parts are found at the first click", icon="INFO")
-        layout.prop(tool.operator_properties("mesh.partwheel_select"), "snap")
-        layout.popover("VIEW3D_PT_partwheel_overlays", text="Overlay")
+
+def _tool(mode):
+    """The tool in one mode: a click, the wheel, Shift and Ctrl mean the same in all."""
+    return type(f"SelectPart_{mode}", (bpy.types.WorkSpaceTool,), {
+        "bl_space_type": "VIEW_3D",
+        "bl_context_mode": mode,
+        "bl_idname": "partwheel.select",
+        "bl_label": TOOL,
+        "bl_description": DESCRIPTIONS[mode],
+        "bl_icon": ICON,
+        "bl_widget": "VIEW3D_GGT_partwheel_hover",
+        "bl_keymap": tuple(
+            (OPERATORS[mode], {"type": "LEFTMOUSE", "value": "PRESS", **held}, {"properties": [("tool", True), *what]})
+            for held, what in (({}, ()), ({"shift": True}, [("extend", True)]), ({"ctrl": True}, [("deselect", True)]))),
+        "draw_settings": _draw_settings,
+    })
+
+
+def _gesture(name, operator, gesture):
+    """A tool of Edit Mode: a drag selects whole parts, a click is the other tool's."""
+    held = (({}, "SET", ()), ({"shift": True}, "ADD", [("extend", True)]), ({"ctrl": True}, "SUB", [("deselect", True)]))
+    return type(f"SelectParts_{name}", (bpy.types.WorkSpaceTool,), {
+        "bl_space_type": "VIEW_3D",
+        "bl_context_mode": "EDIT_MESH",
+        "bl_idname": f"partwheel.{name.lower()}",
+        "bl_label": GESTURES[name][0],
+        "bl_description": GESTURES[name][1],
+        "bl_icon": f"ops.generic.select_{name.lower()}",
+        "bl_widget": "VIEW3D_GGT_partwheel_hover",
+        "bl_keymap": (
+            *((operator, {"type": "LEFTMOUSE", "value": "CLICK_DRAG", **keys},
+               {"properties": [(gesture, [("mode", mode)] + [("wait_for_input", False)] * (name == "Box")),
+                               ("MESH_OT_partwheel_gather", [("mode", mode)])]}) for keys, mode, _ in held),
+            *(("mesh.partwheel_select", {"type": "LEFTMOUSE", "value": "CLICK", **keys},
+               {"properties": [("tool", True), *what]}) for keys, _, what in held)),
+        "draw_settings": _draw_settings,
+    })
+
+
+def _draw_settings(context, layout, tool):
+    obj, mode = context.active_object, context.mode
+    if obj is None or obj.type != "MESH":
+        return
+    if mode == "SCULPT" and obj.use_dynamic_topology_sculpting:
+        layout.label(text=iface_(DYNAMIC), icon="ERROR")
+        return
+    if registry.state(obj.data)[0] in {registry.State.NONE, registry.State.CHANGED}:
+        layout.label(text="Parts are found at the first click", icon="INFO")
+    properties = tool.operator_properties(OPERATORS[mode])
+    ways = WAYS.get(mode, ())
+    if len(ways) > 1:
+        row = layout.row(align=True)
+        for way, value in zip(ways, ("AUTO", *ways[1:])):
+            row.prop_enum(properties, "write", value, text=BECOMES[way])
+    layout.prop(properties, "snap")
+    layout.popover("VIEW3D_PT_partwheel_overlays", text="Overlay")
 
 
 class VIEW3D_PT_partwheel_overlays(bpy.types.Panel):
@@ -48,17 +112,23 @@ class VIEW3D_PT_partwheel_overlays(bpy.types.Panel):
 CLASSES = (VIEW3D_PT_partwheel_overlays,)
 
 
-_registered = False
+_tools = []
 
 
 def register():
     """Where Blender starts without a window it has no keymaps yet when it enables add-ons, and can't take a tool."""
-    global _registered
-    _registered = bpy.context.window_manager.keyconfigs.default is not None
-    if _registered:
-        bpy.utils.register_tool(SelectPart, after={"builtin.select"}, group=True)
+    if bpy.context.window_manager.keyconfigs.default is None:
+        return
+    for mode, after in AFTER.items():
+        _tools.append(_tool(mode))
+        bpy.utils.register_tool(_tools[-1], after={after} if after else None, separator=after is None, group=True)
+    for gesture in (("Box", "mesh.partwheel_box", "VIEW3D_OT_select_box"),
+                    ("Lasso", "mesh.partwheel_lasso", "VIEW3D_OT_select_lasso")):
+        _tools.append(_gesture(*gesture))
+        bpy.utils.register_tool(_tools[-1], after={"partwheel.select", "partwheel.box"})
 
 
 def unregister():
-    if _registered:
-        bpy.utils.unregister_tool(SelectPart)
+    for tool in reversed(_tools):
+        bpy.utils.unregister_tool(tool)
+    _tools.clear()

@@ -29,17 +29,42 @@ def _write_face_set(obj, faces, _node, _extend, deselect):
 
 
 def _write_mask(obj, faces, _node, extend, deselect):
-    part = _part_vertices(obj.data, faces)
-    if bpy.app.version >= (4, 1):
-        attribute = obj.data.attributes.get(MASK) or obj.data.attributes.new(MASK, "FLOAT", "POINT")
-        before = arrays.read(attribute.data, "value", np.float32)
-        attribute.data.foreach_set("value", _joined(before, part, extend, deselect))
-        return
-    with pieces.edited(obj.data, obj.data) as bm:
-        layer = bm.verts.layers.paint_mask.verify()
-        before = np.array([vertex[layer] for vertex in bm.verts], np.float32)
-        for vertex, value in zip(bm.verts, _joined(before, part, extend, deselect).tolist()):
-            vertex[layer] = value
+    mesh = obj.data
+    if mask(mesh) is None:
+        if bpy.app.version >= (4, 1):
+            mesh.attributes.new(MASK, "FLOAT", "POINT")
+        else:
+            with pieces.edited(mesh, mesh) as bm:
+                bm.verts.layers.paint_mask.verify()
+    values = mask(mesh)
+    before = arrays.read(values, "value", np.float32)
+    values.foreach_set("value", _joined(before, _part_vertices(mesh, faces), extend, deselect))
+
+
+def mask_levels(obj, faces, _node, extend, deselect):
+    """The mask of a multires modifier's own levels, which Python can't write: Blender fills what is not hidden."""
+    polygons = obj.data.polygons
+    hidden = arrays.read(polygons, "hide", bool)
+    try:
+        if not (extend or deselect):
+            _fill_mask(0)
+        polygons.foreach_set("hide", ~arrays.mask(len(polygons), faces))
+        _fill_mask(0 if deselect else 1)
+    finally:
+        polygons.foreach_set("hide", hidden)
+
+
+def _fill_mask(value):
+    bpy.ops.object.mode_set(mode="SCULPT")
+    bpy.ops.paint.mask_flood_fill(mode="VALUE", value=value)
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def mask(mesh):
+    """What holds the mask's value of each vertex, or None. Not of the levels that a multires modifier has of its own."""
+    layers = mesh.attributes if bpy.app.version >= (4, 1) else mesh.vertex_paint_masks
+    layer = layers.get(MASK) if bpy.app.version >= (4, 1) else next(iter(layers), None)
+    return layer and layer.data
 
 
 def _joined(before, part, extend, deselect):
@@ -72,9 +97,12 @@ def _write_vertex_group(obj, faces, node, extend, deselect):
 
 def _write_paint_mask(obj, faces, _node, extend, deselect):
     select_outside_edit_mode(obj.data, faces, extend, deselect)
-    obj.data.use_paint_mask = True
+    obj.data.use_paint_mask = bool(arrays.read(obj.data.polygons, "select", bool).any())
 
 
 # What writes the faces of a node: functions of (obj, faces, node, extend, deselect).
 WRITERS = {"FACE_SET": _write_face_set, "MASK": _write_mask, "VERTEX_GROUP": _write_vertex_group,
            "PAINT_MASK": _write_paint_mask}
+# Whether a mesh has what a click beside it clears, for those that are cleared so.
+CLEARED = {"MASK": lambda mesh: mask(mesh) is not None and arrays.read(mask(mesh), "value", np.float32).any(),
+           "PAINT_MASK": lambda mesh: mesh.use_paint_mask}

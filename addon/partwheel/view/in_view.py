@@ -116,9 +116,9 @@ class InView:
         manager = context.window_manager
         self._at_end.callback(manager.event_timer_remove, manager.event_timer_add(seconds, window=context.window))
 
-    def _draw_with(self, function):
-        """function() is called whenever a 3D view is drawn."""
-        handler = bpy.types.SpaceView3D.draw_handler_add(self._drawing(function), (), "WINDOW", "POST_VIEW")
+    def _draw_with(self, function, over="POST_VIEW"):
+        """function() is called whenever a 3D view is drawn; "POST_PIXEL": in pixels."""
+        handler = bpy.types.SpaceView3D.draw_handler_add(self._drawing(function), (), "WINDOW", over)
         self._at_end.callback(overlay.redraw)
         self._at_end.callback(bpy.types.SpaceView3D.draw_handler_remove, handler, "WINDOW")
 

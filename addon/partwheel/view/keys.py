@@ -54,6 +54,8 @@ WAITING = (CLICK, NAVIGATE, CANCEL)
 PICKED = (RESIZE, NUMBER, SNAP_BORDER)
 # With the toolbar's tool a click goes on to the next part, and 1, 2 and 3 are Blender's.
 HELD = (RESIZE, CLICK._replace(label="Next Part"), SNAP_BORDER)
+# The same while the mouse is elsewhere than where it clicked: there the wheel zooms.
+LEFT = (RESIZE._replace(names="↑↓"), *HELD[1:])
 ENDS = (CONFIRM, NAVIGATE, CANCEL)
 # Shift, Ctrl and a letter, of those that no keymap of Blender's has for anything in Edit Mode.
 COMMANDS = (

@@ -147,6 +147,11 @@ def draw_painted(context, obj, parts, name, paint):
     layers.draw(context, obj, [Layer(parts.painted(name, paint), GLASS)])
 
 
+def draw_faces(context, obj, parts, name, faces):
+    """Any faces, kept under a name."""
+    _draw(context, obj, [(*parts.of_faces(name, faces), PART, 0.0)])
+
+
 def draw_hover(context, obj, parts, node, snapped):
     """The part that a click would take."""
     color = colors().hover

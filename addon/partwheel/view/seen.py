@@ -52,8 +52,7 @@ def seen(obj):
             # Then strokes go into the mesh itself, and Blender draws that.
             positions = arrays.read(mesh.vertices, "co", np.float32, 3)
             return _visible(obj, positions, *arrays.triangles(mesh))
-        sculpted = next((each for each in obj.modifiers
-                         if each.type == "MULTIRES" and each.show_viewport and each.sculpt_levels), None)
+        sculpted = sculpted_levels(obj)
     if sculpted:
         with _double(obj) as double:
             _as_sculpted(double, sculpted.name)
@@ -65,6 +64,12 @@ def seen(obj):
         with _double(obj) as double:
             faces = _origins(double, result)
     return _visible(obj, result.positions, result.triangles, faces)
+
+
+def sculpted_levels(obj):
+    """The multires modifier whose levels Sculpt Mode works on, or None."""
+    return next((each for each in obj.modifiers
+                 if each.type == "MULTIRES" and each.show_viewport and each.sculpt_levels), None)
 
 
 def _visible(obj, positions, triangles, faces):

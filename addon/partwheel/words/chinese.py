@@ -432,8 +432,6 @@ WORDS = {
         "部件转换的结果",
     "Usual":
         "通常",
-    "A face set in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
-        "雕刻模式下为面组，权重绘制下为顶点组，否则为绘制遮罩",
     "A new face set":
         "新的面组",
     "Masked against sculpting":
@@ -504,6 +502,66 @@ WORDS = {
         "选择网格中有意义的部件。\n点击部件，然后转动滚轮切换到更大或更小的部件。Shift 添加，Ctrl 移除",
     "Parts are found at the first click":
         "部件将在首次点击时查找",
+    "Pick a meaningful part of a mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "拾取网格中有意义的部件。\n点击部件，然后转动滚轮切换到更大或更小的部件。Shift 添加，Ctrl 移除",
+    "Mask a meaningful part of the mesh, or make it a face set.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "为网格中有意义的部件添加遮罩，或将其设为面组。\n点击部件，然后转动滚轮切换到更大或更小的部件。Shift 添加，Ctrl 移除",
+    "Make a meaningful part of the mesh a vertex group.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "将网格中有意义的部件设为顶点组。\n点击部件，然后转动滚轮切换到更大或更小的部件。Shift 添加，Ctrl 移除",
+    "Paint on a meaningful part of the mesh alone.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "仅在网格中有意义的部件上绘制。\n点击部件，然后转动滚轮切换到更大或更小的部件。Shift 添加，Ctrl 移除",
+    "Select all parts that a box touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+        "选择矩形框触及的所有部件，级数与上次拾取的部件相同。\nShift 添加，Ctrl 移除。点击则如“选择部件”一样拾取部件",
+    "Select all parts that a lasso touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+        "选择套索触及的所有部件，级数与上次拾取的部件相同。\nShift 添加，Ctrl 移除。点击则如“选择部件”一样拾取部件",
+    "Select all parts (segments, regions) that a box touches, by as many notches as the part that was picked last":
+        "选择矩形框触及的所有部件（分段、区域），级数与上次拾取的部件相同",
+    "Select all parts (segments, regions) that a lasso touches, by as many notches as the part that was picked last":
+        "选择套索触及的所有部件（分段、区域），级数与上次拾取的部件相同",
+    "Select Parts by Box":
+        "框选部件",
+    "Select Parts by Lasso":
+        "套索选择部件",
+    "Make of what a gesture has selected the whole parts that it touched":
+        "将手势所选内容变为其触及的完整部件",
+    "Mode":
+        "模式",
+    "Set":
+        "设置",
+    "Select these parts and nothing else":
+        "仅选择这些部件",
+    "Add them to what is selected":
+        "添加到所选内容",
+    "Subtract":
+        "减去",
+    "Take them away from what is selected":
+        "从所选内容中移除",
+    "Parts: What Is Selected":
+        "部件：所选内容",
+    "Whole Parts":
+        "完整部件",
+    "Remember what is selected":
+        "记住所选内容",
+    "Pick Part by Wheel":
+        "滚轮拾取部件",
+    "Pick a part of the mesh under the mouse, to be copied, swapped or divided; Edit Mode has it selected":
+        "拾取鼠标下网格的部件，用于复制、替换或划分；在编辑模式下它处于选中状态",
+    "A mask in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
+        "雕刻模式下为遮罩，权重绘制下为顶点组，否则为绘制遮罩",
+    "When the wheel makes the part larger and smaller, after a click with the tool":
+        "用工具点击之后，滚轮何时放大和缩小部件",
+    "At the Click":
+        "点击处",
+    "While the mouse is where it clicked; anywhere else it zooms as ever":
+        "鼠标停在点击处时；在其他位置照常缩放视图",
+    "Until Enter":
+        "直到按回车",
+    "Wherever the mouse is, until Enter or another key ends it":
+        "无论鼠标在何处，直到回车或其他按键结束",
+    "Buttons":
+        "按钮",
+    "Show two buttons beside the click, larger and smaller. With a pen they are always there":
+        "在点击处旁显示放大和缩小两个按钮。使用压感笔时始终显示",
     "Overlay":
         "叠加层",
     "The vertex group {name} is locked. Unlock it, or pick the part alone: it gets a group of its own.":

@@ -432,8 +432,6 @@ WORDS = {
         "Was aus dem Teil wird",
     "Usual":
         "Üblich",
-    "A face set in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
-        "Ein Face Set im Skulpturmodus, eine Vertex-Gruppe beim Malen von Gewichten, sonst eine Malmaske",
     "A new face set":
         "Ein neues Face Set",
     "Masked against sculpting":
@@ -504,6 +502,66 @@ WORDS = {
         "Ein sinnvolles Teil des Meshs auswählen.\nEin Teil anklicken, dann mit dem Mausrad zum nächstgrößeren oder -kleineren drehen. Umschalt fügt hinzu, Strg nimmt weg",
     "Parts are found at the first click":
         "Die Teile werden beim ersten Klick gefunden",
+    "Pick a meaningful part of a mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "Ein sinnvolles Teil eines Meshs aufnehmen.\nEin Teil anklicken, dann mit dem Mausrad zum nächstgrößeren oder -kleineren drehen. Umschalt fügt hinzu, Strg nimmt weg",
+    "Mask a meaningful part of the mesh, or make it a face set.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "Ein sinnvolles Teil des Meshs maskieren oder zu einem Face Set machen.\nEin Teil anklicken, dann mit dem Mausrad zum nächstgrößeren oder -kleineren drehen. Umschalt fügt hinzu, Strg nimmt weg",
+    "Make a meaningful part of the mesh a vertex group.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "Ein sinnvolles Teil des Meshs zu einer Vertex-Gruppe machen.\nEin Teil anklicken, dann mit dem Mausrad zum nächstgrößeren oder -kleineren drehen. Umschalt fügt hinzu, Strg nimmt weg",
+    "Paint on a meaningful part of the mesh alone.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "Nur auf einem sinnvollen Teil des Meshs malen.\nEin Teil anklicken, dann mit dem Mausrad zum nächstgrößeren oder -kleineren drehen. Umschalt fügt hinzu, Strg nimmt weg",
+    "Select all parts that a box touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+        "Alle Teile auswählen, die ein Rechteck berührt, um so viele Rasten wie das zuletzt gewählte Teil.\nUmschalt fügt hinzu, Strg nimmt weg. Ein Klick wählt ein Teil wie bei Teil auswählen",
+    "Select all parts that a lasso touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+        "Alle Teile auswählen, die ein Lasso berührt, um so viele Rasten wie das zuletzt gewählte Teil.\nUmschalt fügt hinzu, Strg nimmt weg. Ein Klick wählt ein Teil wie bei Teil auswählen",
+    "Select all parts (segments, regions) that a box touches, by as many notches as the part that was picked last":
+        "Alle Teile (Segmente, Regionen) auswählen, die ein Rechteck berührt, um so viele Rasten wie das zuletzt gewählte Teil",
+    "Select all parts (segments, regions) that a lasso touches, by as many notches as the part that was picked last":
+        "Alle Teile (Segmente, Regionen) auswählen, die ein Lasso berührt, um so viele Rasten wie das zuletzt gewählte Teil",
+    "Select Parts by Box":
+        "Teile per Rechteck auswählen",
+    "Select Parts by Lasso":
+        "Teile per Lasso auswählen",
+    "Make of what a gesture has selected the whole parts that it touched":
+        "Aus dem, was eine Geste ausgewählt hat, die ganzen Teile machen, die sie berührt hat",
+    "Mode":
+        "Modus",
+    "Set":
+        "Setzen",
+    "Select these parts and nothing else":
+        "Diese Teile auswählen und sonst nichts",
+    "Add them to what is selected":
+        "Zur Auswahl hinzufügen",
+    "Subtract":
+        "Abziehen",
+    "Take them away from what is selected":
+        "Von der Auswahl wegnehmen",
+    "Parts: What Is Selected":
+        "Teile: Was ausgewählt ist",
+    "Whole Parts":
+        "Ganze Teile",
+    "Remember what is selected":
+        "Merken, was ausgewählt ist",
+    "Pick Part by Wheel":
+        "Teil per Mausrad aufnehmen",
+    "Pick a part of the mesh under the mouse, to be copied, swapped or divided; Edit Mode has it selected":
+        "Ein Teil des Meshs unter der Maus aufnehmen, um es zu kopieren, zu tauschen oder zu teilen; im Bearbeitungsmodus ist es ausgewählt",
+    "A mask in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
+        "Eine Maske im Skulpturmodus, eine Vertex-Gruppe beim Malen von Gewichten, sonst eine Malmaske",
+    "When the wheel makes the part larger and smaller, after a click with the tool":
+        "Wann das Mausrad das Teil größer und kleiner macht, nach einem Klick mit dem Werkzeug",
+    "At the Click":
+        "Beim Klick",
+    "While the mouse is where it clicked; anywhere else it zooms as ever":
+        "Solange die Maus dort ist, wo geklickt wurde; überall sonst zoomt es wie immer",
+    "Until Enter":
+        "Bis zur Eingabetaste",
+    "Wherever the mouse is, until Enter or another key ends it":
+        "Wo immer die Maus ist, bis die Eingabetaste oder eine andere Taste es beendet",
+    "Buttons":
+        "Knöpfe",
+    "Show two buttons beside the click, larger and smaller. With a pen they are always there":
+        "Neben dem Klick zwei Knöpfe zeigen, größer und kleiner. Mit einem Stift sind sie immer da",
     "Overlay":
         "Overlay",
     "The vertex group {name} is locked. Unlock it, or pick the part alone: it gets a group of its own.":

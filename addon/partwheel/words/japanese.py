@@ -432,8 +432,6 @@ WORDS = {
         "パーツの変換先",
     "Usual":
         "標準",
-    "A face set in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
-        "スカルプトモードでは面セット、ウェイトペイントでは頂点グループ、それ以外はペイントマスク",
     "A new face set":
         "新しい面セット",
     "Masked against sculpting":
@@ -504,6 +502,66 @@ WORDS = {
         "メッシュの意味のあるパーツを選択します。\nパーツをクリックし、ホイールで一段大きい、または小さいパーツに切り替えます。Shift で追加、Ctrl で除外",
     "Parts are found at the first click":
         "パーツは最初のクリックで検出されます",
+    "Pick a meaningful part of a mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "メッシュの意味のあるパーツを選び取ります。\nパーツをクリックし、ホイールで一段大きい、または小さいパーツに切り替えます。Shift で追加、Ctrl で除外",
+    "Mask a meaningful part of the mesh, or make it a face set.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "メッシュの意味のあるパーツをマスクするか、面セットにします。\nパーツをクリックし、ホイールで一段大きい、または小さいパーツに切り替えます。Shift で追加、Ctrl で除外",
+    "Make a meaningful part of the mesh a vertex group.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "メッシュの意味のあるパーツを頂点グループにします。\nパーツをクリックし、ホイールで一段大きい、または小さいパーツに切り替えます。Shift で追加、Ctrl で除外",
+    "Paint on a meaningful part of the mesh alone.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "メッシュの意味のあるパーツだけにペイントします。\nパーツをクリックし、ホイールで一段大きい、または小さいパーツに切り替えます。Shift で追加、Ctrl で除外",
+    "Select all parts that a box touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+        "矩形が触れるすべてのパーツを、最後に選んだパーツと同じ段数で選択します。\nShift で追加、Ctrl で除外。クリックすると「パーツを選択」と同じようにパーツを選びます",
+    "Select all parts that a lasso touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+        "投げ縄が触れるすべてのパーツを、最後に選んだパーツと同じ段数で選択します。\nShift で追加、Ctrl で除外。クリックすると「パーツを選択」と同じようにパーツを選びます",
+    "Select all parts (segments, regions) that a box touches, by as many notches as the part that was picked last":
+        "矩形が触れるすべてのパーツ（セグメント、領域）を、最後に選んだパーツと同じ段数で選択します",
+    "Select all parts (segments, regions) that a lasso touches, by as many notches as the part that was picked last":
+        "投げ縄が触れるすべてのパーツ（セグメント、領域）を、最後に選んだパーツと同じ段数で選択します",
+    "Select Parts by Box":
+        "矩形でパーツを選択",
+    "Select Parts by Lasso":
+        "投げ縄でパーツを選択",
+    "Make of what a gesture has selected the whole parts that it touched":
+        "ジェスチャーで選択したものを、触れたパーツ全体にします",
+    "Mode":
+        "モード",
+    "Set":
+        "設定",
+    "Select these parts and nothing else":
+        "これらのパーツだけを選択します",
+    "Add them to what is selected":
+        "選択に追加します",
+    "Subtract":
+        "減算",
+    "Take them away from what is selected":
+        "選択から除外します",
+    "Parts: What Is Selected":
+        "パーツ：選択中のもの",
+    "Whole Parts":
+        "パーツ全体",
+    "Remember what is selected":
+        "選択中のものを記憶します",
+    "Pick Part by Wheel":
+        "ホイールでパーツを選び取る",
+    "Pick a part of the mesh under the mouse, to be copied, swapped or divided; Edit Mode has it selected":
+        "マウスの下のメッシュのパーツを選び取り、コピー、交換、分割に使います。編集モードでは選択されています",
+    "A mask in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
+        "スカルプトモードではマスク、ウェイトペイントでは頂点グループ、それ以外はペイントマスク",
+    "When the wheel makes the part larger and smaller, after a click with the tool":
+        "ツールでクリックした後、いつホイールでパーツを拡大・縮小するか",
+    "At the Click":
+        "クリック位置",
+    "While the mouse is where it clicked; anywhere else it zooms as ever":
+        "マウスがクリックした場所にある間。それ以外では通常どおりズームします",
+    "Until Enter":
+        "Enter まで",
+    "Wherever the mouse is, until Enter or another key ends it":
+        "マウスの位置にかかわらず、Enter などのキーで終了するまで",
+    "Buttons":
+        "ボタン",
+    "Show two buttons beside the click, larger and smaller. With a pen they are always there":
+        "クリックの横に拡大と縮小の2つのボタンを表示します。ペンでは常に表示されます",
     "Overlay":
         "オーバーレイ",
     "The vertex group {name} is locked. Unlock it, or pick the part alone: it gets a group of its own.":

@@ -432,8 +432,6 @@ WORDS = {
         "En qué se convierte la parte",
     "Usual":
         "Lo habitual",
-    "A face set in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
-        "Un conjunto de caras en modo Escultura, un grupo de vértices al pintar influencias, si no una máscara de pintura",
     "A new face set":
         "Un nuevo conjunto de caras",
     "Masked against sculpting":
@@ -504,6 +502,66 @@ WORDS = {
         "Selecciona una parte con sentido de la malla.\nHacer clic en una parte y girar la rueda para la siguiente más grande o más pequeña. Mayús agrega, Ctrl quita",
     "Parts are found at the first click":
         "Las partes se buscan con el primer clic",
+    "Pick a meaningful part of a mesh.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "Tomar una parte con sentido de una malla.\nHacer clic en una parte y girar la rueda para la siguiente más grande o más pequeña. Mayús agrega, Ctrl quita",
+    "Mask a meaningful part of the mesh, or make it a face set.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "Enmascarar una parte con sentido de la malla, o convertirla en un conjunto de caras.\nHacer clic en una parte y girar la rueda para la siguiente más grande o más pequeña. Mayús agrega, Ctrl quita",
+    "Make a meaningful part of the mesh a vertex group.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "Convertir una parte con sentido de la malla en un grupo de vértices.\nHacer clic en una parte y girar la rueda para la siguiente más grande o más pequeña. Mayús agrega, Ctrl quita",
+    "Paint on a meaningful part of the mesh alone.\nClick a part, then turn the wheel for the next larger or smaller one. Shift adds, Ctrl takes away":
+        "Pintar solo en una parte con sentido de la malla.\nHacer clic en una parte y girar la rueda para la siguiente más grande o más pequeña. Mayús agrega, Ctrl quita",
+    "Select all parts that a box touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+        "Seleccionar todas las partes que toca un marco, con tantos pasos como la última parte tomada.\nMayús agrega, Ctrl quita. Un clic toma una parte como con Seleccionar parte",
+    "Select all parts that a lasso touches, by as many notches as the part picked last.\nShift adds, Ctrl takes away. A click picks a part as with Select Part":
+        "Seleccionar todas las partes que toca un lazo, con tantos pasos como la última parte tomada.\nMayús agrega, Ctrl quita. Un clic toma una parte como con Seleccionar parte",
+    "Select all parts (segments, regions) that a box touches, by as many notches as the part that was picked last":
+        "Seleccionar todas las partes (segmentos, regiones) que toca un marco, con tantos pasos como la última parte tomada",
+    "Select all parts (segments, regions) that a lasso touches, by as many notches as the part that was picked last":
+        "Seleccionar todas las partes (segmentos, regiones) que toca un lazo, con tantos pasos como la última parte tomada",
+    "Select Parts by Box":
+        "Seleccionar partes con marco",
+    "Select Parts by Lasso":
+        "Seleccionar partes con lazo",
+    "Make of what a gesture has selected the whole parts that it touched":
+        "Convertir lo que seleccionó un gesto en las partes enteras que tocó",
+    "Mode":
+        "Modo",
+    "Set":
+        "Definir",
+    "Select these parts and nothing else":
+        "Seleccionar estas partes y nada más",
+    "Add them to what is selected":
+        "Agregarlas a lo seleccionado",
+    "Subtract":
+        "Sustraer",
+    "Take them away from what is selected":
+        "Quitarlas de lo seleccionado",
+    "Parts: What Is Selected":
+        "Partes: lo seleccionado",
+    "Whole Parts":
+        "Partes enteras",
+    "Remember what is selected":
+        "Recordar lo seleccionado",
+    "Pick Part by Wheel":
+        "Tomar parte con la rueda",
+    "Pick a part of the mesh under the mouse, to be copied, swapped or divided; Edit Mode has it selected":
+        "Tomar una parte de la malla bajo el cursor, para copiarla, intercambiarla o dividirla; en el modo Edición está seleccionada",
+    "A mask in Sculpt Mode, a vertex group in Weight Paint, else a paint mask":
+        "Una máscara en modo Escultura, un grupo de vértices al pintar influencias, si no una máscara de pintura",
+    "When the wheel makes the part larger and smaller, after a click with the tool":
+        "Cuándo la rueda agranda y reduce la parte, después de un clic con la herramienta",
+    "At the Click":
+        "En el clic",
+    "While the mouse is where it clicked; anywhere else it zooms as ever":
+        "Mientras el cursor está donde hizo clic; en cualquier otro lugar la rueda acerca y aleja como siempre",
+    "Until Enter":
+        "Hasta Intro",
+    "Wherever the mouse is, until Enter or another key ends it":
+        "Dondequiera que esté el cursor, hasta que Intro u otra tecla lo termine",
+    "Buttons":
+        "Botones",
+    "Show two buttons beside the click, larger and smaller. With a pen they are always there":
+        "Mostrar dos botones junto al clic, más grande y más pequeña. Con un lápiz están siempre ahí",
     "Overlay":
         "Sobreimpresos",
     "The vertex group {name} is locked. Unlock it, or pick the part alone: it gets a group of its own.":

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Picking in Object Mode: object.partwheel_pick, the tool's, selects the part in its mesh, where it stays highlighted for
+what is done with it; object.partwheel_select enters Edit Mode with it at the end."""
+
+import bpy
+import numpy as np
+
+from ..mesh import arrays, kept
+from ..mesh.refusing import can, read_only
+from ..mesh.selection import chosen_outside_edit_mode, select_outside_edit_mode
+from ..parts import picks
+from ..view import keys, picking
+from ..view.seen import NO_FACE
+from ..words.say import rpt_
+from .hover import highlight
+from .pick import PartPicker
+from .prepared import prepared
+from .preview import Preview
+
+
+class _InObjectMode(PartPicker):
+    """What both share: the part is of the object under the mouse."""
+
+    @classmethod
+    def poll(cls, context):
+        return can(cls, context.mode == "OBJECT", "This is for Object Mode.")
+
+    def _begin(self, context, event):
+        obj = self._target(context, event)
+        if not obj:
+            return {"CANCELLED"}
+        self.object_name = obj.name_full
+        return PartPicker._begin(self, context, event)
+
+    def _target(self, context, event):
+        """The object under the mouse, or else the active one, if it can be edited; or None and a report."""
+        view = picking.under_mouse(context, event)
+        hit = view and picking.surface_under(context, *view)
+        obj = hit.obj if hit else context.active_object
+        space = view[0].spaces.active if view else context.space_data
+        shown = obj is not None and obj.visible_get(viewport=space)
+        if obj is None or obj.type != "MESH" or not (hit or shown):
+            reason = rpt_("There is no mesh under the mouse.")
+        elif not shown:
+            reason = rpt_("{name} is an instance, and this 3D view does not show its original: edit it there.").format(
+                name=obj.name)
+        else:
+            reason = read_only(obj)
+        if reason:
+            self.report({"WARNING"}, reason)
+        return None if reason else obj
+
+    def _objects(self, context):
+        """The one that was under the mouse at the beginning; without a mouse the active one."""
+        obj = kept.named(self.object_name) if self.object_name else context.active_object
+        return [obj] if context.mode == "OBJECT" and obj is not None and obj.type == "MESH" else []
+
+    def _under(self, context, event):
+        """Also on an instance of the object."""
+        view, (obj,) = picking.under_mouse(context, event), self._objects(context)
+        hit = view and picking.surface_under(context, *view)
+        found = prepared(obj).tree(obj).under(hit.matrix, *view[1:]) if hit and hit.obj == obj else None
+        if found and found[0] == NO_FACE:
+            self._made_by_modifiers(obj)
+        return (obj, found[0]) if found and found[0] != NO_FACE else (None, None)
+
+
+class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
+    """Pick a part of the mesh under the mouse, which stays as it is meanwhile, then enter Edit Mode with the part"""
+
+    bl_idname = "object.partwheel_select"
+    bl_label = "Select Part by Wheel"
+    bl_options = set()  # what is registered and undone is the pick in Edit Mode, see _edited()
+    commands = keys.COMMANDS
+
+    def _aim(self, context, obj):
+        return Preview(obj)
+
+    def _key_while_holding(self, context, event, over):
+        if event.type == "TAB" and not (event.shift or event.ctrl):  # confirming does what it asks for
+            return self._confirmed(context)
+        return PartPicker._key_while_holding(self, context, event, over)
+
+    def _commit(self, context):
+        return self._edited(context, self._object(context))
+
+    def _apply(self, context, obj, _faces, _picked):
+        return self._edited(context, obj)
+
+    def _edited(self, context, obj):
+        """Edit Mode with the part that is picked: two undo steps, and the panel of the last operation is the second's.
+        """
+        _activate(context, obj)
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.ed.undo_push(message="Toggle Edit Mode")
+        bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", True, face_index=self.face_index, level=self.level,
+                                      snap=self.snap, extend=self.extend, deselect=self.deselect)
+        return {"FINISHED"}
+
+
+class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
+    """Pick a part of the mesh under the mouse, to be copied, swapped or divided; Edit Mode has it selected"""
+
+    bl_idname = "object.partwheel_pick"
+    bl_label = "Pick Part by Wheel"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def _aim(self, context, obj):
+        return _Highlighted(obj)
+
+    def _missed(self, context):
+        """As in Edit Mode: a click beside everything picks nothing."""
+        obj = context.active_object
+        if self.extend or self.deselect or not arrays.read(obj.data.polygons, "select", bool).any():
+            return {"CANCELLED"}
+        select_outside_edit_mode(obj.data, [])
+        picks.drop(obj)
+        context.view_layer.update()
+        highlight.update(context)
+        return {"FINISHED"}
+
+    def _commit(self, context):
+        return self._apply(context, self._object(context), self.faces, self.state)
+
+    def _apply(self, context, obj, faces, picked):
+        _activate(context, obj)
+        select_outside_edit_mode(obj.data, faces, self.extend, self.deselect, picked.face)
+        if not bpy.app.background:
+            context.view_layer.update()
+            prepared(obj)
+            highlight.update(context)
+        return {"FINISHED"}
+
+
+class _Highlighted(Preview):
+    """What else is picked stays highlighted beside the part, as far as it will be picked still."""
+
+    def select(self, obj, faces, _face, extend, deselect):
+        chosen = chosen_outside_edit_mode(obj.data, faces, extend, deselect)
+        highlight.show(obj, np.flatnonzero(chosen & ~arrays.mask(len(chosen), faces)))
+
+    def restore(self):
+        highlight.what = None
+        highlight.update(bpy.context)
+
+
+def _activate(context, obj):
+    """The object becomes the active one and is selected, alone if it wasn't."""
+    if not obj.select_get():
+        for other in context.selected_objects:
+            other.select_set(False)
+        obj.select_set(True)
+    context.view_layer.objects.active = obj
+
+
+CLASSES = (OBJECT_OT_partwheel_select, OBJECT_OT_partwheel_pick)
