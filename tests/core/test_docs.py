@@ -75,7 +75,7 @@ ASKED = {
         r"windows-x64\.zip.* drop the file on Blender's window"),
     "mask a part while sculpting": (
         ["Mask a part while sculpting"], ["Mask a part while sculpting"],
-        r"Mask > Mask from Part by Wheel.*\*\*click\*\*: it is masked"),
+        r"In Sculpt Mode take the tool \*\*Select Part\*\*.*\*\*Click\*\* it.*it is masked"),
     "get colliders into Godot": (
         ["Godot"], ["Into Godot"],
         r"partwheel convex chair\.obj -o folder --formats godot.*_godot\.glb.*Put that file into the Godot project"),
