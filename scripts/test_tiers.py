@@ -27,7 +27,8 @@ MORE_OF_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "confirm_ent
                   "pick_and_click", "quad_view", "restore", "select_modes", "while_building")
 THREADED = "[Tt]hread|Cancel|Progress"  # the names of tests in which threads meet
 # What scripts/test quick plays: how the add-on meets Blender, and the main job in a window.
-QUICK_ADDON = ("test_registration", "test_select", "test_saved", "test_staleness", "test_related", "test_api", "test_command")
+QUICK_ADDON = ("test_registration", "test_select", "test_modal", "test_saved", "test_staleness", "test_related", "test_api",
+               "test_command")
 QUICK_BPY = "4.5"
 QUICK_GUI = ("three_clicks",)
 SLOWEST = 10  # tests that are named at the end
