@@ -2,6 +2,8 @@
 """The examples of docs/scripting.md that need Blender, as they stand there."""
 
 import re
+import shlex
+import tempfile
 from pathlib import Path
 
 import bmesh
@@ -27,6 +29,20 @@ def with_42(name, face):
 
 
 class Examples(MeshTest):
+    def test_shell_command(self):
+        commands = re.findall(r"^    blender --command partwheel (.+)$", PAGE.read_text("utf-8"), re.M)
+        self.assertTrue(commands)
+        with tempfile.TemporaryDirectory() as folder:
+            for command in commands:
+                name, file, *options = shlex.split(command)
+                self.add(*read_off("hand"))
+                path = str(Path(folder) / file)
+                bpy.ops.wm.save_as_mainfile(filepath=path)
+                self.assertEqual(part("command").run([name, path, *options]), 0, command)
+                bpy.ops.wm.open_mainfile(filepath=path)
+                numbers = bpy.data.objects[0].data.attributes["part"].data
+                self.assertEqual({number.value for number in numbers}, set(range(8)))
+
     def test_operator(self):
         obj = self.add(*with_42("hand", 468))
         run(ACTIVE, bpy=bpy)
