@@ -213,11 +213,11 @@ class Job:
             raise _no_worker(f"The worker process did not begin in {self._time_limit:g} seconds." if late else
                              f"The worker process {ending(process.returncode)} before it began.")
         if late:
-            raise WorkerError("time limit", f"The build was still in the stage {self._progress[1]} after "
-                                            f"{self._time_limit:g} seconds {late[0]} and was stopped. {HARMLESS} A "
-                                            "mesh with fewer faces (Decimate, or a voxel remesh) is faster.")
-        raise WorkerError("crash", f"The worker process {ending(process.returncode)} in the stage {self._progress[1]}."
-                                   f" {HARMLESS} Merging vertices by distance, or a voxel remesh, often helps.")
+            raise WorkerError("time limit", f"The build was not done after {self._time_limit:g} seconds {late[0]} and "
+                                            f"was stopped. {HARMLESS} A mesh with fewer faces (Decimate, or a voxel "
+                                            "remesh) is faster.")
+        raise WorkerError("crash", f"The worker process {ending(process.returncode)} before it was done. {HARMLESS} "
+                                   "Merging vertices by distance, or a voxel remesh, often helps.")
 
     def _send(self, pipe, rungs):
         """Hands the surface over. A worker that dies meanwhile is left for _listen() to find."""
