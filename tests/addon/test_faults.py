@@ -174,6 +174,17 @@ class Faults(SolidTest):
                                         self.sends("MOUSEMOVE", value="NOTHING"), self.sends("TIMER"),
                                         self.sends("E", shift=True, ctrl=True), self.sends("TWO"), self.sends(*kind)])
 
+    def test_pick_in_object_mode(self):
+        obj = self.add(*read_off("hand"))
+        part("api").build(obj)
+        show(obj)
+        for polygon in obj.data.polygons:
+            polygon.select = polygon.index < 100
+        cls = part("pick.objects").OBJECT_OT_partwheel_pick
+        for kind in (("RET",), ("ESC",)):
+            self.throw_everywhere(cls, [self.begins("LEFTMOUSE"), self.sends("WHEELUPMOUSE"), self.sends(*kind)],
+                                  tool=True, extend=True)
+
     def test_deform(self):
         obj = self.add(*read_off("hand"))
         hierarchy = part("api").build(obj)

@@ -135,11 +135,19 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
 class _Highlighted(Preview):
     """What else is picked stays highlighted beside the part, as far as it will be picked still."""
 
+    def __init__(self, obj):
+        super().__init__(obj)
+        self.before = np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)), obj.data.polygons.active
+
     def select(self, obj, faces, _face, extend, deselect):
         chosen = chosen_outside_edit_mode(obj.data, faces, extend, deselect)
         highlight.show(obj, np.flatnonzero(chosen & ~arrays.mask(len(chosen), faces)))
 
     def restore(self):
+        """Also what an error in the middle of confirming has selected."""
+        (faces, active), mesh = self.before, kept.named(self.name).data
+        if not np.array_equal(np.flatnonzero(arrays.read(mesh.polygons, "select", bool)), faces):
+            select_outside_edit_mode(mesh, faces, active=active)
         highlight.what = None
         highlight.update(bpy.context)
 

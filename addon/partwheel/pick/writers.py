@@ -56,8 +56,10 @@ def mask_levels(obj, faces, _node, extend, deselect):
 
 def _fill_mask(value):
     bpy.ops.object.mode_set(mode="SCULPT")
-    bpy.ops.paint.mask_flood_fill(mode="VALUE", value=value)
-    bpy.ops.object.mode_set(mode="OBJECT")
+    try:
+        bpy.ops.paint.mask_flood_fill(mode="VALUE", value=value)
+    finally:
+        bpy.ops.object.mode_set(mode="OBJECT")
 
 
 def mask(mesh):
