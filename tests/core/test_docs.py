@@ -56,7 +56,8 @@ def test_each_page_is_in_the_sites_menu_and_each_picture_on_a_page():
 def test_each_picture_is_made_by_what_the_table_says():
     """The script, or a file of the folder of its parts, has the picture's name in it."""
     table = (ROOT / "docs" / "commands.md").read_text().split("## Pictures")[1]
-    made = {name: by for names, by in re.findall(r"^\| (`.+`) \| (.+) \|$", table, re.M) for name in re.findall(r"`(.+?)`", names)}
+    rows = re.findall(r"^\| (`.+`) \| (.+) \|$", table, re.M)
+    made = {name: by for names, by in rows for name in re.findall(r"`(.+?)`", names)}
     assert set(made) == {picture.name for picture in (ROOT / "docs" / "images").iterdir()}
     for name, by in made.items():
         if by.startswith("by hand") and name.endswith(".svg"):
