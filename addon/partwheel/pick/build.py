@@ -178,8 +178,10 @@ class Beside(InView):
         return start(self, obj)
 
     def _found(self, context):
-        """All are found, or some."""
-        return self.execute(context)
+        """They are found: it goes on where the user has not gone elsewhere meanwhile."""
+        obj = context.active_object
+        there = obj is not None and obj.name_full == self.object_name and self.poll(context)
+        return self.execute(context) if there else {"CANCELLED"}
 
     def _begin(self, context, _event):
         self.object_name, self.buildings = context.active_object.name_full, []
@@ -206,10 +208,7 @@ class Beside(InView):
         if self.buildings:
             self.buildings[0].watch(context)
             return {"PASS_THROUGH"}
-        obj = context.active_object
-        if not done.hierarchy or obj is None or obj.name_full != self.object_name or not self.poll(context):
-            return {"CANCELLED"}
-        return self._found(context)
+        return self._found(context) if done.hierarchy else {"CANCELLED"}
 
     def _take_back(self, context):
         for building in self.buildings:
