@@ -149,7 +149,7 @@ def draw_painted(context, obj, parts, name, paint):
 
 def draw_faces(context, obj, parts, name, faces):
     """Any faces, kept under a name."""
-    _draw(context, obj, [(*parts.of_faces(name, faces), PART, 0.0)])
+    layers.draw(context, obj, [Layer(parts.of_faces(name, faces), colors().part)])
 
 
 def draw_hover(context, obj, parts, node, snapped):

@@ -63,7 +63,7 @@ def use(stage, tool):
 def boxed(stage, left, top, right, bottom):
     """All of the parts that a click takes from the faces that Blender's own box selects, but those that it only grazes;
     of a face in one that more of these faces take, only that one."""
-    view, region = stage.view, stage.view.region
+    region = stage.view.region
     with stage.override():
         bpy.ops.view3d.select_box(xmin=left - region.x, xmax=right - region.x, ymin=bottom - region.y,
                                   ymax=top - region.y, wait_for_input=False)
