@@ -70,7 +70,7 @@ class Copy(SolidTest):
             kept = [frozenset(map(tuple, vertices[list(polygons[face])])) in found for face in hierarchy.faces(node)]
             whole += sum(kept)
             self.assertGreater(sum(kept), 0.5 * len(kept) - 2)
-        self.assertGreater(whole, 200)
+        self.assertGreater(whole, 150)
 
     def test_layers_come_along(self):
         obj, hierarchy = self.built("hand")
@@ -198,7 +198,8 @@ class Copy(SolidTest):
                 copy = part("solid.solids").part(obj, hierarchy, int(hierarchy.tet_first[node]),
                                            int(hierarchy.tet_last[node]))
                 self.assertSolid(copy)
-                self.assertEqual((~caps(copy)).sum(), len(hierarchy.faces(node)))
+                once = {frozenset(broken[face]) for face in hierarchy.faces(node)}
+                self.assertEqual((~caps(copy)).sum(), len(once))
 
     def test_of_a_repaired_source_it_is_what_its_tetrahedra_fill(self):
         """With holes, polygons wound anyhow, doubles, inside out: the volume is that of the tetrahedra, not of what

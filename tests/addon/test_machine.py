@@ -143,6 +143,7 @@ class RandomEvents(ToolTest):
         (point, face), how = self.random.choice(self.spots), self.random.choice(HOWS)
         self.assertEqual(self.begin(point, how, self.random.random() < 0.5), {"RUNNING_MODAL"})
         self.send("LEFTMOUSE", point, "RELEASE")
+        self.at = point
         self.model.click(face, how)
         return face, how
 
@@ -157,7 +158,7 @@ class RandomEvents(ToolTest):
         notches = self.random.choice((1, 1, 1, -1, -1, 3))
         key = self.random.choice(UP if notches > 0 else DOWN)
         for _ in range(abs(notches)):
-            self.send(key)
+            self.send(key, self.at)  # the wheel is the tool's there alone
             self.model.turn(1 if notches > 0 else -1)
         return key, notches
 
@@ -182,6 +183,7 @@ class RandomEvents(ToolTest):
         self.model.confirm()
         (x, y), face = self.random.choice(self.spots)
         self.begin((x, y), {})
+        self.at = (x, y)
         self.model.click(face, {})
         start = self.model.held["index"]
         for _ in range(3):

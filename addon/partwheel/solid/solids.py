@@ -151,7 +151,7 @@ def _closed(made, loops, mesh, facets, smooth, exact, alone):
 
 
 def _mended(bm, loops, mesh, alone):
-    """Wound alike and doubles welded, if alone; else it is the edges that stay open, since they were before: what is
+    """Wound alike, doubles welded and polygons that are there twice once, if alone; else it is the edges that stay open, since they were before: what is
     left of a broken mesh is as broken as before, and only the new hole is closed."""
     if not alone:
         edge = arrays.read(mesh.loops, "edge_index", np.int32)
@@ -160,6 +160,9 @@ def _mended(bm, loops, mesh, alone):
                 if was}
     size = max((max(vert.co[axis] for vert in bm.verts) - min(vert.co[axis] for vert in bm.verts)) for axis in range(3))
     bmesh.ops.remove_doubles(bm, verts=[vert for vert in bm.verts if vert.is_boundary], dist=WELD * size)
+    known = set()
+    twice = [face for face in bm.faces if (verts := frozenset(face.verts)) in known or known.add(verts)]
+    bmesh.ops.delete(bm, geom=twice, context="FACES_ONLY")
     bmesh.ops.recalc_face_normals(bm, faces=bm.faces[:])
     return set()
 
