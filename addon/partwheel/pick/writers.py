@@ -11,6 +11,9 @@ from ..mesh.selection import select_outside_edit_mode
 FACE_SET = ".sculpt_face_set"
 MASK = ".sculpt_mask"  # an attribute from Blender 4.1 on
 
+# Whether undo takes back what mask_levels() does: in Blender 4.5 and 5.2 it was seen not to.
+MASKS_LEVELS = bpy.app.version < (4, 1)
+
 
 def _part_vertices(mesh, faces):
     """(V,) bool: the vertices of these faces."""
