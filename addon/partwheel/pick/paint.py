@@ -8,7 +8,7 @@ from .pick import PartPicker
 from .preview import Preview
 from ..view.seen import sculpted_levels
 from ..words.say import iface_, rpt_
-from .writers import CLEARED, WRITERS, mask_levels
+from .writers import CLEARED, MASKS_LEVELS, WRITERS, mask_levels
 
 # Mode of the context -> what a part can become there, the first by default.
 WAYS = {
@@ -17,6 +17,9 @@ WAYS = {
 }
 BECOMES = {"MASK": "Mask", "FACE_SET": "Face Set", "VERTEX_GROUP": "Vertex Group", "PAINT_MASK": "Paint Mask"}
 DYNAMIC = "Dynamic topology changes the faces all the time: switch it off first."
+
+LEVELS = ("Blender would not undo a mask of the multires modifier's levels. Make the part a face set instead: the tool's "
+          "header and the menu Face Sets have it")
 
 
 class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
@@ -59,7 +62,7 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
     def _missed(self, context):
         """As in Edit Mode: a click beside everything leaves nothing masked."""
         obj, way = context.active_object, self._way(context)
-        there = way in CLEARED and (CLEARED[way](obj.data) or way == "MASK" and sculpted_levels(obj))
+        there = way in CLEARED and (CLEARED[way](obj.data) or MASKS_LEVELS and way == "MASK" and sculpted_levels(obj))
         if self.extend or self.deselect or not there:
             return {"CANCELLED"}
         return self._write(context, obj, [], -1)
@@ -72,12 +75,17 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         if way not in WAYS[context.mode]:
             self.report({"ERROR"}, rpt_("Parts can't become this in this mode: {made}.").format(made=iface_(BECOMES[way])))
             return {"CANCELLED"}
+        levels = way == "MASK" and sculpted_levels(obj)
+        if levels and not MASKS_LEVELS:
+            self.report({"ERROR"}, rpt_("Blender would not undo a mask of the multires modifier's levels. Make the part a face "
+                                        "set instead: the tool's header and the menu Face Sets have it."))
+            return {"CANCELLED"}
         # Sculpt Mode keeps data of its own beside the mesh's: it reads the mesh anew when it is entered.
         sculpting = context.mode == "SCULPT"
         if sculpting:
             bpy.ops.object.mode_set(mode="OBJECT")
         try:
-            write = mask_levels if way == "MASK" and sculpted_levels(obj) else WRITERS[way]
+            write = mask_levels if levels else WRITERS[way]
             said = write(obj, faces, node, self.extend, self.deselect)
         except Refused as reason:
             self.report({"ERROR"}, str(reason))

@@ -12,6 +12,9 @@ from ..words.say import rpt_
 FACE_SET = ".sculpt_face_set"
 MASK = ".sculpt_mask"  # an attribute from Blender 4.1 on
 
+# Whether undo takes back what mask_levels() does: in Blender 4.5 and 5.2 it was seen not to.
+MASKS_LEVELS = bpy.app.version < (4, 1)
+
 
 def _part_vertices(mesh, faces):
     """(V,) bool: the vertices of these faces."""

@@ -562,6 +562,8 @@ WORDS = {
         "按钮",
     "Show two buttons beside the click, larger and smaller. With a pen they are always there":
         "在点击处旁显示放大和缩小两个按钮。使用压感笔时始终显示",
+    "Blender would not undo a mask of the multires modifier's levels. Make the part a face set instead: the tool's header and the menu Face Sets have it.":
+        "Blender 无法撤销多级精度修改器各级别上的遮罩。请改为将部件设为面组：工具标题栏和面组菜单中有此选项。",
     "Overlay":
         "叠加层",
     "The vertex group {name} is locked. Unlock it, or pick the part alone: it gets a group of its own.":

@@ -562,6 +562,8 @@ WORDS = {
         "Knöpfe",
     "Show two buttons beside the click, larger and smaller. With a pen they are always there":
         "Neben dem Klick zwei Knöpfe zeigen, größer und kleiner. Mit einem Stift sind sie immer da",
+    "Blender would not undo a mask of the multires modifier's levels. Make the part a face set instead: the tool's header and the menu Face Sets have it.":
+        "Blender würde eine Maske auf den Stufen des Multires-Modifikators nicht rückgängig machen. Machen Sie das Teil stattdessen zu einem Face Set: Die Kopfzeile des Werkzeugs und das Menü Face Sets haben das.",
     "Overlay":
         "Overlay",
     "The vertex group {name} is locked. Unlock it, or pick the part alone: it gets a group of its own.":

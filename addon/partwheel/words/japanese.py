@@ -562,6 +562,8 @@ WORDS = {
         "ボタン",
     "Show two buttons beside the click, larger and smaller. With a pen they are always there":
         "クリックの横に拡大と縮小の2つのボタンを表示します。ペンでは常に表示されます",
+    "Blender would not undo a mask of the multires modifier's levels. Make the part a face set instead: the tool's header and the menu Face Sets have it.":
+        "マルチレゾモディファイアーのレベルのマスクは、Blender では元に戻せません。代わりにパーツを面セットにしてください。ツールのヘッダーと面セットメニューにあります。",
     "Overlay":
         "オーバーレイ",
     "The vertex group {name} is locked. Unlock it, or pick the part alone: it gets a group of its own.":

@@ -562,6 +562,8 @@ WORDS = {
         "Botones",
     "Show two buttons beside the click, larger and smaller. With a pen they are always there":
         "Mostrar dos botones junto al clic, más grande y más pequeña. Con un lápiz están siempre ahí",
+    "Blender would not undo a mask of the multires modifier's levels. Make the part a face set instead: the tool's header and the menu Face Sets have it.":
+        "Blender no desharía una máscara en los niveles del modificador multires. Convertir en cambio la parte en un conjunto de caras: está en el encabezado de la herramienta y en el menú de conjuntos de caras.",
     "Overlay":
         "Sobreimpresos",
     "The vertex group {name} is locked. Unlock it, or pick the part alone: it gets a group of its own.":
