@@ -4,10 +4,10 @@
 import bpy
 
 from ..mesh.refusing import Refused, can, changeable
-from .pick import PartPicker
-from .preview import Preview
 from ..view.seen import sculpted_levels
 from ..words.say import iface_, rpt_
+from .pick import PartPicker
+from .preview import Preview
 from .writers import CLEARED, MASKS_LEVELS, WRITERS, mask_levels
 
 # Mode of the context -> what a part can become there, the first by default.
@@ -17,9 +17,6 @@ WAYS = {
 }
 BECOMES = {"MASK": "Mask", "FACE_SET": "Face Set", "VERTEX_GROUP": "Vertex Group", "PAINT_MASK": "Paint Mask"}
 DYNAMIC = "Dynamic topology changes the faces all the time: switch it off first."
-
-LEVELS = ("Blender would not undo a mask of the multires modifier's levels. Make the part a face set instead: the tool's "
-          "header and the menu Face Sets have it")
 
 
 class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
