@@ -106,7 +106,8 @@ private:
     void put_in_order(std::span<const Triangle> triangles) {
         std::vector<std::pair<Point, Triangle>> order;
         for (Triangle t : triangles) {
-            std::ranges::rotate(t, std::ranges::min_element(t, {}, [&](int32_t v) { return vertices_[at(v)]; }));
+            const auto lowest = std::ranges::min_element(t, {}, [&](int32_t v) { return vertices_[at(v)]; });
+            std::rotate(t.begin(), lowest, t.end());
             order.push_back({centre(t), t});
         }
         std::ranges::sort(order, {}, [](const auto& each) -> const Point& { return each.first; });
