@@ -176,10 +176,7 @@ def in_suite(suite, package):
     """The same in another Debian's Blender."""
     log = f"newest-{suite}"
     scenarios = NEWEST + (MORE_OF_NEWEST if os.environ.get("PARTWHEEL_NEWEST") == "all" else ())
-    try:
-        set_up(f"setup_newest {suite}")
-    except CouldNotRun as reason:
-        print(f"   SKIPPED the Blender of Debian {suite}: {reason}")
+    if not has_suite(suite):
         return Result(skipped=len(scenarios))
     inside = ROOT / f"build/deps/blender-{suite}"
     room = inside / "partwheel"  # nothing is mounted: what the scenarios need is copied
@@ -192,6 +189,15 @@ def in_suite(suite, package):
     command = ["chroot", inside, "python3", "/partwheel/tests/gui/run.py", f"/partwheel/{package.name}",
                "/partwheel/result.json", *scenarios]
     return own_runner(log, command, clean, room / "result.json")
+
+
+def has_suite(suite):
+    try:
+        set_up(f"setup_newest {suite}")
+    except CouldNotRun as reason:
+        print(f"   SKIPPED the Blender of Debian {suite}: {reason}")
+        return False
+    return True
 
 
 @needs(*PACKAGES, "setup_core", "setup_hooks", "setup_blender", "setup_display", f"setup_bpy {QUICK_BPY}")
@@ -208,12 +214,13 @@ def quick():
     return result
 
 
-@needs(*PACKAGES, "setup_core", "setup_bpy", "setup_workflows")
+@needs(*PACKAGES, "setup_core", "setup_bpy", "setup_workflows", begins=["setup_newest sid"])
 def ship():
     """The packages for all platforms, made, run where they can be, and installed as strangers do; and the native tests of
     this machine and of the two that are for others, by wine and qemu. An hour of compiling: only when it is named."""
     require("ship-package", "scripts/package", "all")
     print((OUTPUT / "ship-package.log").read_text().split("distribution\n")[-1], end="")
+    has_suite("sid")
     result = pytest("ship", "tests/ship")
     for preset in ("release", "windows-x64", "linux-arm64"):  # the first: how long this machine takes of itself
         build(f"ship-{preset}", preset)
