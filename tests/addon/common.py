@@ -74,6 +74,10 @@ class MeshTest(unittest.TestCase):
         part("view.status").Line.lines.clear()
         bpy.context.tool_settings.mesh_select_mode = (False, False, True)
 
+    def tearDown(self):
+        self.assertEqual([key.name for key in bpy.data.shape_keys if not key.user or key.user.shape_keys != key], [],
+                         "shape keys without a mesh: a file with them opens with an error")
+
     def add(self, vertices, polygons, name="model"):
         """A new active object with this mesh."""
         mesh = bpy.data.meshes.new(name)

@@ -221,7 +221,7 @@ def _replace(target, result, slots):
         if old.users > 1 + old.use_fake_user:
             target.data = old = old.copy()
         if old.shape_keys:
-            target.shape_key_clear()
+            pieces.clear_keys(old)
         old.materials.clear()
         for material in result.materials:
             old.materials.append(material)

@@ -315,8 +315,14 @@ def _vertices_alone(mesh):
 
 
 def clear_keys(mesh):
+    """Blender counts one user too many of a copied mesh's keys, and leaves them behind: a file with such a key opens with
+    an error."""
+    keys = mesh.shape_keys
+    left_behind = keys.users > 1
     with _held(mesh) as holder:
         holder.shape_key_clear()
+    if left_behind:
+        bpy.data.batch_remove([keys])
 
 
 def _copy_keys(mesh, made, plan):
