@@ -84,9 +84,8 @@ def run_in(blender, tmp_path, script, *arguments, files=()):
         inside = SID / "partwheel-ship"
         shutil.rmtree(inside, ignore_errors=True)
         (inside / "home").mkdir(parents=True)
-        for tests in ("addon", "faults", "ship"):
-            shutil.copytree(ROOT / "tests" / tests, inside / "tests" / tests)
-        shutil.copytree(MESHES, inside / "build/deps/meshes")
+        for folder in ("tests/addon", "tests/faults", "tests/ship", "docs", "build/deps/meshes"):
+            shutil.copytree(ROOT / folder, inside / folder)
         for path in files:
             (shutil.copytree if path.is_dir() else shutil.copy)(path, inside / path.name)
         arguments = [room / argument.name if argument in files else argument for argument in arguments]
