@@ -42,6 +42,11 @@ class Simulated(_Driver):
         for _ in range(abs(notches)):
             self._send("WHEELUPMOUSE" if notches > 0 else "WHEELDOWNMOUSE", "PRESS", **modifiers)
 
+    def write(self, text):
+        """Types letters, into a text field for instance."""
+        for letter in text:
+            self._send(letter.upper(), "PRESS", unicode=letter)
+            self._send(letter.upper(), "RELEASE")
 
     def scroll(self, pixels):
         """Two fingers on a trackpad, upwards if pixels > 0."""

@@ -40,7 +40,7 @@ TIME_LIMIT = 3600  # seconds a scenario, so that nothing hangs for ever: a hundr
 # Scenarios that run a second time with real input: X events made by xdotool instead of Blender's event_simulate.
 # Those that measure take long on a machine under load: scripts/bench_felt; tasks makes the table of docs/tasks.md. The
 # repository is for newer Blenders.
-ONLY_BY_NAME = ("felt", "felt_million", "repository", "tasks")
+ONLY_BY_NAME = ("felt", "felt_million", "felt_modes", "repository", "tasks")
 ALSO_WITH_XDOTOOL = ("pick_and_click", "empty_space", "navigate")
 
 sys.path.insert(0, str(HERE))

@@ -7,7 +7,8 @@ from bpy.app.handlers import persistent
 from ..mesh import arrays
 from ..mesh.kept import PerMesh, key
 
-_edits, _shown = PerMesh(), PerMesh()  # how often the mesh was changed, or what modifiers show of it
+# How often the mesh was changed, or what modifiers show of it, or anything told of it.
+_edits, _shown, _told = PerMesh(), PerMesh(), PerMesh()
 _undos = 0
 
 
@@ -22,11 +23,18 @@ def revision(mesh):
     return edits(mesh), _shown.get(key(mesh), 0)
 
 
+def told(mesh):
+    """Something that is another after whatever Blender told of the mesh, be it that something was selected in it."""
+    return _told.get(key(mesh), 0), _undos
+
+
 @persistent
 def _edited(_scene, depsgraph):
     if arrays.writing_back:
         return
     for update in depsgraph.updates:
+        if isinstance(update.id, bpy.types.Mesh):
+            _count(_told, update.id.original)
         if not update.is_updated_geometry:
             continue
         arrays.changed()

@@ -15,7 +15,7 @@ from ..parts import picks, registry
 from ..view import overlay, picking
 from ..view.seen import NO_FACE
 from . import borders, states
-from .prepared import current, lacking, prepared, ready, stop
+from .prepared import advance, current, note_written_back, prepared, ready, stop
 
 HOVERED = *registry.USABLE, registry.State.UNOPENED
 
@@ -32,38 +32,36 @@ class Hover:
     snapped, else None; or None."""
 
     def __init__(self):
-        self.what, self._written, self._later = None, {}, None
+        self.what, self._later, self._waits = None, None, False
 
     def move(self, context, point):
         """The mouse is at a point of the context's region. Redraws if that changes what is shown.
 
-        After an edit it takes two steps: Blender writing its edits back into the meshes is more than half of it all, and
-        what is to be seen of the mouse meanwhile would come late."""
-        waiting = lacking(_edited(context))
-        if waiting and waiting != self._written:
-            for each in waiting:
-                arrays.up_to_date(each)
-            self._written = lacking(waiting)
+        After an edit that takes some steps, a slice of what is needed each: what is to be seen of the mouse meanwhile
+        would come late."""
+        edited = _edited(context)
+        if advance(edited):
             self._go_on(context, point)
             return
+        self._waits = False
         with arrays.one_reading():
-            for each in waiting:
-                arrays.written_back(each)
+            note_written_back(edited)
             found = self._found(context, point)
             highlight.update(context)
-        self._written = {}
+        if self._waits:
+            self._go_on(context, point)
         if found is not self.what:
             self.what = found
             overlay.redraw()
 
     def _go_on(self, context, point):
-        """The second step follows once Blender has seen to what else there is."""
+        """The next step follows once Blender has seen to what else there is."""
         window, area, region = context.window, context.area, context.region
 
         def move():
             there = (window in list(bpy.context.window_manager.windows) and area in list(window.screen.areas)
                      and region in list(area.regions))
-            if there and bpy.context.mode == "EDIT_MESH":
+            if there and bpy.context.mode in OPERATORS:
                 with bpy.context.temp_override(window=window, area=area, region=region):
                     self.move(bpy.context, point)
 
@@ -92,11 +90,16 @@ class Hover:
             hit = picking.surface_under(context, context.area, *view)
             if not hit or hit.obj.type != "MESH" or registry.state(hit.obj.data)[0] not in HOVERED:
                 return None, None
-            kept = ready(hit.obj)
+            kept = self._ready(hit.obj)
             found = kept and kept.tree(hit.obj).under(hit.matrix, *view)
             return (hit.obj, found[0]) if found else (None, None)
-        shown = [each for each in _edited(context) if ready(each)]
+        shown = [each for each in _edited(context) if self._ready(each)]
         return picking.nearest(shown, lambda each: prepared(each).tree(each), *view)
+
+    def _ready(self, obj):
+        kept = ready(obj)
+        self._waits = self._waits or kept is None
+        return kept
 
     def draw(self, context):
         if not self.what or overlay.shown.on:

@@ -14,7 +14,7 @@ from ..view.seen import NO_FACE
 from ..words.say import rpt_
 from .hover import highlight
 from .pick import PartPicker
-from .prepared import prepared
+from .prepared import prepared, unchanged
 from .preview import Preview
 
 
@@ -113,9 +113,10 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
         obj = context.active_object
         if self.extend or self.deselect or not arrays.read(obj.data.polygons, "select", bool).any():
             return {"CANCELLED"}
-        select_outside_edit_mode(obj.data, [])
+        with unchanged(obj):
+            select_outside_edit_mode(obj.data, [])
+            context.view_layer.update()
         picks.drop(obj)
-        context.view_layer.update()
         highlight.update(context)
         return {"FINISHED"}
 
@@ -124,9 +125,11 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
 
     def _apply(self, context, obj, faces, picked):
         _activate(context, obj)
-        select_outside_edit_mode(obj.data, faces, self.extend, self.deselect, picked.face)
-        if not bpy.app.background:
+        context.view_layer.update()
+        with unchanged(obj):
+            select_outside_edit_mode(obj.data, faces, self.extend, self.deselect, picked.face)
             context.view_layer.update()
+        if not bpy.app.background:
             prepared(obj)
             highlight.update(context)
         return {"FINISHED"}

@@ -16,7 +16,7 @@ from ..view import keys, overlay, picking
 from ..view.stepper import Stepper, ui_scale
 from . import borders, states
 from partwheel import PartwheelError
-from .prepared import prepared
+from .prepared import note_written_back, prepared
 from ..view.seen import NO_FACE
 from .build import start, waited_for
 from ..view.in_view import InView
@@ -108,6 +108,8 @@ class PartPicker(InView):
         if not objects:
             self.report({"WARNING"}, rpt_("This 3D view does not show the mesh that is being edited."))
             return {"CANCELLED"}
+        context.view_layer.update()  # whatever there is to be told is told
+        note_written_back(objects)
         obj, face = self._under(context, event)
         if obj is not None:
             return self._pick(context, event, obj, face)

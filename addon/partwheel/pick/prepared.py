@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What hovering, picking and drawing need of a mesh, made at its first use and kept while the mesh stays as it is."""
+"""What hovering, picking and drawing need of a mesh, made at its first use and kept while the mesh stays as it is; for
+hovering slice by slice, so that the window is never held up for long."""
 
+import contextlib
 import functools
 
 import bpy
@@ -11,6 +13,7 @@ from ..parts import changes, registry
 from ..view import overlay, picking, seen
 
 _kept = PerMesh()  # Prepared
+_written = PerMesh()  # what changes.told() said when Blender had written its edits back
 _soon = {}  # full name of an object -> the timer that makes its Prepared
 
 
@@ -41,11 +44,60 @@ class Prepared:
             self._parts = overlay.Parts(self._seen, hierarchy)
         return self._parts
 
+    @property
+    def whole(self):
+        """Whether advance() has nothing left to do."""
+        return self._tree is not None and self._asked
 
-def lacking(objects):
-    """Of these in Edit Mode those that must be looked at anew, with what tells that they are as they are now."""
-    return {obj: _stamp(obj) for obj in objects if obj.mode == "EDIT"
-            and not ((kept := _kept.get(key(obj.data))) and kept.stamp == _stamp(obj))}
+    def advance(self, obj):
+        """Makes the next slice of what hovering needs."""
+        if self._tree:
+            self.parts(obj)
+        else:
+            self.tree(obj)
+
+
+def advance(objects):
+    """Makes the next slice of what hovering lacks of those that are in Edit Mode; whether there was one. Blender writing
+    its edits back, which takes longest, is a slice of its own."""
+    edited = [obj for obj in objects if obj.mode == "EDIT"]
+    for obj in edited:
+        if not _written_back(obj):
+            arrays.up_to_date(obj)
+            _written[key(obj.data)] = changes.told(obj.data)
+            return True
+    lacking = next((obj for obj in edited if not _whole(obj)), None)
+    if lacking:
+        with arrays.one_reading():
+            arrays.written_back(lacking)
+            prepared(lacking).advance(lacking)
+    return lacking is not None
+
+
+def note_written_back(objects):
+    """Within arrays.one_reading(): Blender has nothing to write back of those of which it told nothing since hovering."""
+    for obj in objects:
+        if obj.mode == "EDIT" and _written_back(obj):
+            arrays.written_back(obj)
+
+
+def _written_back(obj):
+    return _written.get(key(obj.data)) == changes.told(obj.data)
+
+
+def _whole(obj):
+    kept = _kept.get(key(obj.data))
+    return kept is not None and kept.stamp == _stamp(obj) and kept.whole
+
+
+@contextlib.contextmanager
+def unchanged(obj):
+    """What Blender tells of the object's mesh within it is no more than a selection: what is made stays."""
+    kept = _kept.get(key(obj.data))
+    fits = kept and kept.stamp == _stamp(obj)
+    yield
+    if fits:
+        kept.stamp = _stamp(obj)
 
 
 def prepared(obj):
@@ -60,8 +112,7 @@ def prepared(obj):
 def ready(obj):
     """The same for gizmos, while Blender asks which it must not be given new data: outside Edit Mode None as long as it
     isn't there, and then it will be soon."""
-    kept = _kept.get(key(obj.data))
-    if obj.mode == "EDIT" or kept and kept.stamp == _stamp(obj):
+    if obj.mode == "EDIT" or _whole(obj):
         return prepared(obj)
     if obj.name_full not in _soon:
         _soon[obj.name_full] = functools.partial(_make, obj.name_full)
@@ -70,10 +121,13 @@ def ready(obj):
 
 
 def _make(name):
-    _soon.pop(name)
+    """A slice of it; what a timer waits for until the next, or None."""
     obj = named(name)
-    if obj:
-        prepared(obj)
+    if obj and not _whole(obj):
+        prepared(obj).advance(obj)
+        return 0
+    _soon.pop(name)
+    return None
 
 
 def stop():

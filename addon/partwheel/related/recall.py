@@ -37,6 +37,12 @@ class _Named(_InEditMode):
                                    options={"SKIP_SAVE"})
 
 
+def _typed(layout, operator, name):
+    """A text that can be typed at once, without a click into its field."""
+    layout.activate_init = True
+    layout.prop(operator, name)
+
+
 class MESH_OT_partwheel_remember(_InEditMode, bpy.types.Operator):
     """Give the part (segment, region) that was picked last a name, by which the panel's list selects it again"""
 
@@ -55,6 +61,9 @@ class MESH_OT_partwheel_remember(_InEditMode, bpy.types.Operator):
             number += 1
         self.part = name
         return context.window_manager.invoke_props_dialog(self)
+
+    def draw(self, _context):
+        _typed(self.layout, self, "part")
 
     def work(self, _context, obj):
         hierarchy, node = picks.chosen(obj, -1)
@@ -98,7 +107,7 @@ class MESH_OT_partwheel_rename(_Named, bpy.types.Operator):
         return context.window_manager.invoke_props_dialog(self)
 
     def draw(self, _context):
-        self.layout.prop(self, "new")
+        _typed(self.layout, self, "new")
 
     def work(self, _context, obj):
         remembered.rename(obj.data, self.part, self.new)

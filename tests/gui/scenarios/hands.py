@@ -2,7 +2,7 @@
 list of remembered parts with its search."""
 import bpy
 
-ROWS = 365, 386, 421  # pixels from the sidebar's top to the first two names, and to what opens the search
+NAMES, ROW, SEARCH = 365, 21, 421  # pixels from the sidebar's top to the first name, to the next, and to what opens the search
 
 
 def play(stage):
@@ -19,9 +19,7 @@ def play(stage):
     stage.mouse.key("ESC")
     stage.mouse.key("F3")
     yield from stage.settle()
-    for letter in "segment":
-        stage.window.event_simulate(letter.upper(), "PRESS", unicode=letter, x=stage.mouse.x, y=stage.mouse.y)
-        stage.window.event_simulate(letter.upper(), "RELEASE", x=stage.mouse.x, y=stage.mouse.y)
+    stage.mouse.write("segment")
     yield from stage.settle()
     yield from stage.screenshot("search")
     stage.mouse.key("ESC")
@@ -52,21 +50,21 @@ def play(stage):
     yield from stage.screenshot("remembered")
     names = stage.part("related.remembered").names
 
-    def click(row):
-        stage.mouse.move(sidebar.x + 40, sidebar.y + sidebar.height - ROWS[row])
+    def click(down):
+        stage.mouse.move(sidebar.x + 40, sidebar.y + sidebar.height - down)
         yield from stage.settle()
         stage.mouse.click()
 
-    yield from click(0)
+    yield from click(NAMES)
     yield from stage.selected(arm, "after a click on its name")
-    yield from click(1)
+    yield from click(NAMES + ROW)
     yield from stage.selected(other, "after a click on the other's name")
     for expected in (arm, other):
         stage.mouse.move(stage.area.x + 300, stage.area.y + 300)
         stage.mouse.key("Z", ctrl=True)
         yield from stage.selected(expected, "after Ctrl Z")
     stage.check(names(stage.object.data) == ["Left arm", "Right arm"], "the names outlive undoing what came after them")
-    yield from click(2)
+    yield from click(SEARCH)
     yield from stage.settle()
     yield from stage.screenshot("search-of-the-list")
     stage.mouse.move(stage.area.x + 300, stage.area.y + 300)

@@ -9,10 +9,17 @@ through the model (X-ray); told is how much of it and the part is common to both
 import bpy
 import numpy
 
+from scenarios.gather import drag, place, use
+from scenarios.hands import NAMES, ROW
 from scenarios.modes import enter, masked, painted_on
+from scenarios.wheel_at_click import STEP
 
 PLACE, KEY, CLICK, NOTCH = 1.1, 0.28, 0.2, 0.2
-LEVEL = 1  # notches up from what the click takes
+LEVEL = -1  # notches from what the click takes, the arm, to the hand
+SPILT = 20  # faces beside a part whose corners it has, so that its vertex group selects them, too
+REACH = 20  # pixels
+FINGER = 120  # faces that a finger of Homer's has at most
+BOX = 0.2, 0.97, 0.8, 0.82  # left, top, right, bottom over the fingers of the fist, as shares of its extent
 
 
 class Hand:
@@ -46,6 +53,11 @@ class Hand:
         self.count(1 + len(held), KEY)
         yield from self.stage.settle()
 
+    def write(self, text):
+        self.stage.mouse.write(text)
+        self.count(len(text), KEY)
+        yield from self.stage.settle()
+
     def menu(self, operator, *arguments, **options):
         """A menu and an entry of it: two places and two clicks; what it starts is started."""
         self.count(2, PLACE)
@@ -53,6 +65,11 @@ class Hand:
         with self.stage.override():
             operator(*arguments, **options)
         yield from self.stage.settle()
+
+    def box(self, left, top, right, bottom):
+        self.count(2, PLACE)
+        self.count(1, CLICK)
+        yield from drag(self.stage, [(left, top), (right, bottom)])
 
     def lasso(self, faces):
         """Around them, in Edit Mode: what is selected then."""
@@ -71,22 +88,36 @@ class Hand:
         return selected
 
 
+def tell(task, before, own, likeness, new, extra=0, note=""):
+    """extra: events of Blender's own way beside the lassos, each a place and a click."""
+    cells = [f"{hand.events}, {hand.seconds:.1f} s" for hand in (before, new)]
+    mine = f"{own.events + 2 * extra}, {own.seconds + extra * (PLACE + CLICK):.1f} s, {likeness:.0%} alike{note}"
+    print(f"task | {task} | {cells[0]} | {mine} | {cells[1]} |", flush=True)
+
+
+def alike(own, parts):
+    """How much lassos around these parts and the parts have in common: the hand that made them is own."""
+    got, wanted = frozenset().union(*map(own.lasso, parts)), frozenset().union(*parts)
+    return len(got & wanted) / len(got | wanted)
+
+
 def play(stage):
+    yield from stage.open("homer"); stage.use_tool()
+    yield from two_parts(stage)
+    yield from fingers(stage)
+    yield from four_names(stage)
+    yield from box(stage)
+
+
+def one_part(stage):
     yield from stage.open("homer")
     wanted = stage.part("preferences").preferences()
-    x, y, face = stage.spot(0.95, 0.6, above=LEVEL)
+    x, y, face = stage.spot(0.95, 0.6)
     stops, start = stage.wheels.stops(face)
     part = stops[start + LEVEL]
     away = stage.empty_spot()
     own = Hand(stage)
-    got = own.lasso(part)
-    likeness = len(got & part) / len(got | part)
-
-    def tell(task, new, before, extra=0, note=""):
-        """extra: events of Blender's own way beside the lasso, each a place and a click."""
-        cells = [f"{hand.events}, {hand.seconds:.1f} s" for hand in (before, new)]
-        mine = f"{own.events + 2 * extra}, {own.seconds + extra * (PLACE + CLICK):.1f} s, {likeness:.0%} alike{note}"
-        print(f"task | {task} | {cells[0]} | {mine} | {cells[1]} |", flush=True)
+    likeness = alike(own, [part])
 
     def pick(hand, end):
         yield from hand.point(x, y)
@@ -113,32 +144,32 @@ def play(stage):
         yield from stage.until("and far again", lambda: abs(stage.view_3d.view_distance - distance) < 1e-3)
         stage.mouse.key("RET")
         yield from stage.drawn()
-    tell("Select a hand, then zoom in", hands["new"], hands["before"], note=", 1 for the zoom left out")
+    tell("Select a hand, then zoom in", hands["before"], own, likeness, hands["new"], note=", 1 for the zoom left out")
 
     # Without a wheel.
     wanted.show_steps = True
     stage.select(())
-    pen, drag = Hand(stage), Hand(stage)
+    pen, pulled = Hand(stage), Hand(stage)
     yield from pen.point(x, y)
     yield from pen.click()
-    yield from pen.point(x + 44, y + 18)
-    for _ in range(LEVEL):
+    yield from pen.point(x + STEP[0], y + LEVEL * STEP[1])
+    for _ in range(abs(LEVEL)):
         yield from pen.click()
     yield from stage.selected(part, "with a pen")
     stage.mouse.key("RET")
     wanted.show_steps = False
     stage.select(())
-    yield from drag.point(x, y)
+    yield from pulled.point(x, y)
     stage.mouse.press("LEFTMOUSE")
     yield from stage.settle()
     stage.mouse.move(x, y + 24 * LEVEL)
-    drag.count(1, CLICK)
-    drag.count(1, PLACE)
+    pulled.count(1, CLICK)
+    pulled.count(1, PLACE)
     yield from stage.settle()
     stage.mouse.release("LEFTMOUSE")
     yield from stage.selected(part, "with a drag")
     stage.mouse.key("RET")
-    tell("The same with a pen, by buttons; before by a drag", pen, drag)
+    tell("The same with a pen, by buttons; before by a drag", pulled, own, likeness, pen)
 
     # In the other modes: by a menu before.
     def in_mode(task, mode, read, kind, write):
@@ -157,7 +188,7 @@ def play(stage):
                                    lambda: read(stage) == expected)
             stage.mouse.key("Z", ctrl=True)
             yield from stage.until(f"undone ({way})", lambda: read(stage) != expected)
-        tell(task, hands["new"], hands["before"])
+        tell(task, hands["before"], own, likeness, hands["new"])
 
     yield from in_mode("Mask a hand while sculpting", "SCULPT", masked, "verts", "MASK")
     yield from in_mode("Weight a hand", "WEIGHT_PAINT", weighted, "verts", "VERTEX_GROUP")
@@ -187,30 +218,164 @@ def play(stage):
             model = bpy.data.objects["homer"]
             model.select_set(True)
             bpy.context.view_layer.objects.active = model
-    tell("Copy a hand as a solid, in Object Mode", hands["new"], hands["before"], extra=3, note=", and open")
+    tell("Copy a hand as a solid, in Object Mode", hands["before"], own, likeness, hands["new"], extra=3, note=", and open")
 
-    # All that is in a place.
+
+def two_parts(stage):
     with stage.override():
         bpy.ops.object.mode_set(mode="EDIT")
     stage.select(())
     stage.use_tool()
-    spots = {}
-    for share in ((0.03, 0.55), (0.97, 0.62)):
-        spot = stage.spot(*share, above=LEVEL)
-        spots[spot[2]] = spot
-    hand = Hand(stage)
-    for number, (px, py, _) in enumerate(spots.values()):
-        yield from hand.point(px, py)
+    hand, own = Hand(stage), Hand(stage)
+    parts = yield from clicked(hand, [stage.spot(*share) for share in ((0.03, 0.55), (0.97, 0.62))], LEVEL)
+    tell("Select both hands", hand, own, alike(own, parts), hand)
+
+
+def clicked(hand, spots, level=0):
+    """Each part by a click of its own, from the second on with Shift; the parts, which are others each time."""
+    stage, parts = hand.stage, []
+    for number, (x, y, face) in enumerate(spots):
+        yield from hand.point(x, y)
         yield from hand.click(**({"shift": True} if number else {}))
-        yield from hand.wheel(LEVEL)
+        if level:
+            yield from hand.wheel(level)
+        stops, start = stage.wheels.stops(face)
+        parts.append(stops[start + level])
     stage.mouse.key("RET")
-    both = frozenset().union(*(stage.wheels.stops(f)[0][stage.wheels.stops(f)[1] + LEVEL] for f in spots))
-    yield from stage.selected(both, "both hands")
-    lassos = Hand(stage)
-    lassos.lasso(part)
-    lassos.lasso(part)
-    print(f"task | Select both hands | {hand.events}, {hand.seconds:.1f} s | {lassos.events}, {lassos.seconds:.1f} s, "
-          f"{likeness:.0%} alike | {hand.events}, {hand.seconds:.1f} s |", flush=True)
+    yield from stage.selected(frozenset().union(*parts), "each by a click")
+    stage.check(len(set(parts)) == len(spots), "which are as many parts")
+    return parts
+
+
+def fingers(stage):
+    """All six of Homer's, beside his thumbs; one is clicked, the others are found."""
+    stage.select(())
+    centers = stage.view.centers()
+    low, high = centers.min(axis=0), centers.max(axis=0)
+    found, spots = set(), []
+    for x in (0.02, 0.12, 0.17, 0.85, 0.89, 0.98):
+        spots.append(finger(stage, (low + (high - low) * [x, 0.6]).astype(int), found))
+        found |= taken(stage, spots[-1][2])
+    before, new, own = Hand(stage), Hand(stage), Hand(stage)
+    parts = yield from clicked(before, spots)
+    stage.select(())
+    yield from new.point(*spots[0][:2])
+    yield from new.click()
+    yield from new.key("L", shift=True, ctrl=True)
+    yield from new.wheel(2)  # the outermost is the least like the others: with another one there is nothing to be added
+    stage.mouse.key("RET")
+    yield from stage.selected(frozenset().union(*parts), "all that are alike")
+    yield from stage.screenshot("fingers")
+    stage.select(())
+    tell("Select all six fingers", before, own, alike(own, parts), new)
+
+
+def finger(stage, near, found):
+    """(x, y, face) of the nearest pixel where a click takes a finger that is not found yet, and so does one beside it."""
+    view = stage.view
+    for x, y in sorted(numpy.ndindex(2 * REACH, 2 * REACH), key=lambda at: (at[0] - REACH) ** 2 + (at[1] - REACH) ** 2):
+        x, y = int(near[0]) + x - REACH, int(near[1]) + y - REACH
+        face = view.face_at(x, y)
+        if face is None or face in found or len(taken(stage, face)) > FINGER:
+            continue
+        around = [view.face_at(x + dx, y + dy) for dx in (-1, 1) for dy in (-1, 1)]
+        if taken(stage, face).issuperset(around):
+            return x, y, face
+    raise AssertionError(f"There is no finger near {near}.")
+
+
+def taken(stage, face):
+    """The part that a click on a face takes."""
+    stops, start = stage.wheels.stops(face)
+    return stops[start]
+
+
+def four_names(stage):
+    """Named; then something is deleted, which undo brings back; then each is selected again. Without names of parts by
+    vertex groups: Ctrl G, Assign to New Group, its name; and to come back deselect all, choose it, Select."""
+    spots = dict(zip(("head", "belly", "left", "right"), (stage.spot(*share) for share in (
+        (0.5, 0.9), (0.5, 0.45), (0.35, 0.1), (0.65, 0.1)))))
+    parts = {name: taken(stage, spot[2]) for name, spot in spots.items()}
+    stage.check(len(set(parts.values())) == 4, "the four are four")
+    hands = {}
+    for way in ("before", "new"):
+        hand = hands[way] = Hand(stage)
+        stage.select(())
+        sidebar = yield from stage.sidebar()
+        for name, (x, y, _) in spots.items():
+            yield from hand.point(x, y)
+            yield from hand.click()
+            stage.mouse.key("RET")
+            yield from stage.selected(parts[name], f"to be named {name} ({way})")
+            if way == "new":
+                yield from hand.menu(bpy.ops.mesh.partwheel_remember, "INVOKE_DEFAULT", True)
+                yield from hand.write(name)
+                yield from hand.key("RET")
+                yield from hand.key("RET")
+                yield from stage.until(f"{name} is remembered", lambda name=name: name in names(stage))
+            else:
+                grouping(hand, name)
+        yield from hand.menu(bpy.ops.mesh.delete, "EXEC_DEFAULT", True, type="FACE")
+        yield from hand.key("Z", ctrl=True)
+        stage.mouse.release("LEFT_CTRL")  # or Blender takes the next click on a button for one with Ctrl
+        yield from stage.until(f"it is there again ({way})",
+                               lambda: stage.object.data.total_face_sel == len(parts["right"]))
+        for number, name in enumerate(spots):
+            if way == "new":
+                yield from hand.point(sidebar.x + 40, sidebar.y + sidebar.height - NAMES - ROW * number)
+                yield from hand.click()
+            else:
+                yield from group_selected(hand, name)
+            missing = lambda name=name: parts[name] - stage.selection()
+            yield from stage.until(f"{name} again ({way})", lambda: not missing() and len(stage.selection()) <= (
+                len(parts[name]) + (SPILT if way == "before" else 0)))
+    yield from stage.screenshot("names")
+    own = Hand(stage)
+    likeness = alike(own, parts.values())
+    own.count(hands["before"].events - 2 * len(parts), 0)  # as before, but each part by a lasso, not by a place and a click
+    own.seconds += hands["before"].seconds - len(parts) * (PLACE + CLICK)
+    tell("Name four parts, come back to each after undo", hands["before"], own, likeness, hands["new"])
+
+
+def names(stage):
+    return stage.part("related.remembered").names(stage.object.data)
+
+
+def grouping(hand, name):
+    """What is selected as a new vertex group: Ctrl G, an entry, a double click on its name, the name, Enter."""
+    hand.count(4 + len(name), KEY)
+    hand.count(2, PLACE)
+    hand.count(3, CLICK)
+    with hand.stage.override():
+        bpy.ops.object.vertex_group_assign_new()
+        hand.stage.object.vertex_groups.active.name = name
+        bpy.ops.ed.undo_push(message="Named")
+
+
+def group_selected(hand, name):
+    """Alt A; then the group in the list, and the button Select."""
+    yield from hand.key("A", alt=True)
+    hand.count(2, PLACE)
+    hand.count(2, CLICK)
+    with hand.stage.override():
+        bpy.ops.object.vertex_group_set_active(group=name)
+        bpy.ops.object.vertex_group_select()
+    yield from hand.stage.settle()
+
+
+def box(stage):
+    """Three fingers and the thumb of a fist, by their ends."""
+    yield from stage.open("hand")
+    stage.use_tool()
+    before, new, own = Hand(stage), Hand(stage), Hand(stage)
+    parts = yield from clicked(before, [stage.spot(*share) for share in (
+        (0.24, 0.83), (0.42, 0.92), (0.64, 0.94), (0.73, 0.8))])
+    stage.select(())
+    yield from use(stage, "box")
+    yield from new.box(*place(stage, *BOX))
+    yield from stage.selected(frozenset().union(*parts), "by a box")
+    yield from stage.screenshot("box")
+    tell("Select three fingers and a thumb", before, own, alike(own, parts), new)
 
 
 def weighted(stage):
