@@ -149,6 +149,50 @@ class ToolTest(MeshTest):
 class Modal(ToolTest):
     """With a hierarchy built before."""
 
+    def test_a_click_has_nothing_written_back_that_hovering_had(self):
+        """Unless something was edited or selected in between."""
+        self.start()
+        self.send("ESC")
+        point, face = self.centre()
+        advance = part("pick.prepared").advance
+
+        def click():
+            self.tool, self.context = Tool(tool=True), FakeContext()
+            self.assertEqual(self.tool.invoke(self.context, event("LEFTMOUSE", point)), {"RUNNING_MODAL"})
+            self.expect(face, 0)
+
+        def hovered():
+            steps = 0
+            while advance([self.obj]):
+                steps += 1
+            return steps
+
+        def moved():
+            bm = bmesh.from_edit_mesh(self.obj.data)
+            bm.verts.ensure_lookup_table()
+            bm.verts[0].co.x += 1e-4
+            bmesh.update_edit_mesh(self.obj.data)
+
+        hovered()
+        for change, slices in ((lambda: bpy.ops.mesh.select_all(action="SELECT"), 1), (moved, 3)):
+            change()
+            bpy.context.view_layer.update()
+            with WritesBack() as writes:
+                self.assertEqual(hovered(), slices)
+                self.assertEqual(writes.count, 1)
+                self.assertEqual(hovered(), 0)
+                before = flags(self.obj)
+                click()
+                self.assertEqual(writes.count, 1)
+            self.send("ESC")
+            self.assertEqual(flags(self.obj), before)
+            change()
+            with WritesBack() as writes:
+                click()
+                self.assertEqual(writes.count, 1)
+            self.send("ESC")
+            self.assertEqual(flags(self.obj), before)
+
     def test_pick_then_wheel_then_confirm(self):
         self.assertEqual(self.start(), {"RUNNING_MODAL"})
         self.assertEqual((len(self.context.handlers), selected(self.obj)), (1, set()))

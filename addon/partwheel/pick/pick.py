@@ -304,7 +304,7 @@ class PartPicker(InView):
             number=number, count=len(state.stops), faces=len(self.faces), share=percent(share))
         self._tell(context, ", ".join([told] + [iface_("border in creases")] * self.snap),
                    (keys.PICKED if not self.tool else keys.HELD if self.wheeling else keys.LEFT) + self.commands
-                   + keys.ENDS)
+                   + (keys.ENDS[1:] if self.tool else keys.ENDS))
         return {"RUNNING_MODAL"}
 
     def _tool_snaps(self, context):

@@ -30,7 +30,7 @@ class Command(NamedTuple):
 
 TURNS = {"WHEELUPMOUSE": 1, "PAGE_UP": 1, "NUMPAD_PLUS": 1, "UP_ARROW": 1,
          "WHEELDOWNMOUSE": -1, "PAGE_DOWN": -1, "NUMPAD_MINUS": -1, "DOWN_ARROW": -1}
-RESIZE = Key("RESIZE", frozenset(TURNS), "Larger, Smaller", names="Wheel, ↑↓")
+RESIZE = Key("RESIZE", frozenset(TURNS), "Size", names="Wheel, ↑↓")
 CONFIRM = Key("CONFIRM", frozenset({"RET", "NUMPAD_ENTER"}), "Confirm", ("EVENT_RETURN",))
 CANCEL = Key("CANCEL", frozenset({"RIGHTMOUSE", "ESC"}), "Cancel", ("EVENT_ESC", "MOUSE_RMB"))
 CLICK = Key("CLICK", frozenset({"LEFTMOUSE"}), "Pick a Part", ("MOUSE_LMB",))
@@ -56,7 +56,7 @@ PICKED = (RESIZE, NUMBER, SNAP_BORDER)
 HELD = (RESIZE, CLICK._replace(label="Next Part"), SNAP_BORDER)
 # The same while the mouse is elsewhere than where it clicked: there the wheel zooms.
 LEFT = (RESIZE._replace(names="↑↓"), *HELD[1:])
-ENDS = (CONFIRM, NAVIGATE, CANCEL)
+ENDS = (CONFIRM, CANCEL)  # by the toolbar's tool only the second: there whatever is done next confirms
 # Shift, Ctrl and a letter, of those that no keymap of Blender's has for anything in Edit Mode.
 COMMANDS = (
     Command("mesh.partwheel_deform", "D", "Drag", {"method": "RIGID"}),

@@ -790,8 +790,6 @@ WORDS = {
         "{operator}：请将鼠标置于 3D 视图上再启动。",
     "Partwheel stopped: {reason}. The full report is in the system console.":
         "Partwheel 已停止：{reason}。完整报告见系统控制台。",
-    "Larger, Smaller":
-        "更大、更小",
     "Wheel, ↑↓":
         "滚轮、↑↓",
     "Confirm":

@@ -790,8 +790,6 @@ WORDS = {
         "{operator}: mit der Maus über einer 3D-Ansicht starten.",
     "Partwheel stopped: {reason}. The full report is in the system console.":
         "Partwheel wurde beendet: {reason}. Der ganze Bericht steht in der Systemkonsole.",
-    "Larger, Smaller":
-        "Größer, kleiner",
     "Wheel, ↑↓":
         "Mausrad, ↑↓",
     "Confirm":
@@ -809,7 +807,7 @@ WORDS = {
     "Drag":
         "Ziehen",
     "Within":
-        "Innerhalb",
+        "Innen",
     "Similar":
         "Ähnliche",
     "Copy":

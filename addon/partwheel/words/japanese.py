@@ -790,8 +790,6 @@ WORDS = {
         "{operator}: マウスを 3D ビューの上に置いて開始してください。",
     "Partwheel stopped: {reason}. The full report is in the system console.":
         "Partwheel を終了しました: {reason}。詳細はシステムコンソールにあります。",
-    "Larger, Smaller":
-        "大きく、小さく",
     "Wheel, ↑↓":
         "ホイール、↑↓",
     "Confirm":

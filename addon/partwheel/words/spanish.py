@@ -790,8 +790,6 @@ WORDS = {
         "{operator}: iniciarlo con el ratón sobre una vista 3D.",
     "Partwheel stopped: {reason}. The full report is in the system console.":
         "Partwheel se detuvo: {reason}. El informe completo está en la consola del sistema.",
-    "Larger, Smaller":
-        "Más grande, más pequeña",
     "Wheel, ↑↓":
         "Rueda, ↑↓",
     "Confirm":

@@ -1,28 +1,34 @@
-"""The sidebar in German, Japanese and Chinese: a click's part is told in the language, and in the scene's units."""
+"""The sidebar and the status bar in German, Spanish, Japanese and Chinese: a click's part is told in the language, and in
+the scene's units, and all keys that count fit into the bar of a window 1280 pixels wide."""
 import bpy
 
-SAID = {"de_DE": "der Oberfläche", "ja_JP": "面積の", "zh_HANS": "占面积"}
+SAID = {"de_DE": "der Oberfläche", "es": "del área", "ja_JP": "面積の", "zh_HANS": "占面积"}
 
 
 def play(stage):
     yield from stage.open("hand")
     view = bpy.context.preferences.view
     yield from stage.sidebar()
-    yield from stage.pick(0.5, 0.9, above=1)
     told = stage.part("words.say").iface_
-    for language, part in SAID.items():
-        if language == "zh_HANS" and bpy.app.version < (4, 0):
-            language = "zh_CN"
-        view.language = language
-        view.use_translate_interface = view.use_translate_tooltips = True
-        stage.mouse.wheel(1)
+    for way in ("key", "tool"):
+        if way == "key":
+            yield from stage.pick(0.5, 0.9, above=1)
+        else:
+            stage.use_tool()
+            yield from stage.take(stage.spot(0.5, 0.9, above=1), "with the tool", notches=0)
+        for language, part in SAID.items():
+            if language == "zh_HANS" and bpy.app.version < (4, 0):
+                language = "zh_CN"
+            view.language = language
+            view.use_translate_interface = view.use_translate_tooltips = True
+            stage.mouse.wheel(1)
+            yield from stage.settle()
+            stage.mouse.wheel(-1)
+            yield from stage.settle()
+            stage.check(part in told("Part: {share} of the area"), f"{language} is spoken")
+            stage.bar_fits((yield from stage.screenshot(f"{way}-{language}")))
+        stage.mouse.key("RET")
+        yield from stage.ended()
+        view.language = "en_US"
         yield from stage.settle()
-        stage.mouse.wheel(-1)
-        yield from stage.settle()
-        stage.check(part in told("Part: {share} of the area"), f"{language} is spoken")
-        yield from stage.screenshot(language)
-    stage.mouse.key("RET")
-    yield from stage.ended()
     yield from stage.screenshot("after")
-    view.language = "en_US"
-    yield from stage.settle()
