@@ -16,9 +16,19 @@ from ..mesh.kept import key
 from ..view import status
 from ..view.in_view import InView
 from ..mesh.refusing import NeedsMesh, can
-from ..words.say import iface_, rpt_
+from ..words.say import iface_, percent, rpt_, told
 
+# By rung. off: how far that is from the mesh, as a share of its size.
+DONE = {
+    "exact": "From the mesh as it is", "repaired": "Repaired copy, {off} off",
+    "points": "Points on it, {off} off", "coarse": "Coarser copy, {off} off",
+}
 TICK = 0.1  # seconds between two looks at the worker
+
+
+def done(hierarchy):
+    """What was done to the mesh, so that its parts could be found, in a line."""
+    return iface_(DONE[hierarchy.summary.rung]).format(off=percent(hierarchy.summary.deviation))
 
 
 class Building:
@@ -124,16 +134,16 @@ class Building:
                 report({"INFO"}, rpt_("Cancelled: no parts were found."))
                 return
             where = [rpt_("The panel Partwheel in the sidebar does that.")] * (error.status == Status.NOT_SOLID)
-            report({"ERROR"}, " ".join([rpt_("No parts for {name}: {reason}").format(name=name, reason=rpt_(str(error))), *where]))
+            report({"ERROR"}, " ".join([rpt_("No parts for {name}: {reason}").format(name=name, reason=told(error)), *where]))
             return
         except builds.Outdated as reason:
             report({"WARNING"}, str(reason))
             return
         for failure in self.build.job.failures:
-            report({"WARNING"}, rpt_("A way that was tried first failed: {reason}").format(reason=rpt_(str(failure))))
-        told = rpt_("{name}, {count:,} faces: its parts were found in {seconds:.1f} s.").format(
+            report({"WARNING"}, rpt_("A way that was tried first failed: {reason}").format(reason=told(failure)))
+        found = rpt_("{name}, {count:,} faces: its parts were found in {seconds:.1f} s.").format(
             name=name, count=len(self.hierarchy.order), seconds=time.perf_counter() - self.began)
-        report({"INFO"}, f"{told} {self.hierarchy.account}".rstrip())
+        report({"INFO"}, f"{found} ({done(self.hierarchy)})")
 
 
 def start(operator, obj, **options):
@@ -148,7 +158,7 @@ def start(operator, obj, **options):
 
 
 def _refuse(operator, obj, reason):
-    operator.report({"ERROR"}, rpt_("No parts for {name}: {reason}").format(name=obj.data.name, reason=rpt_(str(reason))))
+    operator.report({"ERROR"}, rpt_("No parts for {name}: {reason}").format(name=obj.data.name, reason=told(reason)))
 
 
 def waited_for(operator, context, obj):

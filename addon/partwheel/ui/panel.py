@@ -5,6 +5,7 @@ import bpy
 
 from .. import trouble
 from ..parts import builds, picks, registry
+from ..pick.build import done
 from ..words.say import iface_, percent
 from . import measure
 
@@ -17,11 +18,6 @@ STATES = {
     State.CHANGED: "The mesh has changed: its parts are found anew at the next use",
 }
 SHEET = "A sheet, not a solid: thicken it, close it, or have it taken for a thin solid"
-# What was done to the mesh, so that parts could be found; off: how far that is from it, as a share of its size.
-DONE = {
-    "exact": "From the mesh as it is", "repaired": "Repaired copy, {off} off",
-    "points": "Points on it, {off} off", "coarse": "Coarser copy, {off} off",
-}
 
 
 class VIEW3D_PT_partwheel(bpy.types.Panel):
@@ -80,8 +76,7 @@ def _describe(context, column, hierarchy):
     else:
         told = iface_("Parts of {count:,} faces").format(count=len(hierarchy.order))
         column.label(text=told, translate=False)
-    done = iface_(DONE[hierarchy.summary.rung]).format(off=percent(hierarchy.summary.deviation))
-    trouble.draw_lines(context, column, done)
+    trouble.draw_lines(context, column, done(hierarchy))
 
 
 def _say(context, column, text):

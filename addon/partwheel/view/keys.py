@@ -51,7 +51,7 @@ MOVES = frozenset({"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"})
 
 WAITING = (CLICK, NAVIGATE, CANCEL)
 # While a part is held; then COMMANDS, and the ends: as many as fit in a window 1280 pixels wide.
-PICKED = (RESIZE, NUMBER, SNAP_BORDER)
+PICKED = (RESIZE, NUMBER._replace(label="Part"), SNAP_BORDER)
 # With the toolbar's tool a click goes on to the next part, and 1, 2 and 3 are Blender's.
 HELD = (RESIZE, CLICK._replace(label="Next Part"), SNAP_BORDER)
 # The same while the mouse is elsewhere than where it clicked: there the wheel zooms.

@@ -791,7 +791,7 @@ WORDS = {
     "Partwheel stopped: {reason}. The full report is in the system console.":
         "Partwheel wurde beendet: {reason}. Der ganze Bericht steht in der Systemkonsole.",
     "Wheel, ↑↓":
-        "Mausrad, ↑↓",
+        "Rad, ↑↓",
     "Confirm":
         "Bestätigen",
     "Cancel":
@@ -899,4 +899,18 @@ WORDS = {
         "Die Oberfläche durchdringt sich so, dass sie nicht repariert werden kann. Remesh anwenden oder ihre Teile mit einem Boolean vereinigen.",
     "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.":
         "Das Mesh kann nicht gefüllt werden: Das Füllen kommt zu keinem Ende. Remesh anwenden oder ein wenig glätten und erneut versuchen.",
+    "Nothing else was harmed; the mesh is as it was.":
+        "Sonst ist nichts zu Schaden gekommen; das Mesh ist, wie es war.",
+    "The build was not done after {seconds:,.0f} seconds of work and was stopped.":
+        "Die Suche war nach {seconds:,.0f} Sekunden Arbeit nicht fertig und wurde beendet.",
+    "The build was not done after {seconds:,.0f} seconds without any work and was stopped.":
+        "Die Suche hat {seconds:,.0f} Sekunden lang nicht gearbeitet und wurde beendet.",
+    "A mesh with fewer faces (Decimate, or a voxel remesh) is faster.":
+        "Ein Mesh mit weniger Flächen (Dezimieren oder Voxel-Remesh) ist schneller.",
+    "The worker process ran out of memory.":
+        "Dem Arbeitsprozess ging der Speicher aus.",
+    "It may use {size:.1f} GiB.":
+        "Er darf {size:.1f} GiB benutzen.",
+    "A mesh with fewer faces (Decimate, or a voxel remesh) needs less.":
+        "Ein Mesh mit weniger Flächen (Dezimieren oder Voxel-Remesh) braucht weniger.",
 }

@@ -899,4 +899,18 @@ WORDS = {
         "表面が修復できない形で自己交差しています。リメッシュするか、ブーリアンで各部分を合体してください。",
     "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.":
         "処理が終わらず、メッシュを処理できません。リメッシュするか、少しスムーズにしてもう一度試してください。",
+    "Nothing else was harmed; the mesh is as it was.":
+        "ほかには何も損なわれておらず、メッシュは元のままです。",
+    "The build was not done after {seconds:,.0f} seconds of work and was stopped.":
+        "検索は {seconds:,.0f} 秒働いても終わらず、止められました。",
+    "The build was not done after {seconds:,.0f} seconds without any work and was stopped.":
+        "検索は {seconds:,.0f} 秒間まったく進まず、止められました。",
+    "A mesh with fewer faces (Decimate, or a voxel remesh) is faster.":
+        "面の少ないメッシュ（デシメートまたはボクセルリメッシュ）なら速くなります。",
+    "The worker process ran out of memory.":
+        "作業プロセスのメモリが足りなくなりました。",
+    "It may use {size:.1f} GiB.":
+        "使えるのは {size:.1f} GiB までです。",
+    "A mesh with fewer faces (Decimate, or a voxel remesh) needs less.":
+        "面の少ないメッシュ（デシメートまたはボクセルリメッシュ）なら少なくて済みます。",
 }

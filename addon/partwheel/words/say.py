@@ -18,6 +18,13 @@ def label_of(operator):
     return iface_(operator.bl_label, OPERATOR)
 
 
+def told(error):
+    """What an error of the package says."""
+    if sentences := getattr(error, "sentences", ()):
+        return " ".join(map(rpt_, sentences)).format(**error.values)
+    return rpt_(str(error))
+
+
 def percent(share):
     """Of 1, short enough to be read at a glance: never in powers of ten."""
     return "< 0.1%" if 0 < share < 0.0005 else f"{share:.1%}"

@@ -899,4 +899,18 @@ WORDS = {
         "La superficie se atraviesa a sí misma de un modo que no se puede reparar. Rehacer la malla o unir sus partes con una operación booleana.",
     "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.":
         "La malla no se puede llenar: el proceso no termina. Rehacerla o suavizarla un poco e intentarlo de nuevo.",
+    "Nothing else was harmed; the mesh is as it was.":
+        "Nada más sufrió daños; la malla está como estaba.",
+    "The build was not done after {seconds:,.0f} seconds of work and was stopped.":
+        "La búsqueda no había terminado tras {seconds:,.0f} segundos de trabajo y se detuvo.",
+    "The build was not done after {seconds:,.0f} seconds without any work and was stopped.":
+        "La búsqueda pasó {seconds:,.0f} segundos sin trabajar y se detuvo.",
+    "A mesh with fewer faces (Decimate, or a voxel remesh) is faster.":
+        "Una malla con menos caras (Diezmar, o un remallado por vóxeles) es más rápida.",
+    "The worker process ran out of memory.":
+        "El proceso de trabajo se quedó sin memoria.",
+    "It may use {size:.1f} GiB.":
+        "Puede usar {size:.1f} GiB.",
+    "A mesh with fewer faces (Decimate, or a voxel remesh) needs less.":
+        "Una malla con menos caras (Diezmar, o un remallado por vóxeles) necesita menos.",
 }

@@ -29,15 +29,22 @@ SEARCH_SECONDS = 0.01  # between two looks whether a Python was found
 MESSAGE = struct.Struct("<cQ")
 
 HARMLESS = "Nothing else was harmed; the mesh is as it was."
+LATE = "The build was not done after {seconds:,.0f} seconds of work and was stopped."
+IDLE = "The build was not done after {seconds:,.0f} seconds without any work and was stopped."
+FASTER = "A mesh with fewer faces (Decimate, or a voxel remesh) is faster."
+FULL = "The worker process ran out of memory."
+LIMIT = "It may use {size:.1f} GiB."
+LESS = "A mesh with fewer faces (Decimate, or a voxel remesh) needs less."
 
 
 class WorkerError(PartwheelError):
     """The worker process ended, or had to be ended, without an answer. status: Status.INTERNAL, or Status.MEMORY.
-    name: "crash", "time limit", "memory", or "worker" when it could not even be started."""
+    name: "crash", "time limit", "memory", or "worker" when it could not even be started.
+    sentences, values: what str() is made of, for who says it in another language: templates, and what is in braces."""
 
-    def __init__(self, name, message):
-        super().__init__(Status.MEMORY if name == "memory" else Status.INTERNAL, message)
-        self.name = name
+    def __init__(self, name, *sentences, **values):
+        super().__init__(Status.MEMORY if name == "memory" else Status.INTERNAL, " ".join(sentences).format(**values))
+        self.name, self.sentences, self.values = name, sentences, values
 
 
 class Job:
@@ -147,7 +154,7 @@ class Job:
         watched, work, idle = self._watched, self._work, time.monotonic() - self._seen_working
         if watched and max(work, idle) > self._time_limit:
             process, late = watched
-            late.append("of work" if work > idle else "without any work")
+            late.append(LATE if work > idle else IDLE)
             process.kill()
 
     def _launch(self):
@@ -213,11 +220,9 @@ class Job:
             raise _no_worker(f"The worker process did not begin in {self._time_limit:g} seconds." if late else
                              f"The worker process {ending(process.returncode)} before it began.")
         if late:
-            raise WorkerError("time limit", f"The build was not done after {self._time_limit:g} seconds {late[0]} and "
-                                            f"was stopped. {HARMLESS} A mesh with fewer faces (Decimate, or a voxel "
-                                            "remesh) is faster.")
-        raise WorkerError("crash", f"The worker process {ending(process.returncode)} before it was done. {HARMLESS} "
-                                   "Merging vertices by distance, or a voxel remesh, often helps.")
+            raise WorkerError("time limit", late[0], HARMLESS, FASTER, seconds=self._time_limit)
+        raise WorkerError("crash", "The worker process {how} before it was done.", HARMLESS,
+                          "Merging vertices by distance, or a voxel remesh, often helps.", how=ending(process.returncode))
 
     def _send(self, pipe, rungs):
         """Hands the surface over. A worker that dies meanwhile is left for _listen() to find."""
@@ -259,25 +264,24 @@ class Job:
                         self._work, self._seen_working = float(work), time.monotonic()
                     self._progress = max(self._progress[0], float(fraction)), str(stage)
             except (ValueError, TypeError, AttributeError, LookupError):  # not what a sound worker writes
-                return WorkerError("crash", f"The worker process gave a damaged answer. {HARMLESS}")
+                return WorkerError("crash", "The worker process gave a damaged answer.", HARMLESS)
 
     def _loaded(self, answer):
         data, seconds = answer
         try:
             hierarchy = Hierarchy.load(data)
         except PartwheelError as error:
-            raise WorkerError("crash", f"The worker process gave a damaged answer: {error} {HARMLESS}") from error
+            raise WorkerError("crash", "The worker process gave a damaged answer: {error}", HARMLESS, error=error) from error
         if len(hierarchy.order) != self._face_count:
-            raise WorkerError("crash", f"The worker process gave the answer to another mesh. {HARMLESS}")
+            raise WorkerError("crash", "The worker process gave the answer to another mesh.", HARMLESS)
         hierarchy.seconds = seconds
         return hierarchy
 
     def _refused(self, values, seconds):
         error = PartwheelError(int(values["status"]), str(values["message"]), seconds)
         if error.status == Status.MEMORY:
-            limit = f" It may use {self._memory_limit / 2**30:.1f} GiB." if self._memory_limit else ""
-            error = WorkerError("memory", f"The worker process ran out of memory.{limit} {HARMLESS} A mesh with fewer "
-                                          "faces (Decimate, or a voxel remesh) needs less.")
+            error = WorkerError("memory", FULL, *[LIMIT] * bool(self._memory_limit), HARMLESS, LESS,
+                                size=self._memory_limit / 2**30)
         return error
 
 
@@ -291,8 +295,8 @@ def available_memory():
 
 
 def _no_worker(sentence):
-    return WorkerError("worker", f"{sentence} {HARMLESS} If it stays so, say which Python 3 is to run it: Python in "
-                                 "the add-on's preferences, or the argument python.")
+    return WorkerError("worker", "{sentence}", HARMLESS, "If it stays so, say which Python 3 is to run it: Python in the "
+                       "add-on's preferences, or the argument python.", sentence=sentence)
 
 
 def _unless_error(found):
