@@ -5,7 +5,7 @@ are in the scene's units."""
 import types
 
 import bpy
-from common import MeshTest, part, read_off
+from common import MeshTest, package, part, read_off
 
 SAID = {"de_DE": ("Teil per Mausrad auswählen", "Kein Teil ist gewählt"),
         "es": ("Seleccionar parte con la rueda", "No hay ninguna parte"),
@@ -57,6 +57,21 @@ class Words(MeshTest):
         with self.assertRaises(part("mesh.refusing").Refused) as refused:
             part("parts.registry").needed(obj)
         self.assertEqual(str(refused.exception), "{name} hat keine Teile für sein Mesh, wie es jetzt ist. Erst Teile finden.")
+
+    def test_errors_with_numbers(self):
+        """A limit that a build has met: each sentence is looked up before its numbers are in it."""
+        obj = self.add(*read_off("hand"))
+        build = part("parts.builds").build(obj, memory_limit=2**20)
+        with self.assertRaises(package("worker").WorkerError) as full:
+            build.result()
+        told = part("words.say").told
+        self.assertEqual(told(full.exception), str(full.exception))
+        self.assertIn("It may use 0.0 GiB.", str(full.exception))
+        for language in self.spoken():
+            self.speak(language)
+            for sentence in full.exception.sentences:
+                self.assertNotIn(sentence.format(**full.exception.values), told(full.exception))
+            self.assertIn("0.0 GiB", told(full.exception))
 
     def test_a_reason_has_no_full_stop_in_any_language(self):
         for language in self.spoken():

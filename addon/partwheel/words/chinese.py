@@ -901,10 +901,10 @@ WORDS = {
         "无法填充网格：填充过程不会结束。请重构网格或稍作平滑后重试。",
     "Nothing else was harmed; the mesh is as it was.":
         "其他一切完好；网格保持原样。",
-    "The build was not done after {seconds:,.0f} seconds of work and was stopped.":
-        "查找运行 {seconds:,.0f} 秒后仍未完成，已被停止。",
-    "The build was not done after {seconds:,.0f} seconds without any work and was stopped.":
-        "查找在 {seconds:,.0f} 秒内没有任何进展，已被停止。",
+    "The build was not done after {seconds} seconds of work and was stopped.":
+        "查找运行 {seconds} 秒后仍未完成，已被停止。",
+    "The build was not done after {seconds} seconds without any work and was stopped.":
+        "查找在 {seconds} 秒内没有任何进展，已被停止。",
     "A mesh with fewer faces (Decimate, or a voxel remesh) is faster.":
         "面数较少的网格（精简或体素重构网格）会更快。",
     "The worker process ran out of memory.":

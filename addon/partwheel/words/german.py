@@ -901,10 +901,10 @@ WORDS = {
         "Das Mesh kann nicht gefüllt werden: Das Füllen kommt zu keinem Ende. Remesh anwenden oder ein wenig glätten und erneut versuchen.",
     "Nothing else was harmed; the mesh is as it was.":
         "Sonst ist nichts zu Schaden gekommen; das Mesh ist, wie es war.",
-    "The build was not done after {seconds:,.0f} seconds of work and was stopped.":
-        "Die Suche war nach {seconds:,.0f} Sekunden Arbeit nicht fertig und wurde beendet.",
-    "The build was not done after {seconds:,.0f} seconds without any work and was stopped.":
-        "Die Suche hat {seconds:,.0f} Sekunden lang nicht gearbeitet und wurde beendet.",
+    "The build was not done after {seconds} seconds of work and was stopped.":
+        "Die Suche war nach {seconds} Sekunden Arbeit nicht fertig und wurde beendet.",
+    "The build was not done after {seconds} seconds without any work and was stopped.":
+        "Die Suche hat {seconds} Sekunden lang nicht gearbeitet und wurde beendet.",
     "A mesh with fewer faces (Decimate, or a voxel remesh) is faster.":
         "Ein Mesh mit weniger Flächen (Dezimieren oder Voxel-Remesh) ist schneller.",
     "The worker process ran out of memory.":

@@ -901,10 +901,10 @@ WORDS = {
         "処理が終わらず、メッシュを処理できません。リメッシュするか、少しスムーズにしてもう一度試してください。",
     "Nothing else was harmed; the mesh is as it was.":
         "ほかには何も損なわれておらず、メッシュは元のままです。",
-    "The build was not done after {seconds:,.0f} seconds of work and was stopped.":
-        "検索は {seconds:,.0f} 秒働いても終わらず、止められました。",
-    "The build was not done after {seconds:,.0f} seconds without any work and was stopped.":
-        "検索は {seconds:,.0f} 秒間まったく進まず、止められました。",
+    "The build was not done after {seconds} seconds of work and was stopped.":
+        "検索は {seconds} 秒働いても終わらず、止められました。",
+    "The build was not done after {seconds} seconds without any work and was stopped.":
+        "検索は {seconds} 秒間まったく進まず、止められました。",
     "A mesh with fewer faces (Decimate, or a voxel remesh) is faster.":
         "面の少ないメッシュ（デシメートまたはボクセルリメッシュ）なら速くなります。",
     "The worker process ran out of memory.":

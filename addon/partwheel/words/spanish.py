@@ -901,10 +901,10 @@ WORDS = {
         "La malla no se puede llenar: el proceso no termina. Rehacerla o suavizarla un poco e intentarlo de nuevo.",
     "Nothing else was harmed; the mesh is as it was.":
         "Nada más sufrió daños; la malla está como estaba.",
-    "The build was not done after {seconds:,.0f} seconds of work and was stopped.":
-        "La búsqueda no había terminado tras {seconds:,.0f} segundos de trabajo y se detuvo.",
-    "The build was not done after {seconds:,.0f} seconds without any work and was stopped.":
-        "La búsqueda pasó {seconds:,.0f} segundos sin trabajar y se detuvo.",
+    "The build was not done after {seconds} seconds of work and was stopped.":
+        "La búsqueda no había terminado tras {seconds} segundos de trabajo y se detuvo.",
+    "The build was not done after {seconds} seconds without any work and was stopped.":
+        "La búsqueda pasó {seconds} segundos sin trabajar y se detuvo.",
     "A mesh with fewer faces (Decimate, or a voxel remesh) is faster.":
         "Una malla con menos caras (Diezmar, o un remallado por vóxeles) es más rápida.",
     "The worker process ran out of memory.":

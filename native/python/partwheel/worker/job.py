@@ -29,8 +29,8 @@ SEARCH_SECONDS = 0.01  # between two looks whether a Python was found
 MESSAGE = struct.Struct("<cQ")
 
 HARMLESS = "Nothing else was harmed; the mesh is as it was."
-LATE = "The build was not done after {seconds:,.0f} seconds of work and was stopped."
-IDLE = "The build was not done after {seconds:,.0f} seconds without any work and was stopped."
+LATE = "The build was not done after {seconds} seconds of work and was stopped."
+IDLE = "The build was not done after {seconds} seconds without any work and was stopped."
 FASTER = "A mesh with fewer faces (Decimate, or a voxel remesh) is faster."
 FULL = "The worker process ran out of memory."
 LIMIT = "It may use {size:.1f} GiB."
@@ -220,7 +220,7 @@ class Job:
             raise _no_worker(f"The worker process did not begin in {self._time_limit:g} seconds." if late else
                              f"The worker process {ending(process.returncode)} before it began.")
         if late:
-            raise WorkerError("time limit", late[0], HARMLESS, FASTER, seconds=self._time_limit)
+            raise WorkerError("time limit", late[0], HARMLESS, FASTER, seconds=f"{self._time_limit:g}")
         raise WorkerError("crash", "The worker process {how} before it was done.", HARMLESS,
                           "Merging vertices by distance, or a voxel remesh, often helps.", how=ending(process.returncode))
 
