@@ -60,18 +60,15 @@ class Words(MeshTest):
 
     def test_errors_with_numbers(self):
         """A limit that a build has met: each sentence is looked up before its numbers are in it."""
-        obj = self.add(*read_off("hand"))
-        build = part("parts.builds").build(obj, memory_limit=2**20)
-        with self.assertRaises(package("worker").WorkerError) as full:
-            build.result()
-        told = part("words.say").told
-        self.assertEqual(told(full.exception), str(full.exception))
-        self.assertIn("It may use 0.0 GiB.", str(full.exception))
+        job, told = package("worker.job"), part("words.say").told
+        error = job.WorkerError("memory", job.FULL, job.LIMIT, job.HARMLESS, job.LESS, size=8)
+        self.assertIn("It may use 8.0 GiB.", str(error))
+        self.assertEqual(told(error), str(error))
         for language in self.spoken():
             self.speak(language)
-            for sentence in full.exception.sentences:
-                self.assertNotIn(sentence.format(**full.exception.values), told(full.exception))
-            self.assertIn("0.0 GiB", told(full.exception))
+            for sentence in error.sentences:
+                self.assertNotIn(sentence.format(**error.values), told(error))
+            self.assertIn("8.0 GiB", told(error))
 
     def test_a_reason_has_no_full_stop_in_any_language(self):
         for language in self.spoken():

@@ -102,7 +102,7 @@ def alike(own, parts):
 
 
 def play(stage):
-    yield from stage.open("homer"); stage.use_tool()
+    yield from one_part(stage)
     yield from two_parts(stage)
     yield from fingers(stage)
     yield from four_names(stage)
