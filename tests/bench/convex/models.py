@@ -33,11 +33,12 @@ def clean(benchmark):
 
 
 def broken(paths):
-    """{name: (path of the whole one, vertices, triangles)}: two a kind."""
-    made = {}
-    chosen = iter(list(paths.values())[::max(1, len(paths) // (2 * len(BROKEN)))])
-    for seed, kind in enumerate([*BROKEN, *BROKEN]):
-        path = next(chosen, None)
-        if path:
-            made[f"{path.stem}, {BROKEN[kind]}"] = path, *getattr(mutations, kind)(np.random.default_rng(seed), *read(path))
-    return made
+    """{name: (path of the whole one, kind, seed)}: two a kind."""
+    chosen = list(paths.values())[::max(1, len(paths) // (2 * len(BROKEN)))]
+    return {f"{path.stem}, {BROKEN[kind]}": (path, kind, seed)
+            for seed, (path, kind) in enumerate(zip(chosen, [*BROKEN, *BROKEN]))}
+
+
+def mutated(path, kind, seed):
+    """vertices, triangles."""
+    return getattr(mutations, kind)(np.random.default_rng(seed), *read(path))

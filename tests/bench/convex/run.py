@@ -48,11 +48,12 @@ class Results:
     def path(table, model, number, tool, ending):
         return STORE / f"{table}, {model}, {number}, {tool}.{ending}"
 
-    def measure(self, table, model, number, tool, hulls, mesh, whole):
-        """The figures. mesh is what the tool gets, and what it makes is held against the whole one."""
+    def measure(self, table, model, number, tool, hulls, load):
+        """The figures. load() gives what the tool gets and what its hulls are held against: (vertices, triangles) each."""
         known = self.of(table, model, number, tool)
         if known or (self.only and tool not in self.only):
             return known
+        mesh, whole = load()
         target, figures = (self.path(table, model, number, tool, ending) for ending in ("npz", "json"))
         python = sys.executable if tool == "ours" else self.peers
         with tempfile.TemporaryDirectory() as folder:
@@ -73,12 +74,12 @@ class Results:
         return found
 
 
-def at_its_own(results, table, model, mesh, whole, whose):
+def at_its_own(results, table, model, whose, load):
     """All tools, at the number of hulls that CoACD finds by its defaults, or fast."""
-    its = results.measure(table, model, whose, whose, 0, mesh, whole)
+    its = results.measure(table, model, whose, whose, 0, load)
     if its and "hulls" in its:
         for tool in "V-HACD", "ours":
-            results.measure(table, model, whose, tool, its["hulls"], mesh, whole)
+            results.measure(table, model, whose, tool, its["hulls"], load)
 
 
 def main():
@@ -148,19 +149,21 @@ def spread(clean):
 
 def measure(results, clean):
     """What matters most first."""
-    whole = {name: models.read(path) for name, path in clean.items()}
+    def loads(path):
+        return lambda: (models.read(path),) * 2
+
     for name in spread(clean):
         for whose in "CoACD, fast", "CoACD":
-            at_its_own(results, "clean", name, whole[name], whole[name], whose)
+            at_its_own(results, "clean", name, whose, loads(clean[name]))
     for number in PICTURE:
         for tool in "CoACD, fast", "ours":
-            results.measure("picture", PICTURED, number, tool, number, whole[PICTURED], whole[PICTURED])
-    for name, (path, *mesh) in models.broken(clean).items():
-        at_its_own(results, "broken", name, mesh, models.read(path), "CoACD, fast")
+            results.measure("picture", PICTURED, number, tool, number, loads(clean[PICTURED]))
+    for name, way in models.broken(clean).items():
+        at_its_own(results, "broken", name, "CoACD, fast", lambda way=way: (models.mutated(*way), models.read(way[0])))
     for place, name in enumerate(spread(clean)):
         for number in EQUAL:
             for tool in ("ours", "V-HACD", "CoACD, fast") if place < len(clean) // SPARE else ("ours", "V-HACD"):
-                results.measure("clean", name, number, tool, number, whole[name], whole[name])
+                results.measure("clean", name, number, tool, number, loads(clean[name]))
 
 
 if __name__ == "__main__":

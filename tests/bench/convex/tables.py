@@ -10,7 +10,7 @@ NUMBERS = {"CoACD": "CoACD's", "CoACD, fast": "CoACD's, fast", 8: "8", 16: "16",
 
 
 def show(results, clean):
-    broken = [f"{path.stem}, {what}" for path in clean.values() for what in models.BROKEN.values()]
+    broken = list(models.broken(clean))
     summary(results, "clean", list(clean))
     for number in "CoACD", "CoACD, fast":
         each(results, "clean", list(clean), number)
@@ -42,8 +42,10 @@ def summary(results, table, names):
             both = [name for name in rows if name in ours]
             fewer = sum(ours[name]["volume"] <= rows[name]["volume"] for name in both)
             middle = {what: median(row[what] for row in rows.values()) for what in next(iter(rows.values()))}
-            times = median(rows[name]["seconds"] / ours[name]["seconds"] for name in both) if both else float("nan")
-            beside = ("", "") if tool == "ours" else (f"{fewer} of {len(both)}", f"{times:.1f}")
+            beside = "", ""
+            if both and tool != "ours":
+                times = median(rows[name]["seconds"] / ours[name]["seconds"] for name in both)
+                beside = f"{fewer} of {len(both)}", f"{times:.1f}"
             print(f"| {called} | {tool}, {len(rows)} | {middle['hulls']:.0f} | {middle['volume']:.3f} | {beside[0]} | "
                   f"{middle['beyond']:.2%}, {middle['beyond 99']:.2%} | {middle['missed']:.2%}, {middle['missed 99']:.2%} | "
                   f"{middle['seconds']:.2f} | {beside[1]} | {middle['memory'] / 1e6:.0f} | "
