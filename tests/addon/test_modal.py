@@ -174,7 +174,7 @@ class Modal(ToolTest):
             bmesh.update_edit_mesh(self.obj.data)
 
         hovered()
-        for change, slices in ((lambda: bpy.ops.mesh.select_all(action="SELECT"), 1), (moved, 3)):
+        for change, slices in ((lambda: bpy.ops.mesh.select_all(action="SELECT"), 1), (moved, 4)):
             change()
             bpy.context.view_layer.update()
             with WritesBack() as writes:
@@ -487,7 +487,7 @@ class Modal(ToolTest):
         point, _ = self.centre()
         drawn = []
         layout = types.SimpleNamespace(label=lambda text, icon="NONE": drawn.append((text, icon)))
-        for step, wanted, absent in ((None, "Pick a Part", "Larger"), ("LEFTMOUSE", "Larger", "Pick a Part")):
+        for step, wanted, absent in ((None, "Pick a Part", "Size"), ("LEFTMOUSE", "Size", "Pick a Part")):
             if step:
                 self.send(step, point)
             drawn.clear()

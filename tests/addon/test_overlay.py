@@ -69,11 +69,32 @@ class Tints(MeshTest):
                 for edge in polygon.edge_keys:
                     others.setdefault(edge, []).append(polygon.index in part_of)
             expected = {edge for edge, inside in others.items() if len(set(inside)) == 2}
-            first, last = self.parts.slice(node)
-            found = part("view.layers").border(self.parts.triangles[first:last])
-            self.assertEqual({tuple(sorted(edge)) for edge in found.tolist()}, expected)
-            self.assertEqual(len(found), len(expected))
-        self.assertEqual(len(part("view.layers").border(self.parts.triangles)), 0)  # the model is closed
+            for found in (self.parts.border(node), self.parts.border(node, self.h.faces(node)[::-1])):
+                self.assertEqual({tuple(sorted(edge)) for edge in found.tolist()}, expected)
+                self.assertEqual(len(found), len(expected))
+        self.assertEqual(len(self.parts.border(stops[-1])), 0)  # the model is closed
+
+    def test_neighbours_of_any_triangles(self):
+        """Sheets, edges of three and four triangles, none at all: by counting."""
+        layers, rng = part("view.layers"), np.random.default_rng(1)
+        for corners, number in ((4, 1), (5, 9), (9, 40), (30, 40), (3, 0)):
+            triangles = np.array([rng.permutation(corners)[:3] for _ in range(number)], np.int32).reshape(-1, 3)
+            beyond = layers.beyond(triangles)
+            self.assertEqual(beyond.shape, (number, 3))
+            of_edge = {}
+            for triangle in range(number):
+                for edge in range(3):
+                    ends = frozenset((triangles[triangle, edge], triangles[triangle, (edge + 1) % 3]))
+                    of_edge.setdefault(ends, []).append((triangle, beyond[triangle, edge]))
+            for own in of_edge.values():
+                mine, led_to = zip(*own)
+                self.assertEqual(sorted(led_to), sorted(mine) if len(mine) > 1 else [number])
+                self.assertTrue(len(mine) == 1 or all(one != other for one, other in own))
+            mine = rng.permutation(number)[:number // 2]
+            own_edges = [frozenset(edge) for edge in layers.border(triangles, beyond, mine).tolist()]
+            self.assertLessEqual({edge for edge, own in of_edge.items()
+                                  if {each for each, _ in own} & {*mine} and len({each for each, _ in own} & {*mine}) == 1},
+                                 set(own_edges))
 
     def test_colours_are_the_themes(self):
         view = bpy.context.preferences.themes[0].view_3d

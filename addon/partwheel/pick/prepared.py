@@ -47,14 +47,17 @@ class Prepared:
     @property
     def whole(self):
         """Whether advance() has nothing left to do."""
-        return self._tree is not None and self._asked
+        drawn = not self._hierarchy or self._parts is not None and "beyond" in vars(self._parts)
+        return self._tree is not None and self._asked and drawn
 
     def advance(self, obj):
         """Makes the next slice of what hovering needs."""
-        if self._tree:
-            self.parts(obj)
-        else:
+        if not self._tree:
             self.tree(obj)
+        elif self._parts:
+            self._parts.beyond  # noqa: B018 (it is made and kept)
+        else:
+            self.parts(obj)
 
 
 def advance(objects):

@@ -119,14 +119,35 @@ def lines(positions, edges):
     return shader("line"), batch(vertices(pos=places, other=others, side=sides), corners.reshape(-1, 3))
 
 
-def border(triangles):
-    """(n,2) the edges that only one of the triangles (T,3) has."""
-    count = int(triangles.max(initial=0)) + 1
+def beyond(triangles):
+    """(T,3) the triangle beyond each edge of triangles (T,3), from the edge 0 1 on; T where there is none. Edges of more
+    than two triangles lead from each to the next."""
+    number = len(triangles)
+    if not number:
+        return np.empty((0, 3), np.int32)
+    count = int(triangles.max()) + 1
     a, b, c = triangles.T.astype(np.int64)
-    keys = [np.minimum(*ends) * count + np.maximum(*ends) for ends in ((a, b), (b, c), (c, a))]
-    keys = np.sort(np.concatenate(keys), kind="stable")  # which is quicker: neighbours have near numbers
-    differs = np.concatenate([[True], keys[1:] != keys[:-1], [True]])
-    return np.column_stack(np.divmod(keys[differs[:-1] & differs[1:]] if len(keys) else keys, count))
+    keys = np.concatenate([np.minimum(*ends) * count + np.maximum(*ends) for ends in ((a, b), (b, c), (c, a))])
+    order = np.argsort(keys, kind="stable")  # which is quicker: neighbours have near numbers
+    differs = np.flatnonzero(np.diff(keys[order])) + 1
+    first, end = np.concatenate([[0], differs]), np.concatenate([differs, [3 * number]])
+    found = np.roll(order, -1)
+    found[end - 1] = order[first]
+    found %= number
+    found[first[end - first == 1]] = number
+    result = np.empty(3 * number, np.int32)
+    result[order] = found
+    return result.reshape(3, number).T
+
+
+def border(triangles, beyond, mine):
+    """(n,2) the edges of some of the triangles, mine (n,), beyond which is none of these. beyond: of all triangles."""
+    inside = np.zeros(len(triangles) + 1, bool)
+    inside[mine] = True
+    which, edge = np.nonzero(~inside[beyond[mine]])
+    ends = triangles[mine[which]]
+    each = np.arange(len(ends))
+    return np.column_stack([ends[each, edge], ends[each, (edge + 1) % 3]])
 
 
 def see_through(context):

@@ -73,21 +73,30 @@ class Parts:
     def of_faces(self, name, faces):
         """The same of the triangles of any faces, kept under a name."""
         def make():
-            chosen = arrays.mask(len(self.hierarchy.order), faces)
-            return layers.batch(self._buffer, self.triangles[np.repeat(chosen[self.hierarchy.order], np.diff(self._start))])
+            return layers.batch(self._buffer, self.triangles[self._of(faces)])
         return layers.shader("flat"), self._kept(name, make)
 
     def outline(self, node, faces=None):
         """The same of a node's border, or that of these faces: lines."""
         def make():
-            if faces is None:
-                mine = self.triangles[slice(*self.slice(node))]
-            else:
-                chosen = arrays.mask(len(self.hierarchy.order), faces)
-                mine = self.triangles[np.repeat(chosen[self.hierarchy.order], np.diff(self._start))]
-            edges = layers.border(mine)
+            edges = self.border(node, faces)
             return layers.lines(self.positions, edges) if len(edges) else None
         return self._kept(("outline", node, faces is None), make)
+
+    def border(self, node, faces=None):
+        """(n,2) the edges, by their vertices, where a node ends, or these faces."""
+        mine = np.arange(*self.slice(node)) if faces is None else self._of(faces)
+        return layers.border(self.triangles, self.beyond, mine)
+
+    @cached_property
+    def beyond(self):
+        """The neighbours of all triangles: what takes longest of a first outline, so hovering makes it before."""
+        return layers.beyond(self.triangles)
+
+    def _of(self, faces):
+        """(n,) the triangles of faces."""
+        chosen = arrays.mask(len(self.hierarchy.order), faces)
+        return np.flatnonzero(np.repeat(chosen[self.hierarchy.order], np.diff(self._start)))
 
     def hull(self, node):
         """The same of a node's convex hull."""
