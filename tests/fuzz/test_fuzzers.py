@@ -60,6 +60,7 @@ def run(name, *arguments, **environment):
     """A fuzzer with these arguments; inputs that fail, hang or are slow go to WORK."""
     fuzzer = ROOT / "build" / "fuzz" / f"{name}_fuzzer"
     assert fuzzer.exists(), f"{fuzzer} is not there: scripts/build fuzz"
+    WORK.mkdir(parents=True, exist_ok=True)
     return subprocess.run(
         [fuzzer, *arguments, f"-timeout={HANGS}", "-rss_limit_mb=4096", f"-artifact_prefix={WORK / name}-"],
         capture_output=True, text=True, errors="replace",
