@@ -7,7 +7,6 @@ entering of a mode (Sculpt Mode is left and entered again for a mask) has that i
 import statistics
 
 import bmesh
-import bpy
 
 from scenarios.felt import Clock, points, watch_batches
 from scenarios.modes import enter
