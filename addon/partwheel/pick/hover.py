@@ -136,11 +136,14 @@ class Highlight:
             self.what = None
             return
         if ready(obj) and not (self.what and self.what[0] == obj.name_full and current(obj, self.what[1])):
-            self.show(obj, np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)))
+            self.show_selected(obj)
 
     def shows(self, obj):
         """Whether it is on this object now."""
         return bool(self.what and self.what[0] == obj.name_full and len(self.what[2]) and current(obj, self.what[1]))
+
+    def show_selected(self, obj):
+        self.show(obj, np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)))
 
     def show(self, obj, faces):
         self.what, self.shown = (obj.name_full, prepared(obj).parts(obj), faces), self.shown + 1

@@ -14,7 +14,7 @@ from ..view.seen import NO_FACE
 from ..words.say import rpt_
 from .hover import highlight
 from .pick import PartPicker
-from .prepared import made, prepared, unchanged
+from .prepared import prepared, unchanged
 from .preview import Preview
 
 
@@ -130,9 +130,7 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
             select_outside_edit_mode(obj.data, faces, self.extend, self.deselect, picked.face)
             context.view_layer.update()
         if not bpy.app.background:
-            made(obj)
-            highlight.what = None  # while the part was held it was what else is picked
-            highlight.update(context)
+            highlight.show_selected(obj)
         return {"FINISHED"}
 
 

@@ -112,13 +112,6 @@ def prepared(obj):
     return kept
 
 
-def made(obj):
-    """The same with all slices made at once: for an operator after which nobody moves the mouse."""
-    while not _whole(obj):
-        prepared(obj).advance(obj)
-    return prepared(obj)
-
-
 def ready(obj):
     """The same for gizmos, while Blender asks which it must not be given new data: outside Edit Mode None as long as it
     isn't there, and then it will be soon."""

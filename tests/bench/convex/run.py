@@ -18,9 +18,9 @@ import numpy as np
 import tables
 from drop import dropped
 from measures import measured
+from tables import TOOLS
 
 STORE = models.ROOT / "build" / "bench" / "convex"
-TOOLS = "CoACD", "CoACD, fast", "V-HACD", "ours"
 EQUAL = 8, 16, 32
 DROPPED = 10
 PICTURED, PICTURE = "elephant", (4, 12, 32)
