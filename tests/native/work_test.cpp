@@ -1,5 +1,5 @@
 // How much the ladder's rooms do, and how often they ask whether they are to stop: counted, for seconds tell nothing. The
-// linker sends the rooms' calls of Progress and of TetGen here (--wrap in cmake/tests.cmake).
+// linker sends the rooms' calls of Progress and of TetGen here (--wrap in CMakeLists.txt).
 #include "partwheel.h"
 #include "fill/ladder.h"
 #include "fill/tetgen_host.h"
