@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the add-on's tests share: the installed package, meshes, and what is selected."""
 
+import functools
 import importlib
 import tempfile
 import time
@@ -29,12 +30,17 @@ def package(name=""):
 
 def read_off(name):
     """(vertices, polygons) of a plain OFF file."""
+    return tuple(map(list, _off(name)))
+
+
+@functools.cache
+def _off(name):
     lines = [line.split() for line in (MESHES / f"{name}.off").read_text().splitlines()
              if line.strip() and not line.startswith("#")]
     vertex_count, face_count = map(int, lines[1][:2])
-    vertices = [tuple(map(float, line[:3])) for line in lines[2:2 + vertex_count]]
-    return vertices, [tuple(map(int, line[1:1 + int(line[0])]))
-                      for line in lines[2 + vertex_count:2 + vertex_count + face_count]]
+    vertices = tuple(tuple(map(float, line[:3])) for line in lines[2:2 + vertex_count])
+    return vertices, tuple(tuple(map(int, line[1:1 + int(line[0])]))
+                           for line in lines[2 + vertex_count:2 + vertex_count + face_count])
 
 
 BOX = ([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)],

@@ -970,14 +970,17 @@ class ManyMeshes(HeldWorkers):
 
 
 class Pick(MeshTest):
-    def nearest(self, obj, origin, direction, skip, margin):
-        """By brute force: (distance, face) of the triangle that the ray meets first. margin: how far, in barycentric
-        coordinates, from its sides; negative takes in what lies just beside it."""
-        bm = bmesh.from_edit_mesh(obj.data)
-        loops = [corners for corners in bm.calc_loop_triangles() if corners[0].face.index not in skip]
+    def triangles(self, obj, skip):
+        """(T, 3, 3) corners in the world, (T,) their faces: of all faces but those to skip."""
+        loops = [corners for corners in bmesh.from_edit_mesh(obj.data).calc_loop_triangles()
+                 if corners[0].face.index not in skip]
         to_world = np.array(obj.matrix_world)
         points = np.array([[corner.vert.co for corner in corners] for corners in loops]) @ to_world[:3, :3].T
-        points += to_world[:3, 3]
+        return points + to_world[:3, 3], np.array([corners[0].face.index for corners in loops])
+
+    def nearest(self, points, faces, origin, direction, margin):
+        """By brute force: (distance, face) of the triangle that the ray meets first. margin: how far, in barycentric
+        coordinates, from its sides; negative takes in what lies just beside it."""
         a, ab, ac = points[:, 0], points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
         normal, to_origin = np.cross(ab, ac), np.array(origin) - a
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -989,7 +992,7 @@ class Pick(MeshTest):
         if not hit.any():
             return None
         index = np.flatnonzero(hit)[distance[hit].argmin()]
-        return distance[index], loops[index][0].face.index
+        return distance[index], faces[index]
 
     def test_the_nearest_visible_face_under_the_mouse(self):
         from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
@@ -1006,14 +1009,14 @@ class Pick(MeshTest):
                 bm.faces.ensure_lookup_table()
                 hidden = set()
                 for _ in range(2):
-                    tree, hits = part("view.picking").FaceTree(obj), 0
+                    tree, shown, hits = part("view.picking").FaceTree(obj), self.triangles(obj, hidden), 0
                     for x in range(1, 6):
                         for y in range(1, 6):
                             point = region.width * x // 6, region.height * y // 6
                             found = tree.under(obj.matrix_world, region, region_view, point)
                             ray = (region_2d_to_origin_3d(region, region_view, point),
                                    region_2d_to_vector_3d(region, region_view, point))
-                            expected, close = (self.nearest(obj, *ray, hidden, margin) for margin in (1e-4, -1e-4))
+                            expected, close = (self.nearest(*shown, *ray, margin) for margin in (1e-4, -1e-4))
                             if expected != close:
                                 continue  # on a side of a triangle, to the rounding of single precision
                             if expected is None:

@@ -102,7 +102,7 @@ def clean_environment(work):
     cache = OUTPUT / "shader-cache"
     cache.mkdir(exist_ok=True)
     ours = {name: value for name, value in os.environ.items() if name.startswith("PARTWHEEL_")}
-    return {**ours, "PATH": PATH, "HOME": str(work / "home"), "TMPDIR": str(work / "tmp"),
+    return {**ours, "OPENBLAS_NUM_THREADS": "1", "PATH": PATH, "HOME": str(work / "home"), "TMPDIR": str(work / "tmp"),
             "LIBGL_ALWAYS_SOFTWARE": "1", "MESA_SHADER_CACHE_DIR": str(cache), "LANG": "C.UTF-8"}
 
 
