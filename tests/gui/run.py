@@ -102,7 +102,8 @@ def clean_environment(work):
     cache = OUTPUT / "shader-cache"
     cache.mkdir(exist_ok=True)
     ours = {name: value for name, value in os.environ.items() if name.startswith("PARTWHEEL_")}
-    return {**ours, "OPENBLAS_NUM_THREADS": "1", "PATH": PATH, "HOME": str(work / "home"), "TMPDIR": str(work / "tmp"),
+    one_thread = {"OPENBLAS_NUM_THREADS": "1", "LP_NUM_THREADS": "1"}  # numpy, and Mesa's drawing: several run at once
+    return {**ours, **one_thread, "PATH": PATH, "HOME": str(work / "home"), "TMPDIR": str(work / "tmp"),
             "LIBGL_ALWAYS_SOFTWARE": "1", "MESA_SHADER_CACHE_DIR": str(cache), "LANG": "C.UTF-8"}
 
 
