@@ -145,7 +145,7 @@ def alive(numbers):
 
 def until(condition):
     """Waits for what comes at last; how long is the machine's affair, so the limit is far away."""
-    end = time.monotonic() + 600
+    end = time.monotonic() + 6000
     while not condition():
         assert time.monotonic() < end
         time.sleep(0.005)
