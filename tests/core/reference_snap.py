@@ -9,6 +9,7 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components, dijk
 REACH = 0.6
 MOST_TETRAHEDRA = 12000
 LEAST_AREA = 0.01
+CRUMB = 0.001
 SHEET = 0.3
 PULL = 0.3
 STEPS = 1 << 24
@@ -56,7 +57,12 @@ class Snapping:
             self.local[tets] = np.arange(len(tets))
             self.tets, self.within = tets, facets
             self.ends = self.local[self.facets[facets]]
-            side = self.cut(self.gathered(self.settled(home[self.part_of[tets]])))
+            side = home[self.part_of[tets]]
+            areas = np.array([self.area[tets[side == half]].sum() for half in (FIRST, SECOND)]) / self.area.sum()
+            for half in (FIRST, SECOND):
+                if areas.sum() >= LEAST_AREA and areas[half] < CRUMB and (np.ptp(side[self.ends], axis=1) > 0).any():
+                    side[side == half] = NEITHER
+            side = self.cut(self.gathered(self.settled(side)))
             of_facets = side[self.ends]
             for which, half in enumerate(halves):
                 if (side == which).any():

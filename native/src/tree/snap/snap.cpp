@@ -31,6 +31,8 @@ constexpr double pull = 0.3;
 constexpr double same_depth = 1e-9;
 // Depths are measured in so many steps of the reach.
 constexpr size_t rings = 256;
+// A half with less than this share of the model's area, cut off from the rest, would be a crumb.
+constexpr double crumb = 0.001;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 enum : int8_t { elsewhere = -1, left_half = 0, right_half = 1, unsettled = 2 };
@@ -171,13 +173,22 @@ private:
     void split(std::span<const int32_t> tetrahedra, int32_t number, bool whole) {
         const auto& halves = joined_[at(number) - parts_];
         std::vector<int32_t> newcomers, settled;
+        double areas[2] = {0, 0};
         for (const int32_t t : tetrahedra) {
             const int32_t place = place_of_part_[at(part_[at(t)])];
-            int8_t& side = side_[at(t)];
             for (const int8_t half : {left_half, right_half})
-                if (place >= first_[at(halves[at(half)])] && place < last_[at(halves[at(half)])]) side = half;
-            if (side == unsettled) newcomers.push_back(t);
+                if (place >= first_[at(halves[at(half)])] && place < last_[at(halves[at(half)])]) {
+                    side_[at(t)] = half;
+                    areas[half] += area_[at(t)];
+                }
         }
+        for (const int8_t half : {left_half, right_half})
+            if (areas[0] + areas[1] >= least_area * whole_ && areas[half] < crumb * whole_ &&
+                !at_split(tetrahedra).empty())
+                for (const int32_t t : tetrahedra)
+                    if (side_[at(t)] == half) side_[at(t)] = unsettled;
+        std::ranges::copy_if(tetrahedra, std::back_inserter(newcomers),
+                             [&](int32_t t) { return side_[at(t)] == unsettled; });
         // They go with the nearest: from those beside them on.
         for (const int8_t half : {left_half, right_half})
             for (const int32_t t : newcomers)

@@ -15,7 +15,9 @@
 // Halves. The last join splits all tetrahedra, each other join what the split above left to it. Its first half is the
 // one of the lower number. A tetrahedron is of the half that its part was joined into. Newcomers, which splits above
 // brought from elsewhere, go with the half that is fewest facets away through them, the first if both are; all go with
-// the first if there is nothing but newcomers.
+// the first if there is nothing but newcomers. A half of less than 0.001 of the model's area would be a crumb: where both
+// together have 0.01 or more, and tetrahedra of two of the two halves and the newcomers are neighbours, all of it is
+// newcomers (first the first half, then the second as it is then).
 //
 // Pieces. Each half has a largest piece: of most area, in single precision; where they tie the one of most tetrahedra,
 // then the one with the lowest. What is apart from it, and beside the other half, changes sides: first of the first
