@@ -269,13 +269,21 @@ def print_parts(obj, cut, clearance=0.2, wall=1.2, bed=None):
     return Printed(printed.made(obj, plan), plan.printable.pegs, plan.printable.notes)
 
 
-def convex(obj, hulls=None, error=None, max_vertices=None):
+def convex(obj, hulls=None, error=None, max_vertices=None, engine="UNREAL"):
     """[object, ...] convex hulls that together contain the object's mesh and little else, for game engines: children of
-    the object, UCX_<its name>_00 and so on, in a new collection; the largest first. Give one of the two: hulls: so many,
-    fewer where more would gain nothing. error: as few as are found of which none goes farther than that from the mesh, in
-    the object's own space. max_vertices: of each hull, 8 or more. Outside Edit Mode only."""
+    the object, in a new collection; the largest first. Those that were made for it before are removed, and their
+    collection is taken. Give one of the two: hulls: so many, fewer where more would gain nothing. error: as few as are
+    found of which none goes farther than that from the mesh, in the object's own space. max_vertices: of each hull, 8 or
+    more.
+
+    engine: whose names they have: "UNREAL", UCX_<the object's name>_00 and so on; "GODOT", <name>_00-convcolonly;
+    "UNITY", <name>_collider_00; "RIGID_BODY", Blender's own: the object becomes a rigid body, and they together are its
+    shape. partwheel.Error: other objects have these names; nothing has changed then. Outside Edit Mode only."""
     _mesh(obj, edited=False)
-    return hulls_as_objects.made(obj, hierarchy(obj).convex_parts(hulls, error=error, max_vertices=max_vertices))
+    if engine not in hulls_as_objects.NAMES:
+        raise ValueError(f"engine is to be one of {', '.join(hulls_as_objects.NAMES)}.")
+    found = hierarchy(obj).convex_parts(hulls, error=error, max_vertices=max_vertices)
+    return hulls_as_objects.made(bpy.context, obj, found, engine)
 
 
 class Printed(NamedTuple):

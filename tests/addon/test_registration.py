@@ -323,7 +323,8 @@ class Offers(unittest.TestCase):
     """What menus and the panel of solids offer. Outside the panel's own default, an operator that follows the mouse must
     be told to begin in the view."""
 
-    SOLIDS = ["mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_split", "mesh.partwheel_swap"]
+    SOLIDS = ["mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_split", "mesh.partwheel_convex",
+              "mesh.partwheel_swap"]
     MENUS = {
         "VIEW3D_MT_edit_mesh": ["mesh.partwheel_deform", *SOLIDS[:2], "mesh.partwheel_parts", *SOLIDS[2:],
                                 "VIEW3D_MT_partwheel_part"],
@@ -376,5 +377,5 @@ class Offers(unittest.TestCase):
             bpy.types.VIEW3D_PT_partwheel_copy.draw(types.SimpleNamespace(layout=layout),
                                                     types.SimpleNamespace(mode=mode))
             self.assertEqual(list(layout.offered), self.SOLIDS + more)
-            for name in self.SOLIDS[3:] + more:
+            for name in self.SOLIDS[-1:] + more:
                 self.assertEqual(layout.offered[name].context, "INVOKE_REGION_WIN")

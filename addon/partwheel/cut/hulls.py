@@ -1,25 +1,78 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Convex hulls as objects that engines take as a model's collision."""
+"""Convex hulls as objects that engines, and Blender's own rigid bodies, take as a model's collision. In Object Mode;
+undo is the caller's."""
 
 import bpy
 from mathutils import Matrix
 
+from ..mesh.refusing import Refused
 from ..solid import composition
 
+# What hulls are called: as the engine's importer knows them, or so that people do.
+NAMES = {"UNREAL": "UCX_{model}_{number:02}", "GODOT": "{model}_{number:02}-convcolonly",
+         "UNITY": "{model}_collider_{number:02}", "RIGID_BODY": "{model}_hull_{number:02}"}
+OURS = "partwheel_hull"  # the property of objects that were made here: they make way for the next ones
+LONGEST = bpy.types.ID.bl_rna.properties["name"].length_max  # of a name, in bytes
 
-def made(obj, hulls):
-    """[object, ...]: a child of the object for each partwheel.ConvexPart, UCX_<its name>_00 and so on, seen as wires and
-    not rendered, in a new collection."""
-    collection = bpy.data.collections.new(f"{obj.name} hulls")
-    composition.home(obj).children.link(collection)
-    found = []
-    for number, hull in enumerate(hulls):
-        mesh = bpy.data.meshes.new(f"UCX_{obj.name}_{number:02}")
-        mesh.from_pydata(hull.vertices.tolist(), [], hull.triangles.tolist())
-        new = bpy.data.objects.new(mesh.name, mesh)
-        collection.objects.link(new)
-        new.parent, new.matrix_parent_inverse = obj, Matrix()
-        new.display_type, new.hide_render = "WIRE", True
-        found.append(new)
+
+def made(context, obj, hulls, engine="UNREAL"):
+    """[object, ...]: a child of the object for each partwheel.ConvexPart, named as the engine has it, one of NAMES; seen
+    as wires and not rendered, in a new collection, or in that of the earlier ones, which are removed. RIGID_BODY: the
+    object is a body whose shape they are together. Refused: nothing has changed."""
+    earlier = [child for child in obj.children if OURS in child]
+    names = [NAMES[engine].format(model=obj.name, number=number) for number in range(len(hulls))]
+    _check(obj, names, earlier, engine)
+    home = next((each.users_collection[0] for each in earlier if each.users_collection), None)
+    for each in earlier:
+        mesh = each.data
+        bpy.data.objects.remove(each)
+        if not mesh.users:
+            bpy.data.meshes.remove(mesh)
+    if not home:
+        home = bpy.data.collections.new(f"{obj.name} hulls")
+        composition.home(obj).children.link(home)
+    found = [_child(obj, hull, name, home) for hull, name in zip(hulls, names)]
+    if engine == "RIGID_BODY":
+        _simulated(context, obj, found)
     composition.update_matrices()
     return found
+
+
+def _check(obj, names, earlier, engine):
+    if engine == "RIGID_BODY" and obj.library:
+        raise Refused("{name} is linked from another file and can't be a rigid body: make it local first (Object > "
+                      "Relations > Make Local).", name=obj.name)
+    for name in names:
+        if len(name.encode()) >= LONGEST:
+            raise Refused("The name of {name} is too long for its hulls to be named after it: shorten it.", name=obj.name)
+        if bpy.data.objects.get(name) not in {None, *earlier}:
+            raise Refused("There is another object called {name}, as a hull would be: rename it.", name=name)
+
+
+def _child(obj, hull, name, collection):
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(hull.vertices.tolist(), [], hull.triangles.tolist())
+    new = bpy.data.objects.new(name, mesh)
+    new[OURS] = True
+    collection.objects.link(new)
+    new.parent, new.matrix_parent_inverse = obj, Matrix()
+    new.display_type, new.hide_render = "WIRE", True
+    return new
+
+
+def _simulated(context, obj, hulls):
+    """The object is a rigid body from now on, unless it was one; of its hulls, whichever shape it had."""
+    scene = context.scene
+    if not scene.rigidbody_world:
+        bpy.ops.rigidbody.world_add()
+    world = scene.rigidbody_world
+    if not world.collection:
+        world.collection = bpy.data.collections.new("RigidBodyWorld")  # as Blender calls it
+    for each in (obj, *hulls):
+        if not each.rigid_body:
+            world.collection.objects.link(each)
+    obj.rigid_body.collision_shape = "COMPOUND"
+    for each in hulls:
+        body = each.rigid_body
+        # Blender's own margin, 0.04, makes all that is small float or sink in.
+        body.collision_shape, body.use_margin, body.collision_margin = "CONVEX_HULL", True, 0

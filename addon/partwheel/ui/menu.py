@@ -18,10 +18,12 @@ def _entries(*operators, write=None, **label):
 
 ENTRIES = (
     ("VIEW3D_MT_edit_mesh", _entries("mesh.partwheel_deform", "mesh.partwheel_copy", "mesh.partwheel_remove",
-                                     "mesh.partwheel_parts", "mesh.partwheel_split", "mesh.partwheel_swap")),
+                                     "mesh.partwheel_parts", "mesh.partwheel_split", "mesh.partwheel_convex",
+                                     "mesh.partwheel_swap")),
     ("VIEW3D_MT_sculpt", _entries("mesh.partwheel_parts")),
     ("VIEW3D_MT_object", _entries("mesh.partwheel_copy", "mesh.partwheel_parts", "mesh.partwheel_split",
-                                  "mesh.partwheel_swap", "object.partwheel_place", "object.partwheel_unite")),
+                                  "mesh.partwheel_convex", "mesh.partwheel_swap", "object.partwheel_place",
+                                  "object.partwheel_unite")),
     ("VIEW3D_MT_select_edit_mesh", _entries("mesh.partwheel_similar", "mesh.partwheel_mirrored", "mesh.partwheel_box",
                                             "mesh.partwheel_select")),
     ("VIEW3D_MT_edit_mesh_select_similar", _entries("mesh.partwheel_similar", "mesh.partwheel_mirrored")),

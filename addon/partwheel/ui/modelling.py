@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The parts of the panel for modelling with parts: copy, remove, split; swap, place, unite; deform."""
+"""The parts of the panel for modelling with parts: copy, remove, split, convex parts; swap, place, unite; deform."""
 
 import bpy
 
@@ -20,6 +20,7 @@ class VIEW3D_PT_partwheel_copy(_Panel, bpy.types.Panel):
         column.operator("mesh.partwheel_copy")
         column.operator("mesh.partwheel_remove")
         column.operator("mesh.partwheel_split")
+        column.operator("mesh.partwheel_convex")
         column = self.layout.column(align=True)
         column.operator_context = "INVOKE_REGION_WIN"
         column.operator("mesh.partwheel_swap")

@@ -913,4 +913,56 @@ WORDS = {
         "它最多可使用 {size:.1f} GiB。",
     "A mesh with fewer faces (Decimate, or a voxel remesh) needs less.":
         "面数较少的网格（精简或体素重构网格）需要更少。",
+    "Make few convex hulls that contain the model and little else: children of it, as engines want its collision":
+        "生成少量凸壳，它们包含模型且几乎不多出什么：作为模型的子级，供引擎用作碰撞体",
+    "Convex Parts":
+        "凸部件",
+    "What decides how many hulls there are":
+        "由什么决定凸壳的数量",
+    "So many hulls; fewer where more would gain nothing":
+        "这么多凸壳；再多也无益处时则更少",
+    "Error":
+        "误差",
+    "As few hulls as are found that go nowhere farther from the model":
+        "在任何地方都不超出此距离的、能找到的最少凸壳",
+    "Hulls":
+        "凸壳",
+    "How many":
+        "多少",
+    "How far hulls may go from the model: a share of the longest distance across it":
+        "凸壳可离模型多远：占模型对角线的比例",
+    "Vertices":
+        "顶点",
+    "Of each hull, at most: physics engines take 64 or 255":
+        "每个凸壳的上限：物理引擎接受64或255个",
+    "For":
+        "用于",
+    "How the hulls are named, or what they become":
+        "凸壳如何命名，或变成什么",
+    "Unreal":
+        "Unreal",
+    "Godot":
+        "Godot",
+    "Unity":
+        "Unity",
+    "Names that begin with UCX: its importer takes them as the model's collision":
+        "以UCX开头的名称：其导入器将它们当作模型的碰撞体",
+    "Names that end with -convcolonly: its importer makes bodies with shapes of them":
+        "以-convcolonly结尾的名称：其导入器将它们变成带形状的物体",
+    "Names with collider, for children that get a convex Mesh Collider there":
+        "含collider的名称，供在那里添加凸面Mesh Collider的子级使用",
+    "Rigid Body":
+        "刚体",
+    "Blender's own: the model falls and rolls, and its hulls are its shape":
+        "Blender自带：模型会下落和滚动，凸壳就是它的形状",
+    "{name} is linked from another file and can't be a rigid body: make it local first (Object > Relations > Make Local).":
+        "{name} 是从其他文件链接的，不能成为刚体：请先将其设为本地（物体 > 关系 > 设为本地）。",
+    "The name of {name} is too long for its hulls to be named after it: shorten it.":
+        "{name} 的名称太长，无法据此为凸壳命名：请缩短。",
+    "There is another object called {name}, as a hull would be: rename it.":
+        "已有另一个物体名为 {name}，与凸壳要用的名称相同：请将其重命名。",
+    "{count} convex hulls around {name}, together of {times:.2f} times its volume.":
+        "围绕 {name} 的 {count} 个凸壳，总体积为其 {times:.2f} 倍。",
+    "Count":
+        "数量",
 }

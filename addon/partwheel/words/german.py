@@ -913,4 +913,56 @@ WORDS = {
         "Er darf {size:.1f} GiB benutzen.",
     "A mesh with fewer faces (Decimate, or a voxel remesh) needs less.":
         "Ein Mesh mit weniger Flächen (Dezimieren oder Voxel-Remesh) braucht weniger.",
+    "Make few convex hulls that contain the model and little else: children of it, as engines want its collision":
+        "Wenige konvexe Hüllen erzeugen, die das Modell und kaum mehr enthalten: seine Kinder, wie Engines sie zur Kollision wollen",
+    "Convex Parts":
+        "Konvexe Teile",
+    "What decides how many hulls there are":
+        "Was bestimmt, wie viele Hüllen es sind",
+    "So many hulls; fewer where more would gain nothing":
+        "So viele Hüllen; weniger, wo mehr nichts brächten",
+    "Error":
+        "Fehler",
+    "As few hulls as are found that go nowhere farther from the model":
+        "So wenige Hüllen, wie sich finden, die nirgends weiter vom Modell weggehen",
+    "Hulls":
+        "Hüllen",
+    "How many":
+        "Wie viele",
+    "How far hulls may go from the model: a share of the longest distance across it":
+        "Wie weit Hüllen vom Modell weggehen dürfen: ein Anteil der längsten Strecke quer durch es",
+    "Vertices":
+        "Vertices",
+    "Of each hull, at most: physics engines take 64 or 255":
+        "Je Hülle, höchstens: Physik-Engines nehmen 64 oder 255",
+    "For":
+        "Für",
+    "How the hulls are named, or what they become":
+        "Wie die Hüllen heißen oder was aus ihnen wird",
+    "Unreal":
+        "Unreal",
+    "Godot":
+        "Godot",
+    "Unity":
+        "Unity",
+    "Names that begin with UCX: its importer takes them as the model's collision":
+        "Namen, die mit UCX beginnen: Sein Importer nimmt sie als Kollision des Modells",
+    "Names that end with -convcolonly: its importer makes bodies with shapes of them":
+        "Namen, die mit -convcolonly enden: Sein Importer macht daraus Körper mit Formen",
+    "Names with collider, for children that get a convex Mesh Collider there":
+        "Namen mit collider, für Kinder, die dort einen konvexen Mesh Collider bekommen",
+    "Rigid Body":
+        "Starrkörper",
+    "Blender's own: the model falls and rolls, and its hulls are its shape":
+        "Blenders eigene: Das Modell fällt und rollt, und seine Hüllen sind seine Form",
+    "{name} is linked from another file and can't be a rigid body: make it local first (Object > Relations > Make Local).":
+        "{name} ist aus einer anderen Datei verknüpft und kann kein Starrkörper sein: erst lokal machen (Objekt > Beziehungen > Lokal machen).",
+    "The name of {name} is too long for its hulls to be named after it: shorten it.":
+        "Der Name von {name} ist zu lang, um seine Hüllen danach zu benennen: bitte kürzen.",
+    "There is another object called {name}, as a hull would be: rename it.":
+        "Ein anderes Objekt heißt {name}, wie eine Hülle heißen würde: bitte umbenennen.",
+    "{count} convex hulls around {name}, together of {times:.2f} times its volume.":
+        "{count} konvexe Hüllen um {name}, zusammen vom {times:.2f}-Fachen seines Volumens.",
+    "Count":
+        "Anzahl",
 }

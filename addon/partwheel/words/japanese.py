@@ -913,4 +913,56 @@ WORDS = {
         "使えるのは {size:.1f} GiB までです。",
     "A mesh with fewer faces (Decimate, or a voxel remesh) needs less.":
         "面の少ないメッシュ（デシメートまたはボクセルリメッシュ）なら少なくて済みます。",
+    "Make few convex hulls that contain the model and little else: children of it, as engines want its collision":
+        "モデルとわずかな余白だけを含む少数の凸包を作る: モデルの子で、エンジンの衝突判定に使える形",
+    "Convex Parts":
+        "凸パーツ",
+    "What decides how many hulls there are":
+        "凸包の数を何で決めるか",
+    "So many hulls; fewer where more would gain nothing":
+        "この数の凸包。増やしても良くならなければ少なくなる",
+    "Error":
+        "誤差",
+    "As few hulls as are found that go nowhere farther from the model":
+        "モデルからこれ以上離れない、見つかる限り少ない凸包",
+    "Hulls":
+        "凸包",
+    "How many":
+        "いくつ",
+    "How far hulls may go from the model: a share of the longest distance across it":
+        "凸包がモデルからどれだけ離れてよいか: モデルの対角線に対する割合",
+    "Vertices":
+        "頂点",
+    "Of each hull, at most: physics engines take 64 or 255":
+        "凸包ごとの上限: 物理エンジンは64または255まで受け付ける",
+    "For":
+        "用途",
+    "How the hulls are named, or what they become":
+        "凸包の名前の付け方、または凸包を何にするか",
+    "Unreal":
+        "Unreal",
+    "Godot":
+        "Godot",
+    "Unity":
+        "Unity",
+    "Names that begin with UCX: its importer takes them as the model's collision":
+        "UCXで始まる名前: インポーターがモデルの衝突判定として扱う",
+    "Names that end with -convcolonly: its importer makes bodies with shapes of them":
+        "-convcolonlyで終わる名前: インポーターが形状を持つボディにする",
+    "Names with collider, for children that get a convex Mesh Collider there":
+        "colliderを含む名前: そこで凸のMesh Colliderを付ける子オブジェクト用",
+    "Rigid Body":
+        "リジッドボディ",
+    "Blender's own: the model falls and rolls, and its hulls are its shape":
+        "Blender自身のもの: モデルが落ちて転がり、凸包がその形状になる",
+    "{name} is linked from another file and can't be a rigid body: make it local first (Object > Relations > Make Local).":
+        "{name} は別のファイルからリンクされているため、リジッドボディにできません。先にローカル化してください (オブジェクト > 関係 > ローカル化)。",
+    "The name of {name} is too long for its hulls to be named after it: shorten it.":
+        "{name} の名前が長すぎて、凸包にその名前を付けられません。短くしてください。",
+    "There is another object called {name}, as a hull would be: rename it.":
+        "凸包に付ける名前 {name} は別のオブジェクトが使っています。名前を変更してください。",
+    "{count} convex hulls around {name}, together of {times:.2f} times its volume.":
+        "{name} の周りに凸包を {count} 個作りました。合わせて体積の {times:.2f} 倍です。",
+    "Count":
+        "個数",
 }

@@ -913,4 +913,56 @@ WORDS = {
         "Puede usar {size:.1f} GiB.",
     "A mesh with fewer faces (Decimate, or a voxel remesh) needs less.":
         "Una malla con menos caras (Diezmar, o un remallado por vóxeles) necesita menos.",
+    "Make few convex hulls that contain the model and little else: children of it, as engines want its collision":
+        "Crear pocas envolventes convexas que contienen el modelo y poco más: hijas suyas, como los motores quieren su colisión",
+    "Convex Parts":
+        "Partes convexas",
+    "What decides how many hulls there are":
+        "Qué decide cuántas envolventes hay",
+    "So many hulls; fewer where more would gain nothing":
+        "Tantas envolventes; menos donde más no aportarían nada",
+    "Error":
+        "Error",
+    "As few hulls as are found that go nowhere farther from the model":
+        "Las menos envolventes que se encuentren que en ningún sitio se alejen más del modelo",
+    "Hulls":
+        "Envolventes",
+    "How many":
+        "Cuántas",
+    "How far hulls may go from the model: a share of the longest distance across it":
+        "Cuánto pueden alejarse las envolventes del modelo: una parte de su diagonal",
+    "Vertices":
+        "Vértices",
+    "Of each hull, at most: physics engines take 64 or 255":
+        "De cada envolvente, como mucho: los motores de física admiten 64 o 255",
+    "For":
+        "Para",
+    "How the hulls are named, or what they become":
+        "Cómo se llaman las envolventes, o en qué se convierten",
+    "Unreal":
+        "Unreal",
+    "Godot":
+        "Godot",
+    "Unity":
+        "Unity",
+    "Names that begin with UCX: its importer takes them as the model's collision":
+        "Nombres que empiezan por UCX: su importador los toma como colisión del modelo",
+    "Names that end with -convcolonly: its importer makes bodies with shapes of them":
+        "Nombres que acaban en -convcolonly: su importador hace de ellos cuerpos con formas",
+    "Names with collider, for children that get a convex Mesh Collider there":
+        "Nombres con collider, para hijos que allí reciben un Mesh Collider convexo",
+    "Rigid Body":
+        "Cuerpo rígido",
+    "Blender's own: the model falls and rolls, and its hulls are its shape":
+        "De Blender: el modelo cae y rueda, y sus envolventes son su forma",
+    "{name} is linked from another file and can't be a rigid body: make it local first (Object > Relations > Make Local).":
+        "{name} está vinculado desde otro archivo y no puede ser un cuerpo rígido: hazlo local primero (Objeto > Relaciones > Hacer local).",
+    "The name of {name} is too long for its hulls to be named after it: shorten it.":
+        "El nombre de {name} es demasiado largo para nombrar sus envolventes según él: acórtalo.",
+    "There is another object called {name}, as a hull would be: rename it.":
+        "Ya hay otro objeto llamado {name}, como se llamaría una envolvente: cámbiale el nombre.",
+    "{count} convex hulls around {name}, together of {times:.2f} times its volume.":
+        "{count} envolventes convexas alrededor de {name}, juntas de {times:.2f} veces su volumen.",
+    "Count":
+        "Cantidad",
 }

@@ -56,6 +56,10 @@ class ConvexPart(NamedTuple):
     volume: float
     error: Optional[float]
 
+    def hull_volume(self):
+        corners = (self.vertices - self.vertices[0])[self.triangles]
+        return float(np.linalg.det(corners).sum() / 6)
+
 
 class _Memory:
     """Native memory for numpy's array interface: an array made of it is read-only and keeps the owner alive."""

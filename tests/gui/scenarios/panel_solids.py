@@ -7,7 +7,7 @@ from compose import activate, caps, closed, volume
 
 # Pixels from the sidebar's top to the middle of the panel's title, and from there to its buttons.
 TITLE = 150
-COPY, REMOVE, SPLIT, UNITE = 31, 51, 72, 140
+COPY, REMOVE, SPLIT, UNITE = 31, 51, 72, 160
 
 
 def play(stage):

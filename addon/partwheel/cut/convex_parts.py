@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""mesh.partwheel_convex: few convex hulls that contain the model and little else, as its collision."""
+
+import bpy
+import numpy as np
+
+from ..pick.build import Beside
+from ..solid.copy_part import OnParts
+from ..words.say import rpt_
+from . import hulls
+
+
+class MESH_OT_partwheel_convex(OnParts, Beside, bpy.types.Operator):
+    """Make few convex hulls that contain the model and little else: children of it, as engines want its collision"""
+
+    bl_idname = "mesh.partwheel_convex"
+    bl_label = "Convex Parts"
+
+    by: bpy.props.EnumProperty(
+        name="By", description="What decides how many hulls there are",
+        items=[("HULLS", "Count", "So many hulls; fewer where more would gain nothing"),
+               ("ERROR", "Error", "As few hulls as are found that go nowhere farther from the model")])
+    hulls: bpy.props.IntProperty(name="Hulls", description="How many", default=16, min=1, soft_max=64, max=4096)
+    error: bpy.props.FloatProperty(
+        name="Error", description="How far hulls may go from the model: a share of the longest distance across it",
+        default=2, min=0.1, max=100, subtype="PERCENTAGE")
+    vertices: bpy.props.IntProperty(
+        name="Vertices", description="Of each hull, at most: physics engines take 64 or 255", default=64, min=8,
+        soft_max=255)
+    engine: bpy.props.EnumProperty(
+        name="For", description="How the hulls are named, or what they become",
+        items=[("UNREAL", "Unreal", "Names that begin with UCX: its importer takes them as the model's collision"),
+               ("GODOT", "Godot", "Names that end with -convcolonly: its importer makes bodies with shapes of them"),
+               ("UNITY", "Unity", "Names with collider, for children that get a convex Mesh Collider there"),
+               ("RIGID_BODY", "Rigid Body", "Blender's own: the model falls and rolls, and its hulls are its shape")])
+
+    def draw(self, _context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.row().prop(self, "by", expand=True)
+        layout.prop(self, "error" if self.by == "ERROR" else "hulls")
+        for name in ("vertices", "engine"):
+            layout.prop(self, name)
+
+    def work(self, context, obj, hierarchy):
+        across = float(np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)))
+        wanted = {"error": self.error / 100 * across} if self.by == "ERROR" else {"hulls": self.hulls}
+        found = hierarchy.convex_parts(**wanted, max_vertices=self.vertices)
+        made = hulls.made(context, obj, found, self.engine)
+        times = sum(each.hull_volume() for each in found) / hierarchy.summary.volume
+        self.report({"INFO"}, rpt_("{count} convex hulls around {name}, together of {times:.2f} times its volume.").format(
+            count=len(made), name=obj.name, times=times))
+
+
+CLASSES = (MESH_OT_partwheel_convex,)

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The operator Convex Parts: hulls for engines, as children; and as the shape of a body that Blender lets fall."""
+
+import bpy
+import numpy as np
+from common import BOX, MeshTest, part, read_off
+from mathutils import Matrix, Vector
+from mathutils.bvhtree import BVHTree
+from mathutils.geometry import convex_hull_2d
+
+# A gate, seen from the front: two posts and a beam across.
+GATE = (0, 0), (1, 0), (1, 3), (3, 3), (3, 0), (4, 0), (4, 4), (0, 4)
+
+
+def gate():
+    """(vertices, polygons), a unit deep."""
+    count = len(GATE)
+    vertices = [(x, y, z) for y in (0, 1) for x, z in GATE]
+    sides = [(i, (i + 1) % count, (i + 1) % count + count, i + count) for i in range(count)]
+    return vertices, [tuple(range(count))[::-1], tuple(range(count, 2 * count)), *(side for side in sides)]
+
+
+def places(obj):
+    """(V,3) of its mesh, where Blender has the object at this frame."""
+    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    return np.array([evaluated.matrix_world @ vertex.co for vertex in obj.data.vertices])
+
+
+class ConvexParts(MeshTest):
+    def setUp(self):
+        super().setUp()
+        self.collections = set(bpy.data.collections)
+
+    def tearDown(self):
+        if bpy.context.scene.rigidbody_world:
+            bpy.ops.rigidbody.world_remove()
+        bpy.context.scene.frame_set(1)
+        for collection in set(bpy.data.collections) - self.collections:
+            bpy.data.collections.remove(collection)
+        super().tearDown()
+
+    def everything(self):
+        return sorted([each.name for kind in (bpy.data.objects, bpy.data.meshes, bpy.data.collections) for each in kind]
+                      + [str(bool(bpy.context.scene.rigidbody_world))])
+
+    def test_children_that_hold_the_mesh_by_each_engines_names(self):
+        obj = self.add(*read_off("hand"), "Right Hand")
+        obj.location, obj.scale = (1, 2, 3), (2, 2, 2)
+        for engine, first in (("UNREAL", "UCX_Right Hand_00"), ("GODOT", "Right Hand_00-convcolonly"),
+                              ("UNITY", "Right Hand_collider_00"), ("RIGID_BODY", "Right Hand_hull_00")):
+            with self.subTest(engine):
+                self.assertEqual(bpy.ops.mesh.partwheel_convex(hulls=7, vertices=32, engine=engine), {"FINISHED"})
+                # Those of the other engine have gone, and all are where they were.
+                self.assertEqual([child.name for child in obj.children],
+                                 [first.replace("00", f"{number:02}") for number in range(7)])
+                self.assertEqual([len(each.objects) for each in bpy.data.collections if each.name.endswith("hulls")], [7])
+                self.assertEqual(len(bpy.data.meshes), 8)
+                self.assertEqual((bpy.context.active_object, bpy.context.selected_objects), (obj, [obj]))
+                bpy.context.view_layer.update()
+                trees = []
+                for child in obj.children:
+                    self.assertEqual(child.matrix_world, obj.matrix_world)
+                    self.assertLessEqual(len(child.data.vertices), 32)
+                    trees.append(BVHTree.FromObject(child, bpy.context.evaluated_depsgraph_get()))
+                size = max(obj.dimensions) / 2
+                for vertex in obj.data.vertices:
+                    outside = []
+                    for tree in trees:
+                        near, normal, _, distance = tree.find_nearest(vertex.co)
+                        outside.append(distance if (vertex.co - near).dot(normal) > 0 else 0)
+                    self.assertLess(min(outside), 1e-5 * size)
+
+    def test_the_error_is_a_share_of_the_diagonal(self):
+        obj = self.add(*read_off("hand"))
+        diagonal = Vector(np.ptp([vertex.co[:] for vertex in obj.data.vertices], axis=0)).length
+        counts = []
+        for share in (10, 3):
+            bpy.ops.mesh.partwheel_convex(by="ERROR", error=share)
+            made = [sorted(vertex.co[:] for vertex in child.data.vertices) for child in obj.children]
+            again = part("api").convex(obj, error=share / 100 * diagonal, max_vertices=64)
+            counts.append(len(again))
+            for one, other in zip(made, again):
+                np.testing.assert_allclose(one, sorted(vertex.co[:] for vertex in other.data.vertices), rtol=1e-5)
+        self.assertLess(counts[0], counts[1])
+
+    def test_one_undo_step(self):
+        obj = self.add(*read_off("hand"))
+        part("api").build(obj)
+        for mode in ("OBJECT", "EDIT"):
+            for engine in ("UNREAL", "RIGID_BODY"):
+                with self.subTest(mode=mode, engine=engine):
+                    bpy.ops.object.mode_set(mode=mode)
+                    bpy.ops.ed.undo_push(message="before")
+                    before = self.everything()
+                    bpy.ops.mesh.partwheel_convex(hulls=4, engine=engine)
+                    bpy.ops.ed.undo_push(message="Convex Parts")  # as Blender does after an operator of a window
+                    self.assertEqual(len(bpy.data.objects), 5)
+                    bpy.ops.ed.undo()
+                    self.assertEqual(self.everything(), before)
+                    self.assertIsNone(bpy.context.active_object.rigid_body)
+                    bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_refused_and_nothing_has_changed(self):
+        obj = self.add(*read_off("hand"), "hand")
+        bpy.ops.mesh.partwheel_convex(hulls=3)
+        other = self.add(*BOX, "UCX_hand_04")
+        bpy.context.view_layer.objects.active = obj
+        before = self.everything()
+        with self.assertRaisesRegex(RuntimeError, "UCX_hand_04"):
+            bpy.ops.mesh.partwheel_convex(hulls=6)
+        self.assertEqual(self.everything(), before)
+        other.name = "a box"
+        obj.name = "h" * (bpy.types.ID.bl_rna.properties["name"].length_max - 5)
+        before = self.everything()
+        with self.assertRaisesRegex(RuntimeError, "too long"):
+            bpy.ops.mesh.partwheel_convex(hulls=6)
+        self.assertEqual(self.everything(), before)
+        sheet = self.add([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], "sheet")
+        before = self.everything()
+        with self.assertRaisesRegex(RuntimeError, "sheet"):
+            bpy.ops.mesh.partwheel_convex()
+        self.assertEqual((self.everything(), bpy.context.active_object), (before, sheet))
+        for child in obj.children:
+            bpy.data.objects.remove(child)
+        obj.name = "hand"
+        far = self.linked(obj)
+        before = self.everything()
+        with self.assertRaisesRegex(RuntimeError, "linked"):
+            bpy.ops.mesh.partwheel_convex(engine="RIGID_BODY")
+        self.assertEqual(self.everything(), before)
+        bpy.ops.mesh.partwheel_convex(engine="UNREAL", hulls=3)
+        self.assertEqual([child.name for child in far.children], [f"UCX_hand_{number:02}" for number in range(3)])
+
+    # ---- Falling
+
+    def fall(self, frames=400):
+        """Each object's places at the end."""
+        scene = bpy.context.scene
+        floor = self.add([(100 * x, 100 * y, z) for x, y, z in np.array(BOX[0]) - 0.5], BOX[1], "floor")
+        floor.location.z = -0.5
+        self.passive(floor)
+        scene.rigidbody_world.point_cache.frame_end = frames
+        for frame in range(1, frames + 1):
+            scene.frame_set(frame)
+
+    def passive(self, obj):
+        bpy.context.view_layer.update()
+        bpy.context.scene.rigidbody_world.collection.objects.link(obj)
+        obj.rigid_body.type, obj.rigid_body.collision_shape = "PASSIVE", "BOX"
+
+    def test_a_gate_falls_over_a_post(self):
+        obj = self.add(*gate(), "gate")
+        obj.data.transform(Matrix.Translation((-2, -0.5, -2)))
+        obj.location.z = 5
+        bpy.ops.mesh.partwheel_convex(hulls=3, engine="RIGID_BODY")
+        self.assertEqual(len(obj.children), 3)
+        self.assertEqual((obj.rigid_body.type, obj.rigid_body.collision_shape), ("ACTIVE", "COMPOUND"))
+        post = self.add(np.array(BOX[0]) - 0.5, BOX[1], "post")
+        post.location.z = 0.5
+        self.passive(post)
+        self.fall(150)
+        now = places(obj)
+        self.assertLess(abs(now[:, 2].min()), 0.01)  # it stands on the floor; its hull would on the post
+        self.assertLess(abs(now[:, 2].max() - 4), 0.01)
+        for child in obj.children:
+            self.assertGreater(places(child)[:, 2].min(), -0.01)  # they have gone with it
+
+    def test_models_come_to_rest(self):
+        """With no vertex below the floor, a hull on it, and the middle of their weight above what they stand on."""
+        for name, turn in (("homer", (0.4, 0.3, 0)), ("cow", (1, 0.5, 0.2))):
+            with self.subTest(name):
+                obj = self.add(*read_off(name))
+                bpy.ops.object.origin_set(type="ORIGIN_CENTER_OF_VOLUME")
+                size = 2 / max(obj.dimensions)
+                obj.scale, obj.rotation_euler, obj.location = (size, size, size), turn, (0, 0, 2)
+                bpy.ops.mesh.partwheel_convex(hulls=12, engine="RIGID_BODY")
+                self.fall()
+                settled = places(obj)
+                bpy.context.scene.frame_set(390)
+                self.assertLess(abs(places(obj) - settled).max(), 0.02)
+                bpy.context.scene.frame_set(400)
+                self.assertGreater(settled[:, 2].min(), -0.01)
+                corners = np.vstack([places(child) for child in obj.children])
+                self.assertLess(abs(corners[:, 2].min()), 0.01)
+                stands = corners[corners[:, 2] < 0.02][:, :2]
+                outline = stands[convex_hull_2d([Vector(each) for each in stands])]
+                evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+                middle = np.array(evaluated.matrix_world.translation)[:2]
+                edges, to = np.roll(outline, -1, axis=0) - outline, middle - outline
+                self.assertTrue((np.cross(edges, to) > -0.01).all(), (outline, middle))
+                self.tearDown()
+                self.setUp()
