@@ -4,7 +4,7 @@
 #
 #   setup_build     compilers, CMake, test frameworks, the headers and sources that the library is built from, models
 #   setup_core      build/venv/core: Python with numpy, trimesh and what it writes 3MF by, pytest and pytest-xdist, libigl,
-#                   pyfqmr, mujoco, yourdfpy, check-jsonschema; a locale for its tests
+#                   pyfqmr, mujoco, yourdfpy, usd-core, check-jsonschema; a locale for its tests
 #   setup_docs      build/venv/docs: what makes the site of docs/
 #   setup_batch     build/venv/batch: what partwheel batch draws previews with as well; a Blender, a browser;
 #                   Ray and a server like S3's if PARTWHEEL_RAY is set
@@ -168,7 +168,7 @@ setup_core() {
     start_setup && packages python3 python3-venv ca-certificates locales || return
     into "$deps/locales" fill_locales || return
     venv core /usr/bin/python3 numpy scipy trimesh networkx lxml pytest pytest-xdist libigl manifold3d pyfqmr \
-        check-jsonschema mujoco yourdfpy
+        check-jsonschema mujoco yourdfpy usd-core
 }
 
 # What makes the site of docs/. Pinned: its look was looked at.

@@ -135,6 +135,44 @@ def test_urdf_has_all_hulls(written):
     assert found == pytest.approx(sorted(volumes), rel=1e-6)
 
 
+def test_usd_has_all_hulls(written):
+    pytest.importorskip("pxr")
+    from pxr import Usd, UsdGeom, UsdPhysics
+    folder, volumes = written
+    stage = Usd.Stage.Open(str(folder / "my_hand.usda"))
+    body = stage.GetDefaultPrim()
+    assert body.GetName() == "my_hand" and body.HasAPI(UsdPhysics.RigidBodyAPI)
+    assert UsdGeom.GetStageMetersPerUnit(stage) == 1 and UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z
+    bodies = UsdPhysics.UsdPhysicsLoadStageFromPrimRange(stage, ["/"])[UsdPhysics.ObjectType.RigidBody]
+    assert [len(each.collisions) for each in bodies[1]] == [9]  # what a simulator finds
+    shapes = [UsdGeom.Mesh(each) for each in body.GetChildren()]
+    assert [each.GetPath().name for each in shapes] == ["model", *(f"hull_{number:02}" for number in range(9))]
+    meshes_of = [(np.array(each.GetPointsAttr().Get(), float), np.array(each.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3))
+                 for each in shapes]
+    for each, (vertices, triangles) in zip(shapes, meshes_of):
+        assert list(each.GetFaceVertexCountsAttr().Get()) == [3] * len(triangles)
+        assert each.GetSubdivisionSchemeAttr().Get() == "none"
+        np.testing.assert_array_equal(each.GetExtentAttr().Get(), [vertices.min(axis=0), vertices.max(axis=0)])
+    for each, (vertices, triangles), expected in zip(shapes[1:], meshes_of[1:], volumes):
+        assert each.GetPrim().HasAPI(UsdPhysics.CollisionAPI) and each.GetPurposeAttr().Get() == "guide"
+        assert UsdPhysics.MeshCollisionAPI(each).GetApproximationAttr().Get() == "convexHull"
+        assert volume(vertices, triangles) == pytest.approx(expected, rel=1e-4)
+    model = meshes.read(HAND)
+    np.testing.assert_array_equal(meshes_of[0][0], model.vertices.astype(np.float32))
+    np.testing.assert_array_equal(meshes_of[0][1], model.triangles)
+    assert not shapes[0].GetPrim().HasAPI(UsdPhysics.CollisionAPI)
+
+
+def test_names_that_formats_do_not_take(tmp_path):
+    mesh = meshes.read(HAND)
+    hull = ConvexHull(mesh.vertices)
+    parts = [(mesh.vertices, hull.simplices)]
+    for name, file, prim in (("7 Stühle", "7_Stühle", "_7_St_hle"), ("a-b.c", "a-b.c", "a_b_c")):
+        convex.write(tmp_path, name, mesh, parts, ("usd",))
+        Sdf = pytest.importorskip("pxr.Sdf")
+        assert Sdf.Layer.FindOrOpen(str(tmp_path / f"{file}.usda")).defaultPrim == prim
+
+
 def test_command_line(tmp_path, capsys):
     model = str(HAND)
     size = np.ptp(meshes.read(HAND).vertices, axis=0).max()

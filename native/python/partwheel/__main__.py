@@ -3,7 +3,7 @@
                      python3 -m partwheel parts MODEL -o FOLDER [--parts N] [--formats glb,ply,stl,3mf] [options]
                          [--pegs MM or --flat, --wall MM, --size MM, --bed X,Y,Z]
                      python3 -m partwheel convex MODEL -o FOLDER [--hulls N or --error E] [--max-vertices N]
-                         [--formats obj,glb,unreal,godot,urdf,mjcf] [options]
+                         [--formats obj,glb,unreal,godot,urdf,mjcf,usd] [options]
                      python3 -m partwheel batch IN... -o FOLDER [--make hierarchy,cut,...] [--shard I/N] [options]
                      python3 -m partwheel report FOLDER
 
@@ -60,7 +60,7 @@ def parse(arguments):
                        help="of a hull, 8 or more: PhysX takes 64 or 255 (default: any number)")
     hulls.add_argument("--formats", type=hull_formats, default=["obj"], metavar="F,...",
                        help="obj, glb: the hulls; unreal, godot: glb with the model and its hulls, named as these engines "
-                            "have it; urdf, mjcf: for robot simulators (default: obj)")
+                            "have it; urdf, mjcf, usd: for robot simulators (default: obj)")
     for command in (build, parts, hulls):
         command.add_argument("model", type=Path, help="a mesh file: OFF, or any other format that trimesh reads")
         command.add_argument("--json", action="store_true", help="print the report as JSON on one line")

@@ -2,11 +2,11 @@
 """Convex hulls as files, by the conventions of engines and simulators."""
 
 import re
-from xml.etree import ElementTree
 
 from ..meshes import needed_trimesh
+from . import simulators
 
-FORMATS = "obj", "glb", "unreal", "godot", "urdf", "mjcf"
+FORMATS = "obj", "glb", "unreal", "godot", "urdf", "mjcf", "usd"
 
 
 def write(folder, name, mesh, hulls, formats=("obj",)):
@@ -16,7 +16,8 @@ def write(folder, name, mesh, hulls, formats=("obj",)):
     the model NAME with the hulls UCX_NAME_00 and so on, which Unreal takes as its collision. godot: NAME_godot.glb, the model
     with the hulls NAME_00-convcolonly and so on, of which Godot makes a body with shapes. urdf: NAME.urdf, a link that looks
     as the model and collides as the hulls. mjcf: NAME.xml, a body of MuJoCo's, falling freely, with a mesh and a geom for
-    each hull. The last two name files in NAME_hulls/, in the unit of the model as all else; what they call metres.
+    each hull. These two name files in NAME_hulls/. usd: NAME.usda, a body of UsdPhysics that looks as the model and collides
+    as the hulls, which are guides. All in the unit of the model, which simulators take for metres, and z for up.
 
     hulls: [(vertices, triangles, ...), ...]. mesh: a meshes.Mesh. Raises MeshFileError without trimesh, where glb is
     written; OSError."""
@@ -50,9 +51,11 @@ def write(folder, name, mesh, hulls, formats=("obj",)):
     files = [f"{name}_hulls/{number}.obj" for number in numbers]
     if "urdf" in formats:
         put(f"{name}_hulls/model.obj", write_obj, [model])
-        put(f"{name}.urdf", _write_xml, _urdf(name, f"{name}_hulls/model.obj", files))
+        put(f"{name}.urdf", simulators.write_urdf, name, f"{name}_hulls/model.obj", files)
     if "mjcf" in formats:
-        put(f"{name}.xml", _write_xml, _mjcf(name, files))
+        put(f"{name}.xml", simulators.write_mjcf, name, files)
+    if "usd" in formats:
+        put(f"{name}.usda", simulators.write_usd, name, model, named(f"hull_{number}" for number in numbers))
     return written
 
 
@@ -73,28 +76,3 @@ def _write_glb(path, named):
     for name, vertices, triangles in named:
         scene.add_geometry(trimesh.Trimesh(vertices, triangles, process=False), node_name=name, geom_name=name)
     path.write_bytes(scene.export(file_type="glb"))
-
-
-def _write_xml(path, root):
-    ElementTree.indent(root)
-    ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
-
-
-def _urdf(name, model, files):
-    robot = ElementTree.Element("robot", name=name)
-    link = ElementTree.SubElement(robot, "link", name=name)
-    for role, file in [("visual", model), *(("collision", file) for file in files)]:
-        shape = ElementTree.SubElement(link, role, name=file.rpartition("/")[2].removesuffix(".obj"))
-        ElementTree.SubElement(ElementTree.SubElement(shape, "geometry"), "mesh", filename=file)
-    return robot
-
-
-def _mjcf(name, files):
-    root = ElementTree.Element("mujoco", model=name)
-    asset, world = ElementTree.SubElement(root, "asset"), ElementTree.SubElement(root, "worldbody")
-    body = ElementTree.SubElement(world, "body", name=name)
-    ElementTree.SubElement(body, "freejoint")
-    for number, file in enumerate(files):
-        ElementTree.SubElement(asset, "mesh", name=f"hull_{number:02}", file=file, inertia="convex")
-        ElementTree.SubElement(body, "geom", type="mesh", mesh=f"hull_{number:02}")
-    return root
