@@ -2,7 +2,7 @@
 """The command line: python3 -m partwheel build MODEL [-o FILE] [--json] [options]
                      python3 -m partwheel parts MODEL -o FOLDER [--parts N] [--formats glb,ply,stl,3mf] [options]
                          [--pegs MM or --flat, --wall MM, --size MM, --bed X,Y,Z]
-                     python3 -m partwheel convex MODEL -o FOLDER [--hulls N or --error E] [--max-vertices N]
+                     python3 -m partwheel convex MODEL -o FOLDER [--hulls N or --error E] [--max-vertices N] [--primitives D]
                          [--formats obj,glb,unreal,godot,urdf,mjcf,usd] [options]
                      python3 -m partwheel batch IN... -o FOLDER [--make hierarchy,cut,...] [--shard I/N] [options]
                      python3 -m partwheel report FOLDER
@@ -58,6 +58,9 @@ def parse(arguments):
                       help="as few as are found that go nowhere farther than this from the model, in its unit")
     hulls.add_argument("--max-vertices", type=int, default=0, metavar="N",
                        help="of a hull, 8 or more: PhysX takes 64 or 255 (default: any number)")
+    hulls.add_argument("--primitives", type=length, default=None, metavar="D",
+                       help="take a box, sphere, capsule or cylinder where it goes nowhere farther than this from the hull, "
+                            "in the model's unit; in glb, unreal, urdf, mjcf, usd as far as these have it")
     hulls.add_argument("--formats", type=hull_formats, default=["obj"], metavar="F,...",
                        help="obj, glb: the hulls; unreal, godot: glb with the model and its hulls, named as these engines "
                             "have it; urdf, mjcf, usd: for robot simulators (default: obj)")
@@ -165,7 +168,7 @@ def build(options, report):
     elif options.command == "convex":
         count = {"error": options.error} if options.error else {"hulls": options.hulls}
         found = hierarchy.convex_parts(**count, max_vertices=options.max_vertices)
-        written = convex.write(options.output, options.model.stem, mesh, found, options.formats)
+        written = convex.write(options.output, options.model.stem, mesh, found, options.formats, options.primitives)
         report.update(hulls=len(found), files=list(map(str, written)))
     elif options.output:
         options.output.write_bytes(hierarchy.save())

@@ -2,14 +2,17 @@
 """Convex hulls as files, by the conventions of engines and simulators."""
 
 import re
+from functools import cache
 
 from ..meshes import needed_trimesh
 from . import simulators
+from .primitives import KINDS, around, kind_of
 
 FORMATS = "obj", "glb", "unreal", "godot", "urdf", "mjcf", "usd"
+UNREAL = {"hull": "UCX", "box": "UBX", "sphere": "USP", "capsule": "UCP"}
 
 
-def write(folder, name, mesh, hulls, formats=("obj",)):
+def write(folder, name, mesh, hulls, formats=("obj",), primitives=None):
     """Writes hulls into a folder, made if it is not there; [path, ...] what was written.
 
     obj: NAME_hulls.obj, an object for each, UCX_NAME_00 and so on. glb: NAME_hulls.glb, the same. unreal: NAME_unreal.glb,
@@ -19,17 +22,27 @@ def write(folder, name, mesh, hulls, formats=("obj",)):
     each hull. These two name files in NAME_hulls/. usd: NAME.usda, a body of UsdPhysics that looks as the model and collides
     as the hulls, which are guides. All in the unit of the model, which simulators take for metres, and z for up.
 
+    primitives: None for hulls alone, or the length that a box, sphere, capsule or cylinder may reach beyond a hull to be
+    taken in its place, see around(): in mjcf and usd; in urdf, which has no capsules; in glb and unreal, which have no
+    cylinders, named UBX_NAME_00, USP_..., UCP_... and turned by their nodes.
+
+    In all glb files a node of a hull has the extras "collider", "hull" or the kind of a primitive; "of", the model's name;
+    and "size" of a primitive, along the node's own axes.
+
     hulls: [(vertices, triangles, ...), ...]. mesh: a meshes.Mesh. Raises MeshFileError without trimesh, where glb is
     written; OSError."""
     name = re.sub(r"[^\w.-]", "_", name)  # as all readers take it
     folder.mkdir(parents=True, exist_ok=True)
     numbers = [f"{number:02}" for number in range(len(hulls))]
-    unreal = [f"UCX_{name}_{number}" for number in numbers]
-    model = name, mesh.vertices, mesh.triangles
+    surface = mesh.vertices, mesh.triangles
+    hulls = [hull[:2] for hull in hulls]
     written = []
 
-    def named(names):
-        return [(each, *hull[:2]) for each, hull in zip(names, hulls)]
+    @cache
+    def shapes(*kinds):
+        """What collides where there are these kinds: hulls, and Primitives."""
+        taken = [primitives is not None and around(*hull, primitives, kinds) for hull in hulls]
+        return [primitive or hull for primitive, hull in zip(taken, hulls)]
 
     def put(file_name, write_it, *arguments):
         path = folder / file_name
@@ -37,25 +50,30 @@ def write(folder, name, mesh, hulls, formats=("obj",)):
         write_it(path, *arguments)
         written.append(path)
 
+    unreal = [f"UCX_{name}_{number}" for number in numbers]
     if "obj" in formats:
-        put(f"{name}_hulls.obj", write_obj, named(unreal))
-    if "glb" in formats:
-        put(f"{name}_hulls.glb", _write_glb, named(unreal))
-    if "unreal" in formats:
-        put(f"{name}_unreal.glb", _write_glb, [model, *named(unreal)])
+        put(f"{name}_hulls.obj", write_obj, [(each, *hull) for each, hull in zip(unreal, hulls)])
+    if {"glb", "unreal"} & set(formats):
+        found = shapes("sphere", "capsule", "box")
+        found = [(f"{UNREAL[kind_of(each)]}_{name}_{number}", each) for number, each in zip(numbers, found)]
+        if "glb" in formats:
+            put(f"{name}_hulls.glb", _write_glb, name, None, found)
+        if "unreal" in formats:
+            put(f"{name}_unreal.glb", _write_glb, name, surface, found)
     if "godot" in formats:
-        put(f"{name}_godot.glb", _write_glb, [model, *named(f"{name}_{number}-convcolonly" for number in numbers)])
+        named = [(f"{name}_{number}-convcolonly", hull) for number, hull in zip(numbers, hulls)]
+        put(f"{name}_godot.glb", _write_glb, name, surface, named)
     if {"urdf", "mjcf"} & set(formats):
-        for each in named(numbers):
-            put(f"{name}_hulls/{each[0]}.obj", write_obj, [each])
+        for number, hull in zip(numbers, hulls):
+            put(f"{name}_hulls/{number}.obj", write_obj, [(number, *hull)])
     files = [f"{name}_hulls/{number}.obj" for number in numbers]
     if "urdf" in formats:
-        put(f"{name}_hulls/model.obj", write_obj, [model])
-        put(f"{name}.urdf", simulators.write_urdf, name, f"{name}_hulls/model.obj", files)
+        put(f"{name}_hulls/model.obj", write_obj, [(name, *surface)])
+        put(f"{name}.urdf", simulators.write_urdf, name, f"{name}_hulls/model.obj", files, shapes("box", "sphere", "cylinder"))
     if "mjcf" in formats:
-        put(f"{name}.xml", simulators.write_mjcf, name, files)
+        put(f"{name}.xml", simulators.write_mjcf, name, files, shapes(*KINDS))
     if "usd" in formats:
-        put(f"{name}.usda", simulators.write_usd, name, model, named(f"hull_{number}" for number in numbers))
+        put(f"{name}.usda", simulators.write_usd, name, surface, shapes(*KINDS))
     return written
 
 
@@ -70,9 +88,20 @@ def write_obj(path, named):
             first += len(vertices)
 
 
-def _write_glb(path, named):
+def _write_glb(path, model, surface, named):
+    """model: its name; surface: (vertices, triangles), or None. named: [(name, hull or Primitive), ...]."""
     trimesh = needed_trimesh("Writing glb files")
     scene = trimesh.Scene()
-    for name, vertices, triangles in named:
-        scene.add_geometry(trimesh.Trimesh(vertices, triangles, process=False), node_name=name, geom_name=name)
+
+    def add(name, mesh, **more):
+        scene.add_geometry(trimesh.Trimesh(*mesh, process=False), node_name=name, geom_name=name, **more)
+
+    if surface:
+        add(model, surface)
+    for name, shape in named:
+        extras = {"collider": kind_of(shape), "of": model}
+        if extras["collider"] == "hull":
+            add(name, shape, metadata=extras)
+        else:
+            add(name, shape.mesh(), transform=shape.matrix(), metadata={**extras, "size": (2 * shape.half).tolist()})
     path.write_bytes(scene.export(file_type="glb"))

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Primitives in place of hulls: found where there is one, around all of the hull, as near as they say (distances by libigl),
+and in files as their readers understand them, by how far they reach in many directions."""
+
+import json
+import struct
+
+import numpy as np
+import pytest
+import shapes
+from partwheel import Hierarchy, convex, meshes
+from scipy.spatial import ConvexHull
+from scipy.spatial.transform import Rotation
+
+EXACT = [("box", (1, 2, 3)), ("box", (1, 1, 1)), ("box", (0.05, 2, 3)), ("sphere", (2, 2, 2)), ("capsule", (1, 1, 3)),
+         ("capsule", (1, 1, 1.5)), ("cylinder", (1, 1, 3)), ("cylinder", (2, 2, 0.3))]
+WAYS = Rotation.random(200, random_state=3).as_matrix()[:, 0]  # (200,3) of length 1
+
+
+def turned(number):
+    """Something in general position: (center, axes)."""
+    return np.array([3.0, -5, 8]) + number, Rotation.from_euler("xyz", [0.3 + number, 1.1, -0.7]).as_matrix()
+
+
+def rounded(kind, half, count=24):
+    """Points all over a shape, in its own space: corners of a box, or circles that are much finer than those of meshes."""
+    radius, straight = half[0], half[2] - half[0]
+    if kind == "box":
+        return np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half
+    turns = np.arange(count) / count * 2 * np.pi
+    circle = np.column_stack([np.cos(turns), np.sin(turns)])
+    if kind == "cylinder":
+        rings = [(radius, -half[2]), (radius, half[2])]
+    else:
+        up = np.linspace(0, np.pi / 2, count // 4 + 1)
+        rings = [(radius * np.cos(turn), sign * (radius * np.sin(turn) + straight)) for turn in up for sign in (-1, 1)]
+    return np.vstack([np.column_stack([ring * circle, np.full(count, z)]) for ring, z in rings])
+
+
+def hull_of(points):
+    hull = ConvexHull(points)
+    number = np.zeros(len(points), int)
+    number[hull.vertices] = np.arange(len(hull.vertices))
+    vertices, triangles = points[hull.vertices], number[hull.simplices]
+    a, b, c = vertices[triangles].transpose(1, 0, 2)
+    inward = (np.cross(b - a, c - a) * hull.equations[:, :3]).sum(axis=1) < 0
+    triangles[inward] = triangles[inward][:, ::-1]
+    return vertices, triangles
+
+
+def outside(primitive, points):
+    """(n,) how far points are outside of a primitive, at most 0 for those in it."""
+    x = np.abs((points - primitive.center) @ primitive.axes)
+    if primitive.kind == "box":
+        return (x - primitive.half).max(axis=1)
+    across, radius, half = np.linalg.norm(x[:, :2], axis=1), primitive.half[0], primitive.half[2]
+    if primitive.kind == "cylinder":
+        return np.maximum(across - radius, x[:, 2] - half)
+    return np.hypot(across, np.maximum(x[:, 2] - (half - radius), 0)) - radius
+
+
+def reach(primitive, vertices, triangles):
+    """How far it goes away from a hull, by points on it."""
+    igl = pytest.importorskip("igl")
+    points = rounded(primitive.kind, primitive.half, 128) @ primitive.axes.T + primitive.center
+    squared = igl.point_mesh_squared_distance(points, vertices, triangles.astype(np.int64))[0]
+    planes = ConvexHull(vertices).equations
+    away = (points @ planes[:, :3].T + planes[:, 3]).max(axis=1) > 0
+    return np.sqrt(squared[away].max(initial=0))
+
+
+@pytest.mark.parametrize("number", range(len(EXACT)))
+def test_each_is_found_where_it_is(number):
+    kind, half = EXACT[number]
+    center, axes = turned(number)
+    hull = hull_of(rounded(kind, np.array(half, float)) @ axes.T + center)
+    found = convex.around(*hull, 0.02 * max(half))
+    assert found.kind == kind
+    np.testing.assert_allclose(found.center, center, atol=2e-3 * max(half))
+    np.testing.assert_allclose(np.sort(found.half), np.sort(half), atol=3e-3 * max(half))
+    assert outside(found, hull[0]).max() < 1e-9
+    assert reach(found, *hull) <= 0.02 * max(half)
+    np.testing.assert_allclose(found.axes.T @ found.axes, np.eye(3), atol=1e-12)
+    assert np.linalg.det(found.axes) == pytest.approx(1)
+    if kind in {"capsule", "cylinder"}:
+        assert abs(found.axes[:, 2] @ axes[:, 2]) > 1 - 1e-5
+    without = convex.around(*hull, 0.02 * max(half), [each for each in ("sphere", "box", "cylinder") if each != kind])
+    assert without is None
+
+
+@pytest.mark.parametrize("number", range(len(EXACT)))
+def test_meshes_are_closed_and_as_large(number):
+    kind, half = EXACT[number]
+    primitive = convex.Primitive(kind, *turned(number), np.array(half, float))
+    vertices, triangles = primitive.mesh()
+    directed = {tuple(pair) for k in range(3) for pair in triangles[:, [k, (k + 1) % 3]]}
+    assert len(directed) == 3 * len(triangles) and directed == {(b, a) for a, b in directed}
+    np.testing.assert_allclose(vertices.max(axis=0), half)
+    np.testing.assert_allclose(vertices.min(axis=0), -np.array(half))
+    inside = np.linalg.det(vertices[triangles]).sum() / 6
+    assert inside == pytest.approx(ConvexHull(vertices).volume)
+    assert 0.93 * primitive.volume() < inside <= primitive.volume() * (1 + 1e-9)
+    assert primitive.volume() == pytest.approx(ConvexHull(rounded(kind, np.array(half), 120)).volume, rel=3e-3)
+
+
+@pytest.mark.parametrize("name", ["homer", "elephant"])
+def test_parts_of_models(name):
+    mesh = meshes.read(shapes.MESHES / f"{name}.off")
+    hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count)
+    most = 0.04 * np.linalg.norm(np.ptp(hierarchy.vertices, axis=0))
+    parts = hierarchy.convex_parts(8, max_vertices=64)
+    found = [convex.around(*part[:2], most) for part in parts]
+    assert any(found)
+    for primitive, part in zip(found, parts):
+        if primitive:
+            assert outside(primitive, part.vertices).max() < 1e-9 * most
+            assert reach(primitive, part.vertices, part.triangles) <= most
+    assert [convex.around(*part[:2], 0) for part in parts] == [None] * len(parts)
+
+
+def support(kind, center, axes, half):
+    """(n,) how far a shape reaches in each of WAYS."""
+    along, radius = WAYS @ axes, half[0]
+    own = {"box": np.abs(along) @ half, "sphere": radius,
+           "capsule": radius + (half[2] - radius) * np.abs(along[:, 2]),
+           "cylinder": radius * np.linalg.norm(along[:, :2], axis=1) + half[2] * np.abs(along[:, 2])}[kind]
+    return WAYS @ center + own
+
+
+KINDS = "box", "sphere", "capsule", "cylinder", "hull"
+HALF = {"box": (1, 2, 3), "sphere": (2, 2, 2), "capsule": (1, 1, 3), "cylinder": (1, 1, 2)}
+NEAR = 0.06
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """(folder, the hulls' support)"""
+    folder = tmp_path_factory.mktemp("primitives")
+    hulls = []
+    for number, kind in enumerate(KINDS):
+        center, axes = turned(number)
+        points = rounded(kind, np.array(HALF[kind], float)) if kind in HALF else np.eye(4)[:, :3] * 4
+        hulls.append(hull_of(points @ axes.T + 3 * number * center))
+    mesh = meshes.read(shapes.MESHES / "hand.off")
+    convex.write(folder, "five", mesh, hulls, convex.FORMATS, 0.08)
+    return folder, [(WAYS @ vertices.T).max(axis=1) for vertices, _ in hulls]
+
+
+def test_glb_has_them_in_their_own_axes(written):
+    trimesh = pytest.importorskip("trimesh")
+    folder, supports = written
+    data = (folder / "five_unreal.glb").read_bytes()
+    nodes = json.loads(data[20:20 + struct.unpack("<I", data[12:16])[0]])["nodes"]
+    extras = {node["name"]: node["extras"] for node in nodes if node.get("extras")}
+    names = ["UBX_five_00", "USP_five_01", "UCP_five_02", "UCX_five_03", "UCX_five_04"]
+    assert list(extras) == names and {each["of"] for each in extras.values()} == {"five"}
+    assert [each["collider"] for each in extras.values()] == ["box", "sphere", "capsule", "hull", "hull"]
+    for name, kind in zip(names[:3], KINDS):
+        assert sorted(extras[name]["size"]) == pytest.approx(sorted(2 * np.array(HALF[kind])), abs=NEAR)
+    for file in ("five_unreal.glb", "five_hulls.glb"):
+        scene = trimesh.load(folder / file, force="scene")
+        for name, expected in zip(names, supports):
+            matrix, mesh = scene.graph[name]
+            vertices = np.asarray(scene.geometry[mesh].vertices) @ matrix[:3, :3].T + matrix[:3, 3]
+            np.testing.assert_allclose((WAYS @ vertices.T).max(axis=1), expected, atol=0.1)  # of 16 sides, not round
+    godot = trimesh.load(folder / "five_godot.glb", force="scene")
+    assert len(godot.geometry["five_01-convcolonly"].vertices) > 200  # no primitives there
+
+
+def test_mujoco_takes_them(written):
+    mujoco = pytest.importorskip("mujoco")
+    folder, supports = written
+    model = mujoco.MjModel.from_xml_path(str(folder / "five.xml"))
+    state = mujoco.MjData(model)
+    mujoco.mj_forward(model, state)
+    kinds = ["BOX", "SPHERE", "CAPSULE", "CYLINDER", "MESH"]
+    assert [mujoco.mjtGeom(each).name for each in model.geom_type] == [f"mjGEOM_{kind}" for kind in kinds]
+    assert model.nmesh == 1
+    for number, kind in enumerate(KINDS[:4]):
+        radius, half, _ = model.geom_size[number]
+        size = {"box": model.geom_size[number], "sphere": [radius] * 3, "capsule": [radius, radius, half + radius],
+                "cylinder": [radius, radius, half]}[kind]
+        found = support(kind, state.geom_xpos[number], state.geom_xmat[number].reshape(3, 3), np.array(size))
+        np.testing.assert_allclose(found, supports[number], atol=NEAR)
+
+
+def test_urdf_has_them(written):
+    yourdfpy = pytest.importorskip("yourdfpy")
+    folder, supports = written
+    robot = yourdfpy.URDF.load(str(folder / "five.urdf"), load_meshes=False)
+    found = robot.robot.links[0].collisions
+    assert [each.name for each in found] == ["00", "01", "02", "03", "04"]
+    for number, (each, kind) in enumerate(zip(found, KINDS)):
+        shape = getattr(each.geometry, kind, None)
+        if kind in {"capsule", "hull"}:  # it knows none
+            assert each.geometry.mesh.filename == f"five_hulls/{number:02}.obj" and each.origin is None
+            continue
+        size = {"box": lambda: np.array(shape.size) / 2, "sphere": lambda: np.full(3, shape.radius),
+                "cylinder": lambda: np.array([shape.radius, shape.radius, shape.length / 2])}[kind]()
+        found_support = support(kind, each.origin[:3, 3], each.origin[:3, :3], size)
+        np.testing.assert_allclose(found_support, supports[number], atol=NEAR)
+
+
+def test_usd_has_them(written):
+    pytest.importorskip("pxr")
+    from pxr import Usd, UsdGeom, UsdPhysics
+    folder, supports = written
+    stage = Usd.Stage.Open(str(folder / "five.usda"))
+    found = stage.GetDefaultPrim().GetChildren()[1:]
+    assert [each.GetName() for each in found] == [f"{kind}_{number:02}" for number, kind in enumerate(KINDS)]
+    assert [each.GetTypeName() for each in found] == ["Cube", "Sphere", "Capsule", "Cylinder", "Mesh"]
+    for number, (each, kind) in enumerate(zip(found[:4], KINDS)):
+        assert each.HasAPI(UsdPhysics.CollisionAPI) and UsdGeom.Imageable(each).GetPurposeAttr().Get() == "guide"
+        matrix = np.array(UsdGeom.Xformable(each).ComputeLocalToWorldTransform(Usd.TimeCode.Default())).T
+
+        def value(name):
+            return each.GetAttribute(name).Get()
+
+        lengths = np.linalg.norm(matrix[:3, :3], axis=0)
+        radius = value("radius")
+        size = {"box": lambda: lengths * value("size") / 2, "sphere": lambda: [radius] * 3,
+                "capsule": lambda: [radius, radius, value("height") / 2 + radius],
+                "cylinder": lambda: [radius, radius, value("height") / 2]}[kind]()
+        assert kind == "box" or np.allclose(lengths, 1)
+        assert kind in {"box", "sphere"} or value("axis") == "Z"
+        found_support = support(kind, matrix[:3, 3], matrix[:3, :3] / lengths, np.array(size))
+        np.testing.assert_allclose(found_support, supports[number], atol=NEAR)
+        corners = [-np.array(size), np.array(size)] if kind != "box" else [-np.ones(3), np.ones(3)]
+        np.testing.assert_allclose(value("extent"), corners, atol=1e-5)
