@@ -269,7 +269,7 @@ def print_parts(obj, cut, clearance=0.2, wall=1.2, bed=None):
     return Printed(printed.made(obj, plan), plan.printable.pegs, plan.printable.notes)
 
 
-def convex(obj, hulls=None, error=None, max_vertices=None, engine="UNREAL"):
+def convex(obj, hulls=None, error=None, max_vertices=None, engine="UNREAL", primitives=0.0):
     """[object, ...] convex hulls that together contain the object's mesh and little else, for game engines: children of
     the object, in a new collection; the largest first. Those that were made for it before are removed, and their
     collection is taken. Give one of the two: hulls: so many, fewer where more would gain nothing. error: as few as are
@@ -278,12 +278,14 @@ def convex(obj, hulls=None, error=None, max_vertices=None, engine="UNREAL"):
 
     engine: whose names they have: "UNREAL", UCX_<the object's name>_00 and so on; "GODOT", <name>_00-convcolonly;
     "UNITY", <name>_collider_00; "RIGID_BODY", Blender's own: the object becomes a rigid body, and they together are its
-    shape. partwheel.Error: other objects have these names; nothing has changed then. Outside Edit Mode only."""
+    shape. primitives: a box, sphere, capsule or cylinder is taken where it goes no farther than that from the hull, as
+    far as the engine has these: UBX_, USP_, UCP_; <name>_box_00; 0: hulls alone. partwheel.Error: other objects have these
+    names; nothing has changed then. Outside Edit Mode only."""
     _mesh(obj, edited=False)
     if engine not in hulls_as_objects.NAMES:
         raise ValueError(f"engine is to be one of {', '.join(hulls_as_objects.NAMES)}.")
     found = hierarchy(obj).convex_parts(hulls, error=error, max_vertices=max_vertices)
-    return hulls_as_objects.made(bpy.context, obj, found, engine)
+    return hulls_as_objects.made(bpy.context, obj, found, engine, primitives)
 
 
 class Printed(NamedTuple):

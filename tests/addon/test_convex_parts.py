@@ -8,8 +8,8 @@ from mathutils import Matrix, Vector
 from mathutils.bvhtree import BVHTree
 from mathutils.geometry import convex_hull_2d
 
-# A gate, seen from the front: two posts and a beam across.
-GATE = (0, 0), (1, 0), (1, 3), (3, 3), (3, 0), (4, 0), (4, 4), (0, 4)
+# A gate, seen from the front: two posts and a beam across that is longer.
+GATE = (0, 0), (1, 0), (1, 3), (3, 3), (3, 0), (4, 0), (4, 3), (5, 3), (5, 4), (-1, 4), (-1, 3), (0, 3)
 
 
 def gate():
@@ -53,7 +53,8 @@ class ConvexParts(MeshTest):
                 # Those of the other engine have gone, and all are where they were.
                 self.assertEqual([child.name for child in obj.children],
                                  [first.replace("00", f"{number:02}") for number in range(7)])
-                self.assertEqual([len(each.objects) for each in bpy.data.collections if each.name.endswith("hulls")], [7])
+                self.assertEqual([len(each.objects) for each in set(bpy.data.collections) - self.collections
+                                  if "hulls" in each.name], [7])
                 self.assertEqual(len(bpy.data.meshes), 8)
                 self.assertEqual((bpy.context.active_object, bpy.context.selected_objects), (obj, [obj]))
                 bpy.context.view_layer.update()
@@ -131,6 +132,33 @@ class ConvexParts(MeshTest):
         bpy.ops.mesh.partwheel_convex(engine="UNREAL", hulls=3)
         self.assertEqual([child.name for child in far.children], [f"UCX_hand_{number:02}" for number in range(3)])
 
+    def test_primitives_as_engines_have_them(self):
+        """A box, and a tall prism that is nearly a cylinder, apart from each other."""
+        turns = np.arange(24) / 24 * 2 * np.pi
+        low = [(5 + np.cos(turn), np.sin(turn), -2) for turn in turns]
+        count = len(BOX[0])
+        vertices = [*(np.array(BOX[0]) * (3, 1, 2)), *low, *(np.array(low) + (0, 0, 4))]
+        polygons = [*BOX[1], tuple(range(count, count + 24))[::-1], tuple(range(count + 24, count + 48)),
+                    *((count + i, count + (i + 1) % 24, count + 24 + (i + 1) % 24, count + 24 + i) for i in range(24))]
+        obj = self.add(np.array(vertices) @ np.array(Matrix.Rotation(0.5, 3, "X")), polygons, "two")
+        obj.scale = 2, 2, 2
+        corners = np.array([vertex.co[:] for vertex in obj.data.vertices])
+        for engine, names in (("UNREAL", ["UCX_two_00", "UBX_two_01"]), ("UNITY", ["two_collider_00", "two_box_01"]),
+                              ("GODOT", ["two_00-convcolonly", "two_01-convcolonly"]),
+                              ("RIGID_BODY", ["two_cylinder_00", "two_box_01"])):
+            with self.subTest(engine):
+                bpy.ops.mesh.partwheel_convex(hulls=2, engine=engine, primitives=1)
+                self.assertEqual(sorted(child.name for child in obj.children), sorted(names))
+                bpy.context.view_layer.update()
+                prism, box = (next(child for child in obj.children if child.name == name) for name in names)
+                for child, own in ((box, corners[:count]), (prism, corners[count:])):
+                    around = np.array([child.matrix_local @ vertex.co for vertex in child.data.vertices])
+                    np.testing.assert_allclose(around.mean(axis=0), own.mean(axis=0), atol=0.02)
+                if engine == "RIGID_BODY":
+                    self.assertEqual([each.rigid_body.collision_shape for each in (prism, box)], ["CYLINDER", "BOX"])
+                if engine != "GODOT":
+                    np.testing.assert_allclose(sorted(box.dimensions), (2, 4, 6), rtol=1e-4)
+
     # ---- Falling
 
     def fall(self, frames=400):
@@ -149,11 +177,17 @@ class ConvexParts(MeshTest):
         obj.rigid_body.type, obj.rigid_body.collision_shape = "PASSIVE", "BOX"
 
     def test_a_gate_falls_over_a_post(self):
+        self.gate_falls(["CONVEX_HULL"] * 3, 0)
+
+    def test_a_gate_of_boxes_falls_over_a_post(self):
+        self.gate_falls(["BOX"] * 3, 1)
+
+    def gate_falls(self, shapes, primitives):
         obj = self.add(*gate(), "gate")
         obj.data.transform(Matrix.Translation((-2, -0.5, -2)))
         obj.location.z = 5
-        bpy.ops.mesh.partwheel_convex(hulls=3, engine="RIGID_BODY")
-        self.assertEqual(len(obj.children), 3)
+        bpy.ops.mesh.partwheel_convex(hulls=3, engine="RIGID_BODY", primitives=primitives)
+        self.assertEqual([child.rigid_body.collision_shape for child in obj.children], shapes)
         self.assertEqual((obj.rigid_body.type, obj.rigid_body.collision_shape), ("ACTIVE", "COMPOUND"))
         post = self.add(np.array(BOX[0]) - 0.5, BOX[1], "post")
         post.location.z = 0.5

@@ -27,6 +27,9 @@ class MESH_OT_partwheel_convex(OnParts, Beside, bpy.types.Operator):
     vertices: bpy.props.IntProperty(
         name="Vertices", description="Of each hull, at most: physics engines take 64 or 255", default=64, min=8,
         soft_max=255)
+    primitives: bpy.props.FloatProperty(
+        name="Primitives", description="Take a box, sphere, capsule or cylinder where it goes no farther than this from "
+        "the hull, a share as for Error; 0: hulls alone", default=0, min=0, max=100, subtype="PERCENTAGE")
     engine: bpy.props.EnumProperty(
         name="For", description="How the hulls are named, or what they become",
         items=[("UNREAL", "Unreal", "Names that begin with UCX: its importer takes them as the model's collision"),
@@ -39,14 +42,14 @@ class MESH_OT_partwheel_convex(OnParts, Beside, bpy.types.Operator):
         layout.use_property_split = True
         layout.row().prop(self, "by", expand=True)
         layout.prop(self, "error" if self.by == "ERROR" else "hulls")
-        for name in ("vertices", "engine"):
+        for name in ("vertices", "primitives", "engine"):
             layout.prop(self, name)
 
     def work(self, context, obj, hierarchy):
         across = float(np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)))
         wanted = {"error": self.error / 100 * across} if self.by == "ERROR" else {"hulls": self.hulls}
         found = hierarchy.convex_parts(**wanted, max_vertices=self.vertices)
-        made = hulls.made(context, obj, found, self.engine)
+        made = hulls.made(context, obj, found, self.engine, self.primitives / 100 * across)
         times = sum(each.hull_volume() for each in found) / hierarchy.summary.volume
         self.report({"INFO"}, rpt_("{count} convex hulls around {name}, together of {times:.2f} times its volume.").format(
             count=len(made), name=obj.name, times=times))

@@ -965,4 +965,8 @@ WORDS = {
         "围绕 {name} 的 {count} 个凸壳，总体积为其 {times:.2f} 倍。",
     "Count":
         "数量",
+    "Primitives":
+        "基本体",
+    "Take a box, sphere, capsule or cylinder where it goes no farther than this from the hull, a share as for Error; 0: hulls alone":
+        "在离凸壳不超过此距离时改用长方体、球、胶囊或圆柱，比例与误差相同；0：只用凸壳",
 }

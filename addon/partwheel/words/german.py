@@ -965,4 +965,8 @@ WORDS = {
         "{count} konvexe Hüllen um {name}, zusammen vom {times:.2f}-Fachen seines Volumens.",
     "Count":
         "Anzahl",
+    "Primitives":
+        "Grundkörper",
+    "Take a box, sphere, capsule or cylinder where it goes no farther than this from the hull, a share as for Error; 0: hulls alone":
+        "Quader, Kugel, Kapsel oder Zylinder nehmen, wo nichts davon weiter als dies von der Hülle weg ist, ein Anteil wie beim Fehler; 0: nur Hüllen",
 }

@@ -965,4 +965,8 @@ WORDS = {
         "{name} の周りに凸包を {count} 個作りました。合わせて体積の {times:.2f} 倍です。",
     "Count":
         "個数",
+    "Primitives":
+        "プリミティブ",
+    "Take a box, sphere, capsule or cylinder where it goes no farther than this from the hull, a share as for Error; 0: hulls alone":
+        "凸包からこれ以上離れない場合に、直方体、球、カプセル、円柱を代わりに使う。割合は誤差と同じ。0: 凸包のみ",
 }

@@ -965,4 +965,8 @@ WORDS = {
         "{count} envolventes convexas alrededor de {name}, juntas de {times:.2f} veces su volumen.",
     "Count":
         "Cantidad",
+    "Primitives":
+        "Primitivas",
+    "Take a box, sphere, capsule or cylinder where it goes no farther than this from the hull, a share as for Error; 0: hulls alone":
+        "Tomar una caja, esfera, cápsula o cilindro donde no se aleje más que esto de la envolvente, una parte como en Error; 0: solo envolventes",
 }

@@ -9,6 +9,7 @@ from . import simulators
 from .primitives import KINDS, around, kind_of
 
 FORMATS = "obj", "glb", "unreal", "godot", "urdf", "mjcf", "usd"
+# How the names of what collides begin.
 UNREAL = {"hull": "UCX", "box": "UBX", "sphere": "USP", "capsule": "UCP"}
 
 

@@ -78,7 +78,7 @@ def around(vertices, triangles, most, kinds=KINDS):
             found.append(_FITS[kind](hull, most))
             if found[-1][0] <= AS_GOOD * most:
                 break
-    good = min(min(reach for reach, _ in found) + AS_GOOD * most, most)
+    good = min(min((reach for reach, _ in found), default=0) + AS_GOOD * most, most)
     return next((made for reach, made in found if reach <= good), None)
 
 
