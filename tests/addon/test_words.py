@@ -70,6 +70,28 @@ class Words(MeshTest):
                 self.assertNotIn(sentence.format(**error.values), told(error))
             self.assertIn("8.0 GiB", told(error))
 
+    def test_errors_of_a_worker_that_crashed(self):
+        """How it ended is in the sentence, and in the same language."""
+        job, told, ending = package("worker.job"), part("words.say").told, package("worker.ending").ending
+        interpreter = package("worker.interpreter")
+        none = interpreter.NoInterpreter({"/a/{python}": ending(3), "/b": ending(-9)}).said
+        refused = package().PartwheelError(package().Status.EMPTY, "The mesh has no faces. Choose a mesh object that has some.")
+        for error, kept, parts in (
+                (job.WorkerError("crash", job.BROKEN, job.HARMLESS, job.MENDED, how=ending(-11)), ["SIGSEGV"], ["crashed", "before"]),
+                (job.WorkerError("worker", job.NO_PYTHON, job.WHICH, reason=none), ["/a/{python}", "3", "/b"],
+                 ["without an answer", "want of memory", "There is"]),
+                (job.WorkerError("crash", job.DAMAGED_BY, reason=refused), [], ["damaged", "no faces"])):
+            self.speak("en_US" if self.spoken() else "DEFAULT")
+            self.assertEqual(told(error), str(error))
+            for word in kept + parts:
+                self.assertIn(word, str(error))
+            for language in self.spoken():
+                self.speak(language)
+                for word in kept:
+                    self.assertIn(word, told(error))
+                for word in parts:
+                    self.assertNotIn(word, told(error))
+
     def test_a_reason_has_no_full_stop_in_any_language(self):
         for language in self.spoken():
             self.speak(language)

@@ -135,14 +135,14 @@ NATIVE = re.compile(r'Error\(PW_ERROR_(?:EMPTY|NOT_SOLID|NO_VOLUME|MEMORY|DEGENE
                     r'\s*((?:"[^"]*"\s*)+)\)')
 
 
-WORKER = ROOT / "native" / "python" / "partwheel" / "worker" / "job.py"
+WORKER = ROOT / "native" / "python" / "partwheel" / "worker"
 
 
 def of_the_library():
     """What users may be told by the library and its worker, likewise."""
-    return [("report", node.value.value, WORKER.name) for node in ast.parse(WORKER.read_text()).body
-            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant) and str(node.value.value).endswith(".")
-            ] + [("report", "".join(re.findall('"([^"]*)"', each)), path.name)
+    return [(kind, node.value.value, name) for name, kind in (("job.py", "report"), ("ending.py", "fragment"), ("interpreter.py", "fragment"))
+            for node in ast.parse((WORKER / name).read_text()).body
+            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)] + [("report", "".join(re.findall('"([^"]*)"', each)), path.name)
             for path in sorted((ROOT / "native" / "src").rglob("*.cpp")) for each in NATIVE.findall(path.read_text())]
 
 

@@ -197,4 +197,4 @@ def test_a_hostile_path(shim, does):
     (3, "ended without an answer (exit code 3)"), (-11, "crashed (SIGSEGV)"), (-9, "was killed (SIGKILL"),
 ])
 def test_how_a_process_ended(code, words):
-    assert words in ending(code)
+    assert words in str(ending(code))

@@ -969,4 +969,38 @@ WORDS = {
         "基本体",
     "Take a box, sphere, capsule or cylinder where it goes no farther than this from the hull, a share as for Error; 0: hulls alone":
         "在离凸壳不超过此距离时改用长方体、球、胶囊或圆柱，比例与误差相同；0：只用凸壳",
+    "The worker process {how} before it was done.":
+        "工作进程在完成之前{how}。",
+    "Merging vertices by distance, or a voxel remesh, often helps.":
+        "按距离合并顶点或体素重构网格往往有效。",
+    "The worker process gave a damaged answer.":
+        "工作进程给出的结果已损坏。",
+    "The worker process gave a damaged answer: {reason}":
+        "工作进程给出的结果已损坏：{reason}",
+    "The worker process gave the answer to another mesh.":
+        "工作进程给出的是另一个网格的结果。",
+    "There is no Python to run the worker process: {reason}.":
+        "没有可运行工作进程的 Python：{reason}。",
+    "The worker process could not be started: {reason}.":
+        "无法启动工作进程：{reason}。",
+    "The worker process did not begin in {seconds} seconds.":
+        "工作进程在 {seconds} 秒内没有开始工作。",
+    "The worker process {how} before it began.":
+        "工作进程在开始之前{how}。",
+    "If it stays so, say which Python 3 is to run it: Python in the add-on's preferences, or the argument python.":
+        "如果仍然如此，请指定用哪个 Python 3 运行它：插件偏好设置中的 Python，或参数 python。",
+    "was killed (SIGKILL, perhaps for want of memory)":
+        "被强行终止（SIGKILL，可能是内存不足）",
+    "crashed ({reason})":
+        "崩溃了（{reason}）",
+    "was ended from outside (Ctrl-C)":
+        "被外部结束（Ctrl C）",
+    "ended without an answer (exit code {code})":
+        "没有给出结果就结束了（退出代码 {code}）",
+    "did not answer in {seconds} seconds":
+        "在 {seconds} 秒内没有响应",
+    "can't be started ({reason})":
+        "无法启动（{reason}）",
+    "there is none":
+        "一个也没有",
 }

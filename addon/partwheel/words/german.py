@@ -969,4 +969,38 @@ WORDS = {
         "Grundkörper",
     "Take a box, sphere, capsule or cylinder where it goes no farther than this from the hull, a share as for Error; 0: hulls alone":
         "Quader, Kugel, Kapsel oder Zylinder nehmen, wo nichts davon weiter als dies von der Hülle weg ist, ein Anteil wie beim Fehler; 0: nur Hüllen",
+    "The worker process {how} before it was done.":
+        "Der Arbeitsprozess {how}, bevor er fertig war.",
+    "Merging vertices by distance, or a voxel remesh, often helps.":
+        "Oft hilft es, Vertices nach Abstand zusammenzuführen, oder ein Voxel-Remesh.",
+    "The worker process gave a damaged answer.":
+        "Die Antwort des Arbeitsprozesses war beschädigt.",
+    "The worker process gave a damaged answer: {reason}":
+        "Die Antwort des Arbeitsprozesses war beschädigt: {reason}",
+    "The worker process gave the answer to another mesh.":
+        "Der Arbeitsprozess gab die Antwort zu einem anderen Mesh.",
+    "There is no Python to run the worker process: {reason}.":
+        "Es gibt kein Python für den Arbeitsprozess: {reason}.",
+    "The worker process could not be started: {reason}.":
+        "Der Arbeitsprozess konnte nicht gestartet werden: {reason}.",
+    "The worker process did not begin in {seconds} seconds.":
+        "Der Arbeitsprozess hat in {seconds} Sekunden nicht begonnen.",
+    "The worker process {how} before it began.":
+        "Der Arbeitsprozess {how}, bevor er begann.",
+    "If it stays so, say which Python 3 is to run it: Python in the add-on's preferences, or the argument python.":
+        "Wenn es so bleibt, angeben, welches Python 3 ihn ausführen soll: Python in den Einstellungen des Add-ons oder das Argument python.",
+    "was killed (SIGKILL, perhaps for want of memory)":
+        "wurde abgebrochen (SIGKILL, vielleicht aus Mangel an Speicher)",
+    "crashed ({reason})":
+        "ist abgestürzt ({reason})",
+    "was ended from outside (Ctrl-C)":
+        "wurde von außen beendet (Strg C)",
+    "ended without an answer (exit code {code})":
+        "endete ohne Antwort (Exit-Code {code})",
+    "did not answer in {seconds} seconds":
+        "antwortete in {seconds} Sekunden nicht",
+    "can't be started ({reason})":
+        "kann nicht gestartet werden ({reason})",
+    "there is none":
+        "es gibt keines",
 }

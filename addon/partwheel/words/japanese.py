@@ -969,4 +969,38 @@ WORDS = {
         "プリミティブ",
     "Take a box, sphere, capsule or cylinder where it goes no farther than this from the hull, a share as for Error; 0: hulls alone":
         "凸包からこれ以上離れない場合に、直方体、球、カプセル、円柱を代わりに使う。割合は誤差と同じ。0: 凸包のみ",
+    "The worker process {how} before it was done.":
+        "作業プロセスは終わる前に{how}。",
+    "Merging vertices by distance, or a voxel remesh, often helps.":
+        "距離による頂点のマージやボクセルリメッシュで直ることがよくあります。",
+    "The worker process gave a damaged answer.":
+        "作業プロセスの答えが壊れていました。",
+    "The worker process gave a damaged answer: {reason}":
+        "作業プロセスの答えが壊れていました: {reason}",
+    "The worker process gave the answer to another mesh.":
+        "作業プロセスは別のメッシュの答えを返しました。",
+    "There is no Python to run the worker process: {reason}.":
+        "作業プロセスを動かす Python がありません: {reason}。",
+    "The worker process could not be started: {reason}.":
+        "作業プロセスを開始できませんでした: {reason}。",
+    "The worker process did not begin in {seconds} seconds.":
+        "作業プロセスは {seconds} 秒以内に始まりませんでした。",
+    "The worker process {how} before it began.":
+        "作業プロセスは始まる前に{how}。",
+    "If it stays so, say which Python 3 is to run it: Python in the add-on's preferences, or the argument python.":
+        "直らない場合は、実行する Python 3 を指定してください: アドオンのプリファレンスの「Python」、または引数 python。",
+    "was killed (SIGKILL, perhaps for want of memory)":
+        "強制終了されました (SIGKILL、おそらくメモリ不足)",
+    "crashed ({reason})":
+        "クラッシュしました ({reason})",
+    "was ended from outside (Ctrl-C)":
+        "外から終了されました (Ctrl C)",
+    "ended without an answer (exit code {code})":
+        "答えを返さずに終了しました (終了コード {code})",
+    "did not answer in {seconds} seconds":
+        "は {seconds} 秒以内に応答しませんでした",
+    "can't be started ({reason})":
+        "を開始できません ({reason})",
+    "there is none":
+        "ひとつもありません",
 }

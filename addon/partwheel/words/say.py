@@ -19,9 +19,11 @@ def label_of(operator):
 
 
 def told(error):
-    """What an error of the package says."""
+    """What an error of the package says, or part of one (partwheel.worker.said)."""
     if sentences := getattr(error, "sentences", ()):
-        return " ".join(map(rpt_, sentences)).format(**error.values)
+        values = {name: told(value) if isinstance(value, Exception) or hasattr(value, "sentences") else value
+                  for name, value in error.values.items()}
+        return " ".join(map(rpt_, sentences)).format(**values)
     return rpt_(str(error))
 
 

@@ -969,4 +969,38 @@ WORDS = {
         "Primitivas",
     "Take a box, sphere, capsule or cylinder where it goes no farther than this from the hull, a share as for Error; 0: hulls alone":
         "Tomar una caja, esfera, cápsula o cilindro donde no se aleje más que esto de la envolvente, una parte como en Error; 0: solo envolventes",
+    "The worker process {how} before it was done.":
+        "El proceso de trabajo {how} antes de terminar.",
+    "Merging vertices by distance, or a voxel remesh, often helps.":
+        "A menudo ayuda fusionar vértices por distancia o un remallado por vóxeles.",
+    "The worker process gave a damaged answer.":
+        "El proceso de trabajo dio una respuesta dañada.",
+    "The worker process gave a damaged answer: {reason}":
+        "El proceso de trabajo dio una respuesta dañada: {reason}",
+    "The worker process gave the answer to another mesh.":
+        "El proceso de trabajo dio la respuesta de otra malla.",
+    "There is no Python to run the worker process: {reason}.":
+        "No hay ningún Python para el proceso de trabajo: {reason}.",
+    "The worker process could not be started: {reason}.":
+        "No se pudo iniciar el proceso de trabajo: {reason}.",
+    "The worker process did not begin in {seconds} seconds.":
+        "El proceso de trabajo no empezó en {seconds} segundos.",
+    "The worker process {how} before it began.":
+        "El proceso de trabajo {how} antes de empezar.",
+    "If it stays so, say which Python 3 is to run it: Python in the add-on's preferences, or the argument python.":
+        "Si sigue así, indicar qué Python 3 debe ejecutarlo: Python en las preferencias del complemento o el argumento python.",
+    "was killed (SIGKILL, perhaps for want of memory)":
+        "fue eliminado (SIGKILL, quizá por falta de memoria)",
+    "crashed ({reason})":
+        "falló ({reason})",
+    "was ended from outside (Ctrl-C)":
+        "fue terminado desde fuera (Ctrl C)",
+    "ended without an answer (exit code {code})":
+        "terminó sin respuesta (código de salida {code})",
+    "did not answer in {seconds} seconds":
+        "no respondió en {seconds} segundos",
+    "can't be started ({reason})":
+        "no se puede iniciar ({reason})",
+    "there is none":
+        "no hay ninguno",
 }

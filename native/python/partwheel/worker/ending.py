@@ -3,6 +3,12 @@
 
 import signal
 
+from .said import Said
+
+KILLED = "was killed (SIGKILL, perhaps for want of memory)"
+CRASHED = "crashed ({reason})"
+STOPPED = "was ended from outside (Ctrl-C)"
+MUTE = "ended without an answer (exit code {code})"
 # Of Windows, where a process that crashed has such a number for its exit code.
 NTSTATUS = {
     0x80000003: "breakpoint", 0xC0000005: "access violation", 0xC0000006: "a file could not be read",
@@ -15,16 +21,16 @@ NTSTATUS = {
 
 
 def ending(code):
-    """For a sentence that begins with the process: what subprocess.Popen.returncode says."""
+    """A Said, for a sentence that begins with the process: what subprocess.Popen.returncode says."""
     if code == -getattr(signal, "SIGKILL", 9):
-        return "was killed (SIGKILL, perhaps for want of memory)"
+        return Said(KILLED)
     if code < 0:
         try:
-            return f"crashed ({signal.Signals(-code).name})"
+            return Said(CRASHED, reason=signal.Signals(-code).name)
         except ValueError:
-            return f"crashed (signal {-code})"
+            return Said(CRASHED, reason=f"signal {-code}")
     if code == 0xC000013A:
-        return "was ended from outside (Ctrl-C)"
+        return Said(STOPPED)
     if code >= 0x80000000:
-        return f"crashed ({NTSTATUS.get(code, 'NTSTATUS')}, 0x{code:08X})"
-    return f"ended without an answer (exit code {code})"
+        return Said(CRASHED, reason=f"{NTSTATUS.get(code, 'NTSTATUS')}, 0x{code:08X}")
+    return Said(MUTE, code=code)

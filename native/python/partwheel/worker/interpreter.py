@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 from .ending import ending
+from .said import Said
 
 # -I: nothing of this process's Python, such as Blender's paths, reaches the other. -S, -B: it starts faster, and writes
 # no bytecode.
@@ -15,11 +16,21 @@ OPTIONS = ["-I", "-S", "-B"]
 # Seconds in which a Python may say nothing before the next is tried as well, and before that is taken for a no.
 PATIENCE, LIMIT = 2, 60
 
+UNANSWERED = "did not answer in {seconds} seconds"
+UNSTARTED = "can't be started ({reason})"
+NONE = "there is none"
+
 _found = {}  # candidates -> the one that runs
 
 
 class NoInterpreter(Exception):
-    """None of the candidates runs. str() says what became of each."""
+    """None of the candidates runs. said: what became of each."""
+
+    def __init__(self, failed):
+        super().__init__()
+        values = {f"path{number}": path for number, path in enumerate(failed)}
+        values |= {f"how{number}": how for number, how in enumerate(failed.values())}
+        self.said = Said("; ".join(f"{{path{number}}} {{how{number}}}" for number in range(len(failed))) or NONE, **values)
 
 
 def start(python, *arguments, **options):
@@ -45,7 +56,7 @@ class Search:
         self._candidates = candidates(preferred)
         self._waiting = list(self._candidates)
         self._probes = {}  # of those that were begun: path -> Popen
-        self._failed = {}  # path -> how
+        self._failed = {}  # path -> how, a Said
         self._began = time.monotonic()  # the last of them
 
     def poll(self):
@@ -63,8 +74,8 @@ class Search:
         if self._waiting and (not silent or waited > PATIENCE):
             self._probe(self._waiting.pop(0))
         elif not self._waiting and (not silent or waited > LIMIT):
-            self._failed.update((path, f"did not answer in {LIMIT:g} seconds") for path in silent)
-            raise NoInterpreter("; ".join(f"{path} {how}" for path, how in self._failed.items()) or "there is none")
+            self._failed.update((path, Said(UNANSWERED, seconds=f"{LIMIT:g}")) for path in silent)
+            raise NoInterpreter(self._failed)
         return None
 
     def _probe(self, path):
@@ -73,7 +84,7 @@ class Search:
             self._probes[path] = start(path, "-c", "import ctypes", stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                        stderr=subprocess.DEVNULL)
         except OSError as error:
-            self._failed[path] = f"can't be started ({error.strerror})"
+            self._failed[path] = Said(UNSTARTED, reason=error.strerror)
 
     def close(self):
         """Ends what still runs of it."""

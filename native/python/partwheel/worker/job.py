@@ -14,6 +14,7 @@ from pathlib import Path
 
 from . import interpreter
 from .ending import ending
+from .said import Said
 from ..hierarchy import Hierarchy, checked_surface
 from ..library import RUNGS, Mode, PartwheelError, Rung, Status, load
 
@@ -28,6 +29,8 @@ SEARCH_SECONDS = 0.01  # between two looks whether a Python was found
 # A message to or from the worker: kind, length, then so many bytes.
 MESSAGE = struct.Struct("<cQ")
 
+# What it says, see Said.
+CANCELLED = "The build was cancelled."
 HARMLESS = "Nothing else was harmed; the mesh is as it was."
 LATE = "The build was not done after {seconds} seconds of work and was stopped."
 IDLE = "The build was not done after {seconds} seconds without any work and was stopped."
@@ -35,16 +38,27 @@ FASTER = "A mesh with fewer faces (Decimate, or a voxel remesh) is faster."
 FULL = "The worker process ran out of memory."
 LIMIT = "It may use {size:.1f} GiB."
 LESS = "A mesh with fewer faces (Decimate, or a voxel remesh) needs less."
+BROKEN = "The worker process {how} before it was done."
+MENDED = "Merging vertices by distance, or a voxel remesh, often helps."
+DAMAGED = "The worker process gave a damaged answer."
+DAMAGED_BY = "The worker process gave a damaged answer: {reason}"
+OTHER = "The worker process gave the answer to another mesh."
+NO_PYTHON = "There is no Python to run the worker process: {reason}."
+NO_START = "The worker process could not be started: {reason}."
+SILENT = "The worker process did not begin in {seconds} seconds."
+GONE = "The worker process {how} before it began."
+WHICH = "If it stays so, say which Python 3 is to run it: Python in the add-on's preferences, or the argument python."
 
 
 class WorkerError(PartwheelError):
     """The worker process ended, or had to be ended, without an answer. status: Status.INTERNAL, or Status.MEMORY.
     name: "crash", "time limit", "memory", or "worker" when it could not even be started.
-    sentences, values: what str() is made of, for who says it in another language: templates, and what is in braces."""
+    sentences, values: as of a Said."""
 
     def __init__(self, name, *sentences, **values):
-        super().__init__(Status.MEMORY if name == "memory" else Status.INTERNAL, " ".join(sentences).format(**values))
-        self.name, self.sentences, self.values = name, sentences, values
+        said = Said(*sentences, **values)
+        super().__init__(Status.MEMORY if name == "memory" else Status.INTERNAL, str(said))
+        self.name, self.sentences, self.values = name, said.sentences, said.values
 
 
 class Job:
@@ -143,7 +157,7 @@ class Job:
                     return
                 launched = self._launch()
             except interpreter.NoInterpreter as reason:
-                launched = _no_worker(f"There is no Python to run the worker process: {reason}.")
+                launched = _no_worker(NO_PYTHON, reason=reason.said)
             self._search.close()
             self._search = None
             self._thread = threading.Thread(target=self._run, args=[launched], name="partwheel-job", daemon=True)
@@ -161,12 +175,12 @@ class Job:
         """A worker process that was started, or the error why there is none."""
         with self._lock:
             if self._cancelled:
-                return PartwheelError(Status.CANCELLED, "The build was cancelled.")
+                return PartwheelError(Status.CANCELLED, CANCELLED)
             try:
                 self._process = process = interpreter.start(self._python, str(ENTRY), stdin=subprocess.PIPE,
                                                             stdout=subprocess.PIPE)
             except OSError as error:
-                return _no_worker(f"The worker process could not be started: {error}.")
+                return _no_worker(NO_START, reason=error)
         return process
 
     # ---- In the job's thread ---------------------------------------------------------------------------------------
@@ -215,14 +229,13 @@ class Job:
         if answer:
             return self._loaded(_unless_error(answer))
         if self._cancelled:
-            raise PartwheelError(Status.CANCELLED, "The build was cancelled.")
+            raise PartwheelError(Status.CANCELLED, CANCELLED)
         if not self._answered:
-            raise _no_worker(f"The worker process did not begin in {self._time_limit:g} seconds." if late else
-                             f"The worker process {ending(process.returncode)} before it began.")
+            raise (_no_worker(SILENT, seconds=f"{self._time_limit:g}") if late else
+                   _no_worker(GONE, how=ending(process.returncode)))
         if late:
             raise WorkerError("time limit", late[0], HARMLESS, FASTER, seconds=f"{self._time_limit:g}")
-        raise WorkerError("crash", "The worker process {how} before it was done.", HARMLESS,
-                          "Merging vertices by distance, or a voxel remesh, often helps.", how=ending(process.returncode))
+        raise WorkerError("crash", BROKEN, HARMLESS, MENDED, how=ending(process.returncode))
 
     def _send(self, pipe, rungs):
         """Hands the surface over. A worker that dies meanwhile is left for _listen() to find."""
@@ -264,16 +277,16 @@ class Job:
                         self._work, self._seen_working = float(work), time.monotonic()
                     self._progress = max(self._progress[0], float(fraction)), str(stage)
             except (ValueError, TypeError, AttributeError, LookupError):  # not what a sound worker writes
-                return WorkerError("crash", "The worker process gave a damaged answer.", HARMLESS)
+                return WorkerError("crash", DAMAGED, HARMLESS)
 
     def _loaded(self, answer):
         data, seconds = answer
         try:
             hierarchy = Hierarchy.load(data)
         except PartwheelError as error:
-            raise WorkerError("crash", "The worker process gave a damaged answer: {error}", HARMLESS, error=error) from error
+            raise WorkerError("crash", DAMAGED_BY, HARMLESS, reason=error) from error
         if len(hierarchy.order) != self._face_count:
-            raise WorkerError("crash", "The worker process gave the answer to another mesh.", HARMLESS)
+            raise WorkerError("crash", OTHER, HARMLESS)
         hierarchy.seconds = seconds
         return hierarchy
 
@@ -294,9 +307,8 @@ def available_memory():
         return 0
 
 
-def _no_worker(sentence):
-    return WorkerError("worker", "{sentence}", HARMLESS, "If it stays so, say which Python 3 is to run it: Python in the "
-                       "add-on's preferences, or the argument python.", sentence=sentence)
+def _no_worker(sentence, **values):
+    return WorkerError("worker", sentence, HARMLESS, WHICH, **values)
 
 
 def _unless_error(found):
