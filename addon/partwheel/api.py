@@ -173,10 +173,14 @@ def select(obj, node=None, faces=None, extend=False, deselect=False, snap=False)
     return chosen
 
 
-def similar(obj, node, threshold=THRESHOLD):
+def similar(obj, node, threshold=THRESHOLD, among=None):
     """[(node, likeness), ...] the other parts that are alike in shape and size, mirror images among them, the most alike
-    first; none overlaps another or the node. likeness: 1 for the same down to 0; threshold: the least."""
-    return [each for each in others.alike(obj, *_node(obj, node)) if each[1] >= threshold]
+    first; none overlaps another or the node. likeness: 1 for the same down to 0; threshold: the least. among: another
+    object, of which they are instead; sizes are those in the world."""
+    if among is not None:
+        hierarchy(among)
+    where, found = among or obj, others.alike(obj, *_node(obj, node), [among] * (among is not None))
+    return [(each.node, each.likeness) for each in found if each.name == where.name_full and each.likeness >= threshold]
 
 
 def mirrored(obj, node, plane=1):

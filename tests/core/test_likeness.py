@@ -90,6 +90,42 @@ def test_parts_are_apart_and_the_most_alike_first(six):
         assert len(taken) == len(set(taken))
 
 
+def test_among_another_model(six):
+    """Turned, moved, or twice as large but compared where both are of one size."""
+    shape, of, hierarchy = six
+    there, of_there = arms((2, 2, 4, 2, 2, 2))
+    own = likeness.measures(hierarchy, *shape[:3])
+    node = arm(hierarchy, of, 3)
+
+    def others(scale, matrix):
+        large = moved(there, 8)._replace(vertices=scale * moved(there, 8).vertices)
+        built = Hierarchy.build(*large)
+        found = likeness.similar(hierarchy, own, node, (built, likeness.measures(built, *large[:3], matrix)))
+        taken = [set(built.faces(each).tolist()) for each, value in found if value >= likeness.THRESHOLD]
+        whole = [set(np.flatnonzero(of_there == number).tolist()) for number in range(6)]
+        return [number for number, wanted in enumerate(whole)
+                if any(len(wanted & each) > 0.8 * len(wanted | each) for each in taken)]
+
+    assert others(1, np.eye(4)) == others(2, np.diag([0.5, 0.5, 0.5, 1])) == [0, 1, 3, 4, 5]  # not the one twice as long
+    assert others(2, np.eye(4)) == []
+
+
+def test_a_twin_is_one_wherever_it_is():
+    """Knobs on a long beam, the first at its end."""
+    cells = {(x, y, z) for x in range(40) for y in range(4) for z in range(4)}
+    knobs = [{(x + begin, y + 1, z) for x in range(2) for y in range(2) for z in range(4, 12)} for begin in (1, 13, 25)]
+    shape = shapes.polycube(cells.union(*knobs))
+    middles = np.zeros((shape.face_count, 3))
+    np.add.at(middles, shape.faces, shape.vertices[shape.triangles].mean(axis=1))
+    middles /= np.bincount(shape.faces)[:, None]
+    of = np.where(middles[:, 2] > 4, (middles[:, 0] // 12).astype(int), -1)
+    hierarchy = Hierarchy.build(*shape)
+    for number, others in ((0, [1, 2]), (1, [0, 2])):
+        found = similar(shape, hierarchy, arm(hierarchy, of, number))
+        assert sorted(of_nodes(hierarchy, of, [node for node, _ in found[:2]])) == others
+        assert found[1][1] >= likeness.THRESHOLD
+
+
 def test_the_whole_has_none(six):
     shape, _, hierarchy = six
     whole = int(np.flatnonzero(hierarchy.parent < 0)[0])

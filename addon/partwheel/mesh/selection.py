@@ -184,10 +184,11 @@ class Selections:
             elif not (extend or deselect) and each.now.any():
                 each.select(other, [])
 
-    def select_in_each(self, faces, extend=False, deselect=False):
-        """faces: of each of the objects."""
+    def select_in_each(self, faces, extend=False, deselect=False, active=()):
+        """As Selection.select() for each of the objects. faces: those of each, none where it isn't named; active: likewise,
+        a dict."""
         for obj, each in self._objects():
-            each.select(obj, faces[obj], None, extend, deselect)
+            each.select(obj, faces.get(obj, ()), dict(active).get(obj), extend, deselect)
 
     def touched(self, obj, anew):
         """See Selection.touched()."""

@@ -5,13 +5,14 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays
+from ..mesh.kept import named
 from ..mesh.refusing import Refused
 from ..mesh.selection import Selections
-from ..parts import picks
+from ..parts import picks, registry
 from ..pick import borders
 from ..view import keys, picking
 from ..view.in_view import InView, waiting
-from ..words.say import iface_
+from ..words.say import iface_, rpt_
 from . import others
 from partwheel.likeness import THRESHOLD
 
@@ -22,13 +23,12 @@ class _FromPart(picks.NeedsPick):
     extend: bpy.props.BoolProperty(
         name="Extend", description="Add to what is selected, instead of replacing it", default=True)
 
-    def _selected(self, obj, hierarchy, nodes, snap, selections, extend, active=None):
-        faces = [borders.faces(obj, hierarchy, node, snap) for node in nodes]
-        selections.select(obj, np.concatenate(faces), active, extend)
+    def _faces(self, obj, hierarchy, nodes, snap):
+        return np.concatenate([borders.faces(obj, hierarchy, node, snap) for node in nodes])
 
 
 class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
-    """Select all parts (segments, regions) like the one picked last, in shape and size: fingers, legs, horns"""
+    """Select all parts (segments, regions) like the one picked last, in each object being edited: fingers, legs, horns"""
 
     bl_idname = "mesh.partwheel_similar"
     bl_label = "Select Similar Parts"
@@ -47,24 +47,33 @@ class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
         except Refused as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        self._show(obj, self._count())
+        self._show(context, self._count())
         return {"FINISHED"}
 
     def _start(self, context, obj):
         with arrays.one_reading():
             self.hierarchy, _ = picks.chosen(obj, -1)
             self.pick = picks.picked(obj)
-            self.alike = others.alike(obj, self.hierarchy, self.pick.node)
-            self.selections = Selections(context.objects_in_mode_unique_data, obj)
+            edited = list(context.objects_in_mode_unique_data)
+            self.alike = others.alike(obj, self.hierarchy, self.pick.node, [each for each in edited if each != obj])
+            self.selections = Selections(edited, obj)
+            lacking = [each.name for each in edited if not registry.hierarchy(each)]
+        if lacking:
+            self.report({"WARNING"}, rpt_("Not searched, for no parts are known there yet: {names}. Find them first.").format(
+                names=", ".join(lacking)))
 
     def _count(self):
         """How many parts are alike from the threshold on: they come first."""
-        return sum(likeness >= self.threshold for _, likeness in self.alike)
+        return sum(each.likeness >= self.threshold for each in self.alike)
 
-    def _show(self, obj, count):
+    def _show(self, context, count):
         self.count = count
-        nodes = [self.pick.node, *(node for node, _ in self.alike[:count])]
-        self._selected(obj, self.hierarchy, nodes, self.pick.snap, self.selections, self.extend, self.pick.face)
+        own = context.edit_object
+        nodes = {own: [self.pick.node]}
+        for each in self.alike[:count]:
+            nodes.setdefault(named(each.name), []).append(each.node)
+        faces = {obj: self._faces(obj, registry.known(obj.data), those, self.pick.snap) for obj, those in nodes.items()}
+        self.selections.select_in_each(faces, self.extend, active={own: self.pick.face})
 
     # ---- With the wheel
 
@@ -80,9 +89,9 @@ class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
         """So many parts beside the one in hand; the threshold is between the last one and the next."""
         count = min(max(count, 0), len(self.alike))
         if count != self._count():
-            ends = [1.0, *(likeness for _, likeness in self.alike), 0.0]
+            ends = [1.0, *(each.likeness for each in self.alike), 0.0]
             self.threshold = (ends[count] + ends[count + 1]) / 2
-        self._show(context.edit_object, count)
+        self._show(context, count)
         self._tell(context, iface_("{count} parts, alike from {threshold:.2f} on").format(
             count=count + 1, threshold=self.threshold), keys.ALIKE)
         return {"RUNNING_MODAL"}
@@ -143,8 +152,8 @@ class MESH_OT_partwheel_mirrored(_FromPart, bpy.types.Operator):
         snap = bool(pick and pick.snap)
         nodes = [self.node, node] if self.extend else [node]
         face = int(hierarchy.faces(node)[0])
-        self._selected(obj, hierarchy, nodes, snap, Selections(context.objects_in_mode_unique_data, obj), self.extend,
-                       face)
+        Selections(context.objects_in_mode_unique_data, obj).select(
+            obj, self._faces(obj, hierarchy, nodes, snap), face, self.extend)
         if not self.extend:
             picks.remember(obj, face, node, snap)
         return {"FINISHED"}

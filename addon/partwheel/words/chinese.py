@@ -668,8 +668,10 @@ WORDS = {
         "添加到选择项，而不是替换",
     "Select Similar Parts":
         "选择相似部件",
-    "Select all parts (segments, regions) like the one picked last, in shape and size: fingers, legs, horns":
-        "选择与上次选取的部件形状和大小相似的所有部件（分段、区域）：手指、腿、角",
+    "Select all parts (segments, regions) like the one picked last, in each object being edited: fingers, legs, horns":
+        "在每个正在编辑的物体中选择与上次选取的部件相似的所有部件（分段、区域）：手指、腿、角",
+    "Not searched, for no parts are known there yet: {names}. Find them first.":
+        "以下物体还没有部件，因此未搜索：{names}。请先查找部件。",
     "Threshold":
         "阈值",
     "How alike parts are that are selected: 1 is the same shape and size, less is more parts":

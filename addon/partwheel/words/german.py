@@ -668,8 +668,10 @@ WORDS = {
         "Zur Auswahl hinzufügen, statt sie zu ersetzen",
     "Select Similar Parts":
         "Ähnliche Teile auswählen",
-    "Select all parts (segments, regions) like the one picked last, in shape and size: fingers, legs, horns":
-        "Alle Teile (Segmente, Regionen) wie das zuletzt gewählte auswählen, nach Form und Größe: Finger, Beine, Hörner",
+    "Select all parts (segments, regions) like the one picked last, in each object being edited: fingers, legs, horns":
+        "Alle Teile (Segmente, Regionen) wie das zuletzt gewählte auswählen, in jedem Objekt, das bearbeitet wird: Finger, Beine, Hörner",
+    "Not searched, for no parts are known there yet: {names}. Find them first.":
+        "Nicht durchsucht, da dort noch keine Teile bekannt sind: {names}. Erst Teile finden.",
     "Threshold":
         "Schwellenwert",
     "How alike parts are that are selected: 1 is the same shape and size, less is more parts":

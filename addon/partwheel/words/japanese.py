@@ -668,8 +668,10 @@ WORDS = {
         "選択を置き換えず、追加します",
     "Select Similar Parts":
         "類似パーツを選択",
-    "Select all parts (segments, regions) like the one picked last, in shape and size: fingers, legs, horns":
-        "最後に選んだパーツと形や大きさが似たすべてのパーツ (セグメント、領域) を選択します。指、脚、角など",
+    "Select all parts (segments, regions) like the one picked last, in each object being edited: fingers, legs, horns":
+        "編集中の各オブジェクトで、最後に選んだパーツと似たすべてのパーツ (セグメント、領域) を選択します。指、脚、角など",
+    "Not searched, for no parts are known there yet: {names}. Find them first.":
+        "まだパーツがないため検索していません: {names}。先にパーツを検索してください。",
     "Threshold":
         "しきい値",
     "How alike parts are that are selected: 1 is the same shape and size, less is more parts":

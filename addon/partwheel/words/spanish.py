@@ -668,8 +668,10 @@ WORDS = {
         "Agrega a lo seleccionado, en lugar de reemplazarlo",
     "Select Similar Parts":
         "Seleccionar partes similares",
-    "Select all parts (segments, regions) like the one picked last, in shape and size: fingers, legs, horns":
-        "Selecciona todas las partes (segmentos, regiones) como la última elegida, en forma y tamaño: dedos, patas, cuernos",
+    "Select all parts (segments, regions) like the one picked last, in each object being edited: fingers, legs, horns":
+        "Selecciona todas las partes (segmentos, regiones) como la última elegida, en cada objeto que se edita: dedos, patas, cuernos",
+    "Not searched, for no parts are known there yet: {names}. Find them first.":
+        "Sin buscar, pues allí aún no se conocen partes: {names}. Buscarlas primero.",
     "Threshold":
         "Umbral",
     "How alike parts are that are selected: 1 is the same shape and size, less is more parts":

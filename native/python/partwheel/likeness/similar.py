@@ -3,8 +3,9 @@
 
 Every node's faces are one slice of one array, so areas, moments and the border's size of all nodes are differences of
 running sums. What differs little from the part in these is brought onto it, turned and reflected as it fits best
-(iterated closest points, from the principal axes), and of nodes within each other the most alike is taken. Unlike
-partwheel.compatible, which fits parts of any size to a border, sizes count here and borders do not have to meet.
+(iterated closest points, from the principal axes), and of nodes within each other the most alike is taken. It counts
+too where a node is in the whole, up to a limit, and whether people would take it for a part. Unlike partwheel.compatible,
+which fits parts of any size to a border, sizes count here and borders do not have to meet.
 """
 
 from typing import NamedTuple
@@ -16,34 +17,45 @@ from ..compatible import spread_over
 POINTS, FINE, COARSE = 192, 768, 4  # on a surface: to align; to measure with; of how many one is enough to choose turns
 TURNS, TRIES, STEPS = 8, 3, 8  # about the longest axis; how many of all turns are refined, and in how many steps
 UNLIKE = 0.5  # mean difference of logarithms of lengths up to which a node is aligned at all
-MOST, NESTED = 120, 4  # nodes that are aligned, and of those how many in one place
-LENGTHS, ALIGNED, SCORE = 0.3, 4.0, 0.6  # weights: fitted to people's segments, tests/quality/similar.py
-THRESHOLD = 0.78  # of likeness, from which on parts are taken for alike
+MOST, NESTED = 120, 5  # nodes that are aligned, and of those how many in one place
+# Weights, fitted to people's segments (tests/quality/similar.py): of lengths, of the distance squared, of the surroundings,
+# of a score below PART, of one below the part's own.
+LENGTHS, ALIGNED, AROUND, LOW, LACKING = 1.5, 20.0, 2.0, 0.7, 0.35
+PART = 0.7  # score from which on a node is surely one that people take for a part
+ELSEWHERE = 0.15  # surroundings that differ more differ no more: a twin is one wherever it is
+THRESHOLD = 0.49  # of likeness, from which on parts are taken for alike
+CLOSE = 0.9  # of the points lie within the distance of two surfaces
+WHOLE = 1536  # points on the whole surface,
+FAR = np.linspace(0.02, 0.98, 25)  # and these shares of them within which distances
 HOPELESS = 0.12  # mean distance, in roots of the area, before refining: such are not refined
 DIGITS = 9
 NARROW = 0.05  # of the root of the area: the radius of a border below which it doesn't count how much
 
 
 class Measures(NamedTuple):
-    """lengths (N,6): logarithms, of each node's area, volume, principal extents and border. first, last (N,): its slice
-    of corners (T,3,3), the triangles."""
+    """lengths (N,6): logarithms, of each node's area, volume, principal extents and border. middle (N,3). first, last
+    (N,): its slice of corners (T,3,3), the triangles. whole (n,3): points on all of them; size: the root of their area.
+    """
 
     lengths: np.ndarray
+    middle: np.ndarray
     first: np.ndarray
     last: np.ndarray
     corners: np.ndarray
+    whole: np.ndarray
+    size: float
 
 
-def measures(hierarchy, vertices, triangles, faces):
+def measures(hierarchy, vertices, triangles, faces, matrix=np.eye(4)):
     """The Measures of all nodes. vertices (V,3), triangles (T,3), faces (T,) the source face of each: the surface that
-    the hierarchy is of."""
+    the hierarchy is of. matrix (4,4): from there to where parts are compared."""
     place = np.empty(len(hierarchy.order), np.int64)
     place[hierarchy.order] = np.arange(len(place))
     sequence = np.argsort(place[faces], kind="stable")
     ends = np.searchsorted(place[faces][sequence], np.arange(len(place) + 1))
     first, last = ends[hierarchy.first], ends[hierarchy.last]
-    vertices = np.asarray(vertices, np.float64)
-    corners = (vertices - vertices.mean(axis=0))[np.asarray(triangles)[sequence]]
+    vertices, turn = np.asarray(vertices, np.float64), np.asarray(matrix, np.float64)[:3, :3]
+    corners = ((vertices - vertices.mean(axis=0)) @ turn.T)[np.asarray(triangles)[sequence]]
 
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
     areas = np.linalg.norm(normals, axis=1)
@@ -61,32 +73,38 @@ def measures(hierarchy, vertices, triangles, faces):
     root = np.sqrt(area)
     extents = np.sqrt(np.maximum(np.linalg.eigvalsh(moments), 0))
     border = np.sqrt(np.linalg.norm(total(normals), axis=1) / np.pi)
-    volume = np.cbrt(np.maximum(hierarchy.volume, 0))
+    volume = np.cbrt(np.maximum(hierarchy.volume * abs(np.linalg.det(turn)), 0))
     floor = NARROW * root
     lengths = np.log(np.column_stack([root, *(np.maximum(each, floor) for each in (volume, *extents.T, border))]))
-    return Measures(lengths, first, last, corners)
+    return Measures(lengths, middle, first, last, corners, spread_over(corners, areas, WHOLE)[0], np.sqrt(areas.sum()))
 
 
-def similar(hierarchy, measured, node):
+def similar(hierarchy, measured, node, among=None):
     """[(node, likeness), ...] beside a node: those that are most like it, apart from each other and from it, the most
     alike first. likeness: 1 for the same shape and size, down to 0; mirror images count as the same. So all that are
-    alike from a threshold on are the list's beginning. Of a node inside, without faces, there are none."""
+    alike from a threshold on are the list's beginning. Of a node inside, without faces, there are none.
+    among: (hierarchy, measured) of another model, whose nodes are looked at instead."""
     if measured.first[node] == measured.last[node]:
         return []
-    unlike = abs(measured.lengths - measured.lengths[node]).mean(axis=1)
-    first, last = hierarchy.first, hierarchy.last
-    lacking = np.maximum(0, hierarchy.score[node] - hierarchy.score)  # less of what people take for a part
-    beside = (measured.last > measured.first) & ((last <= first[node]) | (first >= last[node]))
-    near = np.flatnonzero(beside & (unlike < UNLIKE))
-    chosen, known = [], LENGTHS * unlike + SCORE * lacking
+    there, those = among or (hierarchy, measured)
+    unlike = abs(those.lengths - measured.lengths[node]).mean(axis=1)
+    first, last, score = there.first, there.last, there.score
+    candidates = (those.last > those.first) & (unlike < UNLIKE)
+    if not among:
+        candidates &= (last <= first[node]) | (first >= last[node])
+    near = np.flatnonzero(candidates)
+    known = (LENGTHS * unlike + LOW * np.maximum(0, PART - score)
+             + LACKING * np.maximum(0, hierarchy.score[node] - score))
+    chosen = []
     for other in near[np.argsort(known[near], kind="stable")].tolist():
         if sum(first[other] < last[each] and first[each] < last[other] for each in chosen) < NESTED:
             chosen.append(other)
             if len(chosen) == MOST:
                 break
     own, found = Surface(measured, node), []
-    for other in chosen:
-        apart = known[other] + ALIGNED * distance(own, Surface(measured, other))
+    elsewhere = abs(_surroundings(those, chosen) - _surroundings(measured, [node])).mean(axis=1) / measured.size
+    for other, around in zip(chosen, np.minimum(elsewhere, ELSEWHERE).tolist()):
+        apart = known[other] + AROUND * around + ALIGNED * distance(own, Surface(those, other)) ** 2
         # Products of matrices differ in their last bits with where these lie in memory: that is no part of a likeness.
         found.append((-round(float(np.exp(-apart)), DIGITS), other))
     kept = []
@@ -94,6 +112,11 @@ def similar(hierarchy, measured, node):
         if all(last[other] <= first[each] or first[other] >= last[each] for each, _ in kept):
             kept.append((other, -likeness))
     return kept
+
+
+def _surroundings(measured, nodes):
+    """(n,25) how far from each node's middle the whole's surface is: within which distances shares of it are."""
+    return np.quantile(np.sqrt(_squared(measured.middle[nodes], measured.whole)), FAR, axis=1).T
 
 
 class Surface:
@@ -112,7 +135,8 @@ class Surface:
 
 
 def distance(one, other):
-    """The mean distance of two Surfaces once one is brought onto the other, relative to the other's size."""
+    """How far two Surfaces are from each other once one is brought onto the other: within which CLOSE of their points are,
+    relative to the other's size."""
     turns, staying = _turns(one.axes, other.axes), other.points
     rough = np.sqrt(_squared(one.points[::COARSE] @ turns.transpose(0, 2, 1), staying[::2]).min(axis=2)).mean(axis=1)
     if rough.min() > HOPELESS * other.size:
@@ -120,8 +144,8 @@ def distance(one, other):
     best = np.inf
     for turn in turns[np.argsort(rough.round(DIGITS), kind="stable")[:TRIES]]:
         turn, shift = _refined(one.points, staying, turn)
-        there = sum(np.sqrt(_squared(points @ turn.T + shift, onto).min(axis=axis)).mean() for points, onto, axis in
-                    ((one.points, other.fine, 1), (one.fine, staying, 0)))
+        there = sum(np.sqrt(np.quantile(_squared(points @ turn.T + shift, onto).min(axis=axis), CLOSE))
+                    for points, onto, axis in ((one.points, other.fine, 1), (one.fine, staying, 0)))
         best = min(best, there / 2)
     return float(best / other.size)
 
