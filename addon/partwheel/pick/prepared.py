@@ -18,6 +18,8 @@ _soon = {}  # full name of an object -> the timer that makes its Prepared
 
 
 class Prepared:
+    """Of an object's mesh as it was at this stamp. Making it reads what is seen; the rest follows when it is asked for."""
+
     def __init__(self, obj, stamp):
         self.stamp = stamp
         arrays.up_to_date(obj)
@@ -47,17 +49,19 @@ class Prepared:
     @property
     def whole(self):
         """Whether advance() has nothing left to do."""
-        drawn = not self._hierarchy or self._parts is not None and "beyond" in vars(self._parts)
+        drawn = not self._hierarchy or self._parts is not None and self._parts.whole
         return self._tree is not None and self._asked and drawn
 
     def advance(self, obj):
         """Makes the next slice of what hovering needs."""
         if not self._tree:
             self.tree(obj)
-        elif self._parts:
-            self._parts.beyond  # noqa: B018 (it is made and kept)
-        else:
+        elif not self._asked:
+            self.hierarchy(obj)
+        elif not self._parts:
             self.parts(obj)
+        else:
+            self._parts.advance()
 
 
 def advance(objects):
@@ -73,8 +77,17 @@ def advance(objects):
     if lacking:
         with arrays.one_reading():
             arrays.written_back(lacking)
-            prepared(lacking).advance(lacking)
+            _slice(lacking)
     return lacking is not None
+
+
+def _slice(obj):
+    """The next one: what is seen of the object to begin with, and then what is made of that."""
+    kept = _kept.get(key(obj.data))
+    if kept and kept.stamp == _stamp(obj):
+        kept.advance(obj)
+    else:
+        prepared(obj)
 
 
 def note_written_back(objects):
@@ -127,7 +140,7 @@ def _make(name):
     """A slice of it; what a timer waits for until the next, or None."""
     obj = named(name)
     if obj and not _whole(obj):
-        prepared(obj).advance(obj)
+        _slice(obj)
         return 0
     _soon.pop(name)
     return None

@@ -121,23 +121,28 @@ def lines(positions, edges):
 
 def beyond(triangles):
     """(T,3) the triangle beyond each edge of triangles (T,3), from the edge 0 1 on; T where there is none. Edges of more
-    than two triangles lead from each to the next."""
+    than two triangles lead from each to the next. A generator, for this takes a while: the last that it yields is that,
+    before it None."""
     number = len(triangles)
     if not number:
-        return np.empty((0, 3), np.int32)
+        yield np.empty((0, 3), np.int32)
+        return
     count = int(triangles.max()) + 1
     a, b, c = triangles.T.astype(np.int64)
     keys = np.concatenate([np.minimum(*ends) * count + np.maximum(*ends) for ends in ((a, b), (b, c), (c, a))])
+    yield None
     order = np.argsort(keys, kind="stable")  # which is quicker: neighbours have near numbers
+    yield None
     differs = np.flatnonzero(np.diff(keys[order])) + 1
     first, end = np.concatenate([[0], differs]), np.concatenate([differs, [3 * number]])
     found = np.roll(order, -1)
     found[end - 1] = order[first]
+    yield None
     found %= number
     found[first[end - first == 1]] = number
     result = np.empty(3 * number, np.int32)
     result[order] = found
-    return result.reshape(3, number).T
+    yield result.reshape(3, number).T
 
 
 def border(triangles, beyond, mine):

@@ -56,6 +56,7 @@ class Parts:
         self._start = np.concatenate([[0], np.cumsum(counts)])
         self.triangles = triangles[by_face[np.arange(len(faces)) + np.repeat(begin - self._start[:-1], counts)]]
         self._batches = {}
+        self._beyond = layers.beyond(self.triangles)
 
     def slice(self, node):
         """(first, last) of a node's triangles."""
@@ -91,7 +92,19 @@ class Parts:
     @cached_property
     def beyond(self):
         """The neighbours of all triangles: what takes longest of a first outline, so hovering makes it before."""
-        return layers.beyond(self.triangles)
+        *_, found = self._beyond
+        return found
+
+    @property
+    def whole(self):
+        """Whether that is there."""
+        return "beyond" in vars(self)
+
+    def advance(self):
+        """Makes a slice of it."""
+        found = None if self.whole else next(self._beyond)
+        if found is not None:
+            self.beyond = found
 
     def _of(self, faces):
         """(n,) the triangles of faces."""

@@ -1,9 +1,6 @@
 """From the part in hand to others: Shift Ctrl L selects those that are alike, the wheel takes more and fewer, Esc takes
-it back; the panel of the last operation changes the threshold; Shift Ctrl F adds the part on the other side. With other
-objects in Edit Mode as well the alike ones there are selected too, and it says where no parts are known."""
-import bmesh
+it back; the panel of the last operation changes the threshold; Shift Ctrl F adds the part on the other side."""
 import bpy
-from mathutils import Vector
 
 
 def play(stage):
@@ -18,8 +15,7 @@ def play(stage):
         return found and found[0].likeness > 0.7
 
     spots = (stage.spot(x, 0.5, above=1) for x in (0.05, 0.95, 0.2, 0.8, 0.35, 0.65))
-    used = next(spot for spot in spots if has_its_like(spot))
-    yield from stage.take(used, "to be used", notches=0)
+    yield from stage.take(next(spot for spot in spots if has_its_like(spot)), "to be used", notches=0)
     arm = stage.selection()
     pick = stage.part("parts.picks").picked
     stage.shortcut("mesh.partwheel_similar")
@@ -60,48 +56,3 @@ def play(stage):
     yield from stage.screenshot("mirrored")
     stage.mouse.key("Z", ctrl=True)
     yield from stage.selected(arm, "after Ctrl Z")
-
-    yield from in_other_objects(stage, used, arm, likeness)
-
-
-def in_other_objects(stage, spot, arm, likeness):
-    """A copy of the model, whose parts are known with it, and a cube, whose parts aren't."""
-    obj = stage.object
-    aside = obj.matrix_world.to_3x3() @ Vector((1, 0, 0)) * obj.dimensions.x / obj.scale.x * 1.2
-    with stage.override():
-        bpy.ops.object.mode_set(mode="OBJECT")
-        bpy.ops.mesh.primitive_cube_add(size=0.3, location=obj.location + 2 * aside)
-    cube, copy = stage.object, obj.copy()
-    copy.data = obj.data.copy()
-    copy.location = obj.location + aside
-    stage.window.scene.collection.objects.link(copy)
-    stage.window.view_layer.objects.active = obj
-    for each in (obj, copy, cube):
-        each.select_set(True)
-    with stage.override():
-        bpy.ops.object.mode_set(mode="EDIT")
-        bpy.ops.mesh.select_all(action="DESELECT")
-    yield from stage.settle()
-
-    def selected(each):
-        return frozenset(face.index for face in bmesh.from_edit_mesh(each.data).faces if face.select)
-
-    hierarchy = stage.registry.hierarchy(obj)
-    yield from stage.take(spot, "among three", notches=0)
-    stage.shortcut("mesh.partwheel_similar")
-    yield from stage.until("those of the copy are selected", lambda: selected(copy))
-    node = stage.part("parts.picks").picked(obj).node
-    alike = likeness(obj, hierarchy, node, [copy])
-    threshold = stage.package("likeness").THRESHOLD
-    for each, name, own in ((obj, "the model", [node]), (copy, "the copy", [])):
-        nodes = own + [other.node for other in alike if other.name == each.name_full and other.likeness >= threshold]
-        wanted = frozenset(face for number in nodes for face in hierarchy.faces(number).tolist())
-        stage.check(selected(each) == wanted and len(nodes) > 1, f"in {name} {len(nodes)} parts are selected, as they are alike")
-    stage.check(not selected(cube), "nothing of the cube")
-    with stage.override():
-        bpy.ops.view3d.view_all()
-    yield from stage.screenshot("similar_across")
-    stage.mouse.key("ESC")
-    yield from stage.selected(arm, "after Esc among three")
-    stage.check(not selected(copy), "nothing of the copy after Esc")
-    stage.check("no parts are known there yet: Cube" in stage.reports(), "it says where no parts are known")
