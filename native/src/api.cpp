@@ -1,11 +1,13 @@
 // The C functions: argument checks and calls into the rooms, nothing else.
 #include "partwheel_edit.h"
 
+#include "base/parallel.h"
 #include "fill/ladder.h"
 #include "part/border.h"
 #include "part/convex/convex_parts.h"
 #include "part/deform.h"
 #include "part/fair.h"
+#include "part/index/part_index.h"
 #include "part/polygons.h"
 #include "part/rays.h"
 #include "part/solid.h"
@@ -51,6 +53,11 @@ struct pw_creases : Creases {
 
 struct pw_ray_target : RayTarget {
     using RayTarget::RayTarget;
+};
+
+struct pw_index {
+    PartIndex parts;
+    size_t threads;
 };
 
 namespace {
@@ -195,6 +202,25 @@ MeshView as_mesh(const double* vertices, size_t vertex_count, const int32_t* tri
     const auto corners = as_triangles(triangles, triangle_count);
     require_countable(face_count, "face_count");
     return {points, corners, {faces, faces ? triangle_count : 0}, face_count};
+}
+
+// Answers queries 0 to count - 1, each of which writes what is its own.
+template <class Answer>
+void answer_all(const pw_index& index, size_t count, const Answer& answer) {
+    constexpr size_t piece = 256;
+    Threads(index.threads, count / piece).parallel_for(count, piece, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) answer(i);
+    });
+}
+
+// That numbers can be worked with: none is too large.
+template <class Item>
+void require_measurable(std::span<const Item> given, const char* name) {
+    constexpr double largest = 1e100;
+    for (size_t i = 0; i < given.size(); ++i)
+        if (!std::ranges::all_of(given[i], [](double x) { return std::fabs(x) <= largest; }))
+            throw Error(PW_ERROR_NOT_FINITE, std::string(name) + ", row " + std::to_string(i) +
+                                                 ", has a number that is infinite, none, or more than 1e100 in size.");
 }
 
 // Structs of a program that may be older or newer than the library: see the header's habits. None ends with padding,
@@ -642,5 +668,75 @@ pw_status pw_ray_target_first(const pw_ray_target* target, const double* origin,
         const RayHit hit = target->first(from, along, beyond);
         *triangle = hit.triangle;
         *distance = hit.distance;
+    });
+}
+
+pw_status pw_index_create(const pw_hierarchy* hierarchy, const int32_t* bounds, size_t bound_count, int32_t threads,
+                          pw_index** index) {
+    return guarded({{"hierarchy", hierarchy}, {"index", index}}, [&] {
+        require(threads >= 0, "threads must be 0 or more.");
+        *index = new pw_index{PartIndex(*hierarchy, items<int32_t>(bounds, bound_count, "bounds", "bound_count")),
+                              static_cast<size_t>(threads)};
+    });
+}
+
+void pw_index_free(pw_index* index) { delete index; }
+
+pw_status pw_index_holding(const pw_index* index, const double* points, size_t count, int32_t* parts) {
+    return guarded({{"index", index}}, [&] {
+        const auto given = items<Point>(points, count, "points", "count");
+        require(parts || count == 0, "parts must not be null.");
+        require_measurable(given, "points");
+        answer_all(*index, count, [&](size_t i) { parts[i] = index->parts.holding(given[i]); });
+    });
+}
+
+pw_status pw_index_first_hits(const pw_index* index, const double* origins, const double* directions, size_t count,
+                              int32_t* parts, double* distances) {
+    return guarded({{"index", index}}, [&] {
+        const auto from = items<Point>(origins, count, "origins", "count");
+        const auto along = items<Point>(directions, count, "directions", "count");
+        require((parts && distances) || count == 0, "parts and distances must not be null.");
+        require_measurable(from, "origins");
+        require_measurable(along, "directions");
+        for (const Point& d : along)
+            if (d == Point{}) throw Error(PW_ERROR_NOT_FINITE, "A ray has the direction 0, 0, 0.");
+        answer_all(*index, count, [&](size_t i) {
+            const RayHit hit = index->parts.first(from[i], along[i]);
+            parts[i] = hit.triangle;
+            distances[i] = hit.distance;
+        });
+    });
+}
+
+pw_status pw_index_nearest(const pw_index* index, const double* points, size_t count, int32_t* parts, double* distances,
+                           double* nearest) {
+    return guarded({{"index", index}}, [&] {
+        const auto given = items<Point>(points, count, "points", "count");
+        require((parts && distances && nearest) || count == 0, "parts, distances and nearest must not be null.");
+        require_measurable(given, "points");
+        answer_all(*index, count, [&](size_t i) {
+            const NearPart near = index->parts.nearest(given[i]);
+            parts[i] = near.part;
+            distances[i] = near.distance;
+            std::ranges::copy(near.point, nearest + 3 * i);
+        });
+    });
+}
+
+pw_status pw_index_touching(const pw_index* index, const pw_index* other, const double* matrices, size_t count,
+                            int32_t* parts, double* points) {
+    return guarded({{"index", index}, {"other", other}}, [&] {
+        const auto given = items<Affine>(matrices, count, "matrices", "count");
+        require((parts && points) || count == 0, "parts and points must not be null.");
+        require_measurable(given, "matrices");
+        for (const Affine& m : given)
+            if (!finite(after_inverse(identity, m)))
+                throw Error(PW_ERROR_NOT_FINITE, "A matrix leaves the other hierarchy no volume.");
+        answer_all(*index, count, [&](size_t i) {
+            const TouchingParts touch = index->parts.touching(other->parts, given[i]);
+            std::ranges::copy(touch.parts, parts + 2 * i);
+            std::ranges::copy(touch.point, points + 3 * i);
+        });
     });
 }

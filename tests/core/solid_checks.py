@@ -50,7 +50,7 @@ def check_solid(solid):
 
 
 @functools.cache
-def _checks():
+def checks():
     """self_intersections.cpp, which is built beside the library."""
     beside = os.environ.get("PARTWHEEL_LIBRARY") or ROOT / "build" / "release" / "libpartwheel.so"
     return ctypes.CDLL(str(Path(beside).with_name("libpartwheel_checks.so")))
@@ -73,7 +73,7 @@ def count_crossings(vertices, triangles):
 
 def _count(vertices, triangles):
     vertices, triangles = np.ascontiguousarray(vertices), np.ascontiguousarray(triangles, np.int32)
-    function = _checks().crossings
+    function = checks().crossings
     function.restype = ctypes.c_size_t
     function.argtypes = [ctypes.c_void_p, ctypes.c_size_t] * 2
     return function(vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles))

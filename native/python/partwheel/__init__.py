@@ -5,10 +5,11 @@ from .border import Creases, snapped_border
 from .deform import Deformation, surface_distances
 from .fair import faired
 from .hierarchy import ConvexPart, Hierarchy, Solid, Summary
+from .index import Index
 from .library import Error, LibraryError, Mode, PartwheelError, Rung, Stage, Status, version
 from .polygons import Faults, polygon_faults
 from .rays import RayTarget
 
-__all__ = ["ConvexPart", "Creases", "Deformation", "Error", "Faults", "Hierarchy", "LibraryError", "Mode",
+__all__ = ["ConvexPart", "Creases", "Deformation", "Error", "Faults", "Hierarchy", "Index", "LibraryError", "Mode",
            "PartwheelError", "RayTarget", "Rung", "Solid", "Stage", "Status", "Summary", "faired", "polygon_faults",
            "snapped_border", "surface_distances", "version"]

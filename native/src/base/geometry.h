@@ -39,6 +39,33 @@ inline double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * 
 
 inline double length(const Point& p) { return std::sqrt(dot(p, p)); }
 
+// Rows of a 3 x 4 matrix: x goes to its first three columns times x, plus the fourth.
+using Affine = std::array<double, 12>;
+
+inline constexpr Affine identity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+inline Point moved_by(const Affine& m, const Point& p) {
+    return {m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3], m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
+            m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
+}
+
+inline bool finite(const Affine& m) {
+    return std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); });
+}
+
+// b after the inverse of a; not finite where a has none.
+inline Affine after_inverse(const Affine& b, const Affine& a) {
+    const Point r0{a[0], a[1], a[2]}, r1{a[4], a[5], a[6]}, r2{a[8], a[9], a[10]};
+    const Point columns[3] = {cross(r1, r2), cross(r2, r0), cross(r0, r1)};  // of the adjugate
+    const double det = dot(r0, columns[0]);
+    Affine d{};
+    for (size_t row = 0; row < 12; row += 4) {
+        for (size_t k = 0; k < 3; ++k) d[row + k] = dot({b[row], b[row + 1], b[row + 2]}, columns[k]) / det;
+        d[row + 3] = b[row + 3] - dot({d[row], d[row + 1], d[row + 2]}, {a[3], a[7], a[11]});
+    }
+    return d;
+}
+
 // Along the axes, about points; about none its corners are the wrong way round.
 struct Box {
     Point low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};

@@ -44,30 +44,6 @@ double product(const Wide& a, const Wide& b) {
     return xy[0] + xy[1] + a.z * b.z;
 }
 
-Point moved_by(const Affine& m, const Point& p) {
-    return {m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3], m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
-            m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
-}
-
-constexpr Affine identity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-
-bool finite(const Affine& m) {
-    return std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); });
-}
-
-// b after the inverse of a; not finite where a has none.
-Affine after_inverse(const Affine& b, const Affine& a) {
-    const Point r0{a[0], a[1], a[2]}, r1{a[4], a[5], a[6]}, r2{a[8], a[9], a[10]};
-    const Point columns[3] = {cross(r1, r2), cross(r2, r0), cross(r0, r1)};  // of the adjugate
-    const double det = dot(r0, columns[0]);
-    Affine d{};
-    for (size_t row = 0; row < 12; row += 4) {
-        for (size_t k = 0; k < 3; ++k) d[row + k] = dot({b[row], b[row + 1], b[row + 2]}, columns[k]) / det;
-        d[row + 3] = b[row + 3] - dot({d[row], d[row + 1], d[row + 2]}, {a[3], a[7], a[11]});
-    }
-    return d;
-}
-
 inline Matrix to_matrix(const Quaternion& q) {
     const auto [w, x, y, z] = q;
     return {wide(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),

@@ -1,6 +1,7 @@
 // As-rigid-as-possible deformation of a triangle surface by handles, and distances along a surface.
 #pragma once
 
+#include "base/geometry.h"
 #include "base/groups.h"
 #include "base/parallel.h"
 #include "partwheel_edit.h"
@@ -12,9 +13,6 @@
 #include <vector>
 
 namespace partwheel {
-
-// Rows of a 3 x 4 matrix: x goes to its first three columns times x, plus the fourth.
-using Affine = std::array<double, 12>;
 
 // Three numbers, two of which are worked with at once.
 struct Wide {

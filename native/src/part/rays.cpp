@@ -1,5 +1,4 @@
-// Rays and triangles: boxes about runs of them along a space-filling curve, and the sides on which a ray passes their
-// edges (Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", 2013).
+// Rays and triangles: boxes about runs of them along a space-filling curve.
 #include "part/rays.h"
 
 #include "base/curve.h"
@@ -20,25 +19,6 @@ constexpr int cell_bits = curve_bits - 1;  // the far corner of the bounding box
 constexpr double rounding = 1e-12;
 
 }  // namespace
-
-// Along its longest direction, z; what it meets is told by where the ray, moved to x = y = 0, passes.
-struct RayTarget::Ray {
-    Point origin, direction;
-    double beyond;
-    size_t x, y, z;
-
-    Ray(const Point& from, const Point& along, double farther) : origin(from), direction(along), beyond(farther) {
-        z = 0;
-        for (size_t k = 1; k < 3; ++k) z = std::fabs(along[k]) > std::fabs(along[z]) ? k : z;
-        x = (z + 1) % 3, y = (z + 2) % 3;
-    }
-
-    Point seen(const Point& p) const {
-        const Point way = p - origin;
-        const double far = way[z] / direction[z];
-        return {way[x] - far * direction[x], way[y] - far * direction[y], far};
-    }
-};
 
 RayTarget::RayTarget(const MeshView& mesh) {
     if (mesh.triangles.empty()) return;
@@ -70,13 +50,13 @@ RayTarget::RayTarget(const MeshView& mesh) {
 
 RayHit RayTarget::first(const Point& origin, const Point& direction, double beyond) const {
     RayHit best{-1, std::numeric_limits<double>::infinity()};
-    if (!levels_.empty()) search({origin, direction, beyond}, levels_.size() - 1, 0, best);
+    if (!levels_.empty()) search({origin, direction}, beyond, levels_.size() - 1, 0, best);
     return best.triangle < 0 ? RayHit{} : best;
 }
 
-void RayTarget::search(const Ray& ray, size_t level, size_t index, RayHit& best) const {
+void RayTarget::search(const Ray& ray, double beyond, size_t level, size_t index, RayHit& best) const {
     const Box& box = levels_[level][index];
-    double near = ray.beyond, far = best.distance;
+    double near = beyond, far = best.distance;
     for (size_t k = 0; k < 3; ++k) {
         double enter = (box.low[k] - ray.origin[k]) / ray.direction[k];
         double leave = (box.high[k] - ray.origin[k]) / ray.direction[k];
@@ -89,23 +69,13 @@ void RayTarget::search(const Ray& ray, size_t level, size_t index, RayHit& best)
     const size_t begin = index * run;
     if (level > 0) {
         const size_t end = std::min(begin + run, levels_[level - 1].size());
-        for (size_t i = begin; i < end; ++i) search(ray, level - 1, i, best);
+        for (size_t i = begin; i < end; ++i) search(ray, beyond, level - 1, i, best);
         return;
     }
     for (size_t t = begin; t < std::min(begin + run, triangles_.size()); ++t) {
-        std::array<Point, 3> corner;
-        for (size_t k = 0; k < 3; ++k) corner[k] = ray.seen(vertices_[at(triangles_[t][k])]);
-        // On which side the ray passes each edge. Rounding may make it 0, which counts as either, but never turns it.
-        std::array<double, 3> side;
-        for (size_t k = 0; k < 3; ++k) {
-            const Point &p = corner[(k + 1) % 3], &q = corner[(k + 2) % 3];
-            side[k] = p[0] * q[1] - p[1] * q[0];
-        }
-        const auto [least, most] = std::minmax({side[0], side[1], side[2]});
-        const double sum = side[0] + side[1] + side[2];
-        if ((least < 0 && most > 0) || sum == 0) continue;
-        const double distance = (side[0] * corner[0][2] + side[1] * corner[1][2] + side[2] * corner[2][2]) / sum;
-        if (distance > ray.beyond && std::pair(distance, numbers_[t]) < std::pair(best.distance, best.triangle))
+        const auto& [a, b, c] = triangles_[t];
+        const double distance = ray.to(vertices_[at(a)], vertices_[at(b)], vertices_[at(c)]);
+        if (distance > beyond && std::pair(distance, numbers_[t]) < std::pair(best.distance, best.triangle))
             best = {numbers_[t], distance};
     }
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <queue>
+#include <tuple>
 #include <utility>
 
 namespace partwheel::convex {
@@ -32,24 +33,6 @@ Point nearest_on_segment(const Point& p, const Point& a, const Point& b) {
     return a + t * along;
 }
 
-std::vector<Triangle> outer_facets(std::span<const Tetrahedron> tetrahedra) {
-    std::vector<std::pair<Triangle, Triangle>> facets;  // corners in rising order, and as they are
-    facets.reserve(4 * tetrahedra.size());
-    for (const Tetrahedron& t : tetrahedra)
-        for (size_t k = 0; k < 4; ++k) {
-            Triangle corners = facet(t, k);
-            std::ranges::sort(corners);
-            facets.push_back({corners, facet(t, k)});
-        }
-    std::ranges::sort(facets);
-    std::vector<Triangle> outer;
-    for (size_t i = 0; i < facets.size(); ++i)
-        if ((i == 0 || facets[i - 1].first != facets[i].first) &&
-            (i + 1 == facets.size() || facets[i + 1].first != facets[i].first))
-            outer.push_back(facets[i].second);
-    return outer;
-}
-
 template <class Item>
 std::vector<Box> boxes_of(std::span<const Point> points, std::span<const Item> items) {
     std::vector<Box> boxes;
@@ -60,7 +43,31 @@ std::vector<Box> boxes_of(std::span<const Point> points, std::span<const Item> i
     return boxes;
 }
 
+std::vector<Triangle> surface_of(std::span<const Tetrahedron> tetrahedra) {
+    std::vector<Triangle> surface;
+    for (const OuterFacet& f : outer_facets(tetrahedra)) surface.push_back(f.corners);
+    return surface;
+}
+
 }  // namespace
+
+std::vector<OuterFacet> outer_facets(std::span<const Tetrahedron> tetrahedra) {
+    std::vector<std::pair<Triangle, OuterFacet>> facets;  // corners in rising order, and as they are
+    facets.reserve(4 * tetrahedra.size());
+    for (size_t t = 0; t < tetrahedra.size(); ++t)
+        for (size_t k = 0; k < 4; ++k) {
+            Triangle corners = facet(tetrahedra[t], k);
+            std::ranges::sort(corners);
+            facets.push_back({corners, {facet(tetrahedra[t], k), static_cast<int32_t>(t)}});
+        }
+    std::ranges::sort(facets, {}, [](const auto& f) { return std::tie(f.first, f.second.tetrahedron); });
+    std::vector<OuterFacet> outer;
+    for (size_t i = 0; i < facets.size(); ++i)
+        if ((i == 0 || facets[i - 1].first != facets[i].first) &&
+            (i + 1 == facets.size() || facets[i + 1].first != facets[i].first))
+            outer.push_back(facets[i].second);
+    return outer;
+}
 
 Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
     const Point n = cross(b - a, c - a);
@@ -105,7 +112,7 @@ void BoxTree::bound(std::span<const Box> items, size_t node, size_t first, size_
 }
 
 Distances::Distances(std::span<const Point> points, std::span<const Tetrahedron> tetrahedra)
-    : points_(points), tetrahedra_(tetrahedra), surface_(outer_facets(tetrahedra)),
+    : points_(points), tetrahedra_(tetrahedra), surface_(surface_of(tetrahedra)),
       of_tetrahedra_(boxes_of(points, tetrahedra)), of_surface_(boxes_of(points, std::span<const Triangle>(surface_))) {}
 
 bool Distances::inside(size_t node, size_t first, size_t last, const Point& p) const {

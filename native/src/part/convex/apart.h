@@ -11,6 +11,13 @@
 
 namespace partwheel::convex {
 
+// Facets that have nothing on their other side, and the tetrahedron of each; in the order of their vertices.
+struct OuterFacet {
+    Triangle corners;
+    int32_t tetrahedron;
+};
+std::vector<OuterFacet> outer_facets(std::span<const Tetrahedron> tetrahedra);
+
 Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
 
 // Boxes in a binary tree: of node n the halves are 2 n + 1 and 2 n + 2, each half of what n has in `order`.
@@ -47,7 +54,7 @@ private:
 
     std::span<const Point> points_;
     std::span<const Tetrahedron> tetrahedra_;
-    std::vector<Triangle> surface_;  // facets that have nothing on their other side
+    std::vector<Triangle> surface_;  // the outer facets
     BoxTree of_tetrahedra_, of_surface_;
 };
 

@@ -1,0 +1,96 @@
+// A hierarchy as an index: which part holds a point, which a ray meets first, which is nearest, where two touch.
+#pragma once
+
+#include "part/index/tree.h"
+#include "part/rays.h"
+#include "surface/surface.h"
+#include "tree/hierarchy.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace partwheel {
+
+struct NearPart {
+    int32_t part = -1;
+    double distance = 0;
+    Point point{};
+};
+
+// Of the first one's parts and the second's, and a point that they share; -1 if they don't touch.
+struct TouchingParts {
+    std::array<int32_t, 2> parts{-1, -1};
+    Point point{};
+};
+
+// Bodies with a surface: the tetrahedra and their outer facets, or the hulls of a cut's parts. Never changes, and keeps
+// nothing of the hierarchy. pw_index_* document the questions.
+class PartIndex {
+public:
+    // bounds: of a cut; none: the tetrahedra. Throws Error(PW_ERROR_ARGUMENT) for bounds that no cut has.
+    PartIndex(const Hierarchy& hierarchy, std::span<const int32_t> bounds);
+
+    int32_t holding(const Point& p) const;
+    RayHit first(const Point& origin, const Point& direction) const;  // the hit's triangle is a part
+    NearPart nearest(const Point& p) const;
+    // With the other one moved by the matrix, which has an inverse.
+    TouchingParts touching(const PartIndex& other, const Affine& matrix) const;
+
+private:
+    class Pair;
+    struct Sent;
+    struct Sought;
+
+    // The corners of a group's or a join's hull, coordinate after coordinate.
+    struct Cloud {
+        std::array<std::vector<double>, 3> along;
+        Point middle{};
+
+        void add(const Point& p) {
+            for (size_t k = 0; k < 3; ++k) along[k].push_back(p[k]);
+        }
+        Point farthest(const Point& axis) const {
+            size_t best = 0;
+            double most = -HUGE_VAL;
+            for (size_t i = 0; i < along[0].size(); ++i) {
+                const double far = axis[0] * along[0][i] + axis[1] * along[1][i] + axis[2] * along[2][i];
+                if (far > most) most = far, best = i;
+            }
+            return {along[0][best], along[1][best], along[2][best]};
+        }
+    };
+
+    void take_tetrahedra(const Hierarchy& hierarchy);
+    void take_hulls(const Hierarchy& hierarchy, std::span<const int32_t> bounds);
+    void plant(const index::Top& top);
+
+    template <class Visit>
+    bool sides_of(int32_t body, const Visit& visit) const;
+    template <class Place>
+    int32_t holding(const Point& p, const Box& near, bool turned, const Place& place) const;
+
+    Frame frame_;
+    std::vector<Point> vertices_, working_;  // the caller's, and in the frame
+    std::vector<Tetrahedron> tetrahedra_;    // the bodies; or none, and their sides, body after body:
+    std::vector<Triangle> sides_;
+    std::vector<int32_t> side_begin_;
+    index::Tree bodies_, surface_;
+
+    // The surface, in the order of its tree.
+    std::vector<Triangle> facets_;
+    std::vector<std::array<Point, 3>> corners_;  // working
+    std::vector<int32_t> body_;
+
+    std::vector<Cloud> clouds_;          // of each group and join of the surface; working
+
+    struct Piece {
+        int32_t vertex, body;  // one of each
+    };
+    std::vector<Piece> pieces_;  // of the bodies, that hang together
+};
+
+}  // namespace partwheel
