@@ -23,7 +23,7 @@ using index::Tree;
 namespace {
 
 // The hierarchy's last merges are undone until there are so many groups; below them the tree is one of boxes alone.
-constexpr size_t most_groups = 32;
+constexpr size_t most_groups = 8;
 
 // By how much rounding may put a box's near side behind its far one.
 constexpr double rounding = 1e-12;
@@ -152,9 +152,8 @@ void PartIndex::plant(const Top& top) {
     for (int32_t& bound : of_facets.bounds)
         bound = static_cast<int32_t>(std::ranges::lower_bound(body_, bound) - body_.begin());
     for (const auto& [a, b, c] : facets_) corners_.push_back({working_[at(a)], working_[at(b)], working_[at(c)]});
-    clouds_.resize(top.groups() + top.joins.size());
-    std::vector<std::vector<Point>> extreme(clouds_.size());
-    for (size_t i = 0; i < clouds_.size(); ++i) {
+    std::vector<std::vector<Point>> extreme(top.groups() + top.joins.size());
+    for (size_t i = 0; i < extreme.size(); ++i) {
         std::vector<Point> points;
         if (i < top.groups()) {
             for (auto f = at(of_facets.bounds[i]); f < at(of_facets.bounds[i + 1]); ++f)
@@ -167,9 +166,7 @@ void PartIndex::plant(const Top& top) {
         }
         if (points.size() > 3) points = hull_of(points).vertices;
         extreme[i] = points;
-        for (const Point& p : points) clouds_[i].add(p);
-        const Box box = Box::around(points);
-        if (!points.empty()) clouds_[i].middle = 0.5 * (box.low + box.high);
+        clouds_.emplace_back(points);
     }
 
     surface_ = Tree(boxes_of<std::array<Point, 3>>(corners_), of_facets);

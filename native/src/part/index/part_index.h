@@ -45,23 +45,14 @@ private:
     struct Sent;
     struct Sought;
 
-    // The corners of a group's or a join's hull, coordinate after coordinate.
+    // The corners of a group's or a join's hull, coordinate after coordinate, in whole pairs.
     struct Cloud {
         std::array<std::vector<double>, 3> along;
         Point middle{};
+        double size = 0;
 
-        void add(const Point& p) {
-            for (size_t k = 0; k < 3; ++k) along[k].push_back(p[k]);
-        }
-        Point farthest(const Point& axis) const {
-            size_t best = 0;
-            double most = -HUGE_VAL;
-            for (size_t i = 0; i < along[0].size(); ++i) {
-                const double far = axis[0] * along[0][i] + axis[1] * along[1][i] + axis[2] * along[2][i];
-                if (far > most) most = far, best = i;
-            }
-            return {along[0][best], along[1][best], along[2][best]};
-        }
+        explicit Cloud(std::span<const Point> points);
+        Point farthest(const Point& axis) const;
     };
 
     void take_tetrahedra(const Hierarchy& hierarchy);

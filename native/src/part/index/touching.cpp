@@ -1,9 +1,11 @@
 // Where two indexes touch: pairs of nodes, by their boxes and, at the top, by their hulls; then facets; then whether a
 // piece of one is all inside the other.
+#include "cluster/hull/vectors.h"
 #include "part/index/holding.h"
 #include "part/index/triangles.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <initializer_list>
 
@@ -17,8 +19,10 @@ namespace {
 // What is this far apart, relative to the sizes at hand, is surely apart.
 constexpr double rounding = 1e-12;
 
-// A plane between two hulls is sought in so many steps at most.
-constexpr int most_steps = 16;
+// A plane between two hulls is sought in so many steps at most, and no longer where they reach into each other by more
+// than this, of the smaller one's size. What is not told apart so, is by boxes and facets.
+constexpr int most_steps = 6;
+constexpr double deep = 0.1;
 
 Point turned_by(const Affine& m, const Point& p) {
     return {m[0] * p[0] + m[1] * p[1] + m[2] * p[2], m[4] * p[0] + m[5] * p[1] + m[6] * p[2],
@@ -77,12 +81,40 @@ bool separate(const Corners& a, const Corners& b) {
 
 }  // namespace
 
+PartIndex::Cloud::Cloud(std::span<const Point> points) {
+    if (points.empty()) return;
+    for (size_t k = 0; k < 3; ++k) {
+        for (const Point& p : points) along[k].push_back(p[k]);
+        if (points.size() % 2 == 1) along[k].push_back(points.back()[k]);
+    }
+    const Box box = Box::around(points);
+    middle = 0.5 * (box.low + box.high);
+    size = box.diagonal();
+}
+
+Point PartIndex::Cloud::farthest(const Point& axis) const {
+    Two most = {-HUGE_VAL, -HUGE_VAL};
+    TwoBits best = {0, 0}, here = {0, 1};
+    for (size_t i = 0; i < along[0].size(); i += 2, here += 2) {
+        const Two far = axis[0] * vector_at<Two>(&along[0][i]) + axis[1] * vector_at<Two>(&along[1][i]) +
+                        axis[2] * vector_at<Two>(&along[2][i]);
+        const TwoBits more = far > most;
+        best = (here & more) | (best & ~more);
+        most = std::bit_cast<Two>((std::bit_cast<TwoBits>(far) & more) | (std::bit_cast<TwoBits>(most) & ~more));
+    }
+    const auto i = static_cast<size_t>(most[1] > most[0] ? best[1] : best[0]);
+    return {along[0][i], along[1][i], along[2][i]};
+}
+
 class PartIndex::Pair {
 public:
     Pair(const PartIndex& a, const PartIndex& b, const Affine& matrix)
         : a_(a), b_(b), matrix_(matrix), onto_a_(onto_a()), onto_b_(onto_b()) {
         const Affine& m = onto_a_.matrix();
-        for (size_t row = 0; row < 12; row += 4) growth_ += dot({m[row], m[row + 1], m[row + 2]}, {m[row], m[row + 1], m[row + 2]}) / 3;
+        double sum = 0;
+        for (size_t row = 0; row < 12; row += 4)
+            for (size_t k = 0; k < 3; ++k) sum += m[row + k] * m[row + k];
+        growth_ = std::sqrt(sum / 3);
     }
 
     TouchingParts touching() {
@@ -125,6 +157,7 @@ private:
             const Point way = first - last;
             const double gap = dot(axis, way);
             if (gap > 4 * onto_a_.slack()) return true;
+            if (step > 0 && gap < -deep * std::min(a.size, growth_ * b.size)) return false;
             axis = axis - 2 * gap / dot(way, way) * way;
         }
         return false;
@@ -139,10 +172,19 @@ private:
     bool look(const Tree::Subtree& s, const Tree::Subtree& t) {
         if (apart(s, t)) return false;
         if (s.count > 0 && t.count > 0) return look_at_facets(s, t);
-        const bool divide_t = s.count > 0 || (t.count == 0 && growth_ * dot(t.box.high - t.box.low, t.box.high - t.box.low) >
-                                                                 dot(s.box.high - s.box.low, s.box.high - s.box.low));
-        for (size_t side = 0; side < 2; ++side)
-            if (divide_t ? look(s, b_.surface_.child(t.child, side)) : look(a_.surface_.child(s.child, side), t)) return true;
+        const bool divide_t = s.count > 0 || (t.count == 0 && growth_ * t.box.diagonal() > s.box.diagonal());
+        const std::array<Tree::Subtree, 2> halves = {(divide_t ? b_ : a_).surface_.child(divide_t ? t.child : s.child, 0),
+                                                     (divide_t ? b_ : a_).surface_.child(divide_t ? t.child : s.child, 1)};
+        // First those that are nearer to each other, where they may meet sooner.
+        std::array<double, 2> away{};
+        for (size_t i = 0; i < 2; ++i) {
+            const Point way = moved_by(onto_a_.matrix(), Block((divide_t ? halves[i] : t).box).middle) -
+                              Block((divide_t ? s : halves[i]).box).middle;
+            away[i] = dot(way, way);
+        }
+        const size_t first = away[1] < away[0];
+        for (const size_t i : {first, 1 - first})
+            if (divide_t ? look(s, halves[i]) : look(halves[i], t)) return true;
         return false;
     }
 
@@ -188,7 +230,7 @@ private:
     const PartIndex &a_, &b_;
     const Affine matrix_;
     const Move onto_a_, onto_b_;
-    double growth_ = 0;  // of squared lengths in b's frame when they come to a's
+    double growth_ = 0;  // of lengths in b's frame when they come to a's
     TouchingParts found_;
 };
 
