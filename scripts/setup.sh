@@ -15,6 +15,7 @@
 #   setup_cross     build/venv/cross: zig, a compiler for all platforms that are shipped; what runs their programs here,
 #                   with a Python for Windows in build/deps/windows-python
 #   setup_bench     build/venv/bench: numpy, scipy, matplotlib for the benchmarks; build/venv/peers: what they compare with
+#   setup_index     build/venv/index: Embree, trimesh, libigl and FCL, which the index is compared with
 #   setup_bpy       build/venv/bpy-VERSION for each of $bpy_versions, or for those named
 #   setup_blender   the distribution's Blender
 #   setup_newest    build/deps/blender-SUITE: the Blender of another Debian (sid: the newest) in a directory; needs root
@@ -248,6 +249,11 @@ fill_windows_python() {
 
 setup_bench() {
     setup_build && venv bench /usr/bin/python3 numpy scipy matplotlib && venv peers /usr/bin/python3 coacd vhacdx xatlas numpy
+}
+
+setup_index() {
+    start_setup && packages python3 python3-venv ca-certificates &&
+        venv index /usr/bin/python3 numpy scipy trimesh rtree embreex libigl python-fcl
 }
 
 setup_bpy() {

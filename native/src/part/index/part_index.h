@@ -45,14 +45,16 @@ private:
     struct Sent;
     struct Sought;
 
-    // The corners of a group's or a join's hull, coordinate after coordinate, in whole pairs.
+    // The corners of a group's or a join's hull, coordinate after coordinate, in whole pairs; first a few from all over it, which
+    // mostly tell that it is not apart from another.
     struct Cloud {
+        static constexpr size_t few = 64;
         std::array<std::vector<double>, 3> along;
         Point middle{};
         double size = 0;
 
         explicit Cloud(std::span<const Point> points);
-        Point farthest(const Point& axis) const;
+        Point farthest(const Point& axis, bool all) const;
     };
 
     void take_tetrahedra(const Hierarchy& hierarchy);

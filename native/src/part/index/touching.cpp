@@ -83,19 +83,22 @@ bool separate(const Corners& a, const Corners& b) {
 
 PartIndex::Cloud::Cloud(std::span<const Point> points) {
     if (points.empty()) return;
-    for (size_t k = 0; k < 3; ++k) {
-        for (const Point& p : points) along[k].push_back(p[k]);
-        if (points.size() % 2 == 1) along[k].push_back(points.back()[k]);
-    }
+    const size_t stride = (points.size() + few - 1) / few;
+    for (size_t from = 0; from < stride; ++from)
+        for (size_t i = from; i < points.size(); i += stride)
+            for (size_t k = 0; k < 3; ++k) along[k].push_back(points[i][k]);
+    if (points.size() % 2 == 1)
+        for (std::vector<double>& numbers : along) numbers.push_back(numbers.back());
     const Box box = Box::around(points);
     middle = 0.5 * (box.low + box.high);
     size = box.diagonal();
 }
 
-Point PartIndex::Cloud::farthest(const Point& axis) const {
+Point PartIndex::Cloud::farthest(const Point& axis, bool all) const {
     Two most = {-HUGE_VAL, -HUGE_VAL};
     TwoBits best = {0, 0}, here = {0, 1};
-    for (size_t i = 0; i < along[0].size(); i += 2, here += 2) {
+    const size_t count = all ? along[0].size() : std::min(along[0].size(), few);
+    for (size_t i = 0; i < count; i += 2, here += 2) {
         const Two far = axis[0] * vector_at<Two>(&along[0][i]) + axis[1] * vector_at<Two>(&along[1][i]) +
                         axis[2] * vector_at<Two>(&along[2][i]);
         const TwoBits more = far > most;
@@ -152,11 +155,14 @@ private:
             const double size = length(axis);
             if (!(size > 0)) return false;
             axis = 1 / size * axis;
-            const Point last = a.farthest(axis);
-            const Point first = moved_by(onto_a_.matrix(), b.farthest(turned_back_by(onto_a_.matrix(), -1 * axis)));
-            const Point way = first - last;
+            const Point back = turned_back_by(onto_a_.matrix(), -1 * axis);
+            const auto between = [&](bool all) { return moved_by(onto_a_.matrix(), b.farthest(back, all)) - a.farthest(axis, all); };
+            Point way = between(false);
+            if (dot(axis, way) > 4 * onto_a_.slack()) {
+                way = between(true);
+                if (dot(axis, way) > 4 * onto_a_.slack()) return true;
+            }
             const double gap = dot(axis, way);
-            if (gap > 4 * onto_a_.slack()) return true;
             if (step > 0 && gap < -deep * std::min(a.size, growth_ * b.size)) return false;
             axis = axis - 2 * gap / dot(way, way) * way;
         }
