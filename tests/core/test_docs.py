@@ -4,6 +4,7 @@
 import ast
 import re
 
+import numpy as np
 import pytest
 import shapes
 from conftest import PLAIN, ROOT
@@ -148,6 +149,17 @@ def test_the_python_examples_run():
     limited = examples[1] if PLAIN else examples[1].replace("memory_limit=2**32", "memory_limit=0")
     exec(compile(limited, "docs/scripting.md", "exec"), scope)
     assert scope["hierarchy"].save() == first
+
+
+def test_the_example_of_the_index_runs():
+    text, = EXAMPLES.findall((ROOT / "docs" / "index-queries.md").read_text())
+    hand = shapes.SHAPES["hand.off"]()
+    middles = hand.vertices[hand.triangles].mean(1)
+    scope = {"vertices": hand.vertices, "triangles": hand.triangles, "points": middles, "origins": middles + 1,
+             "directions": -np.ones_like(middles)}
+    exec(compile(text, "docs/index-queries.md", "exec"), scope)
+    assert (scope["distances"] <= 1e-12).all() and len(np.unique(scope["parts"])) == len(scope["bounds"]) - 1
+    assert scope["touching"].min() >= 0 and (scope["part"] >= -1).all()
 
 
 def test_what_the_examples_for_blender_call_is_in_the_api():

@@ -3,10 +3,8 @@
 
 #include "base/error.h"
 #include "base/groups.h"
-#include "base/predicates.h"
 #include "cluster/hull/hull.h"
 #include "part/convex/apart.h"
-#include "part/index/holding.h"
 
 #include <algorithm>
 #include <cmath>

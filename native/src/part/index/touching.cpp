@@ -1,7 +1,7 @@
 // Where two indexes touch: pairs of nodes, by their boxes and, at the top, by their hulls; then facets; then whether a
 // piece of one is all inside the other.
 #include "cluster/hull/vectors.h"
-#include "part/index/holding.h"
+#include "part/index/part_index.h"
 #include "part/index/triangles.h"
 
 #include <algorithm>
