@@ -63,7 +63,6 @@ struct pw_index {
 namespace {
 
 constexpr double smallest_quality = 1.1;
-constexpr size_t most_parts = 4096;
 constexpr size_t fewest_hull_vertices = 8;  // of a box
 constexpr size_t usual_exact_triangles = 200000;
 constexpr size_t most_struct = 4096;  // bytes of a struct of any version: more is a struct_size that was never set

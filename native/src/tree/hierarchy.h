@@ -13,6 +13,8 @@
 
 namespace partwheel {
 
+constexpr size_t most_parts = 4096;  // of a cut, and convex ones: as the C API promises
+
 // pw_arrays documents the arrays, pw_hierarchy_* the questions; arguments are checked by api.
 class Hierarchy {
 public:

@@ -25,7 +25,6 @@ namespace {
 using namespace convex;
 using Tetrahedra = std::vector<Tetrahedron>;
 
-constexpr size_t most_parts = 4096;
 constexpr size_t coarse_points = 1000, coarse_points_per_hull = 30, coarse_points_for_error = 2000;
 constexpr double more_than_wanted = 1.5;      // so many times as many pieces are made, and joined again
 constexpr size_t more_parts = 2;              // so many times as many of the hierarchy's parts are joined
