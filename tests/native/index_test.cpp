@@ -1,0 +1,126 @@
+// The hierarchy as an index: triangles that meet, against CGAL; queries from several threads; arguments of the C API. What it
+// answers is held against every pair in tests/core/test_index.py.
+#include "base/predicates.h"
+#include "part/index/triangles.h"
+#include "partwheel_edit.h"
+#include "support/built.h"
+#include "support/shapes.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/intersections.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <thread>
+#include <vector>
+
+namespace partwheel {
+namespace {
+
+// On a small lattice, so that most of them share planes, edges or corners; a few less flat.
+TEST(Index, TrianglesMeetAsByCgal) {
+    using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+    std::mt19937 draw(1);
+    size_t met = 0, count = 0;
+    for (const uint32_t size : {2U, 3U, 4U, 1000U}) {
+        const auto corners = [&] {
+            index::Corners t;
+            do
+                for (Point& p : t)
+                    for (double& x : p) x = static_cast<double>(draw() % size) / 3;
+            while (collinear(t[0], t[1], t[2]));
+            return t;
+        };
+        const auto triangle = [](const index::Corners& t) {
+            const auto point = [](const Point& p) { return Kernel::Point_3(p[0], p[1], p[2]); };
+            return Kernel::Triangle_3(point(t[0]), point(t[1]), point(t[2]));
+        };
+        for (int i = 0; i < 20000; ++i, ++count) {
+            const index::Corners a = corners(), b = corners();
+            const auto place = index::common_point(a, b);
+            ASSERT_EQ(place.has_value(), CGAL::do_intersect(triangle(a), triangle(b)));
+            if (!place) continue;
+            ++met;
+            const Kernel::Point_3 p((*place)[0], (*place)[1], (*place)[2]);
+            for (const auto& t : {triangle(a), triangle(b)}) {
+                EXPECT_LT(CGAL::to_double(CGAL::squared_distance(p, t.supporting_plane())), 1e-18 * size * size);
+                EXPECT_LT(CGAL::to_double(CGAL::squared_distance(p, t)), 1e-18 * size * size);
+            }
+        }
+    }
+    EXPECT_GT(met, count / 10);
+    EXPECT_LT(met, count);
+}
+
+struct FreeIndex {
+    void operator()(pw_index* index) const { pw_index_free(index); }
+};
+using IndexHandle = std::unique_ptr<pw_index, FreeIndex>;
+
+IndexHandle make(const test::Handle& hierarchy, int32_t threads) {
+    pw_index* index = nullptr;
+    EXPECT_EQ(pw_index_create(hierarchy.get(), nullptr, 0, threads, &index), PW_OK);
+    return IndexHandle(index);
+}
+
+TEST(Index, ThreadsAskOneAtTheSameTimeAndGetTheSame) {
+    const test::Handle hierarchy = test::build(test::snowman(12, 16));
+    const IndexHandle index = make(hierarchy, 3);
+    std::mt19937 draw(2);
+    std::vector<double> points(3 * 3000);
+    for (double& x : points) x = std::uniform_real_distribution(-2.0, 2.0)(draw);
+    const size_t count = points.size() / 3;
+    struct Answers {
+        std::vector<int32_t> held, near;
+        std::vector<double> away, nearest;
+        bool operator==(const Answers&) const = default;
+    };
+    const auto ask = [&](const pw_index* of) {
+        Answers a{std::vector<int32_t>(count), std::vector<int32_t>(count), std::vector<double>(count), std::vector<double>(3 * count)};
+        EXPECT_EQ(pw_index_holding(of, points.data(), count, a.held.data()), PW_OK);
+        EXPECT_EQ(pw_index_nearest(of, points.data(), count, a.near.data(), a.away.data(), a.nearest.data()), PW_OK);
+        return a;
+    };
+    const Answers expected = ask(make(hierarchy, 1).get());
+    std::vector<Answers> answers(4);
+    std::vector<std::thread> threads;
+    for (Answers& a : answers) threads.emplace_back([&] { a = ask(index.get()); });
+    for (std::thread& thread : threads) thread.join();
+    for (const Answers& a : answers) EXPECT_TRUE(a == expected);
+    EXPECT_NE(expected.held, std::vector<int32_t>(count, -1));
+}
+
+TEST(Index, RefusesWhatCannotBe) {
+    const test::Handle hierarchy = test::build(test::cube());
+    pw_index* made = nullptr;
+    const int32_t bounds[] = {0, 1};
+    EXPECT_EQ(pw_index_create(nullptr, nullptr, 0, 0, &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_create(hierarchy.get(), nullptr, 0, 0, nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_create(hierarchy.get(), nullptr, 2, 0, &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_create(hierarchy.get(), nullptr, 0, -1, &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_create(hierarchy.get(), bounds, 2, 0, &made), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(made, nullptr);
+    pw_index_free(nullptr);
+
+    const IndexHandle index = make(hierarchy, 0);
+    const double point[] = {0.5, 0.5, 0.5}, matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    int32_t parts[2];
+    double numbers[3];
+    EXPECT_EQ(pw_index_holding(nullptr, point, 1, parts), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_holding(index.get(), nullptr, 1, parts), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_holding(index.get(), point, 1, nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_holding(index.get(), point, size_t{PW_MAX_COUNT} + 1, parts), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_first_hits(index.get(), point, nullptr, 1, parts, numbers), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_first_hits(index.get(), point, point, 1, parts, nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_nearest(index.get(), point, 1, parts, numbers, nullptr), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_touching(index.get(), nullptr, matrix, 1, parts, numbers), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_touching(index.get(), index.get(), matrix, 1, nullptr, numbers), PW_ERROR_ARGUMENT);
+    EXPECT_EQ(pw_index_touching(index.get(), index.get(), matrix, 1, parts, numbers), PW_OK);
+    EXPECT_GE(parts[0], 0);
+    EXPECT_EQ(pw_index_holding(index.get(), nullptr, 0, nullptr), PW_OK);
+}
+
+}  // namespace
+}  // namespace partwheel
