@@ -174,7 +174,7 @@ class Modal(ToolTest):
             bmesh.update_edit_mesh(self.obj.data)
 
         hovered()
-        for change, slices in ((lambda: bpy.ops.mesh.select_all(action="SELECT"), 1), (moved, 4)):
+        for change, slices in ((lambda: bpy.ops.mesh.select_all(action="SELECT"), 1), (moved, 9)):
             change()
             bpy.context.view_layer.update()
             with WritesBack() as writes:

@@ -93,7 +93,8 @@ def similar(hierarchy, measured, node, among=None):
     if not among:
         candidates &= (last <= first[node]) | (first >= last[node])
     near = np.flatnonzero(candidates)
-    known = (LENGTHS * unlike + LOW * np.maximum(0, PART - score)
+    least = PART if hierarchy.score[node] > 0 else 0  # of a part that has no score none is asked for
+    known = (LENGTHS * unlike + LOW * np.maximum(0, least - score)
              + LACKING * np.maximum(0, hierarchy.score[node] - score))
     chosen = []
     for other in near[np.argsort(known[near], kind="stable")].tolist():
