@@ -9,6 +9,11 @@ namespace partwheel::index {
 
 namespace {
 
+// Where a height is 0 that goes from one end's to the other's; on the way, whatever rounding has done to them.
+Point between(const Point& p, const Point& q, double from, double to) {
+    return from == to ? p : p + std::clamp(from / (from - to), 0.0, 1.0) * (q - p);
+}
+
 // Triangles in one plane, seen along an axis across which they don't vanish: a two-dimensional test.
 class Flat {
 public:
@@ -30,7 +35,7 @@ public:
         const int pr = turn(p, q, r), ps = turn(p, q, s);
         if (pr * ps > 0 || (pr == 0 && ps == 0) || turn(r, s, p) * turn(r, s, q) > 0) return std::nullopt;
         const double from = area_of(p, q, r), to = area_of(p, q, s);
-        return from == to ? r : r + from / (from - to) * (s - r);
+        return between(r, s, from, to);
     }
 
 private:
@@ -74,8 +79,7 @@ std::optional<Point> on_edge(const Corners& of, const Sides& sides, const Corner
             std::minmax({orientation(p, q, t[0], t[1]), orientation(p, q, t[1], t[2]), orientation(p, q, t[2], t[0])});
         if (least < 0 && most > 0) continue;
         const double below = six_volumes(t[0], t[1], t[2], p), above = six_volumes(t[0], t[1], t[2], q);
-        if (from == 0 || below == above) return p;
-        return to == 0 ? q : p + below / (below - above) * (q - p);
+        return from == 0 ? p : to == 0 ? q : between(p, q, below, above);
     }
     return std::nullopt;
 }
