@@ -16,8 +16,6 @@ namespace {
 
 constexpr double rounding = 1e-12;  // a point that is no farther out of a facet may as well be in it
 
-double squared(const Point& p) { return dot(p, p); }
-
 double squared_to_box(const Point& p, const Box& box) {
     double sum = 0;
     for (size_t k = 0; k < 3; ++k) {

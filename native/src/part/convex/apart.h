@@ -18,6 +18,8 @@ struct OuterFacet {
 };
 std::vector<OuterFacet> outer_facets(std::span<const Tetrahedron> tetrahedra);
 
+inline double squared(const Point& p) { return dot(p, p); }
+
 Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
 
 // Boxes in a binary tree: of node n the halves are 2 n + 1 and 2 n + 2, each half of what n has in `order`.

@@ -55,16 +55,6 @@ std::vector<int32_t> bounds_of(std::span<const int32_t> clusters, std::span<cons
     return bounds;
 }
 
-template <class Corners>
-std::vector<Box> boxes_of(std::span<const Corners> items) {
-    std::vector<Box> boxes;
-    boxes.reserve(items.size());
-    for (const Corners& corners : items) boxes.push_back(Box::around(corners));
-    return boxes;
-}
-
-double squared(const Point& p) { return dot(p, p); }
-
 }  // namespace
 
 PartIndex::PartIndex(const Hierarchy& hierarchy, std::span<const int32_t> bounds) {
@@ -167,7 +157,9 @@ void PartIndex::plant(const Top& top) {
         clouds_.emplace_back(points);
     }
 
-    surface_ = Tree(boxes_of<std::array<Point, 3>>(corners_), of_facets);
+    boxes.clear();
+    for (const std::array<Point, 3>& corners : corners_) boxes.push_back(Box::around(corners));
+    surface_ = Tree(boxes, of_facets);
     const auto sort_by = [&](auto& values) {
         auto sorted = values;
         for (size_t i = 0; i < sorted.size(); ++i) sorted[i] = values[at(surface_.order[i])];
@@ -252,7 +244,7 @@ struct PartIndex::Sought {
             for (auto i = at(child); i < at(child + count); ++i) {
                 const auto& [a, b, c] = index.corners_[i];
                 const Point q = convex::nearest_on_triangle(p, a, b, c);
-                const double away = squared(p - q);
+                const double away = convex::squared(p - q);
                 if (body < 0 || std::pair(away, index.body_[i]) < std::pair(best, body))
                     best = away, body = index.body_[i], point = q;
             }

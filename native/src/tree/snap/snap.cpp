@@ -184,7 +184,7 @@ private:
         }
         for (const int8_t half : {left_half, right_half})
             if (areas[0] + areas[1] >= least_area * whole_ && areas[half] < crumb * whole_ &&
-                !at_split(tetrahedra).empty())
+                std::ranges::any_of(tetrahedra, [&](int32_t t) { return is_at_split(t); }))
                 for (const int32_t t : tetrahedra)
                     if (side_[at(t)] == half) side_[at(t)] = unsettled;
         std::ranges::copy_if(tetrahedra, std::back_inserter(newcomers),
