@@ -28,6 +28,9 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         name="Large Meshes Exactly", description="Find the parts of meshes of more than 200,000 triangles on all of "
         "these, not on a coarser copy: some ten times the time and memory for parts that are mostly the same",
         default=False)
+    on_import: bpy.props.BoolProperty(
+        name="Find on Import", description="The parts of what is imported or appended are found at once, beside your own "
+        "work", default=False)
     memory_share: bpy.props.IntProperty(
         name="Memory", description="How much of the available memory a build may use (kept on Linux)", default=80,
         min=10, max=100, subtype="PERCENTAGE")
@@ -58,7 +61,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         trouble.draw(context, self.layout)
         column = self.layout.column()
         column.use_property_split = True
-        for name in ("parts", "exactly", "save_with_file", "memory_share", "time_limit", "python", "wheel"):
+        for name in ("parts", "exactly", "on_import", "save_with_file", "memory_share", "time_limit", "python", "wheel"):
             column.prop(self, name)
         draw_overlays(column)
         key = pie_key()

@@ -81,3 +81,28 @@ class First(MeshTest):
         self.assertEqual(tool.modal(context, event("ESC")), {"CANCELLED"})
         self.assertFalse(part("parts.builds").running())
         self.assertEqual((len(bpy.data.objects), context.timers), (1, []))
+
+
+class Imported(MeshTest):
+    """What is found for what was imported; tests/gui/scenarios/imports.py tells imports from other operations."""
+
+    def test_selected_meshes_once_each(self):
+        obj, other, beside = (self.add(*read_off("hand"), name) for name in ("hand", "other", "beside"))
+        shared = bpy.data.objects.new("shared", obj.data)
+        bpy.context.scene.collection.objects.link(shared)
+        for each in (obj, other, shared, beside):
+            each.select_set(each is not beside)
+        part("parts.registry").forget_all()
+        lacking = part("pick.on_import").lacking(bpy.context.view_layer)
+        self.assertEqual(len(lacking), 2)
+        self.assertEqual({each.data for each in lacking}, {obj.data, other.data})
+        self.assertEqual(bpy.ops.mesh.partwheel_imported(), {"FINISHED"})
+        known = part("parts.registry").known
+        self.assertEqual([known(each.data) is None for each in (obj, other, beside)], [False, False, True])
+        self.assertEqual(part("pick.on_import").lacking(bpy.context.view_layer), [])
+
+    def test_a_sheet_is_no_error_that_pops_up(self):
+        sheet = self.add([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])
+        sheet.select_set(True)
+        self.assertEqual(bpy.ops.mesh.partwheel_imported(), {"CANCELLED"})
+        self.assertIsNone(part("parts.registry").known(sheet.data))

@@ -110,7 +110,7 @@ class Registration(unittest.TestCase):
             self.assertLessEqual({"VIEW3D_MT_select_edit_mesh", "VIEW3D_MT_select_object", "VIEW3D_MT_face_sets",
                                   "VIEW3D_MT_mask", "VIEW3D_MT_paint_weight", "VIEW3D_MT_paint_vertex"}, set(on[4]))
             self.assertEqual(on[7]["EDIT_MESH"].count("partwheel.select"), 1)
-            self.assertEqual(len(on[3]["load_post"]), len(off[3]["load_post"]) + 2)
+            self.assertEqual(len(on[3]["load_post"]), len(off[3]["load_post"]) + 3)
             bpy.ops.preferences.addon_disable(module=common.MODULE)
             self.assertEqual(everything(), off)
 

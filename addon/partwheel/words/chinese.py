@@ -576,6 +576,16 @@ WORDS = {
         "已将部件添加到顶点组 {name}。",
     "The part is the new vertex group {name}.":
         "部件成为新的顶点组 {name}。",
+    "Find on Import":
+        "导入时查找",
+    "The parts of what is imported or appended are found at once, beside your own work":
+        "导入或追加的内容会立即在您工作的同时查找部件",
+    "Find Parts of Imported Meshes":
+        "查找导入网格的部件",
+    "Find the parts of the selected meshes that have none, on behalf of what imported them":
+        "为导入操作查找所选网格中尚无部件者的部件",
+    "This is for selected meshes without parts, in Object Mode.":
+        "此功能用于物体模式下所选的尚无部件的网格。",
     "Save Parts in .blend Files":
         "在 .blend 文件中保存部件",
     "Parts that were built are there again when the file is opened. It grows by about 40 bytes a face":

@@ -576,6 +576,16 @@ WORDS = {
         "Das Teil wurde zur Vertex-Gruppe {name} hinzugefügt.",
     "The part is the new vertex group {name}.":
         "Das Teil ist die neue Vertex-Gruppe {name}.",
+    "Find on Import":
+        "Beim Import finden",
+    "The parts of what is imported or appended are found at once, beside your own work":
+        "Die Teile von Importiertem oder Angehängtem werden sofort gefunden, neben der eigenen Arbeit",
+    "Find Parts of Imported Meshes":
+        "Teile importierter Meshes finden",
+    "Find the parts of the selected meshes that have none, on behalf of what imported them":
+        "Die Teile der ausgewählten Meshes, die keine haben, für den Import finden, der sie brachte",
+    "This is for selected meshes without parts, in Object Mode.":
+        "Dies ist für ausgewählte Meshes ohne Teile, im Objektmodus.",
     "Save Parts in .blend Files":
         "Teile in .blend-Dateien speichern",
     "Parts that were built are there again when the file is opened. It grows by about 40 bytes a face":

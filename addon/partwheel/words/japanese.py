@@ -576,6 +576,16 @@ WORDS = {
         "パーツを頂点グループ {name} に追加しました。",
     "The part is the new vertex group {name}.":
         "パーツは新しい頂点グループ {name} になりました。",
+    "Find on Import":
+        "インポート時に検出",
+    "The parts of what is imported or appended are found at once, beside your own work":
+        "インポートまたはアペンドしたもののパーツを、作業を続けている間にすぐ検出します",
+    "Find Parts of Imported Meshes":
+        "インポートしたメッシュのパーツを検出",
+    "Find the parts of the selected meshes that have none, on behalf of what imported them":
+        "パーツのない選択メッシュのパーツを、それを読み込んだインポートのために検出します",
+    "This is for selected meshes without parts, in Object Mode.":
+        "これはオブジェクトモードで選択した、パーツのないメッシュのためのものです。",
     "Save Parts in .blend Files":
         "パーツを .blend ファイルに保存",
     "Parts that were built are there again when the file is opened. It grows by about 40 bytes a face":

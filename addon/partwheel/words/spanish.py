@@ -576,6 +576,16 @@ WORDS = {
         "La parte se agregó al grupo de vértices {name}.",
     "The part is the new vertex group {name}.":
         "La parte es el nuevo grupo de vértices {name}.",
+    "Find on Import":
+        "Encontrar al importar",
+    "The parts of what is imported or appended are found at once, beside your own work":
+        "Las partes de lo importado o anexado se encuentran enseguida, mientras se sigue trabajando",
+    "Find Parts of Imported Meshes":
+        "Encontrar partes de mallas importadas",
+    "Find the parts of the selected meshes that have none, on behalf of what imported them":
+        "Encontrar las partes de las mallas seleccionadas que no las tienen, para la importación que las trajo",
+    "This is for selected meshes without parts, in Object Mode.":
+        "Esto es para mallas seleccionadas sin partes, en Modo Objeto.",
     "Save Parts in .blend Files":
         "Guardar partes en archivos .blend",
     "Parts that were built are there again when the file is opened. It grows by about 40 bytes a face":

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where the preferences say so, the parts of what was just imported or appended are found without being asked for: one
+mesh after the other, beside Blender's own work, as mesh.partwheel_build does it."""
+
+import bpy
+from bpy.app.handlers import persistent
+
+from ..mesh.refusing import can
+from ..parts import registry
+from ..preferences import preferences
+from .build import Beside, start
+
+_before = None  # how many objects there were at the last look, and where the last operation lies, its only identity
+
+
+class MESH_OT_partwheel_imported(Beside, bpy.types.Operator):
+    """Find the parts of the selected meshes that have none, on behalf of what imported them"""
+
+    bl_idname = "mesh.partwheel_imported"
+    bl_label = "Find Parts of Imported Meshes"
+    bl_options = {"INTERNAL"}
+
+    @classmethod
+    def poll(cls, context):
+        return can(cls, context.mode == "OBJECT" and lacking(context.view_layer),
+                   "This is for selected meshes without parts, in Object Mode.")
+
+    def execute(self, context):
+        found = [building.wait(context) for building in filter(None, map(self._start, self._lacking(context)))]
+        return {"FINISHED"} if any(found) else {"CANCELLED"}
+
+    def _lacking(self, context):
+        return lacking(context.view_layer)
+
+    def _start(self, obj):
+        return start(_Quiet(self), obj)
+
+    def _found(self, _context):
+        return {"FINISHED"}
+
+
+class _Quiet:
+    """For an operator that nobody has asked for: what fails is no error that pops up."""
+
+    def __init__(self, operator):
+        self._operator = operator
+
+    def report(self, kind, sentences):
+        self._operator.report({"WARNING"} if kind == {"ERROR"} else kind, sentences)
+
+
+def lacking(view_layer):
+    """The selected objects whose meshes have no parts; of those that share a mesh one."""
+    meshes = {obj.data: obj for obj in view_layer.objects.selected if obj.type == "MESH" and obj.data.polygons}
+    return [obj for mesh, obj in meshes.items() if registry.state(mesh)[0] not in registry.USABLE]
+
+
+@persistent
+def _changed(_scene, _depsgraph):
+    """What was done can be told when it is over."""
+    if not bpy.app.background and preferences().on_import and not bpy.app.timers.is_registered(_look):
+        bpy.app.timers.register(_look, first_interval=0)
+
+
+def _look():
+    window = bpy.context.window_manager.windows[0]
+    if _imported():
+        active = next(iter(window.view_layer.objects.selected), None)  # an import has not always made one of its own so
+        with bpy.context.temp_override(window=window, active_object=active):
+            if bpy.ops.mesh.partwheel_imported.poll():
+                bpy.ops.mesh.partwheel_imported("INVOKE_DEFAULT")
+
+
+def _imported():
+    """Whether there are more objects than at the last look and no operation that can be repeated has added them. For Blender
+    keeps no account of what its file browser was opened for; what is dropped on its window is an operation like others."""
+    before, last = _before, _last()
+    _begin_anew()
+    if before is None or len(bpy.data.objects) <= before[0]:
+        return False
+    return before[1] == _before[1] or "import" in last.bl_idname.lower() or last.bl_idname == "WM_OT_append"
+
+
+def _last():
+    operations = bpy.context.window_manager.operators
+    return operations[-1] if operations else None
+
+
+@persistent
+def _begin_anew(*_):
+    """What undo brings back, or another file, is no import."""
+    global _before
+    last = _last()
+    _before = len(bpy.data.objects), last and last.as_pointer()
+
+
+def unregister():
+    if bpy.app.timers.is_registered(_look):
+        bpy.app.timers.unregister(_look)
+
+
+CLASSES = (MESH_OT_partwheel_imported,)
+HANDLERS = {"depsgraph_update_post": _changed, **dict.fromkeys(("undo_post", "redo_post", "load_post"), _begin_anew)}
