@@ -7,8 +7,8 @@ from bpy.app.handlers import persistent
 
 from ..mesh.refusing import can
 from ..parts import registry
+from ..pick.build import Beside, start
 from ..preferences import preferences
-from .build import Beside, start
 
 _before = None  # how many objects there were at the last look, and where the last operation lies, its only identity
 
