@@ -165,7 +165,7 @@ class Stage:
 
     def _end(self, failure):
         self._result.write_text(json.dumps({"failure": failure, "checks": self.checks}))
-        with self.override():
+        with bpy.context.temp_override(window=self.window):  # which may have no 3D view any more
             bpy.ops.wm.quit_blender()
 
     # ---- Blender's state, looked up afresh each time since undo replaces it ---------------------------------------
