@@ -100,12 +100,12 @@ def gtests(log):
     return sum(map(int, re.findall(r"\[  PASSED  \] (\d+) test", text)))
 
 
-def pytest(log, tests, venv="core", shared=None, **environment):
+def pytest(log, *tests, venv="core", shared=None, **environment):
     """shared: what pytest-xdist calls the way in which the tests are shared between as many processes as there are
     cores; None: one process."""
     report = fresh(log, "xml")
     command = [VENV / venv / "bin/python", "-m", "pytest", "-rs", "-p", "no:cacheprovider", "--capture=sys",
-               f"--junitxml={report}", tests]  # what a dying library writes reaches the log
+               f"--junitxml={report}", *tests]  # what a dying library writes reaches the log
     if shared:
         command += ["--numprocesses", str(os.cpu_count()), "--dist", shared]
     code = run(log, command, os.environ | environment)

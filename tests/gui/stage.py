@@ -5,6 +5,7 @@ predicate() holds, mostly through the methods below: `yield from stage.selected(
 
 How fast the machine is must not matter: nothing is bounded in seconds but what never happens.
 """
+import contextlib
 import importlib
 import json
 import os
@@ -196,6 +197,21 @@ class Stage:
     def override(self):
         region = next(region for region in self.area.regions if region.type == "WINDOW")
         return bpy.context.temp_override(window=self.window, area=self.area, region=region)
+
+    @property
+    def last(self):
+        """The last operation, of those that can be repeated."""
+        return bpy.data.window_managers[0].operators[-1]
+
+    def adjusted(self, **options):
+        """What the panel of the last operation does when the user changes these in it; True: with its step in the history.
+        An operation may begin a build, which old Pythons don't survive under temp_override(), see worker/job.py; and
+        newer Blenders crash without a window."""
+        for name, value in options.items():
+            setattr(self.last.properties, name, value)
+        with self.override() if bpy.app.version >= (4, 2) else contextlib.nullcontext():
+            bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)
+        yield from self.settle()
 
     def selection(self, kind="faces"):
         """Indices of the selected "faces", "edges" or "verts"."""

@@ -1,5 +1,4 @@
 """Adjust Last Operation: another level after confirming replaces the part, still as one undo step."""
-import bpy
 
 
 def play(stage):
@@ -12,12 +11,10 @@ def play(stage):
     yield from stage.selected(stops[start + 1], "after a notch up and Enter")
 
     for level in (2, -1):
-        last = bpy.data.window_managers[0].operators[-1]
+        last = stage.last
         stage.check(last.bl_idname == "MESH_OT_partwheel_select" and last.properties.face_index == face,
                     "the last operation is the pick of that face")
-        last.properties.level = level
-        with stage.override():
-            bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)  # as when a value in that panel changes; True: undo steps
+        yield from stage.adjusted(level=level)
         yield from stage.selected(stops[start + level], f"with level {level}")
     stage.mouse.key("Z", ctrl=True)
     yield from stage.selected({3}, "after one Ctrl Z")

@@ -4,19 +4,6 @@ operator."""
 import bpy
 
 
-def last():
-    return bpy.data.window_managers[0].operators[-1]
-
-
-def adjusted(stage, **values):
-    """As when a value in that panel changes."""
-    for name, value in values.items():
-        setattr(last().properties, name, value)
-    with stage.override():
-        bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)
-    yield from stage.settle()
-
-
 def opened(stage, name):
     """A picture with that panel opened by a click; it stays so."""
     region = next(region for region in stage.area.regions if region.type == "HUD")
@@ -45,11 +32,11 @@ def play(stage):
     stage.mouse.key("C", shift=True, ctrl=True)
     yield from stage.until("there is a copy", lambda: len(bpy.data.objects) == 2)
     yield from stage.settle()
-    stage.check(last().bl_idname == "MESH_OT_partwheel_copy" and hasattr(last().properties, "snap"),
+    stage.check(stage.last.bl_idname == "MESH_OT_partwheel_copy" and hasattr(stage.last.properties, "snap"),
                 "there is its panel")
     yield from opened(stage, "copied")
     snapped = len(stage.object.data.polygons)
-    yield from adjusted(stage, snap=not last().properties.snap)
+    yield from stage.adjusted(snap=not stage.last.properties.snap)
     stage.check(len(bpy.data.objects) == 2 and stage.object.name == "homer part", "there is still one copy")
     own = len(stage.object.data.polygons)
     stage.check(own != snapped, f"its border is another ({own} faces, {snapped} with it snapped)")
@@ -65,11 +52,11 @@ def play(stage):
     stage.mouse.key("X", shift=True, ctrl=True)
     yield from stage.until("the part is gone", lambda: len(stage.coordinates()) < whole)
     yield from stage.settle()
-    stage.check(last().bl_idname == "MESH_OT_partwheel_remove" and hasattr(last().properties, "snap"),
+    stage.check(stage.last.bl_idname == "MESH_OT_partwheel_remove" and hasattr(stage.last.properties, "snap"),
                 "there is its panel")
     yield from opened(stage, "removed")
     snapped = len(stage.coordinates())
-    yield from adjusted(stage, snap=not last().properties.snap)
+    yield from stage.adjusted(snap=not stage.last.properties.snap)
     stage.check(stage.object.mode == "EDIT" and len(stage.coordinates()) not in (whole, snapped),
                 f"adjusted, its border is another ({len(stage.coordinates())} vertices left, {snapped})")
     stage.mouse.key("Z", ctrl=True)

@@ -56,9 +56,7 @@ def play(stage):
     yield from place_over(stage, part, hand, fit=True)
     yield from stage.screenshot("4-placed")
     placed = part.matrix_world.copy()
-    with stage.override():
-        bpy.ops.ed.undo_redo()  # as the panel of the last operation does when an option is changed
-    yield from stage.settle()
+    yield from stage.adjusted()
     hand, part = bpy.data.objects["hand"], bpy.data.objects["hand part"]
     off = max(abs(a - b) for one, other in zip(placed, part.matrix_world) for a, b in zip(one, other))
     stage.check(off < 1e-4, "placed again by the panel of the last operation it is at the same place")

@@ -18,23 +18,15 @@ def play(stage):
     def children():
         return sorted(child.name for child in bpy.data.objects[name].children)
 
-    def again(**options):
-        """What the panel of the last operation does when options are changed."""
-        last = bpy.data.window_managers[0].operators[-1]
-        for option, value in options.items():
-            setattr(last.properties, option, value)
-        bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)  # not under temp_override(), see panel_solids
-        yield from stage.settle()
-
     yield from choose(stage, "VIEW3D_MT_object", ABOVE_LAST)
     yield from stage.until("16 hulls", lambda: len(children()) == 16)
     stage.check(children() == [f"UCX_{name}_{number:02}" for number in range(16)], "named as Unreal has them")
     stage.check(stage.object.name == name and stage.object.select_get(), "the model stays selected")
     yield from stage.screenshot("1-sixteen")
-    yield from again(hulls=5)
+    yield from stage.adjusted(hulls=5)
     stage.check(children() == [f"UCX_{name}_{number:02}" for number in range(5)], "five, when that is changed")
     yield from stage.screenshot("2-five")
-    yield from again(engine="RIGID_BODY", hulls=9)
+    yield from stage.adjusted(engine="RIGID_BODY", hulls=9)
     stage.check(children() == [f"{name}_hull_{number:02}" for number in range(9)], "nine for a rigid body")
     stage.check(bpy.data.objects[name].rigid_body.collision_shape == "COMPOUND", "which has them as its shape")
     stage.mouse.key("Z", ctrl=True)

@@ -31,15 +31,6 @@ def play(stage):
         stage.mouse.click()
         yield from stage.settle()
 
-    def again(**options):
-        """What the panel of the last operation does when options are changed."""
-        last = bpy.data.window_managers[0].operators[-1]
-        for name, value in options.items():
-            setattr(last.properties, name, value)
-        # Not under temp_override(): it starts a build, see worker/job.py. True: with its step in the history.
-        bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)
-        yield from stage.settle()
-
     def objects(name):
         return [obj for obj in bpy.data.objects if obj.name.startswith(name)]
 
@@ -51,7 +42,7 @@ def play(stage):
     yield from stage.until("the copy is there", lambda: stage.object.name == "hand part")
     copied = (~caps(stage.object)).sum()  # its border goes to the creases nearby
     stage.check(abs(copied - finger) < 0.3 * finger, "with the finger's faces")
-    yield from again(material=True)
+    yield from stage.adjusted(material=True)
     stage.check([material and material.name for material in stage.object.data.materials][-1] == "Partwheel Cap",
                 "its caps got a material afterwards")
     stage.mouse.key("Z", ctrl=True)
@@ -64,7 +55,7 @@ def play(stage):
     stage.check(all(closed(part) for part in objects("hand part")), "each of them closed")
     stage.check(abs(sum(map(volume, objects("hand part"))) - whole) < 1e-4 * whole, "together they are the hand")
     middles = [part.matrix_world.translation.copy() for part in objects("hand part")]
-    yield from again(parts=5, explode=0.5)
+    yield from stage.adjusted(parts=5, explode=0.5)
     stage.check(len(objects("hand part")) == 5, "five parts, when that is changed")
     stage.check(any((part.matrix_world.translation - middles[0]).length > 0.01 for part in objects("hand part")),
                 "moved apart")
@@ -85,7 +76,7 @@ def play(stage):
     yield from stage.until("they are one", lambda: len(bpy.data.objects) == 1)
     stage.check(closed(stage.object) and volume(stage.object) > whole, "a closed one, and larger")
     creased = volume(stage.object)
-    yield from again(blend=0.3)
+    yield from stage.adjusted(blend=0.3)
     stage.check(len(bpy.data.objects) == 1 and closed(stage.object), "one closed mesh again")
     stage.check(abs(volume(stage.object) - creased) > 1e-5 * whole, "with another surface along the seam")
     yield from stage.until("its parts are found beside that", lambda: stage.registry.state(stage.object.data)[0] ==
@@ -100,7 +91,7 @@ def play(stage):
     yield from stage.until("the finger is gone", lambda: len(stage.object.data.polygons) != total)
     stage.check((~caps(stage.object)).sum() == total - copied and closed(stage.object), "the hole is closed")
     flat = volume(stage.object)
-    yield from again(smooth=True)
+    yield from stage.adjusted(smooth=True)
     stage.check((~caps(stage.object)).sum() == total - copied and closed(stage.object), "with a smooth fill as well")
     stage.check(abs(volume(stage.object) - flat) > 1e-5 * whole, "which is another surface")
     yield from stage.screenshot("4-removed")

@@ -83,10 +83,7 @@ def play(stage):
                                                                      for obj in made), "closed, and hanging together")
     stage.check(bpy.data.objects["homer"].hide_get(), "the original is hidden")
     yield from stage.screenshot("6-objects")
-    last = bpy.data.window_managers[0].operators[-1]  # as the panel of the last operation does it
-    last.properties.count, last.properties.explode = 7, 0.25
-    with stage.override():
-        bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)
+    yield from stage.adjusted(count=7, explode=0.25)
     yield from stage.until("one more, apart", lambda: len(bpy.data.objects) == 8)
     yield from stage.settle()
     roots = [obj for obj in bpy.data.objects if obj.name != "homer" and not obj.parent]

@@ -1,6 +1,5 @@
 """From the part in hand to others: Shift Ctrl L selects those that are alike, the wheel takes more and fewer, Esc takes
 it back; the panel of the last operation changes the threshold; Shift Ctrl F adds the part on the other side."""
-import bpy
 
 
 def play(stage):
@@ -41,11 +40,8 @@ def play(stage):
     yield from stage.until("they are selected again", lambda: len(stage.selection()) > len(arm))
     stage.mouse.key("RET")
     yield from stage.ended()
-    last = bpy.data.window_managers[0].operators[-1]
-    stage.check(last.bl_idname == "MESH_OT_partwheel_similar", "there is its panel")
-    last.properties.threshold = (alike[0].likeness + 1) / 2
-    with stage.override():
-        bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)
+    stage.check(stage.last.bl_idname == "MESH_OT_partwheel_similar", "there is its panel")
+    yield from stage.adjusted(threshold=(alike[0].likeness + 1) / 2)
     yield from stage.selected(arm, "with a higher threshold")
     stage.mouse.key("Z", ctrl=True)
     yield from stage.selected(arm, "after Ctrl Z")

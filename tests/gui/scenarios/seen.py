@@ -74,10 +74,7 @@ def weights(stage):
     stage.check(len(group(stage, 0, 0.37)) == len(own), "the locked group is as it was")
     stage.check(f"is the new vertex group {stage.object.vertex_groups[1].name}" in stage.reports(), "a report says so")
     # A larger part, by the panel of the last operation: the same group, no other.
-    with stage.override():
-        operator = bpy.context.window_manager.operators[-1]
-        operator.properties.level = 1
-        bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)
+    yield from stage.adjusted(level=1)
     yield from stage.until("the larger part has weight 1", lambda: group(stage, 1) ==
                            stage.elements(stops[start + 1], "verts"))
     stage.check(len(stage.object.vertex_groups) == 2, "there is no other new group")
