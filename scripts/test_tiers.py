@@ -19,12 +19,13 @@ HAS_BENCHMARK = bool(os.environ.get("PARTWHEEL_PSB")) or BENCHMARK.exists()
 SUITES = os.environ.get("PARTWHEEL_SUITES", "sid").split()
 # The scenarios that the newest Blender plays: those where Blenders differed, and each way of use once. With
 # PARTWHEEL_NEWEST=all these too: all but those that build large models, measure, or only make pictures.
-NEWEST = ("bones", "cage", "compose_finger", "deform_keys", "deform_more", "gather", "hands", "industry", "linked", "modes",
-          "move", "navigate", "panel", "parts_to", "picked_objects", "related", "seen", "similar_across", "three_clicks",
-          "tool", "ways", "wheel_at_click", "windows")
-MORE_OF_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "confirm_enter", "creases", "deform",
-                  "deform_within", "duplicate", "empty_space", "left_out", "limits", "menu", "open_mesh", "overlays",
-                  "pick_and_click", "quad_view", "restore", "select_modes", "while_building")
+NEWEST = ("bones", "cage", "compose_finger", "deform_keys", "deform_more", "gather", "hands", "imports", "industry", "linked",
+          "modes", "move", "navigate", "panel", "parts_to", "picked_objects", "related", "seen", "similar_across",
+          "three_clicks", "tool", "ways", "wheel_at_click", "windows")
+MORE_OF_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "commands", "confirm_enter", "convex_parts", "creases",
+                  "deform", "deform_within", "duplicate", "empty_space", "finds_first", "left_out", "limits", "menu",
+                  "open_mesh", "overlays", "pick_and_click", "quad_view", "recover", "restore", "select_modes", "tool_keys",
+                  "while_building", "words")
 THREADED = "[Tt]hread|Cancel|Progress"  # the names of tests in which threads meet
 # What the sanitizers have seen already: native tests that build the same once more to compare results, and files of core
 # about what the package does with numbers and texts, where the library is called as in the other files.
