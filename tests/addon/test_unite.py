@@ -161,6 +161,7 @@ class Unite(SolidTest):
         bpy.ops.ed.undo()
         target = bpy.data.objects[name]
         self.assertEqual(len(target.data.polygons), 6)
+        self.assertEqual(part("parts.registry").state(target.data)[0], part("parts.registry").State.FITS)
         self.assertIs(part("parts.registry").hierarchy(target), hierarchy)
         self.assertIs(part("parts.picks").picked(target).hierarchy, hierarchy)
         bpy.ops.ed.redo()

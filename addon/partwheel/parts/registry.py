@@ -47,6 +47,7 @@ USABLE = State.FITS, State.MOVED
 RETIRED = 3
 
 _entries = PerMesh(gone=lambda entries, gone: _retire(entries.pop(gone)))
+_strangers = PerMesh()  # what changes.edits() said when a mesh was found to be no twin of those
 _retired = []  # of meshes that are gone, or others by now: undo may bring them back; the newest last, so many at most
 
 
@@ -123,7 +124,7 @@ def forget_all():
 
 def state(mesh):
     """(State, Entry or None). In Edit Mode as far as the counts and the last use tell; else exactly."""
-    entry = _entries.get(key(mesh))
+    entry = _entries.get(key(mesh)) or _brought(mesh)
     if not entry:
         return (State.UNOPENED if waits(mesh) else State.NONE), None
     if mesh.is_editmode:
@@ -138,6 +139,20 @@ def state(mesh):
         keep(mesh, twin, entry.seen)
         return State.FITS, twin
     return (State.FITS if entry.seen == entry.built else State.MOVED), entry
+
+
+def _brought(mesh):
+    """The Entry of a mesh that undo has brought back, or of a duplicate, which nobody has used since; or None."""
+    if mesh.is_editmode or waits(mesh) or _strangers.get(key(mesh)) == changes.edits(mesh):
+        return None
+    known = any(entry.counts == counts(mesh) for entry in (*_entries.values(), *_retired))
+    now = arrays.fingerprint(mesh) if known else None
+    twin = now and _twin(now)
+    if twin:
+        keep(mesh, twin, now)
+    elif known:
+        _strangers[key(mesh)] = changes.edits(mesh)
+    return twin
 
 
 def entry_of(mesh):
