@@ -22,11 +22,11 @@ SUITES = os.environ.get("PARTWHEEL_SUITES", "sid").split()
 NEWEST = ("bones", "cage", "compose_finger", "deform_keys", "deform_more", "gather", "hands", "imports", "industry", "linked",
           "modes", "move", "navigate", "panel", "parts_to", "picked_objects", "related", "seen", "similar_across",
           "three_clicks", "tool", "ways", "wheel_at_click", "windows")
-MORE_OF_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "commands", "confirm_enter", "convex_parts", "creases",
-                  "deform", "deform_within", "duplicate", "empty_space", "finds_first", "left_out", "limits", "menu",
-                  "open_mesh", "overlays", "pick_and_click", "quad_view", "recover", "restore", "select_modes", "tool_keys",
-                  "while_building", "words")
-THREADED = "[Tt]hread|Cancel|Progress"  # the names of tests in which threads meet
+MORE_OF_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "commands", "confirm_enter", "convex_parts",
+                  "creases", "deform", "deform_within", "duplicate", "empty_space", "finds_first", "left_out", "limits",
+                  "menu", "open_mesh", "overlays", "panel_solids", "pick_and_click", "quad_view", "recover", "restore",
+                  "select_modes", "tool_keys", "while_building", "words")
+THREADED = "[Tt]hread|ProgressNever"  # the names of tests in which threads meet
 # What the sanitizers have seen already: native tests that build the same once more to compare results, and files of core
 # about what the package does with numbers and texts, where the library is called as in the other files.
 COMPARED = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun"
