@@ -203,8 +203,10 @@ class Selections:
 def chosen_outside_edit_mode(mesh, faces, extend=False, deselect=False):
     """(F,) bool: what would be selected, as Selection.select() has it, in a mesh that is not in Edit Mode."""
     chosen = arrays.mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
+    if not (extend or deselect):
+        return chosen  # what was selected need not be read
     before = arrays.read(mesh.polygons, "select", bool)
-    return before & ~chosen if deselect else before | chosen if extend else chosen
+    return before & ~chosen if deselect else before | chosen
 
 
 def select_outside_edit_mode(mesh, faces, extend=False, deselect=False, active=None):
