@@ -59,6 +59,30 @@ void expect_solids(const Handle& handle, size_t first, size_t last) {
     expect_solid(handle, status, made);
 }
 
+// What an index of it says of its own vertices, exactly and by the hulls of a cut.
+void expect_index(const Handle& handle, const int32_t* bounds, size_t bound_count) {
+    pw_index* made = nullptr;
+    ASSERT_EQ(pw_index_create(handle.get(), bounds, bound_count, 1, &made), PW_OK) << pw_error_message();
+    const std::unique_ptr<pw_index, decltype(&pw_index_free)> index(made, pw_index_free);
+    const pw_arrays a = arrays(handle);
+    const size_t count = std::min<size_t>(a.vertex_count, 50);
+    std::vector<int32_t> holding(count), parts(count);
+    std::vector<double> distances(count), places(3 * count), directions;
+    for (size_t k = 0; k < count; ++k) directions.insert(directions.end(), {1, 0.5, -0.25});
+    EXPECT_EQ(pw_index_holding(made, a.vertices, count, holding.data()), PW_OK) << pw_error_message();
+    EXPECT_EQ(pw_index_nearest(made, a.vertices, count, parts.data(), distances.data(), places.data()), PW_OK);
+    for (size_t k = 0; k < count; ++k) {
+        EXPECT_TRUE(parts[k] >= 0 && distances[k] >= 0 && std::isfinite(distances[k]));
+        if (holding[k] >= 0) EXPECT_TRUE(parts[k] == holding[k] && distances[k] == 0);
+    }
+    EXPECT_EQ(pw_index_first_hits(made, a.vertices, directions.data(), count, parts.data(), distances.data()), PW_OK);
+    for (size_t k = 0; k < count; ++k) EXPECT_TRUE(parts[k] >= -1 && distances[k] >= 0 && std::isfinite(distances[k]));
+    const double itself[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    int32_t pair[2] = {-1, -1};
+    EXPECT_EQ(pw_index_touching(made, made, itself, 1, pair, places.data()), PW_OK) << pw_error_message();
+    EXPECT_TRUE(pair[0] >= 0 && pair[1] >= 0);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
@@ -98,6 +122,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     EXPECT_EQ(bounds[0], 0);
     EXPECT_EQ(static_cast<size_t>(bounds[count - 1]), a.tetrahedron_count);
     for (size_t k = 1; k < count; ++k) EXPECT_LT(bounds[k - 1], bounds[k]);
+    expect_index(loaded.handle, nullptr, 0);
+    expect_index(loaded.handle, bounds.data(), count);
     // What is saved loads, and is saved as the same again. (These bytes may have said it at greater length.)
     const std::vector<uint8_t> saved = save(loaded.handle);
     const Built again = try_load(saved);

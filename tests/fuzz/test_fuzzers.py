@@ -39,7 +39,7 @@ REACHED = {
     ("mesh", "coarse"): ("ok coarse, regrouped, triangles, 0 threads, no points inside, coarse",
                          ["made_coarse(", "carry_over("], []),
     **{("saved", kind): ("loaded", ["Hierarchy::finish(", "Facets::solid(", "Facets::with_faces(",
-                                    "Hierarchy::cut_automatic("], [])
+                                    "Hierarchy::cut_automatic(", "PartIndex::first(", "PartIndex::touching("], [])
        for kind in seeds.SAVED},
     **{("surface", kind): ("normals distances faults fair snapped deformed",
                            ["faired(", "minimum_cut(", "Deformation::iterate("], [])
