@@ -7,7 +7,9 @@ The truth for one segment of a person's: those others of that person that a rigi
 brings onto it, up to alike.NEAR; of those that come a little less near, up to alike.FAR, people differ, and so they
 count neither as right nor as wrong in the second figure. The part in hand is the stop of the wheel that overlaps the
 segment most, of four clicks on it; segments that no stop overlaps by half have no part to begin with and are counted
-apart. A part that was found is right if it overlaps a segment that is alike by half, by area, and no other did.
+apart. A part that was found is right if it overlaps a segment that is alike by half, by area, and no other did. Figures are
+of all that was found and wanted, where a person who cuts a table's legs into twenty pieces counts a hundred times one who
+cuts four legs, and as means over clicks.
 
 Mirrored: in models that are their own mirror image, of segments whose mirror image is another segment of that person's
 (by half), the share for which that is among what is found, one part for each of the model's planes.
@@ -28,7 +30,8 @@ from partwheel import likeness
 CATEGORIES = {"glasses": 41, "ant": 81, "chair": 101, "octopus": 121, "table": 141, "teddy": 161, "hand": 181}
 CLICKS = 4
 HALF = 0.5
-FIGURES = ("right", "wrong", "unclear", "found", "wanted", "mirrored", "mirrors", "without")
+FIGURES = ("right", "wrong", "unclear", "found", "wanted", "answers", "precise", "clicks", "recalled", "mirrored", "mirrors",
+           "without")
 
 
 class Model:
@@ -90,7 +93,7 @@ def figures(path, segmentations):
 
 
 def _count(count, overlaps, like, near):
-    hit = set()
+    hit, wrong = set(), 0
     for each in overlaps.T:
         best = int(each.argmax())
         if each[best] >= HALF and like[best] and best not in hit:
@@ -98,10 +101,16 @@ def _count(count, overlaps, like, near):
         elif each[best] >= HALF and near[best] and not like[best]:
             count["unclear"] += 1
         else:
-            count["wrong"] += 1
+            wrong += 1
     count["right"] += len(hit)
+    count["wrong"] += wrong
     count["found"] += len(hit)
     count["wanted"] += int(like.sum())
+    count["clicks"] += 1
+    count["recalled"] += len(hit) / like.sum()
+    if hit or wrong:
+        count["answers"] += 1
+        count["precise"] += len(hit) / (len(hit) + wrong)
 
 
 def _image(model, insides, number):
@@ -113,11 +122,12 @@ def _image(model, insides, number):
 
 
 def shares(count):
-    """(strict precision, precision, recall, mirrored); nan of nothing."""
+    """(strict precision, precision, recall, the last two as means over clicks, mirrored); nan of nothing."""
     with np.errstate(invalid="ignore", divide="ignore"):
         right, wrong = np.float64(count["right"]), count["wrong"]
         return (right / (right + wrong + count["unclear"]), right / (right + wrong),
-                np.float64(count["found"]) / count["wanted"], np.float64(count["mirrored"]) / count["mirrors"])
+                np.float64(count["found"]) / count["wanted"], np.float64(count["precise"]) / count["answers"],
+                np.float64(count["recalled"]) / count["clicks"], np.float64(count["mirrored"]) / count["mirrors"])
 
 
 def main():
@@ -136,8 +146,9 @@ def main():
             rows[name] = [pool.submit(figures, args.meshes / f"{model}.off",
                                       sorted((args.segmentations / str(model)).glob("*.seg"))[:args.people])
                           for model in models[:args.models]]
-        print("| category | precision, strictly | precision | recall | mirrored | segments without a part |")
-        print("|---|---|---|---|---|---|")
+        print("| category | precision, strictly | precision | recall | precision, by click | recall, by click | mirrored | "
+              "segments without a part |")
+        print("|---|---|---|---|---|---|---|---|")
         table = []
         for name, pending in rows.items():
             found = [each.result() for each in pending]
