@@ -96,12 +96,13 @@ def main():
         for path in STORE.glob(f"*, {tool}.json"):
             path.unlink()
     clean = models.clean(None if options.benchmark == "-" else options.benchmark)
+    if options.picture:
+        beside(results, clean[PICTURED], options.picture)
+        return
     if not options.tables:
         measure(results, clean)
     tables.show(results, clean)
     drops(results, clean)
-    if options.picture:
-        beside(results, clean[PICTURED], options.picture)
 
 
 def drops(results, clean):
@@ -130,6 +131,9 @@ def drop_cell(moved):
 
 def beside(results, path, target):
     """Draws one model's parts: CoACD's above, ours below."""
+    for number in PICTURE:
+        for tool in "CoACD, fast", "ours":
+            results.measure("picture", PICTURED, number, tool, number, lambda: (models.read(path),) * 2)
     sys.path[:0] = [str(models.ROOT / "scripts" / "docs_parts")]
     from draw import painted, save
     from scipy.spatial import ConvexHull
@@ -155,9 +159,6 @@ def measure(results, clean):
     for name in spread(clean):
         for whose in "CoACD, fast", "CoACD":
             at_its_own(results, "clean", name, whose, loads(clean[name]))
-    for number in PICTURE:
-        for tool in "CoACD, fast", "ours":
-            results.measure("picture", PICTURED, number, tool, number, loads(clean[PICTURED]))
     for name, way in models.broken(clean).items():
         at_its_own(results, "broken", name, "CoACD, fast", lambda way=way: (models.mutated(*way), models.read(way[0])))
     for place, name in enumerate(spread(clean)):
