@@ -145,12 +145,14 @@ def _brought(mesh):
     """The Entry of a mesh that undo has brought back, or of a duplicate, which nobody has used since; or None."""
     if mesh.is_editmode or waits(mesh) or _strangers.get(key(mesh)) == changes.edits(mesh):
         return None
-    known = any(entry.counts == counts(mesh) for entry in (*_entries.values(), *_retired))
-    now = arrays.fingerprint(mesh) if known else None
-    twin = now and _twin(now)
+    size = counts(mesh)
+    if not any(entry.counts == size for entry in (*_entries.values(), *_retired)):
+        return None
+    now = arrays.fingerprint(mesh)
+    twin = _twin(now)
     if twin:
         keep(mesh, twin, now)
-    elif known:
+    else:
         _strangers[key(mesh)] = changes.edits(mesh)
     return twin
 

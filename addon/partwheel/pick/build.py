@@ -225,7 +225,24 @@ class Beside(InView):
             building.abandon(context)
 
 
-class _Build(NeedsMesh, Beside):
+class Finds(Beside):
+    """Mixed into an operator that finds parts and does nothing with them."""
+
+    def execute(self, context):
+        buildings = list(filter(None, map(self._start, self._lacking(context))))
+        return {"FINISHED"} if [each for each in buildings if each.wait(context)] else {"CANCELLED"}
+
+    def _found(self, _context):
+        return {"FINISHED"}
+
+
+def without_parts(objects):
+    """Those whose meshes have none; of those that share a mesh one."""
+    meshes = {obj.data: obj for obj in objects if obj.type == "MESH"}
+    return [obj for mesh, obj in meshes.items() if registry.state(mesh)[0] not in registry.USABLE]
+
+
+class _Build(NeedsMesh, Finds):
     """What building and finding have in common."""
 
     quality: bpy.props.FloatProperty(
@@ -239,15 +256,8 @@ class _Build(NeedsMesh, Beside):
         "coarser copy: some ten times the time and memory. The add-on's preferences can have it so for all",
         default=False)
 
-    def execute(self, context):
-        buildings = list(filter(None, map(self._start, self._lacking(context))))
-        return {"FINISHED"} if [each for each in buildings if each.wait(context)] else {"CANCELLED"}
-
     def _lacking(self, context):
         return [context.active_object]
-
-    def _found(self, _context):
-        return {"FINISHED"}
 
     def _start(self, obj):
         return start(self, obj, quality=self.quality, open_surfaces=self.open_surfaces, exactly=self.exactly or None)
@@ -262,9 +272,7 @@ class MESH_OT_partwheel_build(_Build, bpy.types.Operator):
 
     def _lacking(self, context):
         obj = context.active_object
-        meshes = {each.data: each for each in context.selected_objects if each.type == "MESH"}
-        meshes.pop(obj.data, None)
-        return [obj, *(each for each in meshes.values() if registry.state(each.data)[0] not in registry.USABLE)]
+        return [obj, *without_parts(each for each in context.selected_objects if each.data != obj.data)]
 
 
 class MESH_OT_partwheel_find(_Build, bpy.types.Operator):

@@ -6,14 +6,13 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..mesh.refusing import can
-from ..parts import registry
-from ..pick.build import Beside, start
+from ..pick.build import Finds, start, without_parts
 from ..preferences import preferences
 
 _before = None  # how many objects there were at the last look, and where the last operation lies, its only identity
 
 
-class MESH_OT_partwheel_imported(Beside, bpy.types.Operator):
+class MESH_OT_partwheel_imported(Finds, bpy.types.Operator):
     """Find the parts of the selected meshes that have none, on behalf of what imported them"""
 
     bl_idname = "mesh.partwheel_imported"
@@ -25,18 +24,11 @@ class MESH_OT_partwheel_imported(Beside, bpy.types.Operator):
         return can(cls, context.mode == "OBJECT" and lacking(context.view_layer),
                    "This is for selected meshes without parts, in Object Mode.")
 
-    def execute(self, context):
-        found = [building.wait(context) for building in filter(None, map(self._start, self._lacking(context)))]
-        return {"FINISHED"} if any(found) else {"CANCELLED"}
-
     def _lacking(self, context):
         return lacking(context.view_layer)
 
     def _start(self, obj):
         return start(_Quiet(self), obj)
-
-    def _found(self, _context):
-        return {"FINISHED"}
 
 
 class _Quiet:
@@ -50,9 +42,8 @@ class _Quiet:
 
 
 def lacking(view_layer):
-    """The selected objects whose meshes have no parts; of those that share a mesh one."""
-    meshes = {obj.data: obj for obj in view_layer.objects.selected if obj.type == "MESH" and obj.data.polygons}
-    return [obj for mesh, obj in meshes.items() if registry.state(mesh)[0] not in registry.USABLE]
+    """The selected objects whose meshes have faces but no parts; of those that share a mesh one."""
+    return without_parts(obj for obj in view_layer.objects.selected if obj.type == "MESH" and obj.data.polygons)
 
 
 @persistent

@@ -129,11 +129,15 @@ def drop_cell(moved):
     return "" if moved is None else f"{moved[0]:.2%}, {moved[1]:.1f}, {moved[2]:.3f}"
 
 
+def loads(path):
+    return lambda: (models.read(path),) * 2
+
+
 def beside(results, path, target):
     """Draws one model's parts: CoACD's above, ours below."""
     for number in PICTURE:
         for tool in "CoACD, fast", "ours":
-            results.measure("picture", PICTURED, number, tool, number, lambda: (models.read(path),) * 2)
+            results.measure("picture", PICTURED, number, tool, number, loads(path))
     sys.path[:0] = [str(models.ROOT / "scripts" / "docs_parts")]
     from draw import painted, save
     from scipy.spatial import ConvexHull
@@ -153,9 +157,6 @@ def spread(clean):
 
 def measure(results, clean):
     """What matters most first."""
-    def loads(path):
-        return lambda: (models.read(path),) * 2
-
     for name in spread(clean):
         for whose in "CoACD, fast", "CoACD":
             at_its_own(results, "clean", name, whose, loads(clean[name]))
