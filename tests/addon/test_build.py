@@ -54,7 +54,10 @@ class Build(MeshTest):
         self.assertEqual(contents(obj.data), before)
 
     def test_a_large_mesh_is_built_coarse_unless_exactly_is_asked_for(self):
-        rings, around = 280, 360
+        rings, around = 28, 36
+        builds, job = part("parts.builds"), part("parts.builds").Job
+        self.addCleanup(setattr, builds, "Job", job)
+        builds.Job = lambda *surface, **options: job(*surface, exact_triangles=1000, **options)  # large are those of 2000
         turn = np.linspace(0, np.pi, rings + 2)[1:-1]
         angle = np.linspace(0, 2 * np.pi, around, endpoint=False)
         bumps = 1 + 0.01 * np.sin(7 * turn)[:, None] * np.sin(5 * angle)

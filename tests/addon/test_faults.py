@@ -18,7 +18,7 @@ import common
 import numpy as np
 from common import package, part, read_off, until
 from solid_case import SolidTest
-from test_modal import FakeContext, event, show, view
+from test_modal import FakeContext, event, prepared, show, view
 from test_swap import limb
 
 OURS = {"_started", "_guarded", "invoke", "modal", "cancel"}  # the guard itself
@@ -155,7 +155,7 @@ class Faults(SolidTest):
         return lambda tool, context: tool.modal(context, event(*arguments, **modifiers))
 
     def begins(self, *arguments, **modifiers):
-        return lambda tool, context: tool.invoke(context, event(*arguments, **modifiers))
+        return lambda tool, context: prepared(tool, context, tool.invoke(context, event(*arguments, **modifiers)))
 
     def ready(self, tool, context):
         """The tick at which what was done in the background is done."""

@@ -101,8 +101,19 @@ class Tool:
         value = found[0]
         return value.__get__(self) if isinstance(value, types.FunctionType) else value
 
+    def invoke(self, context, event):
+        """And waits, as long as it makes what it needs slice by slice."""
+        return prepared(self, context, Tool.__getattr__(self, "invoke")(context, event))
+
     def report(self, kind, message):
         self.reports.append((kind, message))
+
+
+def prepared(tool, context, answer):
+    """The answer of a tool that answered so, once it has made what it needs slice by slice."""
+    while answer == {"RUNNING_MODAL"} and isinstance(getattr(tool, "state", None), part("pick.states").Begun):
+        answer = tool.modal(context, event("TIMER"))
+    return answer
 
 
 class ToolTest(MeshTest):
@@ -600,6 +611,7 @@ class WhileBuilding(HeldWorkers):
         point, _ = self.centre()
         part("pick.prepared")._kept.clear()
         self.tool, self.context = Tool(), FakeContext()
+        bmesh.update_edit_mesh(self.obj.data)
         with WritesBack() as writes:
             self.tool.invoke(self.context, event("W", point))
             self.job = self.tool.building.build.job

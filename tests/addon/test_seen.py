@@ -125,6 +125,14 @@ class Seen(MeshTest):
             before = self.everything(obj)
             self.assertGreater(len(part("view.seen").seen(obj).faces), 1000)
             self.assertEqual(self.everything(obj), before)
+            self.looked_at_once(obj)
+
+    def looked_at_once(self, obj):
+        """To look is no change, upon which it would be looked at again, and so on for ever."""
+        prepared = part("pick.prepared").prepared
+        made = prepared(obj)
+        bpy.context.view_layer.update()
+        self.assertIs(prepared(obj), made)
 
     def everything(self, obj):
         collections = {name: [each.name_full for each in getattr(bpy.data, name)]
@@ -162,6 +170,7 @@ class Seen(MeshTest):
             np.testing.assert_allclose(found.positions, places, atol=1e-6)
             np.testing.assert_array_equal(found.triangles, triangles)
             np.testing.assert_array_equal(found.faces[tags >= 0], tags[tags >= 0])
+            self.looked_at_once(obj)
             bpy.ops.object.mode_set(mode="OBJECT")
 
     def test_hidden_faces_are_not_picked_in_paint_modes(self):

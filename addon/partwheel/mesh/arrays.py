@@ -63,24 +63,37 @@ def written_back(obj):
 def up_to_date(obj):
     """The object's mesh; in Edit Mode after Blender wrote the edits back into it. Same order of elements in both. Not to
     be called while Blender draws."""
-    global writing_back
     if obj.mode == "EDIT" and not (_reading and (key(obj.data), obj.mode) in _reading):
-        layer = bpy.context.view_layer
-        layer.update()  # what was edited before is told of first
-        obj.update_from_editmode()
-        writing_back = True
-        try:
-            layer.update()
-        finally:
-            writing_back = False
+        _write_back(obj.update_from_editmode)
         if _reading is not None:
             _reading[key(obj.data), obj.mode] = None
     return obj.data
 
 
-# What Blender keeps as a layer since 4.0, and copies from there a hundred times faster: (its name, its field).
+def strokes_up_to_date(obj):
+    """In Sculpt Mode the strokes on a multires modifier's levels are in the mesh then. Not to be called while Blender draws."""
+    if obj.mode == "SCULPT":
+        _write_back(bpy.ops.ed.flush_edits)
+
+
+def _write_back(write):
+    global writing_back
+    layer = bpy.context.view_layer
+    layer.update()  # what was edited before is told of first
+    writing_back = True
+    try:
+        write()
+        layer.update()
+    finally:
+        writing_back = False
+
+
+# What Blender keeps as a layer, most of it since 4.0, and copies from there a hundred times faster: (its name, its field).
+# "select" and "hide" have one for each kind of elements.
 _LAYERS = {"co": ("position", "vector"), "vertex_index": (".corner_vert", "value"),
-           "edge_index": (".corner_edge", "value")}
+           "edge_index": (".corner_edge", "value"),
+           "select": (".select_{kind}", "value"), "hide": (".hide_{kind}", "value")}
+_KINDS = {"MeshVertices": "vert", "MeshEdges": "edge", "MeshPolygons": "poly"}
 # What Blender copies as one block, ten times faster, if it is asked for without a sign.
 _UNSIGNED = {"vertex_index", "edge_index", "vertices", "loop_start", "loop_total", "polygon_index"}
 
@@ -116,9 +129,12 @@ def mask(count, indices):
 def _layer(collection, attribute):
     """(what Blender keeps this attribute as, its field), or (None, "")."""
     name, field = _LAYERS.get(attribute, ("", ""))
-    layer = collection.data.attributes.get(name) if name and isinstance(collection.data, bpy.types.Mesh) else None
-    # It has no elements in Edit Mode.
-    return (layer, field) if layer and len(layer.data) == len(collection) else (None, "")
+    if not name or not isinstance(collection.data, bpy.types.Mesh):
+        return None, ""
+    layer = collection.data.attributes.get(name.format(kind=_KINDS.get(collection.bl_rna.identifier)))
+    # Blender 5.0.1 may give that of the selected edges a wrong type. In Edit Mode a layer has no elements.
+    wrong = layer and name.startswith((".select", ".hide")) and layer.data_type != "BOOLEAN"
+    return (layer, field) if layer and not wrong and len(layer.data) == len(collection) else (None, "")
 
 
 def edge_vertices(mesh):

@@ -38,7 +38,7 @@ class Selection:
         bm = self._edited(obj)
         for kind in KINDS:
             _sequence(bm, kind).index_update()
-        self.before = {kind: arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool) for kind in KINDS}
+        self.before = {kind: _selected(mesh, kind) for kind in KINDS}
         # list(): with Python 3.13 the history of Blender 4.3 is not to be gone through in a comprehension.
         self.history = [(_kind_of(element), element.index) for element in list(bm.select_history)]
         self.active_face = bm.faces.active.index if bm.faces.active else None
@@ -129,6 +129,14 @@ class Selection:
         _redraw(obj)
 
 
+def _selected(mesh, kind):
+    """(n,) bool: which elements of the mesh are selected. That none is is known at once."""
+    elements = getattr(mesh, ELEMENTS[kind])
+    if not (mesh.total_vert_sel or mesh.total_edge_sel or mesh.total_face_sel):
+        return np.zeros(len(elements), bool)
+    return arrays.read(elements, "select", bool)
+
+
 def _alone(obj):
     """Whether what Blender's operators do to all that is being edited, they do to this object only."""
     return list(bpy.context.objects_in_mode_unique_data) == [obj]
@@ -212,8 +220,8 @@ def chosen_outside_edit_mode(mesh, faces, extend=False, deselect=False):
 def select_outside_edit_mode(mesh, faces, extend=False, deselect=False, active=None):
     """Selects that: the faces, and their edges and vertices. active: the face to make the active one."""
     chosen = chosen_outside_edit_mode(mesh, faces, extend, deselect)
-    mesh.polygons.foreach_set("select", chosen)
-    mesh.vertices.foreach_set("select", arrays.of_faces(mesh, chosen, "vertices", "vertex_index"))
+    arrays.write(mesh.polygons, "select", chosen)
+    arrays.write(mesh.vertices, "select", arrays.of_faces(mesh, chosen, "vertices", "vertex_index"))
     _select_edges(mesh, arrays.of_faces(mesh, chosen, "edges", "edge_index"))
     if len(faces):
         mesh.polygons.active = int(faces[0]) if active is None else active
@@ -227,4 +235,4 @@ def _select_edges(mesh, values):
         mesh.attributes.remove(attribute)
         mesh.attributes.new(".select_edge", "BOOLEAN", "EDGE").data.foreach_set("value", values)
     else:
-        mesh.edges.foreach_set("select", values)
+        arrays.write(mesh.edges, "select", values)

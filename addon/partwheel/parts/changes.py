@@ -35,13 +35,14 @@ def _edited(_scene, depsgraph):
     for update in depsgraph.updates:
         if isinstance(update.id, bpy.types.Mesh):
             _count(_told, update.id.original)
-        if not update.is_updated_geometry:
+        of_mesh = isinstance(update.id, bpy.types.Object) and update.id.type == "MESH"
+        stroke = of_mesh and update.id.mode == "SCULPT" and update.is_updated_shading  # all that is told of one
+        if not (update.is_updated_geometry or stroke):
             continue
         arrays.changed()
         if isinstance(update.id, bpy.types.Mesh):
             _count(_edits, update.id.original)
-        elif (isinstance(update.id, bpy.types.Object) and update.id.type == "MESH"
-              and (update.id.mode != "EDIT" or arrays.on_cage(update.id))):
+        elif of_mesh and (update.id.mode != "EDIT" or arrays.on_cage(update.id)):
             _count(_shown, update.id.original.data)
 
 

@@ -5,7 +5,8 @@ the part around it, until it is confirmed or cancelled.
 What happens to the part meanwhile, and once it is confirmed, is the business of a target (see PartPicker._aim).
 """
 
-from math import hypot
+import contextlib
+import math
 
 import bpy
 
@@ -16,7 +17,7 @@ from ..view import keys, overlay, picking
 from ..view.stepper import Stepper, ui_scale
 from . import borders, states
 from partwheel import PartwheelError
-from .prepared import note_written_back, prepared
+from .prepared import advance, note_written_back, prepared
 from ..view.seen import NO_FACE
 from .build import start, waited_for
 from ..view.in_view import InView
@@ -109,6 +110,28 @@ class PartPicker(InView):
             self.report({"WARNING"}, rpt_("This 3D view does not show the mesh that is being edited."))
             return {"CANCELLED"}
         context.view_layer.update()  # whatever there is to be told is told
+        self.state = states.Begun(event.type, event.value, event.mouse_x, event.mouse_y)
+        if not advance(objects):
+            return self._ready(context)
+        self._slices = contextlib.ExitStack()  # the window is not held up until all of them are made
+        self._at_end.push(self._slices)
+        self._tick_every(context, 0, self._slices)
+        return {"RUNNING_MODAL"}
+
+    def _prepared_on(self, context, event):
+        """One more slice; a key or a button that comes meanwhile has all of them made at once."""
+        objects, idle = self._objects(context), event.type in keys.SYSTEM | keys.MOVES
+        while advance(objects):
+            if idle:
+                return {"RUNNING_MODAL"}
+        self._slices.close()
+        answer = self._ready(context)
+        return answer if idle or answer != {"RUNNING_MODAL"} else self._handle(context, event)
+
+    def _ready(self, context):
+        """All that is needed of the meshes is there, and what was done is seen to."""
+        event, self.state = self.state, states.Waiting()
+        objects = self._objects(context)
         note_written_back(objects)
         obj, face = self._under(context, event)
         if obj is not None:
@@ -134,7 +157,7 @@ class PartPicker(InView):
         if not (view and self.clicked):
             return view is not None
         x, y, looked = self.clicked
-        moved = hypot(event.mouse_x - x, event.mouse_y - y)
+        moved = math.hypot(event.mouse_x - x, event.mouse_y - y)
         return moved <= self.NEAR * ui_scale() and view[2].perspective_matrix == looked
 
     def _under(self, context, event):
@@ -212,6 +235,8 @@ class PartPicker(InView):
     # ---- With a part, or waiting for one
 
     def _handle(self, context, event):
+        if isinstance(self.state, states.Begun):
+            return self._prepared_on(context, event)
         if isinstance(self.state, states.Building):
             return self._built_on(context, event)
         if self.target and registry.known(self._object(context).data) is not self.hierarchy:

@@ -5,6 +5,16 @@ from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
+class Begun:
+    """What is needed is being made, slice by slice, since this event: what of it is asked for then, as it was."""
+
+    type: str
+    value: str
+    mouse_x: int
+    mouse_y: int
+
+
+@dataclass(frozen=True)
 class Building:
     """The parts are still being found: after that this face, the one that was clicked, is picked, if there is one."""
 

@@ -51,10 +51,10 @@ def mask_levels(obj, faces, _node, extend, deselect):
     try:
         if not (extend or deselect):
             _fill_mask(0)
-        polygons.foreach_set("hide", ~arrays.mask(len(polygons), faces))
+        arrays.write(polygons, "hide", ~arrays.mask(len(polygons), faces))
         _fill_mask(0 if deselect else 1)
     finally:
-        polygons.foreach_set("hide", hidden)
+        arrays.write(polygons, "hide", hidden)
 
 
 def _fill_mask(value):

@@ -111,10 +111,11 @@ class InView:
             if context.area:
                 context.area.header_text_set(f"Partwheel: {header}")
 
-    def _tick_every(self, context, seconds):
-        """TIMER events from now on."""
+    def _tick_every(self, context, seconds, until=None):
+        """TIMER events from now on; until: an ExitStack at whose end they end, else the operator's."""
         manager = context.window_manager
-        self._at_end.callback(manager.event_timer_remove, manager.event_timer_add(seconds, window=context.window))
+        (until or self._at_end).callback(
+            manager.event_timer_remove, manager.event_timer_add(seconds, window=context.window))
 
     def _draw_with(self, function, over="POST_VIEW"):
         """function() is called whenever a 3D view is drawn; "POST_PIXEL": in pixels."""

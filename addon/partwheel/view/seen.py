@@ -97,8 +97,7 @@ def _evaluated(obj):
 @contextlib.contextmanager
 def _double(obj):
     """An object in the scene that is evaluated as this one is in Object Mode, its faces numbered; gone afterwards."""
-    if obj.mode == "SCULPT":
-        bpy.ops.ed.flush_edits()  # a multires modifier's strokes are in the mesh only then
+    arrays.strokes_up_to_date(obj)
     mesh, double = obj.data.copy(), obj.copy()
     try:
         double.data = mesh

@@ -9,6 +9,32 @@ def play(stage):
                              ("VERTEX_PAINT", painted_on, "faces")):
         yield from in_mode(stage, name, read, kind)
     yield from weights(stage)
+    yield from enter(stage, "SCULPT")
+    yield from stroked(stage, *stage.spot(0.5, 0.9, above=2)[:2])
+
+
+def stroked(stage, x, y):
+    """Where a stroke has moved the surface it is looked at again, once."""
+    revision = stage.part("parts.changes").revision
+    before = revision(stage.object.data)
+    yield from stage.drawn()
+    stage.check(revision(stage.object.data) == before, "looking tells of no change")
+    with stage.override():
+        bpy.ops.wm.tool_set_by_id(name="builtin.brush" if bpy.app.version >= (4, 3) else "builtin_brush.Draw")
+    stage.mouse.move(x, y)
+    stage.mouse.press("LEFTMOUSE")
+    for step in range(5):
+        stage.mouse.move(x + 8 * step, y)
+        yield from stage.settle()
+    stage.mouse.release("LEFTMOUSE")
+    yield from stage.until("a stroke does", lambda: revision(stage.object.data) != before)
+    yield from stage.settle()
+    before = revision(stage.object.data)
+    stage.use_tool()
+    yield from hover(stage, x, y)
+    yield from stage.until("hover shows a part", lambda: stage.hovered() is not None)
+    yield from stage.screenshot("stroked")
+    stage.check(revision(stage.object.data) == before, "looking again does not")
 
 
 def enter(stage, name):

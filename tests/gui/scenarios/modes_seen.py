@@ -2,7 +2,7 @@
 click beside the model it is not any more. With dynamic topology the tool says why it does nothing."""
 import bpy
 import numpy
-from scenarios.modes import enter
+from scenarios.modes import enter, stroked
 from view import picture
 
 
@@ -13,10 +13,9 @@ def play(stage):
         bpy.ops.object.mode_set(mode="OBJECT")
         multires = model.modifiers.new("multires", "MULTIRES")
         bpy.ops.object.multires_subdivide(modifier="multires")
-        bpy.ops.object.multires_subdivide(modifier="multires")
     shown = model.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
     stage.wheels.vertices = numpy.array([vertex.co for vertex in shown.vertices][:len(model.data.vertices)])
-    multires.levels, multires.sculpt_levels = 0, 2
+    multires.levels, multires.sculpt_levels = 0, 1
     yield from enter(stage, "SCULPT")
     x, y, face = stage.spot(0.5, 0.9, above=2)
     x2, y2, other = stage.spot(0.1, 0.7, above=2)
@@ -58,6 +57,10 @@ def play(stage):
     stage.check(not hidden.any(), "nothing is hidden")
     yield from click(*away)
     yield from dark(frozenset(), "5 beside the model")
+
+    yield from stroked(stage, x, y)
+    stage.mouse.move(*away)
+    yield from stage.until("hover is beside the model", lambda: stage.hovered() is None)
 
     with stage.override():
         bpy.ops.object.mode_set(mode="OBJECT")

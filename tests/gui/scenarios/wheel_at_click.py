@@ -1,5 +1,8 @@
 """After a click with the tool the wheel is ours while the mouse is where it clicked, and zooms elsewhere; no Enter is
-needed. With the preference it is ours until Enter. Two buttons beside the click do without a wheel."""
+needed. With the preference it is ours until Enter. Two buttons beside the click do without a wheel. Right after an edit
+a click makes what it needs slice by slice, and nothing that follows is lost."""
+import bmesh
+
 STEP = 44, 18  # from the click to the middle of the button for larger parts
 
 
@@ -65,3 +68,39 @@ def play(stage):
     stage.mouse.key("RET")
     yield from stage.ended()
     wanted.wheel = "NEAR"
+    yield from after_an_edit(stage)
+
+
+def after_an_edit(stage):
+    stage.select(())
+    x, y, face = stage.spot(0.95, 0.6, above=4)
+    stops, start = stage.wheels.stops(face)
+    slices = counted(stage.part("pick.pick").PartPicker, "_prepared_on")
+    stage.mouse.move(x, y)
+    yield from stage.until("the mouse rests over a part", lambda: stage.hovered() is not None)
+    for notches, then in ((0, ()), (2, ()), (1, ("UP_ARROW",)), (0, ("ESC",))):
+        slices.clear()
+        bmesh.update_edit_mesh(stage.object.data)
+        stage.mouse.click()
+        for notch in range(notches):
+            stage.mouse.wheel(1)
+        for key in then:
+            stage.mouse.key(key)
+        yield from stage.until("it is made meanwhile", lambda: slices)
+        if "ESC" not in then:
+            yield from stage.selected(stops[start + notches + len(then)], f"after an edit, {notches} notches and {then}")
+            stage.mouse.key("ESC")
+        yield from stage.selected((), "after Esc")
+        yield from stage.ended()
+
+
+def counted(owner, name):
+    """A list that grows with every call."""
+    calls, inner = [], getattr(owner, name)
+
+    def call(*arguments):
+        calls.append(name)
+        return inner(*arguments)
+
+    setattr(owner, name, call)
+    return calls
