@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <exception>
@@ -257,8 +258,11 @@ void hand_over(Struct own, Struct& callers) {
     std::fill(bytes + std::min(size, sizeof own), bytes + size, static_cast<unsigned char>(0));
 }
 
-// The name that stands at the place of this number.
-const char* name_of(std::span<const char* const> names, int number) {
+// The name that stands at the place of this value's number. A caller from C may give any; in C++ it is not read as one of
+// its type then.
+template <typename Enum>
+const char* name_of(std::span<const char* const> names, const Enum& value) {
+    const auto number = std::bit_cast<int>(value);
     return number >= 0 && at(number) < names.size() ? names[at(number)] : "unknown";
 }
 

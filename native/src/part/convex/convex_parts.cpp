@@ -14,6 +14,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -25,7 +26,7 @@ namespace {
 using namespace convex;
 using Tetrahedra = std::vector<Tetrahedron>;
 
-constexpr size_t coarse_points = 1000, coarse_points_per_hull = 30, coarse_points_for_error = 2000;
+constexpr size_t coarse_points = 2000, coarse_points_per_hull = 30;
 constexpr double more_than_wanted = 1.5;      // so many times as many pieces are made, and joined again
 constexpr size_t more_parts = 2;              // so many times as many of the hierarchy's parts are joined
 constexpr double slack_of_error = 0.01;
@@ -54,6 +55,18 @@ Copy coarse_copy(std::span<const Tetrahedra> pieces, const HullKernel& kernel, s
     }
     return copy;
 }
+
+// A search on a coarse copy of some pieces.
+struct Attempt {
+    std::vector<Tetrahedra> pieces;
+    Copy copy;
+    Pieces made;
+    Search search;
+
+    Attempt(std::vector<Tetrahedra>&& start, const HullKernel& kernel, size_t points, Search::Tick tick)
+        : pieces(std::move(start)), copy(coarse_copy(pieces, kernel, points)), made(copy.points),
+          search(made, copy.pieces, std::move(tick)) {}
+};
 
 class Maker {
 public:
@@ -102,44 +115,33 @@ private:
         return pieces;
     }
 
-    // From the whole or from the hierarchy's parts, whichever ends better.
+    // From the whole or from the hierarchy's parts, whichever begins better.
     std::vector<Tetrahedra> by_count() {
         const size_t points = std::max(coarse_points, coarse_points_per_hull * options_.hulls);
         const auto more = static_cast<size_t>(std::ceil(more_than_wanted * static_cast<double>(options_.hulls)));
         const double usual = usual_ticks_per_hull * static_cast<double>(options_.hulls);
-        std::vector<Tetrahedra> best;
-        std::vector<Step> steps;
-        double least = HUGE_VAL;
+        std::unique_ptr<Attempt> best;
         for (const size_t start : {size_t{1}, more_parts * options_.hulls}) {
-            std::vector<Tetrahedra> pieces = of_cut(start);
-            const Copy copy = coarse_copy(pieces, kernel_, points);
-            Pieces made(copy.points);
-            Search search(made, copy.pieces, [&] { tick(usual); });
-            if (options_.hulls > 1) search.divide_until(more);
-            search.join_until(options_.hulls);
-            search.move_borders();
-            search.exchange();
-            search.join_until(options_.hulls);
-            if (search.cost() >= least) continue;
-            least = search.cost();
-            best = std::move(pieces);
-            steps.assign(search.steps().begin(), search.steps().end());
+            auto made = std::make_unique<Attempt>(of_cut(start), kernel_, points, [&] { tick(usual); });
+            if (options_.hulls > 1) made->search.divide_until(more);
+            made->search.join_until(options_.hulls);
+            if (!best || made->search.cost() < best->search.cost()) best = std::move(made);
         }
-        replay(steps, best);
-        return best;
+        best->search.move_borders();
+        best->search.exchange();
+        best->search.join_until(options_.hulls);
+        replay(best->search.steps(), best->pieces);
+        return std::move(best->pieces);
     }
 
     std::vector<Tetrahedra> by_error() {
-        std::vector<Tetrahedra> pieces = of_cut(1);
-        const Copy copy = coarse_copy(pieces, kernel_, coarse_points_for_error);
-        Pieces made(copy.points);
-        const auto good = [&](const convex::Piece& piece) { return keeps_error(made.kernel().surface(piece.hull)); };
-        Search search(made, copy.pieces, [&] { tick(usual_ticks_for_error); });
-        search.divide_until_good(good, most_parts);
-        search.join_while_good(good);
-        replay(search.steps(), pieces);
-        keep_error(pieces);
-        return pieces;
+        Attempt made(of_cut(1), kernel_, coarse_points, [&] { tick(usual_ticks_for_error); });
+        const auto good = [&](const convex::Piece& piece) { return keeps_error(made.made.kernel().surface(piece.hull)); };
+        made.search.divide_until_good(good, most_parts);
+        made.search.join_while_good(good);
+        replay(made.search.steps(), made.pieces);
+        keep_error(made.pieces);
+        return std::move(made.pieces);
     }
 
     // Where the coarse hulls kept the error and the exact ones don't, these are divided on.

@@ -19,6 +19,8 @@ namespace {
 constexpr int places = 4;
 constexpr size_t finer_directions = 2;
 constexpr int finer_places = 2;  // on either side, each a third of the way to the next
+constexpr int refinements = 3;
+constexpr double first_tilt = 0.1;  // in radians; half as much in each refinement, as the way that the plane is shifted by
 constexpr double gap = 1e-6;     // boxes that are nearer may touch
 // Points of a plane are moved off it by so much, relative to the model, lest it takes exact arithmetic to see that they
 // are in one plane. These hulls are only measured.
@@ -143,12 +145,7 @@ Division Pieces::best_across(const Outline& outline, std::vector<Point> directio
         const double size = length(d);
         if (!(size > 0)) continue;
         const Point along = 1 / size * d;
-        double low = HUGE_VAL, high = -HUGE_VAL;
-        for (const int32_t v : outline.vertices) {
-            const double h = dot(along, kernel_.point(v));
-            low = std::min(low, h);
-            high = std::max(high, h);
-        }
+        const auto [low, high] = span(outline, along);
         if (!(low < high)) continue;
         Sweep sweep;
         sweep.step = (high - low) / (places + 1);
@@ -169,6 +166,50 @@ Division Pieces::best_across(const Outline& outline, std::vector<Point> directio
         if (sweep.best.cost < best.cost) best = sweep.best;
     }
     return best;
+}
+
+Division Pieces::refined(const Piece& a, const Piece& b, Division best) {
+    const Outline both(a.outline, b.outline);
+    const auto [low, high] = span(both, best.plane.normal);
+    double shift = (high - low) / (places + 1) / (finer_places + 1) / 2, tilt = first_tilt;
+    for (int i = 0; i < refinements; ++i, shift /= 2, tilt /= 2) {
+        const std::optional<Point> middle = middle_of_cut(both, best.plane);
+        if (!middle) break;
+        const Point n = best.plane.normal;
+        const Point across = std::fabs(n[0]) < 0.5 ? cross(n, {1, 0, 0}) : cross(n, {0, 1, 0});
+        const Point x = tilt / length(across) * across, y = cross(n, x);
+        for (const Point& tilted : {n, n + x, n - x, n + y, n - y}) {
+            const Point normal = 1 / length(tilted) * tilted;
+            const double offset = dot(normal, *middle);
+            try_planes(both, normal, std::array{offset - shift, offset, offset + shift}, best);
+        }
+    }
+    return best;
+}
+
+// From where to where the vertices are, along a direction.
+std::array<double, 2> Pieces::span(const Outline& outline, const Point& direction) const {
+    std::array<double, 2> found{HUGE_VAL, -HUGE_VAL};
+    for (const int32_t v : outline.vertices) {
+        const double h = dot(direction, kernel_.point(v));
+        found = {std::min(found[0], h), std::max(found[1], h)};
+    }
+    return found;
+}
+
+// The mean of where edges cross a plane.
+std::optional<Point> Pieces::middle_of_cut(const Outline& outline, const CutPlane& plane) const {
+    Point sum{};
+    size_t count = 0;
+    for (const auto& [v, w] : outline.edges) {
+        const Point &p = kernel_.point(v), &q = kernel_.point(w);
+        const double h = plane.height(p), k = plane.height(q);
+        if ((h < 0) == (k < 0)) continue;
+        sum = sum + p + h / (h - k) * (q - p);
+        ++count;
+    }
+    if (count == 0) return std::nullopt;
+    return 1 / static_cast<double>(count) * sum;
 }
 
 // offsets: rising. direction: of length 1.

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -53,6 +54,9 @@ public:
     // directions of the piece and the 13 of the lattice; and of two pieces, across theirs and from the one to the other.
     Division best_division(const Piece& piece);
     Division best_division(const Piece& a, const Piece& b);
+    // The best of planes near a division of two pieces together: shifted, and tilted about the middle of the cut, by less and
+    // less.
+    Division refined(const Piece& a, const Piece& b, Division best);
     // The two sides of some pieces.
     std::array<Piece, 2> divided(std::vector<Tetrahedron> tetrahedra, const CutPlane& plane);
 
@@ -60,6 +64,8 @@ public:
 
 private:
     std::vector<Point> principal(const Outline& outline) const;
+    std::array<double, 2> span(const Outline& outline, const Point& direction) const;
+    std::optional<Point> middle_of_cut(const Outline& outline, const CutPlane& plane) const;
     Division best_across(const Outline& outline, std::vector<Point> directions);
     void try_planes(const Outline& outline, const Point& direction, std::span<const double> offsets, Division& best);
 

@@ -11,8 +11,9 @@ namespace {
 
 constexpr double least_gain = 1e-5;  // of all volume: less may be what points were moved by, see pieces.cpp
 constexpr size_t crowd = 8;          // of the tetrahedra at first: planes cut them to ever smaller ones
-constexpr double least_hope = 0.01;  // of all volume, that two hulls are more than their solid: else they stay as they are
+constexpr double least_hope = 0.003; // of all volume, that two hulls are more than their solid: else they stay as they are
 constexpr size_t most_rounds = 4;
+constexpr double promising = 0.2;  // of what two hulls are more than their solid: a plane that is worse by less may be refined
 constexpr size_t most_exchanges = 64;
 
 std::array<size_t, 2> in_order(size_t a, size_t b) { return {std::min(a, b), std::max(a, b)}; }
@@ -149,7 +150,8 @@ void Search::move_borders() {
                     !tried.insert({pieces_[a].stamp, pieces_[b].stamp}).second)
                     continue;
                 tick_();
-                const Division best = made_.best_division(x, y);
+                Division best = made_.best_division(x, y);
+                if (best.cost < now + promising * (now - x.solid - y.solid)) best = made_.refined(x, y, best);
                 if (!(best.cost < now - least_gain * all)) continue;
                 std::vector<Tetrahedron> both = x.tetrahedra;
                 both.insert(both.end(), y.tetrahedra.begin(), y.tetrahedra.end());
