@@ -32,6 +32,9 @@ get_directory_property(partwheel_plain_options COMPILE_OPTIONS)  # of the releas
 if(PARTWHEEL_SANITIZE)
   add_compile_options(-fsanitize=${PARTWHEEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${PARTWHEEL_SANITIZE})
+  if(PARTWHEEL_FUZZERS)  # which are led by what has run
+    add_compile_options(-fsanitize-coverage=inline-8bit-counters,pc-table)
+  endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # What a sanitizer adds makes g++ see uninitialized variables where there are none, in CGAL's headers for one.
     add_compile_options(-Wno-maybe-uninitialized)

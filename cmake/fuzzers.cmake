@@ -5,14 +5,15 @@ if(NOT GTest_FOUND)
   message(FATAL_ERROR "GoogleTest was not found. ${fix} Or configure with -DPARTWHEEL_FUZZERS=OFF.")
 endif()
 if(NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
-  message(FATAL_ERROR "The fuzzers need clang: cmake --preset fuzz")
+  message(FATAL_ERROR "The fuzzers need clang: cmake --preset asan")
 endif()
 
-# Then a saved hierarchy's hash is not compared, so that a fuzzer gets behind it.
-target_compile_definitions(partwheel_engine PRIVATE FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION)
-
-add_library(partwheel_fuzzed STATIC native/src/api.cpp tests/native/support/built.cpp tests/native/support/shapes.cpp)
-target_compile_definitions(partwheel_fuzzed PRIVATE PW_BUILDING)
+# What reads the bytes is compiled once more, for the fuzzers alone, and found before the engine's own: it tells what it
+# compares them with, and a saved hierarchy's hash is not compared, so that a fuzzer gets behind it.
+add_library(partwheel_fuzzed OBJECT native/src/api.cpp native/src/tree/packed.cpp tests/native/support/built.cpp
+                                    tests/native/support/shapes.cpp)
+target_compile_options(partwheel_fuzzed PRIVATE -fsanitize-coverage=trace-cmp)
+target_compile_definitions(partwheel_fuzzed PRIVATE PW_BUILDING FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION)
 target_include_directories(partwheel_fuzzed PUBLIC tests/native)
 target_link_libraries(partwheel_fuzzed PUBLIC partwheel_engine GTest::gtest)
 

@@ -28,10 +28,11 @@ MORE_OF_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "commands", 
                   "select_modes", "tool_keys", "while_building", "words")
 THREADED = "[Tt]hread|ProgressNever"  # the names of tests in which threads meet
 # What the sanitizers have seen already: native tests that build the same once more to compare results, and files of core
-# about what the package does with numbers and texts, where the library is called as in the other files.
+# about what the package does with numbers and texts, where the library is called as in the other files, or as in the native
+# tests: "border" and "convex", which take long.
 COMPARED = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun"
-PACKAGES_OWN = ("bones", "compatible", "cut", "docs", "docs_commands", "hooks", "house", "likeness", "printing", "seams",
-                "shipping", "words")
+PACKAGES_OWN = ("bones", "border", "compatible", "convex", "cut", "docs", "docs_commands", "hooks", "house", "likeness",
+                "primitives", "printing", "seams", "shipping", "words")
 # What scripts/test quick plays: how the add-on meets Blender, and the main job in a window.
 QUICK_ADDON = ("test_registration", "test_select", "test_modal", "test_saved", "test_staleness", "test_related", "test_api",
                "test_command")
@@ -63,13 +64,17 @@ def sanitizers():
     code on the same models once more. The latter in a host program whose numbers have a comma."""
     build("sanitizers", "asan")
     result = ctest("sanitizers-native", "asan", "--exclude-regex", COMPARED)
-    # Python isn't linked with the runtimes, so they are loaded before it; its own leaks are not looked at.
-    runtimes = " ".join(output_of("g++", f"-print-file-name={name}") for name in ("libasan.so", "libstdc++.so"))
     tests = [path for path in sorted((ROOT / "tests/core").glob("test_*.py")) if path.stem[5:] not in PACKAGES_OWN]
-    result += pytest("sanitizers-core", *tests, shared="loadfile", LD_PRELOAD=runtimes, ASAN_OPTIONS="detect_leaks=0",
+    result += pytest("sanitizers-core", *tests, shared="loadfile", LD_PRELOAD=runtimes(), ASAN_OPTIONS="detect_leaks=0",
                      UBSAN_OPTIONS="print_stacktrace=1", PARTWHEEL_TEST_LIGHT="1", PARTWHEEL_TEST_COMMA="1",
                      PARTWHEEL_LIBRARY=str(ROOT / "build/asan/libpartwheel.so"))
     return result
+
+
+def runtimes():
+    """Of the sanitizers. Python isn't linked with them, so they are loaded before it; its own leaks are not looked at."""
+    return " ".join(output_of("clang++", f"-print-file-name={name}")
+                    for name in ("libclang_rt.asan-x86_64.so", "libstdc++.so"))
 
 
 @needs("setup_build")
@@ -84,17 +89,17 @@ def threads():
 @needs("setup_build", "setup_core")
 def fuzz():
     """The fuzzers of the C API's three entrances, for some seconds each, watched by the sanitizers."""
-    build("fuzz", "fuzz", "mesh_fuzzer", "saved_fuzzer", "surface_fuzzer")
+    build("fuzz", "asan", "mesh_fuzzer", "saved_fuzzer", "surface_fuzzer")
     build("fuzz", "release", "partwheel")  # makes the seeds
     return pytest("fuzz", "tests/fuzz", shared="worksteal")
 
 
 @needs("setup_build", "setup_core")
 def determinism():
-    """The same bits from g++ optimized or not and from clang with AVX2, in one thread or two."""
-    for preset in ("release", "clang", "unoptimized"):
+    """The same bits as shipped, in one thread or three, and from another compiler with the sanitizers."""
+    for preset in ("release", "asan"):
         build("determinism", preset, "partwheel")
-    return pytest("determinism", "tests/determinism")
+    return pytest("determinism", "tests/determinism", PARTWHEEL_RUNTIMES=runtimes())
 
 
 @needs(*PACKAGES, "setup_core", "setup_hooks")

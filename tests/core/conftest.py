@@ -76,8 +76,5 @@ def meshes_directory():
     return directory
 
 # AddressSanitizer takes more memory than any limit, and answers a crash itself.
-PLAIN = "libasan" not in os.environ.get("LD_PRELOAD", "")
+PLAIN = "asan" not in os.environ.get("LD_PRELOAD", "")
 UNLIMITED = {} if PLAIN else {"memory_limit": 0}
-
-# Its large meshes stay in the memory of this process under AddressSanitizer. The native tests watch the same room.
-collect_ignore = [] if PLAIN else ["test_border.py"]

@@ -137,7 +137,7 @@ def test_seconds_of_a_failed_build():
 
 
 # AddressSanitizer itself takes more address space than any limit, so under it this can't be tried.
-if "libasan" not in os.environ.get("LD_PRELOAD", ""):
+if "asan" not in os.environ.get("LD_PRELOAD", ""):
 
     def test_running_out_of_memory_is_an_error_not_a_crash():
         """Wherever in a build the memory ends."""

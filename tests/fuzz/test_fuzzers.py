@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The fuzzers of build/fuzz, each for some seconds, from seeds made of real meshes: nothing they try may crash, hang,
+"""The fuzzers of build/asan, each for some seconds, from seeds made of real meshes: nothing they try may crash, hang,
 leak or break a promise of the header.
 
 PARTWHEEL_FUZZ=600 lets each run for that many seconds. What it found goes to build/test/fuzz: an input that failed is
@@ -58,8 +58,8 @@ def corpora(tmp_path_factory):
 
 def run(name, *arguments, **environment):
     """A fuzzer with these arguments; inputs that fail, hang or are slow go to WORK."""
-    fuzzer = ROOT / "build" / "fuzz" / f"{name}_fuzzer"
-    assert fuzzer.exists(), f"{fuzzer} is not there: scripts/build fuzz"
+    fuzzer = ROOT / "build" / "asan" / f"{name}_fuzzer"
+    assert fuzzer.exists(), f"{fuzzer} is not there: scripts/build asan"
     WORK.mkdir(parents=True, exist_ok=True)
     return subprocess.run(
         [fuzzer, *arguments, f"-timeout={HANGS}", "-rss_limit_mb=4096", f"-artifact_prefix={WORK / name}-"],
