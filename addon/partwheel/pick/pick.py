@@ -7,6 +7,7 @@ What happens to the part meanwhile, and once it is confirmed, is the business of
 
 import contextlib
 import math
+from dataclasses import replace
 
 import bpy
 
@@ -119,8 +120,11 @@ class PartPicker(InView):
         return {"RUNNING_MODAL"}
 
     def _prepared_on(self, context, event):
-        """One more slice; a key or a button that comes meanwhile has all of them made at once."""
-        objects, idle = self._objects(context), event.type in keys.SYSTEM | keys.MOVES
+        """One more slice; a key or a button that is pressed meanwhile has all of them made at once."""
+        objects, released = self._objects(context), event.value == "RELEASE"
+        idle = released or event.type in keys.SYSTEM | keys.MOVES
+        if released and event.type == self.state.type:
+            self.state = replace(self.state, value=event.value)
         while advance(objects):
             if idle:
                 return {"RUNNING_MODAL"}

@@ -63,7 +63,7 @@ def each(results, table, names, number):
         rows = [results.of(table, name, number, tool) for tool in tools]
         if not any(rows):
             continue
-        hulls = next(row["hulls"] for row in rows if row and "hulls" in row)
+        hulls = next((row["hulls"] for row in rows if row and "hulls" in row), "")
         cells = ["" if not row else "failed" if "failed" in row else f"{row['volume']:.3f}, {row['seconds']:.2f}"
                  for row in rows]
         print(f"| {name} | {hulls} | " + " | ".join(cells) + " |")
