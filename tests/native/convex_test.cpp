@@ -193,6 +193,30 @@ TEST(Pieces, HullsContainEachPointOfTheirPieceExactly) {
     }
 }
 
+// Two bars, turned so that the plane between them is across none of the directions that are tried: two hulls of no more than
+// the solid's volume there.
+TEST(Pieces, APlaneNearTheBestBecomesIt) {
+    TetMesh mesh = tets_of(block({0, 0, 0}, {6, 1, 1}) + block({0, 1, 0}, {1, 5, 1}));
+    const auto turned = [](const Point& p) {
+        TriMesh one;
+        one.vertices = {p};
+        return rotated(one, 0.7, {1, 2, 3}).vertices[0];
+    };
+    for (Point& p : mesh.vertices) p = turned(p);
+    for (const Point& tilt : {Point{0, 0, 0}, {0.06, 0, 0.05}, {-0.08, 0, 0.02}, {0.03, 0, -0.09}}) {
+        const Point across = turned(tilt + Point{0, 1, 0}), normal = 1 / length(across) * across;
+        const CutPlane begin{normal, dot(normal, turned({0.5, 1.1, 0.5}))};
+        Pieces made(mesh.vertices);
+        const auto [below, above] = made.divided(mesh.tetrahedra, begin);
+        const double solid = below.solid + above.solid, before = below.cost() + above.cost();
+        ASSERT_GT(before, 1.02 * solid);
+        const Division found = made.refined(below, above, {begin, before});
+        EXPECT_LT(found.cost - solid, 0.35 * (before - solid));
+        const auto [low, high] = made.divided(mesh.tetrahedra, found.plane);
+        EXPECT_NEAR(low.cost() + high.cost(), found.cost, 1e-3 * solid);
+    }
+}
+
 TEST(ConvexParts, OneIsTheHull) {
     for (const TriMesh& model : models()) {
         // Of coordinates of which no difference is rounded.
