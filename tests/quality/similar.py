@@ -30,7 +30,7 @@ from partwheel import likeness
 CATEGORIES = {"glasses": 41, "ant": 81, "chair": 101, "octopus": 121, "table": 141, "teddy": 161, "hand": 181}
 CLICKS = 4
 HALF = 0.5
-FIGURES = ("right", "wrong", "unclear", "found", "wanted", "answers", "precise", "clicks", "recalled", "mirrored", "mirrors",
+FIGURES = ("right", "wrong", "unclear", "wanted", "answers", "precise", "clicks", "recalled", "mirrored", "mirrors",
            "without")
 
 
@@ -104,7 +104,6 @@ def _count(count, overlaps, like, near):
             wrong += 1
     count["right"] += len(hit)
     count["wrong"] += wrong
-    count["found"] += len(hit)
     count["wanted"] += int(like.sum())
     count["clicks"] += 1
     count["recalled"] += len(hit) / like.sum()
@@ -126,7 +125,7 @@ def shares(count):
     with np.errstate(invalid="ignore", divide="ignore"):
         right, wrong = np.float64(count["right"]), count["wrong"]
         return (right / (right + wrong + count["unclear"]), right / (right + wrong),
-                np.float64(count["found"]) / count["wanted"], np.float64(count["precise"]) / count["answers"],
+                right / count["wanted"], np.float64(count["precise"]) / count["answers"],
                 np.float64(count["recalled"]) / count["clicks"], np.float64(count["mirrored"]) / count["mirrors"])
 
 
