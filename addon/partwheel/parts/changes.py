@@ -32,11 +32,15 @@ def told(mesh):
 def _edited(_scene, depsgraph):
     if arrays.writing_back:
         return
-    for update in depsgraph.updates:
+    updates = list(depsgraph.updates)
+    # Then newer Blenders tell of the shading of all objects: something was added or removed.
+    anew = any(isinstance(update.id, bpy.types.Scene) for update in updates)
+    for update in updates:
         if isinstance(update.id, bpy.types.Mesh):
             _count(_told, update.id.original)
         of_mesh = isinstance(update.id, bpy.types.Object) and update.id.type == "MESH"
-        stroke = of_mesh and update.id.mode == "SCULPT" and update.is_updated_shading  # all that is told of one
+        # All that is told of a stroke.
+        stroke = of_mesh and update.id.mode == "SCULPT" and update.is_updated_shading and not anew
         if not (update.is_updated_geometry or stroke):
             continue
         arrays.changed()
