@@ -10,7 +10,7 @@ import numpy as np
 import partwheel
 import pytest
 import shapes
-from conftest import PACKAGES, ROOT
+from conftest import PACKAGES, PLAIN, ROOT
 from partwheel import Hierarchy, PartwheelError, Rung, Status, library, meshes, worker
 
 CUBE = shapes.cube()
@@ -137,7 +137,7 @@ def test_seconds_of_a_failed_build():
 
 
 # AddressSanitizer itself takes more address space than any limit, so under it this can't be tried.
-if "asan" not in os.environ.get("LD_PRELOAD", ""):
+if PLAIN:
 
     def test_running_out_of_memory_is_an_error_not_a_crash():
         """Wherever in a build the memory ends."""

@@ -35,8 +35,7 @@ def started(configuration):
     preset, threads = CONFIGURATIONS[configuration]
     library = ROOT / "build" / preset / "libpartwheel.so"
     assert library.exists(), f"{library} is not there: scripts/build {preset} partwheel"
-    sanitized = {"LD_PRELOAD": os.environ["PARTWHEEL_RUNTIMES"], "ASAN_OPTIONS": "detect_leaks=0"}
-    around = sanitized if preset == "asan" else {}
+    around = {"LD_PRELOAD": os.environ["PARTWHEEL_RUNTIMES"], "ASAN_OPTIONS": "detect_leaks=0"} if preset == "asan" else {}
     return [POOL.submit(subprocess.run, [sys.executable, Path(__file__).with_name("digests.py"), str(threads),
                                          *list(CASES)[part::PARTS]],
                         capture_output=True, text=True, env=os.environ | around | {"PARTWHEEL_LIBRARY": str(library)})

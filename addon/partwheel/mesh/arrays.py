@@ -88,11 +88,11 @@ def _write_back(write):
         writing_back = False
 
 
-# What Blender keeps as a layer, most of it since 4.0, and copies from there a hundred times faster: (its name, its field).
-# "select" and "hide" have one for each kind of elements.
-_LAYERS = {"co": ("position", "vector"), "vertex_index": (".corner_vert", "value"),
-           "edge_index": (".corner_edge", "value"),
-           "select": (".select_{kind}", "value"), "hide": (".hide_{kind}", "value")}
+# What Blender keeps as a layer, most of it since 4.0, and copies from there a hundred times faster: (its name, its field, its
+# type). "select" and "hide" have one for each kind of elements.
+_LAYERS = {"co": ("position", "vector", "FLOAT_VECTOR"), "vertex_index": (".corner_vert", "value", "INT"),
+           "edge_index": (".corner_edge", "value", "INT"),
+           "select": (".select_{kind}", "value", "BOOLEAN"), "hide": (".hide_{kind}", "value", "BOOLEAN")}
 _KINDS = {"MeshVertices": "vert", "MeshEdges": "edge", "MeshPolygons": "poly"}
 # What Blender copies as one block, ten times faster, if it is asked for without a sign.
 _UNSIGNED = {"vertex_index", "edge_index", "vertices", "loop_start", "loop_total", "polygon_index"}
@@ -128,13 +128,13 @@ def mask(count, indices):
 
 def _layer(collection, attribute):
     """(what Blender keeps this attribute as, its field), or (None, "")."""
-    name, field = _LAYERS.get(attribute, ("", ""))
-    if not name or not isinstance(collection.data, bpy.types.Mesh):
+    if attribute not in _LAYERS or not isinstance(collection.data, bpy.types.Mesh):
         return None, ""
+    name, field, kept_as = _LAYERS[attribute]
     layer = collection.data.attributes.get(name.format(kind=_KINDS.get(collection.bl_rna.identifier)))
     # Blender 5.0.1 may give that of the selected edges a wrong type. In Edit Mode a layer has no elements.
-    wrong = layer and name.startswith((".select", ".hide")) and layer.data_type != "BOOLEAN"
-    return (layer, field) if layer and not wrong and len(layer.data) == len(collection) else (None, "")
+    fits = layer and layer.data_type == kept_as and len(layer.data) == len(collection)
+    return (layer, field) if fits else (None, "")
 
 
 def edge_vertices(mesh):

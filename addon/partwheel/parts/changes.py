@@ -32,22 +32,24 @@ def told(mesh):
 def _edited(_scene, depsgraph):
     if arrays.writing_back:
         return
-    updates = list(depsgraph.updates)
-    # Then newer Blenders tell of the shading of all objects: something was added or removed.
-    anew = any(isinstance(update.id, bpy.types.Scene) for update in updates)
-    for update in updates:
+    for update in depsgraph.updates:
         if isinstance(update.id, bpy.types.Mesh):
             _count(_told, update.id.original)
         of_mesh = isinstance(update.id, bpy.types.Object) and update.id.type == "MESH"
-        # All that is told of a stroke.
-        stroke = of_mesh and update.id.mode == "SCULPT" and update.is_updated_shading and not anew
-        if not (update.is_updated_geometry or stroke):
+        if not (update.is_updated_geometry or of_mesh and _stroke(update, depsgraph)):
             continue
         arrays.changed()
         if isinstance(update.id, bpy.types.Mesh):
             _count(_edits, update.id.original)
         elif of_mesh and (update.id.mode != "EDIT" or arrays.on_cage(update.id)):
             _count(_shown, update.id.original.data)
+
+
+def _stroke(update, depsgraph):
+    """Whether an update of an object tells of a stroke of Sculpt Mode: of its shading, which is all that is told of one.
+    Newer Blenders tell of the shading of all objects, and of the scene, when something was added or removed."""
+    return (update.id.mode == "SCULPT" and update.is_updated_shading
+            and not any(isinstance(each.id, bpy.types.Scene) for each in depsgraph.updates))
 
 
 def _count(table, mesh):

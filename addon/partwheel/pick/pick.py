@@ -6,8 +6,8 @@ What happens to the part meanwhile, and once it is confirmed, is the business of
 """
 
 import contextlib
-import math
 from dataclasses import replace
+from math import hypot
 
 import bpy
 
@@ -114,8 +114,8 @@ class PartPicker(InView):
         self.state = states.Begun(event.type, event.value, event.mouse_x, event.mouse_y)
         if not advance(objects):
             return self._ready(context)
-        self._slices = contextlib.ExitStack()  # the window is not held up until all of them are made
-        self._at_end.push(self._slices)
+        # The window is not held up until all of them are made.
+        self._slices = self._at_end.enter_context(contextlib.ExitStack())
         self._tick_every(context, 0, self._slices)
         return {"RUNNING_MODAL"}
 
@@ -161,7 +161,7 @@ class PartPicker(InView):
         if not (view and self.clicked):
             return view is not None
         x, y, looked = self.clicked
-        moved = math.hypot(event.mouse_x - x, event.mouse_y - y)
+        moved = hypot(event.mouse_x - x, event.mouse_y - y)
         return moved <= self.NEAR * ui_scale() and view[2].perspective_matrix == looked
 
     def _under(self, context, event):

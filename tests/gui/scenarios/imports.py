@@ -1,5 +1,6 @@
 """With Find on Import in the preferences what File > Import and File > Append bring has its parts found beside Blender's own
-work; an object that is added, undo and redo begin nothing, and a sheet pops nothing up. Workers are held until what comes between has happened."""
+work; an object that is added, undo and redo begin nothing, and a sheet pops nothing up. Workers are held until what comes
+between has happened."""
 import bpy
 import numpy
 

@@ -122,10 +122,10 @@ private:
         const double usual = usual_ticks_per_hull * static_cast<double>(options_.hulls);
         std::unique_ptr<Attempt> best;
         for (const size_t start : {size_t{1}, more_parts * options_.hulls}) {
-            auto made = std::make_unique<Attempt>(of_cut(start), kernel_, points, [&] { tick(usual); });
-            if (options_.hulls > 1) made->search.divide_until(more);
-            made->search.join_until(options_.hulls);
-            if (!best || made->search.cost() < best->search.cost()) best = std::move(made);
+            auto attempt = std::make_unique<Attempt>(of_cut(start), kernel_, points, [&] { tick(usual); });
+            if (options_.hulls > 1) attempt->search.divide_until(more);
+            attempt->search.join_until(options_.hulls);
+            if (!best || attempt->search.cost() < best->search.cost()) best = std::move(attempt);
         }
         best->search.move_borders();
         best->search.exchange();
@@ -135,13 +135,13 @@ private:
     }
 
     std::vector<Tetrahedra> by_error() {
-        Attempt made(of_cut(1), kernel_, coarse_points, [&] { tick(usual_ticks_for_error); });
-        const auto good = [&](const convex::Piece& piece) { return keeps_error(made.made.kernel().surface(piece.hull)); };
-        made.search.divide_until_good(good, most_parts);
-        made.search.join_while_good(good);
-        replay(made.search.steps(), made.pieces);
-        keep_error(made.pieces);
-        return std::move(made.pieces);
+        Attempt attempt(of_cut(1), kernel_, coarse_points, [&] { tick(usual_ticks_for_error); });
+        const auto good = [&](const convex::Piece& piece) { return keeps_error(attempt.made.kernel().surface(piece.hull)); };
+        attempt.search.divide_until_good(good, most_parts);
+        attempt.search.join_while_good(good);
+        replay(attempt.search.steps(), attempt.pieces);
+        keep_error(attempt.pieces);
+        return std::move(attempt.pieces);
     }
 
     // Where the coarse hulls kept the error and the exact ones don't, these are divided on.
