@@ -513,7 +513,7 @@ class Stage:
 
     def _picture(self, name):
         path = self._pictures.with_name(f"{self._pictures.name}-{name}.png")
-        subprocess.run(["import", "-window", "root", str(path)], check=True)
+        subprocess.run(["import", "-window", "root", "-define", "png:compression-level=1", str(path)], check=True)
         return path
 
 

@@ -2,6 +2,8 @@
 
 Plain projection with numpy, on purpose nothing that an add-on would pick with: the tests compare with it.
 """
+import functools
+
 import bpy
 import numpy
 
@@ -35,16 +37,25 @@ class View:
         """(T,2) window pixels of the triangles' centers."""
         return self._pixels[self._triangles].mean(axis=1)
 
+    @functools.cached_property
+    def _reach(self):
+        """The pixels between which each triangle lies: left, right, below, above (T,)."""
+        corners = self._pixels[self._triangles]
+        low, high = corners.min(axis=1), corners.max(axis=1)
+        return [numpy.ascontiguousarray(each) for each in (low[:, 0], high[:, 0], low[:, 1], high[:, 1])]
+
     def face_at(self, x, y):
         """The triangle that window position x, y shows: of those that lie under it, the nearest that is not clipped, or
         None. (With perspective the place where one is clipped is not quite exact.)"""
-        a, b, c = (self._pixels[self._triangles[:, k]] - [x, y] for k in range(3))
+        left, right, below, above = self._reach
+        near = numpy.flatnonzero((left <= x) & (x <= right) & (below <= y) & (y <= above))
+        a, b, c = (self._pixels[self._triangles[near, k]] - [x, y] for k in range(3))
         weights = numpy.c_[_cross(b, c), _cross(c, a), _cross(a, b)]
-        hits = numpy.flatnonzero((weights >= 0).all(axis=1) | (weights <= 0).all(axis=1))
-        hits = hits[weights[hits].sum(axis=1) != 0]
+        hit = ((weights >= 0).all(axis=1) | (weights <= 0).all(axis=1)) & (weights.sum(axis=1) != 0)
+        hits, weights = near[hit], weights[hit]
         if not len(hits):
             return None
-        shares = weights[hits] / weights[hits].sum(axis=1, keepdims=True)
+        shares = weights / weights.sum(axis=1, keepdims=True)
         places = numpy.einsum("hk,hkc->hc", shares, self._vertices[self._triangles[hits]])
         shown = (numpy.c_[places, numpy.ones(len(places))] @ self._planes >= 0).all(axis=1)
         hits, shares = hits[shown], shares[shown]
