@@ -151,7 +151,7 @@ venv() {
     # What was installed is written down last, so that a broken attempt is taken up again.
     [ "$(cat "$directory/installed" 2>/dev/null)" = "$*" ] && return
     say "setup: installing $* into build/venv/$name"
-    logged "$python" -m venv "$directory" && logged "$directory/bin/python" -m pip install "$@" &&
+    logged "$python" -m venv "$directory" && logged "$directory/bin/python" -m pip install --no-compile "$@" &&
         printf '%s\n' "$*" >"$directory/installed"
 }
 

@@ -32,7 +32,7 @@ THREADED = "[Tt]hread|ProgressNever"  # the names of tests in which threads meet
 # tests: "border", "convex", "regroup", which take long.
 COMPARED = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|SameBytes|TheSameForAny"
 PACKAGES_OWN = ("bones", "border", "compatible", "convex", "cut", "docs", "docs_commands", "hooks", "house", "joint",
-                "likeness", "primitives", "printing", "regroup", "seams", "shipping", "symmetry", "words")
+                "likeness", "locale", "primitives", "printing", "regroup", "seams", "shipping", "symmetry", "words")
 # What scripts/test quick plays: how the add-on meets Blender, and the main job in a window.
 QUICK_ADDON = ("test_registration", "test_select", "test_modal", "test_saved", "test_staleness", "test_related", "test_api",
                "test_command")

@@ -1,6 +1,6 @@
 """The GUI tier, seen from outside Blender: installs the zip, runs each scenario in a Blender window, collects results.
 
-    build/venv/core/bin/python tests/gui/run.py ZIP RESULT.json [SCENARIO ...]
+    build/venv/core/bin/python tests/gui/run.py [--large] ZIP RESULT.json [SCENARIO ...]
 
 Every file of scenarios/ is one scenario and runs in a Blender process and an X server (Xvfb, software GL) of its own,
 with the add-on installed from ZIP into a home directory of its own (Blender saves preferences when it quits). A
@@ -42,6 +42,10 @@ TIME_LIMIT = 3600  # seconds a scenario, so that nothing hangs for ever: a hundr
 # repository is for newer Blenders.
 ONLY_BY_NAME = ("felt", "felt_million", "felt_modes", "repository", "tasks")
 ALSO_WITH_XDOTOOL = ("pick_and_click", "empty_space", "navigate")
+# Pixels of a window. Most of a scenario's time goes into drawing, by the processor: a third less in a small one, in
+# which not all texts have room.
+SMALL, LARGE = (960, 640), (1280, 800)
+ALWAYS_LARGE = ("industry", "picked_objects", "related", "tool_keys", "words", *ONLY_BY_NAME)
 
 sys.path.insert(0, str(HERE))
 from model import read_off, subdivided  # noqa: E402
@@ -52,6 +56,7 @@ def main():
     parser.add_argument("zip", type=pathlib.Path, help="the add-on as made by scripts/package")
     parser.add_argument("result", type=pathlib.Path, help="where to write the result (JSON)")
     parser.add_argument("scenario", nargs="*", help="run only these (names of files in scenarios/)")
+    parser.add_argument("--large", action="store_true", help="large windows, as for pictures")
     arguments = parser.parse_args()
 
     known = sorted(path.stem for path in (HERE / "scenarios").glob("*.py"))
@@ -76,7 +81,7 @@ def main():
         install(arguments.zip, environment)
         # Twice as many at once as there are cores: each waits half of the time for its own window.
         with concurrent.futures.ThreadPoolExecutor(2 * os.cpu_count()) as pool:
-            plays = list(pool.map(lambda run: played(*run, work, environment), runs))
+            plays = list(pool.map(lambda run: played(*run, arguments.large, work, environment), runs))
     failures = [failure for failure, _ in plays if failure]
     result = {"passed": len(runs) - len(failures), "failed": len(failures), "failures": failures,
               "seconds": {f"{name} ({driver})": seconds for (name, driver), (_, seconds) in zip(runs, plays)}}
@@ -85,10 +90,11 @@ def main():
     return 1 if failures else 0
 
 
-def played(name, driver, work, environment):
+def played(name, driver, large, work, environment):
     """Runs a scenario and says how it went; returns the sentence that says what failed or "", and the seconds."""
     began = time.monotonic()
-    failure, checks = run_scenario(name, driver, work, environment)
+    size = LARGE if large or name in ALWAYS_LARGE else SMALL
+    failure, checks = run_scenario(name, driver, size, work, environment)
     seconds = time.monotonic() - began
     print(f"{name} ({driver}): {failure or f'ok, {checks} checks'}, {seconds:.1f} s", flush=True)
     return failure and f"{name} ({driver}): {failure}", seconds
@@ -149,17 +155,17 @@ def install(zip_path, environment):
         sys.exit(f"The add-on could not be installed from {zip_path}: see {log}.")
 
 
-def run_scenario(name, driver, work, environment):
+def run_scenario(name, driver, size, work, environment):
     """Returns (sentence that says what failed or "", number of checks made)."""
     title = name if driver == "simulate" else f"{name}-{driver}"
     result_path, log_path = work / f"{title}.json", OUTPUT / f"{title}.log"
-    command = [BLENDER, "-noaudio", "--window-geometry", "0", "0", "1280", "800", "--python-exit-code", "9",
+    command = [BLENDER, "-noaudio", "--window-geometry", "0", "0", *map(str, size), "--python-exit-code", "9",
                *(["--enable-event-simulate"] if driver == "simulate" else []),
                "--python", HERE / "inside.py", "--", name, driver, work, OUTPUT / title, result_path]
     home, temporary = work / "homes" / title, work / "tmp" / title
     shutil.copytree(environment["HOME"], home, symlinks=True)
     temporary.mkdir()
-    with x_server(environment) as display, log_path.open("w") as log:
+    with x_server(size, environment) as display, log_path.open("w") as log:
         try:
             own = environment | {"HOME": str(home), "TMPDIR": str(temporary), "DISPLAY": display}
             code = subprocess.run(command, env=own, stdout=log, stderr=log, stdin=subprocess.DEVNULL, cwd=work,
@@ -184,10 +190,11 @@ def run_scenario(name, driver, work, environment):
 
 
 @contextlib.contextmanager
-def x_server(environment):
+def x_server(size, environment):
     """An X server that picks a free display number itself; yields its name."""
     reading, writing = os.pipe()
-    server = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", "1280x800x24", "-nolisten", "tcp"],
+    screen = "{}x{}x24".format(*size)
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", screen, "-nolisten", "tcp"],
                               env=environment, pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     os.close(writing)
     try:

@@ -357,7 +357,7 @@ TEST(ConvexParts, KeepTheErrorThatIsAskedFor) {
                 EXPECT_GE(part.error, 0);
                 EXPECT_LE(part.error, error);
                 EXPECT_LE(part.hull.vertices.size(), most ? most : hierarchy.vertices().size());
-                const double sampled = sampled_error(part, mesh, light() ? 100 : 150);
+                const double sampled = sampled_error(part, mesh, sized<size_t>(150, 60));
                 EXPECT_LE(sampled, part.error * (1 + 1e-9));
                 largest = std::max(largest, part.error);
                 found = std::max(found, sampled);

@@ -134,7 +134,9 @@ TEST(Points, ASolidOfFlatFacesIsFilledExactly) {
 // What the mesh encloses by the divergence theorem is what is filled, in one piece, and nearly all of that is inside by
 // every solid angle.
 TEST(Points, ARealModelIsFilled) {
-    for (const char* file : {"hand.off", "dino.off", "bull.off"}) {
+    std::vector<const char*> files = {"hand.off"};
+    if (!light()) files.insert(files.end(), {"dino.off", "bull.off"});
+    for (const char* file : files) {
         const TriMesh mesh = real_mesh(file);
         const Solid solid = filled(mesh);
         expect_fits(solid);
@@ -228,7 +230,7 @@ TEST(Points, TheSameForAnyOrderAndNumberOfThreads) {
 
 // However long and thin, and however many: there are not many more points than usual.
 TEST(Points, AreBounded) {
-    TriMesh needles = lathe("needles", {{1, 0}, {1, 400}}, sized(1000, 300));
+    TriMesh needles = lathe("needles", {{1, 0}, {1, 400}}, sized(1000, 80));
     needles.triangles.erase(needles.triangles.begin());
     const Solid solid = filled(without_faces(needles));
     EXPECT_LT(solid.mesh.vertices.size(), needles.vertices.size() + 60000);
