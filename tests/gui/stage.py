@@ -360,12 +360,12 @@ class Stage:
             bmesh.update_edit_mesh(self.object.data)
             bpy.ops.ed.undo_push(message="Test selection")
 
-    def spot(self, x, y, above=0, quarter=None):
+    def spot(self, x, y, above=0, quarter=None, more_than=0):
         """(x, y, face) of the safest pixel near a place given as shares (0..1) of the model's extent on the screen, of
-        a face whose wheel has at least so many stops above the start. quarter: see View."""
+        a face whose wheel has at least so many stops above the start, and more than more_than in all. quarter: see View."""
         def wanted(face):
             stops, start = self.wheels.stops(face)
-            return len(stops) > start + above
+            return len(stops) > max(start + above, more_than)
 
         view = self._view(quarter)
         centers = view.centers()
@@ -379,10 +379,10 @@ class Stage:
         self.check(view.face_around(x, y, 20) is None and view.face_at(x, y) is None, "the empty spot is empty")
         return x, y
 
-    def pick(self, x, y, above=0):
-        """Starts the tool by its key over spot(x, y, above) and waits for its part: (face, its wheel's stops, the index
-        of the first)."""
-        px, py, face = self.spot(x, y, above)
+    def pick(self, x, y, above=0, more_than=0):
+        """Starts the tool by its key over a spot() and waits for its part: (face, its wheel's stops, the index of the
+        first)."""
+        px, py, face = self.spot(x, y, above, more_than=more_than)
         stops, start = self.wheels.stops(face)
         self.mouse.move(px, py)
         self.shortcut("mesh.partwheel_select")
