@@ -14,8 +14,9 @@ from scipy.spatial import ConvexHull
 MOST_PARTS = 600
 DEAREST = 8.0
 CONCAVE_BEND = -0.02
+SHARP_BEND = 0.2
 MIDDLING_CURVATURE = 4.0
-SMOOTHING = 4
+SMOOTHING, WIDE_SMOOTHING = 4, 24
 CONVEX = 1e-6  # of the hull's volume, see cluster.h
 MOST_OVERLAP = 0.85  # of two stops
 PRICE = 0.005  # of the whole area: what a part of the automatic cut must bring
@@ -79,7 +80,8 @@ class Part:
         return log(self.volume) - log(self.area)
 
 
-INTERFACE, LENGTH, CREASE, CONCAVE, CURVATURE = range(5)  # of a border
+INTERFACE, LENGTH, CREASE, SHARPNESS, CONCAVE, RIDGE, VALLEY, CURVATURE, WIDE = range(9)  # of a border
+FOLDS = {"crease": CREASE, "curvature": CURVATURE, "sharpness": SHARPNESS, "ridge": RIDGE, "valley": VALLEY, "wide": WIDE}
 
 
 @dataclass
@@ -221,24 +223,28 @@ class Regrouped:
             bent[w] += length * bend / 2
         np.add.at(around, self.outer.ravel(), np.repeat(self.outer_area / 3, 3))
         ends = np.array([fold[:2] for fold in folds])
-        for _ in range(SMOOTHING):
+        curvatures = []
+        for done in range(1, WIDE_SMOOTHING + 1):
             for sums in (bent, around):
                 before = sums.copy()
                 np.add.at(sums, ends[:, 0], before[ends[:, 1]])
                 np.add.at(sums, ends[:, 1], before[ends[:, 0]])
-        h = np.where(around > 0, bent / np.where(around > 0, around, 1), 0) * np.sqrt(self.area)
+            if done in (SMOOTHING, WIDE_SMOOTHING):
+                h = np.where(around > 0, bent / np.where(around > 0, around, 1), 0) * np.sqrt(self.area)
+                curvatures.append(h)
 
         borders = {}
         for (p, q), size in zip(np.sort(self.part_of[self.facets], axis=1).tolist(), self.facet_area):
             if p != q:
-                borders.setdefault((p, q), np.zeros(5))[INTERFACE] += size
+                borders.setdefault((p, q), np.zeros(9))[INTERFACE] += size
         for v, w, t, s, length, bend in folds:
             border = borders.get(tuple(sorted((self.part_of[self.outer_tet[t]], self.part_of[self.outer_tet[s]]))))
             if border is None:
                 continue
-            mean = (h[v] + h[w]) / 2
-            border += (0, length, length * bend, length if bend < CONCAVE_BEND else 0,
-                       length * mean / (MIDDLING_CURVATURE + abs(mean)))
+            means = [(h[v] + h[w]) / 2 for h in curvatures]
+            squashed = [mean / (MIDDLING_CURVATURE + abs(mean)) for mean in means]
+            border += length * np.array((0, 1, bend, abs(bend), bend < CONCAVE_BEND, bend > SHARP_BEND, bend < -SHARP_BEND,
+                                         *squashed))
         self.pairs = [Pair(int(a), int(b), borders[a, b]) for a, b in sorted(borders)]
         for number, pair in enumerate(self.pairs):
             for p in (pair.a, pair.b):
@@ -247,12 +253,12 @@ class Regrouped:
             self.add_up_rim(part)
 
     def add_up_rim(self, part):
-        part.rim = sum((self.pairs[number].border for number in part.pairs), np.zeros(5))
+        part.rim = sum((self.pairs[number].border for number in part.pairs), np.zeros(9))
 
     # ---- Joining
 
     def pair_measures(self, pair, hull):
-        """(28,) in the order of PAIR_NAMES."""
+        """In the order of PAIR_NAMES."""
         one, other = self.parts[pair.a], self.parts[pair.b]
         s, l = sorted((one, other), key=lambda part: (np.float32(part.area), part.low))
         border, volume, area = pair.border, s.volume + l.volume, s.area + l.area
@@ -271,8 +277,8 @@ class Regrouped:
             face_share_s=share(border[INTERFACE], s.rim[INTERFACE]),
             face_share_l=share(border[INTERFACE], l.rim[INTERFACE]),
             thickness_step=within(s.thick - l.thick, -6, 6), face_to_thick_s=within(face - length - s.thick, -8, 4),
-            face_to_thick_l=within(face - length - l.thick, -8, 4), crease=quotient(border[CREASE], border[LENGTH]),
-            concave=share(border[CONCAVE], border[LENGTH]), curvature=quotient(border[CURVATURE], border[LENGTH]),
+            face_to_thick_l=within(face - length - l.thick, -8, 4), concave=share(border[CONCAVE], border[LENGTH]),
+            **{name: quotient(border[at], border[LENGTH]) for name, at in FOLDS.items()},
             outline=within(2 * length - face, -4, 8), face_to_volume_l=within(face - 2 / 3 * log(l.volume), -10, 4),
             gap_added=gap - max(s.gap, l.gap), area_step=log(l.area) - log(s.area),
             thickness_s=within(s.thick - size, -8, 2), thickness_l=within(l.thick - size, -8, 2))
@@ -394,8 +400,8 @@ class Regrouped:
         return dict(
             area=log(part.area) - log(self.area), volume=log(part.volume) - log(self.volume), gap=part.gap,
             length_to_area=within(length - log(part.area) / 2, -8, 4),
-            face_to_volume=within(face - 2 / 3 * log(part.volume), -8, 4), crease=quotient(rim[CREASE], rim[LENGTH]),
-            concave=quotient(rim[CONCAVE], rim[LENGTH]), curvature=quotient(rim[CURVATURE], rim[LENGTH]),
+            face_to_volume=within(face - 2 / 3 * log(part.volume), -8, 4), concave=quotient(rim[CONCAVE], rim[LENGTH]),
+            **{name: quotient(rim[at], rim[LENGTH]) for name, at in FOLDS.items()},
             face_to_area=within(face - log(part.area), -8, 4), own_cost=part.own_cost, worst_cost=part.worst_cost,
             thickness=within(part.thick - log(self.volume) / 3, -8, 2), outline=within(2 * length - face, -4, 8),
             face_to_thick=within(face - length - part.thick, -8, 4), dents=log(1e-6 + part.dents / self.whole_hull))

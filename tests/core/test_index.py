@@ -149,7 +149,8 @@ def test_parts_of_a_cut_by_their_tetrahedra():
     _, hierarchy = built("hand.off")
     draw = np.random.default_rng(6)
     low, high = hierarchy.vertices.min(0), hierarchy.vertices.max(0)
-    points = draw.uniform(low, high, (2000, 3))
+    middles = hierarchy.vertices[hierarchy.tetrahedra].mean(axis=1)  # of small parts, too
+    points = np.concatenate([draw.uniform(low, high, (2000, 3)), middles])
     tetrahedra = Index(hierarchy).holding(points)
     points, tetrahedra = points[tetrahedra >= 0], tetrahedra[tetrahedra >= 0]
     bounds = hierarchy.cut_automatic()

@@ -12,18 +12,18 @@ SIDES = [(axis, way) for axis in range(3) for way in (-1, 1)]
 
 
 def arms(lengths=6 * (ARM,)):
-    """A cube with an arm on each of its sides, of these lengths in cells, four faces to a cell's side: (Shape, (F,) the
+    """A cube with an arm on each of its sides, of these lengths in cells, nine faces to a cell's side: (Shape, (F,) the
     number of each face's arm, -1 for the cube)."""
     cells = [(0, 0, 0)] + [tuple(way * step * (k == axis) for k in range(3))
                            for (axis, way), length in zip(SIDES, lengths) for step in range(1, length + 1)]
-    finer = {tuple(2 * np.array(cell) + corner) for cell in cells for corner in np.ndindex(2, 2, 2)}
+    finer = {tuple(3 * np.array(cell) + corner) for cell in cells for corner in np.ndindex(3, 3, 3)}
     shape = shapes.polycube(finer)
     middles = np.zeros((shape.face_count, 3))
     np.add.at(middles, shape.faces, shape.vertices[shape.triangles].mean(axis=1))
-    middles = middles / np.bincount(shape.faces)[:, None] - 1
+    middles = middles / np.bincount(shape.faces)[:, None] - 1.5
     of = np.full(shape.face_count, -1)
     for number, (axis, way) in enumerate(SIDES):
-        of[way * middles[:, axis] > 1] = number
+        of[way * middles[:, axis] > 1.5] = number
     return shape, of
 
 
@@ -175,12 +175,12 @@ def test_measures_are_those_of_each_nodes_own_faces(six):
 
 
 def test_the_arm_on_the_other_side():
-    shape, of = arms((2, 2, 3, 4, 1, 0))  # x = 1, the middle of the cube, is the only plane of symmetry but for y and z
+    shape, of = arms((2, 2, 3, 4, 1, 0))  # x = 1.5, the middle of the cube, is the only plane of symmetry but for y and z
     hierarchy = Hierarchy.build(*shape)
     for number, other in ((0, 1), (1, 0)):
         (image, *_) = likeness.mirrored(hierarchy, *shape[:3], arm(hierarchy, of, number))
         assert of_nodes(hierarchy, of, [image.node]) == [other] and image.overlap > 0.9
-        assert abs(image.normal[0]) > 0.999 and abs(abs(image.offset) - 1) < 0.02
+        assert abs(image.normal[0]) > 0.999 and abs(abs(image.offset) - 1.5) < 0.02
 
 
 def test_each_plane_has_an_image():

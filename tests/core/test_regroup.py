@@ -98,7 +98,7 @@ def test_scores(name):
 
 
 def test_the_measures_are_all_named():
-    assert len(set(PAIR_NAMES)) == 28 and len(set(NODE_NAMES)) == 44
+    assert len(set(PAIR_NAMES)) == 32 and len(set(NODE_NAMES)) == 48
 
 
 @pytest.mark.parametrize("name", ALL)

@@ -9,12 +9,13 @@ MESH_DIR/<id>.off, SEG_DIR/<id>/*.seg: of the Princeton Segmentation Benchmark, 
 the paper's trees; without --trees they are built first, into WORK_DIR. PROGRAM: quality_trace, built by `scripts/build
 bench quality_trace`.
 
-The pair cost is fitted to the likelihood that two faces, one of each part, lie in one part of a person's. Which pairs
-come up depends on the cost itself, so there are rounds: the first one with a cost by concavity and size alone, each
-later one with the pairs of the three rounds before. The node score is fitted on the nodes of the last three rounds
-(other trees are more data) to two things at once: each to the overlap (intersection over union) with the segment that
-a click in the node is meant for, each segment being clicked equally often; and those that hold one place against each
-other, so that what a click there takes has the most overlap (gain_of_clicks()).
+The pair cost is fitted to two things at once: each pair's to the likelihood that two faces, one of each part, lie in one
+part of a person's; and those of a part against each other, so that what it is joined with first most likely belongs to
+it. Which pairs come up depends on the cost itself, so there are rounds: the first one with a cost by concavity and size
+alone, each later one with the pairs of the three rounds before. The node score is fitted on the nodes of the last three
+rounds (other trees are more data), to two things as well: each to the overlap (intersection over union) with the segment
+that a click in the node is meant for, each segment being clicked equally often; and those that hold one place against
+each other, so that what a click there takes has the most overlap. See gain_of_choosing() for the second of either.
 
 What is used of either is the mean of several networks from different starts. In the rounds before the last one it is
 one network, as trees that differ more are better data.
@@ -56,7 +57,9 @@ ROUNDS_SEEN = 3
 PRICE = 0.005  # as in likeliest_cut()
 MOST_OVERLAP = 0.85  # as in wheel_stops()
 CLICKS_A_MODEL, MOST_HOLDING = 64, 64
-CHANCE, CLICKS_COUNT = 0.04, 2  # see gain_of_clicks(); so much against the cross entropy
+CLICKS_CHANCE, CLICKS_COUNT = 0.04, 2  # see gain_of_choosing(); so much against the cross entropy
+PARTS_A_MODEL, MOST_BESIDE, PARTS_A_STEP = 400, 12, 512
+JOINS_CHANCE, JOINS_COUNT = 0.5, 20  # the same for pairs
 # The measures in groups, by what they look at: --without leaves one out. Some names are those of pairs and of nodes.
 GROUPS = {
     "size": "area_s area_both volume_s volume_both area_step area volume sibling_area parent_area sibling_volume "
@@ -67,7 +70,7 @@ GROUPS = {
                "face_to_thick_l outline face_to_volume face_to_area face_to_thick",
     "length": "length_to_area_s length_share_s length_share_l length_to_area sibling_length",
     "thickness": "thickness_step thickness_s thickness_l thickness sibling_thickness whole_thickness",
-    "creases": "crease concave curvature parent_crease parent_concave parent_curvature "
+    "creases": "crease concave curvature sharpness ridge valley wide parent_crease parent_concave parent_curvature "
                "sibling_crease",
     "order": "own_cost worst_cost parent_cost cost_step root parts_when_made parts_when_joined cheapest_above "
              "dearest_above halves_cost dear_below dear sibling_cost sibling_worst sibling_dear",
@@ -226,12 +229,34 @@ class Trace(Traced):
 
     def pair_data(self):
         """(measures, likelihood, weight) of a sample of the pairs, in which the heavy ones are all and the light ones
-        stand for many."""
+        stand for many; then of a sample of parts, more of the large ones: measures and likelihood of their pairs, and
+        which of these are each part's (parts, MOST_BESIDE), -1 where there are no more."""
         weight = np.sqrt(self.area_at_first[self.pairs].min(axis=1) / self.area_at_first[-1])
         weight /= weight.sum()
         taken = np.random.default_rng(len(weight)).random(len(weight)) < weight * PAIRS_A_MODEL
-        return (self.pair_measures[taken].astype(np.float32), self.one_part()[taken],
-                np.maximum(weight[taken], 1 / PAIRS_A_MODEL))
+        of_parts, mine = self.pairs_of_parts()
+        one_part = self.one_part()
+        return (self.pair_measures[taken].astype(np.float32), one_part[taken],
+                np.maximum(weight[taken], 1 / PAIRS_A_MODEL),
+                self.pair_measures[of_parts].astype(np.float32), one_part[of_parts], mine)
+
+    def pairs_of_parts(self):
+        """(pairs, (parts, MOST_BESIDE) which of them are each part's): of parts by chance, those with two pairs or more."""
+        rng = np.random.default_rng(len(self.pairs))
+        part, pair = self.pairs.T.ravel(), np.tile(np.arange(len(self.pairs)), 2)
+        order = np.lexsort((rng.random(len(pair)), part))
+        part, pair = part[order], pair[order]
+        first = np.flatnonzero(np.diff(part, prepend=-1))
+        count = np.diff(np.append(first, len(part)))
+        first, count = first[count > 1], count[count > 1]
+        weight = np.sqrt(self.area_at_first[part[first]])
+        chosen = rng.choice(len(first), min(len(first), PARTS_A_MODEL), replace=False, p=weight / weight.sum())
+        column = np.arange(MOST_BESIDE)
+        held = column < count[chosen, None]
+        pairs, at = np.unique(pair[(first[chosen, None] + column)[held]], return_inverse=True)
+        mine = np.full(held.shape, -1)
+        mine[held] = at
+        return pairs, mine
 
     def expected_overlap(self):
         """(nodes,) the mean overlap with the segment of a click in the node."""
@@ -331,16 +356,25 @@ def told(names, without):
 
 
 def fit_pairs(data, without, seed, networks):
-    x, y, weight = (np.concatenate(column) for column in zip(*data))
+    x, y, weight, of_parts, one_part = (np.concatenate(column) for column in list(zip(*data))[:5])
+    begin = np.cumsum([0] + [len(each[3]) for each in data])
+    beside = np.concatenate([np.where(each[5] < 0, -1, each[5] + first) for each, first in zip(data, begin)])
     networks = Networks(x, weight, told(PAIR_NAMES, without), seed, PAIR_RAMPS, networks)
     z, y, weight = networks.inputs(x), (1 - y).astype(np.float32), (weight / weight.mean()).astype(np.float32)
+    of_parts = networks.inputs(of_parts)
     epochs, batch = 14, 2048
     for epoch in range(epochs):
         at = networks.rng.permutation(len(y))
         for i in range(0, len(y), batch):
             k = at[i:i + batch]
-            value, slope = likelihood_logistic(networks.sums(z[k]))
-            networks.descend(slope(value - y[k, None]) * weight[k, None] / len(k), 3e-3 * (1.02 - epoch / epochs))
+            parts = beside[networks.rng.integers(len(beside), size=PARTS_A_STEP)]
+            pairs, parts[parts >= 0] = np.unique(parts[parts >= 0], return_inverse=True)
+            sums = networks.sums(np.concatenate([z[k], of_parts[pairs]]))
+            value, slope = likelihood_logistic(sums[:len(k)])
+            networks.descend(np.concatenate([
+                slope(value - y[k, None]) * weight[k, None] / len(k),
+                JOINS_COUNT * gain_of_choosing(-sums[len(k):], parts, one_part[pairs][parts], JOINS_CHANCE),
+            ]), 3e-3 * (1.02 - epoch / epochs))
     return networks.numbers()
 
 
@@ -363,21 +397,21 @@ def fit_nodes(data, without, seed, networks):
             sums = networks.sums(np.concatenate(z))
             score, slope = likelihood_rational(sums)
             g = slope(score - y[:, None]) * (weight / weight.sum())[:, None]
-            g -= CLICKS_COUNT * gain_of_clicks(score, paths, overlap) / 2 / (1 + np.abs(sums)) ** 2
+            g -= CLICKS_COUNT * gain_of_choosing(score, paths, overlap, CLICKS_CHANCE) / 2 / (1 + np.abs(sums)) ** 2
             networks.descend(g, 4e-3 * (1.02 - epoch / epochs))
     return networks.numbers()
 
 
-def gain_of_clicks(score, paths, overlap):
-    """(nodes, networks) the derivative by each score of the mean overlap at the click, were the node that a click takes
-    drawn by exp(score / CHANCE) of those that hold the place, and not that of the best score."""
-    held = paths >= 0
-    drawn = np.where(held[..., None], score[paths] / CHANCE, -np.inf)
+def gain_of_choosing(score, rows, worth, chance):
+    """(scores, networks) the derivative by each score of the mean worth of what is taken of each row, were it not that of
+    the best score but drawn by exp(score / chance). rows (n,k): which scores, -1 where there are no more; worth (n,k)."""
+    held = rows >= 0
+    drawn = np.where(held[..., None], score[rows] / chance, -np.inf)
     drawn = np.exp(drawn - drawn.max(axis=1, keepdims=True))
     drawn /= drawn.sum(axis=1, keepdims=True)
-    overlap = overlap[..., None]
-    gain = drawn * (overlap - (drawn * overlap).sum(axis=1, keepdims=True)) / CHANCE / len(paths)
-    return np.stack([np.bincount(paths[held], each, len(score)) for each in np.moveaxis(gain, 2, 0)[:, held]],
+    worth = worth[..., None]
+    gain = drawn * (worth - (drawn * worth).sum(axis=1, keepdims=True)) / chance / len(rows)
+    return np.stack([np.bincount(rows[held], each, len(score)) for each in np.moveaxis(gain, 2, 0)[:, held]],
                     axis=1).astype(np.float32)
 
 

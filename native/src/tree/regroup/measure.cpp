@@ -12,8 +12,9 @@ namespace partwheel {
 namespace {
 
 constexpr double concave_bend = 0.02;
+constexpr double sharp_bend = 0.2;
 constexpr double middling_curvature = 4;  // of a model of unit area: squashed to a half
-constexpr int smoothing_passes = 4;
+constexpr int smoothing_passes = 4, wide_passes = 24;
 
 }  // namespace
 
@@ -56,7 +57,7 @@ Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_
             const double twice = length(n);
             const double size = twice / 2 / area_unit;
             if (other >= 0) {
-                between.push_back({p, q, true, {size, 0, 0, 0, 0}});
+                between.push_back({p, q, true, {.interface = size}});
                 continue;
             }
             if (twice > 0)
@@ -102,31 +103,45 @@ Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_
     // matters, so both sums may grow with each pass.
     for (const Fold& f : folds)
         for (const int32_t v : {f.low, f.high}) curvature[at(v)] += f.length * f.bend / 2;
-    for (int pass = 0; pass < smoothing_passes; ++pass) {
-        std::vector<double> c = curvature, r = around;
-        for (const Fold& f : folds) {
-            const auto i = at(f.low), j = at(f.high);
-            c[i] += curvature[j];
-            c[j] += curvature[i];
-            r[i] += around[j];
-            r[j] += around[i];
-        }
-        curvature.swap(c);
-        around.swap(r);
-    }
-    progress.advance(0.2);
     const double unit = std::sqrt(parts.whole.area);
-    const auto curved = [&](int32_t v) {
-        const size_t i = at(v);
-        return around[i] > 0 ? curvature[i] / around[i] * unit : 0;
+    int passes = 0;
+    const auto smoothed = [&](int wanted) {
+        for (; passes < wanted; ++passes) {
+            std::vector<double> c = curvature, r = around;
+            for (const Fold& f : folds) {
+                const auto i = at(f.low), j = at(f.high);
+                c[i] += curvature[j];
+                c[j] += curvature[i];
+                r[i] += around[j];
+                r[j] += around[i];
+            }
+            curvature.swap(c);
+            around.swap(r);
+        }
+        std::vector<double> h(curvature.size(), 0);
+        for (size_t i = 0; i < h.size(); ++i)
+            if (around[i] > 0) h[i] = curvature[i] / around[i] * unit;
+        return h;
     };
+    const std::vector<double> curved = smoothed(smoothing_passes), widely = smoothed(wide_passes);
+    progress.advance(0.2);
     for (const Fold& f : folds) {
         const auto [p, q] = std::minmax(part_behind[at(f.s)], part_behind[at(f.t)]);
         if (p == q) continue;
-        const double h = (curved(f.low) + curved(f.high)) / 2;
+        const auto squashed = [&](const std::vector<double>& of) {
+            const double h = (of[at(f.low)] + of[at(f.high)]) / 2;
+            return h / (middling_curvature + std::abs(h));
+        };
+        const auto length_if = [&](bool it_is) { return it_is ? f.length : 0; };
         between.push_back({p, q, false,
-                           {0, f.length, f.length * f.bend, f.bend < -concave_bend ? f.length : 0,
-                            f.length * h / (middling_curvature + std::abs(h))}});
+                           {.length = f.length,
+                            .crease = f.length * f.bend,
+                            .sharpness = f.length * std::abs(f.bend),
+                            .concave = length_if(f.bend < -concave_bend),
+                            .ridge = length_if(f.bend > sharp_bend),
+                            .valley = length_if(f.bend < -sharp_bend),
+                            .curvature = f.length * squashed(curved),
+                            .wide = f.length * squashed(widely)}});
     }
     std::stable_sort(between.begin(), between.end(), [](const Between& x, const Between& y) {
         return std::pair(x.a, x.b) < std::pair(y.a, y.b);

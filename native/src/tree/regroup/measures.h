@@ -43,6 +43,10 @@ struct PairMeasures {
     double crease;             // crease / length
     double concave;            // concave / length
     double curvature;          // curvature / length
+    double sharpness;          // sharpness / length
+    double ridge;              // ridge / length
+    double valley;             // valley / length
+    double wide;               // wide curvature / length
     double outline;            // 2 log length - face [-4, 8]
     double face_to_volume_l;   // face - 2/3 log volume(l) [-10, 4]
     double gap_added;          // gap(both) - the larger of gap(s) and gap(l)
@@ -63,6 +67,10 @@ struct OwnMeasures {
     double crease;             // crease / length
     double concave;            // concave / length
     double curvature;          // curvature / length
+    double sharpness;          // sharpness / length
+    double ridge;              // ridge / length
+    double valley;             // valley / length
+    double wide;               // wide curvature / length
     double face_to_area;       // face - log area [-8, 4]
     double own_cost;           // own_cost
     double worst_cost;         // worst_cost

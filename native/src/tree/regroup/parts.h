@@ -19,15 +19,23 @@ struct Border {
     double interface = 0;  // area of the facets between the tetrahedra
     double length = 0;     // of the border on the surface
     double crease = 0;     // its length times the sine of half the angle it bends by, below 0 where concave
+    double sharpness = 0;  // the same without a sign
     double concave = 0;    // the length that is concave by more than concave_bend
+    double ridge = 0;      // the length that is convex by more than sharp_bend
+    double valley = 0;     // the length that is concave by as much
     double curvature = 0;  // its length times the smoothed mean curvature, squashed to -1..1
+    double wide = 0;       // the same of curvature that is smoothed farther
 
     Border& operator+=(const Border& other) {
         interface += other.interface;
         length += other.length;
         crease += other.crease;
+        sharpness += other.sharpness;
         concave += other.concave;
+        ridge += other.ridge;
+        valley += other.valley;
         curvature += other.curvature;
+        wide += other.wide;
         return *this;
     }
 };

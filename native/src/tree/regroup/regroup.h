@@ -4,10 +4,10 @@
 //
 // Concavity alone joins a leg's two halves late and a cup's handle early. So the paper's tree is cut into some parts,
 // which are joined again bottom-up; the cost is how unlikely it is that people put both into one part, told by a small
-// neural network (one hidden layer of softsigns, see fitted()) from 28 measures of the pair: sizes, convexity, the hull
+// neural network (one hidden layer of softsigns, see fitted()) from 32 measures of the pair: sizes, convexity, the hull
 // of both, the area of the facets between them (the cross-section) and the length and the crease of the border on the
 // surface, after the ideas of Golovinskiy and Funkhouser, "Randomized Cuts for 3D Mesh Analysis" (2008). Another such
-// network scores each node of the result from 44 measures. measures.h names the measures and says what each is. Both
+// network scores each node of the result from 48 measures. measures.h names the measures and says what each is. Both
 // networks were fitted to segmentations made by people (tests/quality/fit.py); their weights are in fitted.h. All of it
 // is arithmetic without library functions but the square root, so it is the same on every machine.
 // tests/core/reference_regroup.py does the same from what is said here and there:
@@ -22,13 +22,14 @@
 // half the angle between the two normals, below 0 where the surface is concave. The curvature of a vertex is a quotient
 // of two sums: over its folds of length x bend / 2, and over its outer triangles of a third of their area. Four times,
 // all vertices at once, each adds to both of its sums those of the vertices at the other ends of its folds. The
-// quotient times the square root of the whole area is the curvature h.
+// quotient times the square root of the whole area is the curvature h; after 24 times instead of four the wide one, w.
 //
 // Two parts with common facets are a pair. Its border has an interface, the area of those facets; and as sums over the
-// folds between the two: a length, that of the folds; a crease, of length x bend; a concave length, of the folds whose
-// bend is below -0.02; a curvature, of length x h / (4 + |h|) with the mean h of the fold's ends. A part's rim is the
-// sum of its borders. What parts have is added up when they are joined, and where both have a border with a third part,
-// these two borders are; the rim is what is left.
+// folds between the two: a length, that of the folds; a crease, of length x bend; a sharpness, the same without a sign;
+// a concave length, of the folds whose bend is below -0.02, a ridge, above 0.2, and a valley, below -0.2; a curvature, of
+// length x h / (4 + |h|) with the mean h of the fold's ends, and a wide curvature, likewise of w. A part's rim is the sum
+// of its borders. What parts have is added up when they are joined, and where both have a border with a third part, these
+// two borders are; the rim is what is left.
 //
 // Order. The pair that costs least is joined first; costs are in single precision, and the pair of the lowest number
 // goes first where they tie. Hulls take time, so a pair, new or grown, is entered by a guess: what it would cost if the
