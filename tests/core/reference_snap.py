@@ -117,7 +117,8 @@ class Snapping:
         moved = side.copy()
         moved[free] = np.where(reached(node[self.ends[some]], cost[some], count + 2, count, count + 1)[:count], FIRST,
                                SECOND)
-        return moved if (self.gathered(moved) == moved).all() else side
+        crumbs = np.bincount(moved, self.area[self.tets], 2).min() < CRUMB * self.area.sum()
+        return side if crumbs or (self.gathered(moved) != moved).any() else moved
 
     def depths(self, side, reach):
         """(ways to the split, infinite beyond the reach; the reach, less where too many are within)"""

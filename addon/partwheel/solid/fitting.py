@@ -72,9 +72,7 @@ def unbroken(mesh, hierarchy, slices, options, faces, alone):
     triangles = alias[surface.triangles]
 
     def matched(solid):
-        corners = between[solid.ends[solid.triangles]]
-        corners = np.where((corners[..., 0] == corners[..., 1]) & (solid.beyond < 0)[:, None], corners[..., 0], -1)
-        return _matched(triangles, corners)
+        return _matched(triangles, np.where((solid.beyond < 0)[:, None], _whole(between[solid.ends[solid.triangles]]), -1))
 
     match, turned = matched(hierarchy.solid_of_slice(0, len(hierarchy.tetrahedra)))
     wanted, there, against = (np.bincount(surface.faces[of], minlength=surface.face_count)
@@ -107,6 +105,18 @@ def _turned_like_mesh(fitted, alone):
         return fitted
     solid = fitted.solid._replace(triangles=fitted.solid.triangles[:, ::-1])
     return fitted._replace(solid=solid, against=np.zeros_like(fitted.against))
+
+
+def _whole(ends):
+    """(T,3) the corners of the triangles that those with these corners are, or are a piece of, wound alike; -1 where they
+    are of none. ends (T,3,2): the vertices that each corner is midway between, mostly the same twice."""
+    corners = np.where(ends[..., 0] == ends[..., 1], ends[..., 0], -1)
+    for t in np.flatnonzero((corners < 0).any(axis=1) & (ends >= 0).all(axis=(1, 2))):
+        names, place = np.unique(ends[t], return_inverse=True)
+        if len(names) == 3:
+            shares = np.eye(3)[place.reshape(3, 2)].mean(axis=1)  # of each corner, where in the whole it lies
+            corners[t] = names if np.linalg.det(shares) > 0 else names[::-1]
+    return corners
 
 
 def _matched(own, other):

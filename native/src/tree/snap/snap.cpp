@@ -365,6 +365,14 @@ private:
         if (moved.empty()) return;
         change_sides(moved);
         for (const int32_t t : moved) {
+            areas[side_[at(t)]] += area_[at(t)];
+            areas[1 - side_[at(t)]] -= area_[at(t)];
+        }
+        if (std::min(areas[0], areas[1]) < crumb * whole_) {
+            change_sides(moved);
+            return;
+        }
+        for (const int32_t t : moved) {
             border.push_back(t);
             for (const int32_t n : mesh_.neighbours[at(t)])
                 if (n >= 0 && side_[at(n)] != elsewhere) border.push_back(n);

@@ -38,8 +38,8 @@
 // away is 0 between the halves, else the mean depth of its two tetrahedra / reach, at most 1.
 //
 // Cut. What is free is divided anew, such that the facets between the two halves cost least in all; of several such
-// cuts the one with the smallest first half, which is within all others. If pieces would have to change sides now, the
-// split stays as it was before the cut.
+// cuts the one with the smallest first half, which is within all others. If pieces would have to change sides now, or a
+// half would be a crumb, the split stays as it was before the cut.
 #pragma once
 
 #include "fill/tetrahedra.h"
