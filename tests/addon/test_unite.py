@@ -346,6 +346,18 @@ class Blend(SolidTest):
             far = numpy.array([mesh.vertices[loop.vertex_index].co.x < 0 for loop in mesh.loops])
             self.assertTrue(numpy.allclose(normals[far], (0, 0.6, 0.8), atol=1e-2))
 
+    def test_a_seam_may_be_smaller_than_all_triangles_about_it(self):
+        bpy.ops.mesh.primitive_cube_add(size=1, location=(0, 0, 1))
+        tip = bpy.context.active_object
+        tip.rotation_euler = (0.6155, 0.7854, 0.3)  # on a corner, nearly, which is just inside the other
+        bpy.context.view_layer.update()
+        tip.location.z += 0.48 - min((tip.matrix_world @ vertex.co).z for vertex in tip.data.vertices)
+        bpy.ops.mesh.primitive_cube_add(size=1)
+        target = bpy.context.active_object
+        tip.select_set(True)
+        self.assertEqual(unite(blend=0.3), {"FINISHED"})
+        self.assertSolid(target.data)
+
     def test_several_parts_at_once_and_by_script(self):
         target = self.cubed((0, 0, 0))
         others = [self.cubed((0.9 * x, 0.2, 0.1)) for x in (-1, 1)]

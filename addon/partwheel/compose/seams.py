@@ -55,12 +55,15 @@ def band(mesh, width):
     for seam in _seams(mesh, of_corner):
         middle = vertices[seam].mean(axis=0)
         reach = width * np.sqrt(((vertices[seam] - middle) ** 2).sum(axis=1).mean())
-        # Only what may be within twice the reach is looked at.
+        # Only what may be within twice the reach is looked at, and what is beside that: a seam may be smaller than all
+        # triangles about it.
         near = ((vertices >= vertices[seam].min(axis=0) - 2 * reach)
                 & (vertices <= vertices[seam].max(axis=0) + 2 * reach)).all(axis=1)
+        around = triangles[near[triangles].any(axis=1)]
+        near[around] = True
         number = np.cumsum(near) - 1
         at = np.flatnonzero(near)
-        distance = surface_distances(vertices[near], number[triangles[near[triangles].all(axis=1)]], number[seam])
+        distance = surface_distances(vertices[near], number[around], number[seam])
         for side in np.unique(of_vertex[at]):
             own = of_vertex[at] == side
             reached = distance[own & (distance <= 2 * reach)]

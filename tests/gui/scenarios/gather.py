@@ -17,7 +17,7 @@ def play(stage):
     stage.mouse.key("RET")
     yield from stage.ended()
 
-    left, top, right, bottom = place(stage, 0.0, 0.62, 0.2, 0.5)
+    left, top, right, bottom = place(stage, 0.0, 0.95, 0.3, 0.8)
     expected = boxed(stage, left, top, right, bottom)
     stage.check(0 < len(expected) < len(stage.wheels.triangles) / 2, f"the box is over some parts ({len(expected)})")
     yield from drag(stage, [(left, top), (right, bottom)])
