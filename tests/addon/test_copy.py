@@ -232,11 +232,10 @@ class Copy(SolidTest):
                 own = [polygon for polygon, cap in zip(copy.polygons, caps(copy)) if not cap]
                 # One beside an edge at which the part is pinched is halved.
                 self.assertLess(abs(sum(polygon.area for polygon in own) / hierarchy.area[node] - 1), 1e-5)
-                halves = [polygon for polygon in own
-                          if frozenset(tuple(copy.vertices[v].co) for v in polygon.vertices) not in at]
-                self.assertEqual(len(own) - len(halves) // 2, len(hierarchy.faces(node)))
-                for polygon in [polygon for polygon in own if polygon not in halves][::7]:
-                    old = at[frozenset(tuple(copy.vertices[v].co) for v in polygon.vertices)]
+                places = [frozenset(tuple(copy.vertices[v].co) for v in polygon.vertices) for polygon in own]
+                whole = [(polygon, at[place]) for polygon, place in zip(own, places) if place in at]
+                self.assertEqual(len(own) - (len(own) - len(whole)) // 2, len(hierarchy.faces(node)))
+                for polygon, old in whole[::7]:
                     uv = {tuple(mesh.vertices[mesh.loops[loop].vertex_index].co):
                           tuple(mesh.uv_layers["uv"].data[loop].uv) for mesh, loops in
                           ((copy, polygon.loop_indices),) for loop in loops}

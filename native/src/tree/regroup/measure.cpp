@@ -104,9 +104,8 @@ Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_
     for (const Fold& f : folds)
         for (const int32_t v : {f.low, f.high}) curvature[at(v)] += f.length * f.bend / 2;
     const double unit = std::sqrt(parts.whole.area);
-    int passes = 0;
-    const auto smoothed = [&](int wanted) {
-        for (; passes < wanted; ++passes) {
+    const auto smoothed = [&](int more_passes) {
+        for (int pass = 0; pass < more_passes; ++pass) {
             std::vector<double> c = curvature, r = around;
             for (const Fold& f : folds) {
                 const auto i = at(f.low), j = at(f.high);
@@ -123,7 +122,7 @@ Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_
             if (around[i] > 0) h[i] = curvature[i] / around[i] * unit;
         return h;
     };
-    const std::vector<double> curved = smoothed(smoothing_passes), widely = smoothed(wide_passes);
+    const std::vector<double> curved = smoothed(smoothing_passes), widely = smoothed(wide_passes - smoothing_passes);
     progress.advance(0.2);
     for (const Fold& f : folds) {
         const auto [p, q] = std::minmax(part_behind[at(f.s)], part_behind[at(f.t)]);

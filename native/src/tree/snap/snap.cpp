@@ -362,16 +362,12 @@ private:
         std::vector<int32_t> moved;
         for (size_t n = 0; n < free.size(); ++n)
             if ((side_[at(free[n])] == left_half) != (left[n] == 1)) moved.push_back(free[n]);
-        if (moved.empty()) return;
-        change_sides(moved);
         for (const int32_t t : moved) {
-            areas[side_[at(t)]] += area_[at(t)];
-            areas[1 - side_[at(t)]] -= area_[at(t)];
+            areas[1 - side_[at(t)]] += area_[at(t)];
+            areas[side_[at(t)]] -= area_[at(t)];
         }
-        if (std::min(areas[0], areas[1]) < crumb * whole_) {
-            change_sides(moved);
-            return;
-        }
+        if (moved.empty() || std::min(areas[0], areas[1]) < crumb * whole_) return;
+        change_sides(moved);
         for (const int32_t t : moved) {
             border.push_back(t);
             for (const int32_t n : mesh_.neighbours[at(t)])
