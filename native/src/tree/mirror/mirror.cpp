@@ -176,8 +176,6 @@ private:
         settle(std::move(claims), part_);
         connect_pieces(mesh_, 3 * old_.count, part_);
         spread(mesh_, claims_of_neighbours(mesh_, part_), part_, progress_);
-        keep_largest_pieces(mesh_, 3 * old_.count, part_);
-        spread(mesh_, claims_of_neighbours(mesh_, part_), part_, progress_);
         for (size_t t = 0; t < near_.size(); ++t)  // a component that no triangle of is of
             if (part_[t] < 0) part_[t] = kept(t);
     }

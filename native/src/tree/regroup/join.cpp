@@ -322,7 +322,8 @@ Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, std::span<const P
     const std::vector<double> of_parts = by_cost.worth(by_cost.scores());
     std::vector<double> worth;
     for (const int32_t p : part_of) worth.push_back(of_parts[at(p)]);
-    const Joins last = alike(mesh, planes, snapped(mesh, first, progress), worth, progress);
+    Joins last = alike(mesh, planes, snapped(mesh, first, progress), worth, progress);
+    if (!planes.empty()) last = without_flecks(mesh, last, progress);
     if (trace) {
         trace->first = first;
         trace->last = last;

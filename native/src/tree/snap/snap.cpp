@@ -33,14 +33,18 @@ constexpr double same_depth = 1e-9;
 constexpr size_t rings = 256;
 // A half with less than this share of the model's area, cut off from the rest, would be a crumb.
 constexpr double crumb = 0.001;
+// What lies apart from the largest piece of its half is a fleck if it has less than this share of that piece's area.
+constexpr double fleck = 0.1;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 enum : int8_t { elsewhere = -1, left_half = 0, right_half = 1, unsettled = 2 };
 
 class Snapping {
 public:
-    Snapping(const TetMesh& mesh, const Joins& joins, Progress& progress)
-        : mesh_(mesh), part_(joins.of), joined_(joins.joined), progress_(progress), parts_(joins.count) {
+    // flecks_only: no border moves, and only flecks change sides.
+    Snapping(const TetMesh& mesh, const Joins& joins, bool flecks_only, Progress& progress)
+        : mesh_(mesh), part_(joins.of), joined_(joins.joined), flecks_only_(flecks_only), progress_(progress),
+          parts_(joins.count) {
         const size_t tetrahedra = mesh.tetrahedra.size();
         measure();
         side_.assign(tetrahedra, elsewhere);
@@ -67,7 +71,7 @@ public:
                 continue;
             }
             for (const int32_t t : here) side_[at(t)] = unsettled;
-            const bool whole = known || pieces(here, unsettled).all.size() < 2;
+            const bool whole = !flecks_only_ && (known || pieces(here, unsettled).all.size() < 2);
             split(here, number, whole);
             const auto in_left = [&](int32_t t) { return side_[at(t)] == left_half; };
             const auto middle = std::stable_partition(here.begin(), here.end(), in_left);
@@ -110,6 +114,7 @@ private:
             whole_ += area;
             place_.push_back(facets > 0 ? 1 / facets * on_surface : inside);
         }
+        if (flecks_only_) return;  // no sheet is asked for
         struct Fold {
             int32_t high;
             double cost;
@@ -183,7 +188,7 @@ private:
                 }
         }
         for (const int8_t half : {left_half, right_half})
-            if (areas[0] + areas[1] >= least_area * whole_ && areas[half] < crumb * whole_ &&
+            if (!flecks_only_ && areas[0] + areas[1] >= least_area * whole_ && areas[half] < crumb * whole_ &&
                 std::ranges::any_of(tetrahedra, [&](int32_t t) { return is_at_split(t); }))
                 for (const int32_t t : tetrahedra)
                     if (side_[at(t)] == half) side_[at(t)] = unsettled;
@@ -204,7 +209,7 @@ private:
             if (side_[at(t)] == unsettled) side_[at(t)] = left_half;
         std::vector<int32_t> border = at_split(tetrahedra);
         if (!gather(tetrahedra, border, whole).empty()) border = at_split(tetrahedra);
-        cut(tetrahedra, std::move(border), whole);
+        if (!flecks_only_) cut(tetrahedra, std::move(border), whole);
     }
 
     // Whether it is beside the other half.
@@ -303,6 +308,7 @@ private:
             const auto largest = std::ranges::max_element(all, {}, size);
             for (const Piece& piece : all) {
                 if (&piece == &*largest || !piece.beside) continue;
+                if (flecks_only_ && piece.area >= fleck * largest->area) continue;
                 const auto apart = std::span(order).subspan(piece.first, piece.last - piece.first);
                 change_sides(apart);
                 changed.insert(changed.end(), apart.begin(), apart.end());
@@ -427,6 +433,7 @@ private:
     const TetMesh& mesh_;
     std::span<const int32_t> part_;
     std::span<const std::array<int32_t, 2>> joined_;
+    const bool flecks_only_;
     Progress& progress_;
     const size_t parts_;
     std::vector<int32_t> place_of_part_, first_, last_;  // depth first; the slice of each number
@@ -450,7 +457,11 @@ private:
 }  // namespace
 
 Joins snapped(const TetMesh& mesh, const Joins& joins, Progress& progress) {
-    return with_parts(joins, Snapping(mesh, joins, progress).run());
+    return with_parts(joins, Snapping(mesh, joins, false, progress).run());
+}
+
+Joins without_flecks(const TetMesh& mesh, const Joins& joins, Progress& progress) {
+    return with_parts(joins, Snapping(mesh, joins, true, progress).run());
 }
 
 }  // namespace partwheel

@@ -50,4 +50,8 @@ namespace partwheel {
 // The same joins with other parts. Those that have lost all their tetrahedra are gone, and the joins with them.
 Joins snapped(const TetMesh& mesh, const Joins& joins, Progress& progress);
 
+// The same joins with borders where they are: from the root down, a piece that lies apart from the largest piece of its half,
+// has less than 0.1 of its area and is beside the other half changes sides. Larger pieces are meant: images joined at once.
+Joins without_flecks(const TetMesh& mesh, const Joins& joins, Progress& progress);
+
 }  // namespace partwheel
