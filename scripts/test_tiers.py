@@ -29,10 +29,11 @@ MORE_OF_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "commands", 
 THREADED = "[Tt]hread|ProgressNever"  # the names of tests in which threads meet
 # What the sanitizers have seen already: native tests that build the same once more to compare results, and files of core
 # about what the package does with numbers and texts, where the library is called as in the other files, or as in the native
-# tests: "border", "convex", "regroup", which take long.
+# tests: "border", "convex", "progress", "regroup", which take long.
 COMPARED = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|SameBytes|TheSameForAny"
-PACKAGES_OWN = ("bones", "border", "compatible", "convex", "cut", "docs", "docs_commands", "hooks", "house", "joint",
-                "likeness", "locale", "primitives", "printing", "regroup", "seams", "shipping", "symmetry", "words")
+PACKAGES_OWN = ("bones", "border", "command_line", "compatible", "convex", "cut", "docs", "docs_commands", "hooks", "house",
+                "joint", "likeness", "locale", "primitives", "printing", "progress", "regroup", "seams", "shipping", "symmetry",
+                "words", "worker")
 # What scripts/test quick plays: how the add-on meets Blender, and the main job in a window.
 QUICK_ADDON = ("test_registration", "test_select", "test_modal", "test_saved", "test_staleness", "test_related", "test_api",
                "test_command")

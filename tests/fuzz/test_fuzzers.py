@@ -15,7 +15,7 @@ import seeds
 from conftest import ROOT
 from partwheel import Hierarchy, PartwheelError
 
-SECONDS = int(os.environ.get("PARTWHEEL_FUZZ", 15))
+SECONDS = int(os.environ.get("PARTWHEEL_FUZZ", 10))
 FOUND = ROOT / "tests" / "fuzz" / "found"
 WORK = ROOT / "build" / "test" / "fuzz"
 LONGEST = {"mesh": 1200, "saved": seeds.MOST_SAVED, "surface": 1500}  # bytes of an input
