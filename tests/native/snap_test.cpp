@@ -199,6 +199,14 @@ TEST(Snap, APartThatLostEverythingIsGoneAndItsJoin) {
     EXPECT_EQ(result.costs, std::vector<double>{1});
 }
 
+TEST(Snap, AStepToWhatIsGoneIsNoStep) {
+    Joins joins = joins_of({0, 1, 2}, {{0, 1}, {3, 2}});
+    joins.steps = {1, 0};
+    EXPECT_EQ(with_parts(joins, Of{0, 1, 2}).steps, (std::vector<uint8_t>{1, 0}));
+    EXPECT_EQ(with_parts(joins, Of{0, 1, 1}).steps, (std::vector<uint8_t>{0}));
+    EXPECT_EQ(with_parts(joins, Of{0, 0, 2}).steps, (std::vector<uint8_t>{0}));
+}
+
 TEST(Snap, WhatIsJoinedIsOfOnePiece) {
     std::mt19937 random(1);
     size_t moved = 0, torn = 0;

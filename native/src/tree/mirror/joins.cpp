@@ -1,6 +1,8 @@
 // Joins of what is left of their parts.
 #include "tree/mirror/joins.h"
 
+#include <algorithm>
+
 namespace partwheel {
 
 Joins with_parts(const Joins& joins, std::span<const int32_t> of) {
@@ -13,7 +15,11 @@ Joins with_parts(const Joins& joins, std::span<const int32_t> of) {
     for (size_t j = 0; j < joins.joined.size(); ++j) {
         const int32_t a = number[at(joins.joined[j][0])], b = number[at(joins.joined[j][1])];
         number[joins.count + j] = a < 0 ? b : a;
-        if (a < 0 || b < 0) continue;
+        if (a < 0 || b < 0) {  // what was a step to this is now this
+            if (const int32_t left_over = std::max(a, b); left_over >= static_cast<int32_t>(left.count) && !joins.steps[j])
+                left.steps[at(left_over) - left.count] = 0;
+            continue;
+        }
         number[joins.count + j] = static_cast<int32_t>(left.count + left.joined.size());
         left.joined.push_back({a, b});
         left.costs.push_back(joins.costs[j]);

@@ -187,9 +187,11 @@ private:
                     areas[half] += area_[at(t)];
                 }
         }
+        const auto is_none = [&](double area) {
+            return flecks_only_ ? area == 0 : areas[0] + areas[1] >= least_area * whole_ && area < crumb * whole_;
+        };
         for (const int8_t half : {left_half, right_half})
-            if (!flecks_only_ && areas[0] + areas[1] >= least_area * whole_ && areas[half] < crumb * whole_ &&
-                std::ranges::any_of(tetrahedra, [&](int32_t t) { return is_at_split(t); }))
+            if (is_none(areas[half]) && std::ranges::any_of(tetrahedra, [&](int32_t t) { return is_at_split(t); }))
                 for (const int32_t t : tetrahedra)
                     if (side_[at(t)] == half) side_[at(t)] = unsettled;
         std::ranges::copy_if(tetrahedra, std::back_inserter(newcomers),

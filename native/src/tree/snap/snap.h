@@ -52,6 +52,7 @@ Joins snapped(const TetMesh& mesh, const Joins& joins, Progress& progress);
 
 // The same joins with borders where they are: from the root down, a piece that lies apart from the largest piece of its half,
 // has less than 0.1 of its area and is beside the other half changes sides. Larger pieces are meant: images joined at once.
+// A half that has lost all its area is newcomers.
 Joins without_flecks(const TetMesh& mesh, const Joins& joins, Progress& progress);
 
 }  // namespace partwheel
