@@ -18,9 +18,9 @@ namespace {
 
 class Regrouping {
 public:
-    Regrouping(const TetMesh& mesh, const BinaryTree& tree, Progress& progress, std::span<const double> pair_numbers,
-               RegroupTrace* trace)
-        : mesh_(mesh), tree_(tree), progress_(progress), pair_numbers_(pair_numbers), trace_(trace),
+    Regrouping(const TetMesh& mesh, const Folds& folds, const BinaryTree& tree, Progress& progress,
+               std::span<const double> pair_numbers, RegroupTrace* trace)
+        : mesh_(mesh), folds_(folds), tree_(tree), progress_(progress), pair_numbers_(pair_numbers), trace_(trace),
           kernel_(mesh.vertices) {}
 
     std::vector<int32_t> choose();
@@ -46,6 +46,7 @@ private:
     void join_components();
 
     const TetMesh& mesh_;
+    const Folds& folds_;
     const BinaryTree& tree_;
     Progress& progress_;
     std::span<const double> pair_numbers_;
@@ -73,8 +74,8 @@ std::vector<int32_t> Regrouping::choose() {
 }
 
 void Regrouping::measure(std::span<const int32_t> part_of, std::span<const int32_t> numbers, std::vector<Hull> hulls) {
-    parts_ = measure_parts(mesh_, part_of, numbers.size(), tree_.merges.back().hull_volume, std::move(hulls), kernel_,
-                           progress_);
+    parts_ = measure_parts(mesh_, folds_, part_of, numbers.size(), tree_.merges.back().hull_volume, std::move(hulls),
+                           kernel_, progress_);
     for (size_t p = 0; p < numbers.size(); ++p) parts_.all[p].number = numbers[p];
     result_.tree.components = tree_.components;
     parts_.all.reserve(2 * parts_.fine - 1);  // join() holds references
@@ -315,7 +316,9 @@ Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, std::span<const P
                   std::span<const double> pair_numbers, RegroupTrace* trace) {
     if (tree.merges.empty()) return {tree, {1.0}};
     const std::span<const double> numbers = pair_numbers.empty() ? fitted_pair_numbers : pair_numbers;
-    Regrouping by_cost(mesh, tree, progress, numbers, trace);
+    const Folds folds(mesh);
+    progress.advance(0);
+    Regrouping by_cost(mesh, folds, tree, progress, numbers, trace);
     const std::vector<int32_t> part_of = by_cost.choose();
     by_cost.join_by_cost();
     const Joins first = by_cost.joins(part_of);
@@ -329,7 +332,7 @@ Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, std::span<const P
         trace->last = last;
         trace->nodes.clear();
     }
-    return Regrouping(mesh, tree, progress, numbers, trace).planted(last, by_cost.below());
+    return Regrouping(mesh, folds, tree, progress, numbers, trace).planted(last, by_cost.below());
 }
 
 }  // namespace partwheel

@@ -1,4 +1,4 @@
-// The parts measured: volumes, areas, hulls; and what lies between them, by the facets inside and the surface's folds.
+// The surface's folds; and the parts measured: volumes, areas, hulls, and what lies between them, inside and on the surface.
 #include "tree/regroup/parts.h"
 
 #include "base/groups.h"
@@ -18,8 +18,88 @@ constexpr int smoothing_passes = 4, wide_passes = 24;
 
 }  // namespace
 
-Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_t count, double hull_volume,
-                    std::vector<Hull> hulls, HullKernel& kernel, Progress& progress) {
+Folds::Folds(const TetMesh& mesh) {
+    const double length_unit = Frame::around(mesh.vertices).longest, area_unit = length_unit * length_unit;
+    const auto point = [&](int32_t v) -> const Point& { return mesh.vertices[at(v)]; };
+    std::vector<Triangle> outer;
+    std::vector<int32_t> behind;
+    std::vector<Point> normals;
+    std::vector<double> curvature(mesh.vertices.size(), 0), around(mesh.vertices.size(), 0);
+    double whole = 0;
+    for (size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        for (size_t k = 0; k < 4; ++k) {
+            if (mesh.neighbours[t][k] >= 0) continue;
+            const Triangle f = facet(mesh.tetrahedra[t], k);
+            Point n = cross(point(f[1]) - point(f[0]), point(f[2]) - point(f[0]));
+            const double twice = length(n), size = twice / 2 / area_unit;
+            if (twice > 0)
+                for (double& x : n) x /= twice;
+            outer.push_back(f);
+            behind.push_back(static_cast<int32_t>(t));
+            normals.push_back(n);
+            whole += size;
+            for (const int32_t v : f) around[at(v)] += size / 3;
+        }
+    struct Edge {
+        int32_t low, high;
+        double length, bend;  // bend: the sine of half the angle, below 0 where concave
+    };
+    std::vector<Edge> edges;
+    for_edges(mesh.vertices.size(), outer, [&](int32_t low, std::span<const Side> sides) {
+        for (size_t i = 0; i + 1 < sides.size(); i += 2) {
+            const int32_t high = sides[i].high, s = sides[i].number / 3, t = sides[i + 1].number / 3;
+            const Point &m = normals[at(s)], &n = normals[at(t)];
+            const Point along = point(high) - point(low);
+            const double turn = dot(cross(m, n), along) * (sides[i].upwards ? 1 : -1);
+            const double bend = partwheel::length(n - m) / 2 * (turn < 0 ? -1 : 1);
+            edges.push_back({low, high, partwheel::length(along) / length_unit, bend});
+            all_.push_back({behind[at(s)], behind[at(t)], {}});
+        }
+    });
+    // Mean curvature, smoothed over the surface: it finds creases that many small edges share. Only the quotient
+    // matters, so both sums may grow with each pass.
+    for (const Edge& e : edges)
+        for (const int32_t v : {e.low, e.high}) curvature[at(v)] += e.length * e.bend / 2;
+    const double unit = std::sqrt(whole);
+    const auto smoothed = [&](int more_passes) {
+        for (int pass = 0; pass < more_passes; ++pass) {
+            std::vector<double> c = curvature, r = around;
+            for (const Edge& e : edges) {
+                const auto i = at(e.low), j = at(e.high);
+                c[i] += curvature[j];
+                c[j] += curvature[i];
+                r[i] += around[j];
+                r[j] += around[i];
+            }
+            curvature.swap(c);
+            around.swap(r);
+        }
+        std::vector<double> h(curvature.size(), 0);
+        for (size_t i = 0; i < h.size(); ++i)
+            if (around[i] > 0) h[i] = curvature[i] / around[i] * unit;
+        return h;
+    };
+    const std::vector<double> curved = smoothed(smoothing_passes), widely = smoothed(wide_passes - smoothing_passes);
+    for (size_t i = 0; i < edges.size(); ++i) {
+        const Edge& e = edges[i];
+        const auto squashed = [&](const std::vector<double>& of) {
+            const double h = (of[at(e.low)] + of[at(e.high)]) / 2;
+            return h / (middling_curvature + std::abs(h));
+        };
+        const auto length_if = [&](bool it_is) { return it_is ? e.length : 0; };
+        all_[i].border = {.length = e.length,
+                          .crease = e.length * e.bend,
+                          .sharpness = e.length * std::abs(e.bend),
+                          .concave = length_if(e.bend < -concave_bend),
+                          .ridge = length_if(e.bend > sharp_bend),
+                          .valley = length_if(e.bend < -sharp_bend),
+                          .curvature = e.length * squashed(curved),
+                          .wide = e.length * squashed(widely)};
+    }
+}
+
+Parts measure_parts(const TetMesh& mesh, const Folds& folds, std::span<const int32_t> part_of, size_t count,
+                    double hull_volume, std::vector<Hull> hulls, HullKernel& kernel, Progress& progress) {
     const double length_unit = Frame::around(mesh.vertices).longest, area_unit = length_unit * length_unit;
     Parts parts;
     parts.all.resize(count);
@@ -32,11 +112,7 @@ Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_
         bool facet;
         Border border;
     };
-    std::vector<Triangle> outer;
     std::vector<Between> between;
-    std::vector<Point> normals;
-    std::vector<int32_t> part_behind;  // of each outer triangle
-    std::vector<double> curvature(mesh.vertices.size(), 0), around(mesh.vertices.size(), 0);
     std::vector<std::vector<int32_t>> corners(count);
     std::vector<int32_t> taken_by(mesh.vertices.size(), -1);  // of each vertex, the part seen last
     for (size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
@@ -52,21 +128,12 @@ Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_
             const int32_t other = mesh.neighbours[t][k];
             const int32_t q = other < 0 ? -1 : part_of[at(other)];
             if (other >= 0 && q <= p) continue;
-            const Triangle f = facet(tet, k);
-            Point n = cross(point(f[1]) - point(f[0]), point(f[2]) - point(f[0]));
-            const double twice = length(n);
-            const double size = twice / 2 / area_unit;
-            if (other >= 0) {
+            const auto [a, b, c] = facet(tet, k);
+            const double size = area(point(a), point(b), point(c)) / area_unit;
+            if (other >= 0)
                 between.push_back({p, q, true, {.interface = size}});
-                continue;
-            }
-            if (twice > 0)
-                for (double& x : n) x /= twice;
-            parts[p].area += size;
-            outer.push_back(f);
-            normals.push_back(n);
-            part_behind.push_back(p);
-            for (const int32_t v : f) around[at(v)] += size / 3;
+            else
+                parts[p].area += size;
         }
     }
     progress.advance(0.1);
@@ -83,64 +150,9 @@ Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_
     parts.whole.take_logs();
     parts.whole.hull_volume = hull_volume / parts.volume_unit;
 
-    struct Fold {
-        int32_t low, high, s, t;
-        double length, bend;  // bend: the sine of half the angle, below 0 where concave
-    };
-    std::vector<Fold> folds;
-    for_edges(mesh.vertices.size(), outer, [&](int32_t low, std::span<const Side> sides) {
-        for (size_t i = 0; i + 1 < sides.size(); i += 2) {
-            const int32_t high = sides[i].high, s = sides[i].number / 3, t = sides[i + 1].number / 3;
-            const Point &m = normals[at(s)], &n = normals[at(t)];
-            const Point along = point(high) - point(low);
-            const double turn = dot(cross(m, n), along) * (sides[i].upwards ? 1 : -1);
-            const double bend = partwheel::length(n - m) / 2 * (turn < 0 ? -1 : 1);
-            const double length = partwheel::length(along) / length_unit;
-            folds.push_back({low, high, s, t, length, bend});
-        }
-    });
-    // Mean curvature, smoothed over the surface: it finds creases that many small edges share. Only the quotient
-    // matters, so both sums may grow with each pass.
-    for (const Fold& f : folds)
-        for (const int32_t v : {f.low, f.high}) curvature[at(v)] += f.length * f.bend / 2;
-    const double unit = std::sqrt(parts.whole.area);
-    const auto smoothed = [&](int more_passes) {
-        for (int pass = 0; pass < more_passes; ++pass) {
-            std::vector<double> c = curvature, r = around;
-            for (const Fold& f : folds) {
-                const auto i = at(f.low), j = at(f.high);
-                c[i] += curvature[j];
-                c[j] += curvature[i];
-                r[i] += around[j];
-                r[j] += around[i];
-            }
-            curvature.swap(c);
-            around.swap(r);
-        }
-        std::vector<double> h(curvature.size(), 0);
-        for (size_t i = 0; i < h.size(); ++i)
-            if (around[i] > 0) h[i] = curvature[i] / around[i] * unit;
-        return h;
-    };
-    const std::vector<double> curved = smoothed(smoothing_passes), widely = smoothed(wide_passes - smoothing_passes);
-    progress.advance(0.2);
-    for (const Fold& f : folds) {
-        const auto [p, q] = std::minmax(part_behind[at(f.s)], part_behind[at(f.t)]);
-        if (p == q) continue;
-        const auto squashed = [&](const std::vector<double>& of) {
-            const double h = (of[at(f.low)] + of[at(f.high)]) / 2;
-            return h / (middling_curvature + std::abs(h));
-        };
-        const auto length_if = [&](bool it_is) { return it_is ? f.length : 0; };
-        between.push_back({p, q, false,
-                           {.length = f.length,
-                            .crease = f.length * f.bend,
-                            .sharpness = f.length * std::abs(f.bend),
-                            .concave = length_if(f.bend < -concave_bend),
-                            .ridge = length_if(f.bend > sharp_bend),
-                            .valley = length_if(f.bend < -sharp_bend),
-                            .curvature = f.length * squashed(curved),
-                            .wide = f.length * squashed(widely)}});
+    for (const auto& [one, other, border] : folds.all()) {
+        const auto [p, q] = std::minmax(part_of[at(one)], part_of[at(other)]);
+        if (p != q) between.push_back({p, q, false, border});
     }
     std::stable_sort(between.begin(), between.end(), [](const Between& x, const Between& y) {
         return std::pair(x.a, x.b) < std::pair(y.a, y.b);

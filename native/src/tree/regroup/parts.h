@@ -40,6 +40,20 @@ struct Border {
     }
 };
 
+// The edges of a surface, whatever its parts.
+class Folds {
+public:
+    struct Fold {
+        int32_t one, other;  // the tetrahedra behind its two triangles
+        Border border;       // what it adds to one that it lies on
+    };
+    explicit Folds(const TetMesh& mesh);
+    std::span<const Fold> all() const { return all_; }
+
+private:
+    std::vector<Fold> all_;
+};
+
 struct Pair {
     int32_t a = 0, b = 0;  // parts
     Border border;
@@ -84,10 +98,10 @@ struct Parts {
 // The clusters of the paper's tree that are the parts, in rising order.
 std::vector<int32_t> choose_parts(const TetMesh& mesh, const BinaryTree& tree);
 
-// The parts and the pairs of them. part_of: of each tetrahedron, and more; hull_volume: of all. hulls: of the parts, where
-// they are known; else they are built.
-Parts measure_parts(const TetMesh& mesh, std::span<const int32_t> part_of, size_t count, double hull_volume,
-                    std::vector<Hull> hulls, HullKernel& kernel, Progress& progress);
+// The parts and the pairs of them. folds: the mesh's; part_of: of each tetrahedron, and more; hull_volume: of all. hulls: of
+// the parts, where they are known; else they are built.
+Parts measure_parts(const TetMesh& mesh, const Folds& folds, std::span<const int32_t> part_of, size_t count,
+                    double hull_volume, std::vector<Hull> hulls, HullKernel& kernel, Progress& progress);
 
 // When all is joined: notes of each part what holds of its halves.
 void look_below(Parts& parts);
