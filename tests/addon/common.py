@@ -18,6 +18,12 @@ NEVER = 600  # seconds until something counts as never happening, however busy t
 MESHES = Path(__file__).resolve().parents[2] / "build" / "deps" / "meshes"
 
 
+def oldest_and_newest(test):
+    """For tests that take long and ask more of the library than of Blender: the versions between are left out."""
+    test.everywhere = False
+    return test
+
+
 def part(name):
     """A module of the installed add-on: part("parts.registry")."""
     return importlib.import_module(f"{MODULE}.{name}")

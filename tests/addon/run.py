@@ -42,6 +42,16 @@ def installed(zip_path):
     return module
 
 
+def for_this_blender(suite):
+    """The tests of a suite: all of them in the oldest and the newest Blender, see common.oldest_and_newest."""
+    between = (4, 0, 0) <= bpy.app.version < (5, 0, 0)
+    for each in suite:
+        if isinstance(each, unittest.TestSuite):
+            yield from for_this_blender(each)
+        elif not between or getattr(getattr(each, each.id().rsplit(".")[-1], None), "everywhere", True):
+            yield each
+
+
 class Timed(unittest.TextTestResult):
     """Says which tests take long."""
 
@@ -68,7 +78,7 @@ def main():
         common.ZIP = str(Path(zip_path).resolve())
         common.MODULE = installed(common.ZIP)
         unittest.defaultTestLoader.testNamePatterns = [f"*{name}*" for name in names] or None
-        suite = unittest.defaultTestLoader.discover(str(HERE), "test_*.py")
+        suite = unittest.TestSuite(for_this_blender(unittest.defaultTestLoader.discover(str(HERE), "test_*.py")))
         run = unittest.TextTestRunner(stream=sys.stdout, verbosity=2, resultclass=Timed).run(suite)
         failures = [f"{test.id()}: {text.strip().splitlines()[-1]}" for test, text in run.failures + run.errors]
         failures += [f"{test.id()} was skipped: {reason}" for test, reason in run.skipped]

@@ -6,7 +6,7 @@ import itertools
 import bmesh
 import bpy
 import numpy
-from common import package, part, read_off
+from common import oldest_and_newest, package, part, read_off
 from mathutils import Vector
 from solid_case import SolidTest, arrays, caps, volume
 
@@ -257,6 +257,7 @@ class Copy(SolidTest):
         share = hierarchy.area / hierarchy.area[-1]
         return obj, hierarchy, rng.permutation(numpy.flatnonzero((share > 0.01) & (share < 0.8))).tolist()
 
+    @oldest_and_newest
     def test_filled_from_points_it_is_nearly_what_its_tetrahedra_fill(self):
         """The part's own polygons, and caps that follow the facets inside. A few of the parts are other than what they
         fill, one even inside out: of few polygons and many facets, whose borders are far from each other."""

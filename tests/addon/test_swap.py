@@ -4,7 +4,7 @@ another library says, one operator does it all, and what is refused changes noth
 
 import bpy
 import numpy
-from common import package, part, read_off
+from common import oldest_and_newest, package, part, read_off
 from mathutils import Matrix
 from solid_case import SolidTest, arrays, volume
 from test_unite import reference, triangles
@@ -132,6 +132,7 @@ class Swap(SolidTest):
         self.assertGreater(abs(united[0] / united[1] - 1), 1e-4)
         self.assertAlmostEqual(volume(again.data), united[1], delta=1e-5 * united[1])
 
+    @oldest_and_newest
     def test_legs_of_one_animal(self):
         """The first that is offered for a leg is a leg, the opposite one is among the first two, and it fits."""
         api = part("api")
