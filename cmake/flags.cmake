@@ -42,9 +42,6 @@ if(PARTWHEEL_SANITIZE)
   if(PARTWHEEL_FUZZERS)  # which are led by what has run
     add_compile_options(-fsanitize-coverage=inline-8bit-counters,pc-table)
   endif()
-  if(CMAKE_CXX_COMPILER_ID MATCHES Clang)  # whose own linker takes a fifth of the time, of forty programs
-    add_link_options(-fuse-ld=lld)
-  endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # What a sanitizer adds makes g++ see uninitialized variables where there are none, in CGAL's headers for one.
     add_compile_options(-Wno-maybe-uninitialized)

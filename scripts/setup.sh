@@ -160,7 +160,7 @@ start_setup() {
 }
 
 setup_build() {
-    start_setup && packages g++ clang lld llvm cmake ninja-build pkg-config ccache libgtest-dev \
+    start_setup && packages g++ clang llvm cmake ninja-build pkg-config ccache libgtest-dev \
         python3 python3-venv python3-pip ca-certificates || return
     into "$deps/root" fill_headers && into "$deps/tetgen-0.8.0" fill_tetgen && into "$deps/meshes" fill_meshes
 }
