@@ -14,13 +14,13 @@ Joins with_parts(const Joins& joins, std::span<const int32_t> of) {
     for (const int32_t p : of) left.of.push_back(number[at(p)]);
     for (size_t j = 0; j < joins.joined.size(); ++j) {
         const int32_t a = number[at(joins.joined[j][0])], b = number[at(joins.joined[j][1])];
-        number[joins.count + j] = a < 0 ? b : a;
+        int32_t& made = number[joins.count + j];
+        made = std::max(a, b);
         if (a < 0 || b < 0) {  // what was a step to this is now this
-            if (const int32_t left_over = std::max(a, b); left_over >= static_cast<int32_t>(left.count) && !joins.steps[j])
-                left.steps[at(left_over) - left.count] = 0;
+            if (made >= static_cast<int32_t>(left.count) && !joins.steps[j]) left.steps[at(made) - left.count] = 0;
             continue;
         }
-        number[joins.count + j] = static_cast<int32_t>(left.count + left.joined.size());
+        made = static_cast<int32_t>(left.count + left.joined.size());
         left.joined.push_back({a, b});
         left.costs.push_back(joins.costs[j]);
         left.steps.push_back(joins.steps[j]);

@@ -18,7 +18,7 @@ namespace {
 
 class Regrouping {
 public:
-    Regrouping(const TetMesh& mesh, const Folds& folds, const BinaryTree& tree, Progress& progress,
+    Regrouping(const TetMesh& mesh, std::span<const Fold> folds, const BinaryTree& tree, Progress& progress,
                std::span<const double> pair_numbers, RegroupTrace* trace)
         : mesh_(mesh), folds_(folds), tree_(tree), progress_(progress), pair_numbers_(pair_numbers), trace_(trace),
           kernel_(mesh.vertices) {}
@@ -46,7 +46,7 @@ private:
     void join_components();
 
     const TetMesh& mesh_;
-    const Folds& folds_;
+    std::span<const Fold> folds_;
     const BinaryTree& tree_;
     Progress& progress_;
     std::span<const double> pair_numbers_;
@@ -316,7 +316,7 @@ Regrouped regroup(const TetMesh& mesh, const BinaryTree& tree, std::span<const P
                   std::span<const double> pair_numbers, RegroupTrace* trace) {
     if (tree.merges.empty()) return {tree, {1.0}};
     const std::span<const double> numbers = pair_numbers.empty() ? fitted_pair_numbers : pair_numbers;
-    const Folds folds(mesh);
+    const std::vector<Fold> folds = folds_of(mesh);
     progress.advance(0);
     Regrouping by_cost(mesh, folds, tree, progress, numbers, trace);
     const std::vector<int32_t> part_of = by_cost.choose();

@@ -18,7 +18,7 @@ constexpr int smoothing_passes = 4, wide_passes = 24;
 
 }  // namespace
 
-Folds::Folds(const TetMesh& mesh) {
+std::vector<Fold> folds_of(const TetMesh& mesh) {
     const double length_unit = Frame::around(mesh.vertices).longest, area_unit = length_unit * length_unit;
     const auto point = [&](int32_t v) -> const Point& { return mesh.vertices[at(v)]; };
     std::vector<Triangle> outer;
@@ -45,6 +45,7 @@ Folds::Folds(const TetMesh& mesh) {
         double length, bend;  // bend: the sine of half the angle, below 0 where concave
     };
     std::vector<Edge> edges;
+    std::vector<Fold> folds;  // of the same edges
     for_edges(mesh.vertices.size(), outer, [&](int32_t low, std::span<const Side> sides) {
         for (size_t i = 0; i + 1 < sides.size(); i += 2) {
             const int32_t high = sides[i].high, s = sides[i].number / 3, t = sides[i + 1].number / 3;
@@ -53,7 +54,7 @@ Folds::Folds(const TetMesh& mesh) {
             const double turn = dot(cross(m, n), along) * (sides[i].upwards ? 1 : -1);
             const double bend = partwheel::length(n - m) / 2 * (turn < 0 ? -1 : 1);
             edges.push_back({low, high, partwheel::length(along) / length_unit, bend});
-            all_.push_back({behind[at(s)], behind[at(t)], {}});
+            folds.push_back({behind[at(s)], behind[at(t)], {}});
         }
     });
     // Mean curvature, smoothed over the surface: it finds creases that many small edges share. Only the quotient
@@ -87,18 +88,19 @@ Folds::Folds(const TetMesh& mesh) {
             return h / (middling_curvature + std::abs(h));
         };
         const auto length_if = [&](bool it_is) { return it_is ? e.length : 0; };
-        all_[i].border = {.length = e.length,
-                          .crease = e.length * e.bend,
-                          .sharpness = e.length * std::abs(e.bend),
-                          .concave = length_if(e.bend < -concave_bend),
-                          .ridge = length_if(e.bend > sharp_bend),
-                          .valley = length_if(e.bend < -sharp_bend),
-                          .curvature = e.length * squashed(curved),
-                          .wide = e.length * squashed(widely)};
+        folds[i].border = {.length = e.length,
+                           .crease = e.length * e.bend,
+                           .sharpness = e.length * std::abs(e.bend),
+                           .concave = length_if(e.bend < -concave_bend),
+                           .ridge = length_if(e.bend > sharp_bend),
+                           .valley = length_if(e.bend < -sharp_bend),
+                           .curvature = e.length * squashed(curved),
+                           .wide = e.length * squashed(widely)};
     }
+    return folds;
 }
 
-Parts measure_parts(const TetMesh& mesh, const Folds& folds, std::span<const int32_t> part_of, size_t count,
+Parts measure_parts(const TetMesh& mesh, std::span<const Fold> folds, std::span<const int32_t> part_of, size_t count,
                     double hull_volume, std::vector<Hull> hulls, HullKernel& kernel, Progress& progress) {
     const double length_unit = Frame::around(mesh.vertices).longest, area_unit = length_unit * length_unit;
     Parts parts;
@@ -150,7 +152,7 @@ Parts measure_parts(const TetMesh& mesh, const Folds& folds, std::span<const int
     parts.whole.take_logs();
     parts.whole.hull_volume = hull_volume / parts.volume_unit;
 
-    for (const auto& [one, other, border] : folds.all()) {
+    for (const auto& [one, other, border] : folds) {
         const auto [p, q] = std::minmax(part_of[at(one)], part_of[at(other)]);
         if (p != q) between.push_back({p, q, false, border});
     }

@@ -40,18 +40,10 @@ struct Border {
     }
 };
 
-// The edges of a surface, whatever its parts.
-class Folds {
-public:
-    struct Fold {
-        int32_t one, other;  // the tetrahedra behind its two triangles
-        Border border;       // what it adds to one that it lies on
-    };
-    explicit Folds(const TetMesh& mesh);
-    std::span<const Fold> all() const { return all_; }
-
-private:
-    std::vector<Fold> all_;
+// An edge of the surface, whatever the parts.
+struct Fold {
+    int32_t one, other;  // the tetrahedra behind its two triangles
+    Border border;       // what it adds to one that it lies on
 };
 
 struct Pair {
@@ -98,9 +90,11 @@ struct Parts {
 // The clusters of the paper's tree that are the parts, in rising order.
 std::vector<int32_t> choose_parts(const TetMesh& mesh, const BinaryTree& tree);
 
+std::vector<Fold> folds_of(const TetMesh& mesh);
+
 // The parts and the pairs of them. folds: the mesh's; part_of: of each tetrahedron, and more; hull_volume: of all. hulls: of
 // the parts, where they are known; else they are built.
-Parts measure_parts(const TetMesh& mesh, const Folds& folds, std::span<const int32_t> part_of, size_t count,
+Parts measure_parts(const TetMesh& mesh, std::span<const Fold> folds, std::span<const int32_t> part_of, size_t count,
                     double hull_volume, std::vector<Hull> hulls, HullKernel& kernel, Progress& progress);
 
 // When all is joined: notes of each part what holds of its halves.
