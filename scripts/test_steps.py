@@ -81,7 +81,7 @@ def installed(venv):
     """A folder with the package in it as its wheel has it."""
     packages = OUTPUT / f"packages-{venv}"
     shutil.rmtree(packages, ignore_errors=True)
-    require(venv, VENV / venv / "bin/python", "-m", "pip", "install", "--no-deps", "--target", packages,
+    require(venv, "/usr/bin/python3", "-m", "pip", "install", "--no-deps", "--target", packages,
             *(ROOT / "build/package").glob("*.whl"))
     return str(packages)
 

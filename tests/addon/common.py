@@ -18,10 +18,11 @@ NEVER = 600  # seconds until something counts as never happening, however busy t
 MESHES = Path(__file__).resolve().parents[2] / "build" / "deps" / "meshes"
 
 
-def oldest_and_newest(test):
-    """For tests that take long and ask more of the library than of Blender: the versions between are left out."""
-    test.everywhere = False
-    return test
+def oldest_and_newest(tests):
+    """For a test, or a class of them, that takes long and asks more of our own code than of Blender: the versions between
+    are left out."""
+    tests.everywhere = False
+    return tests
 
 
 def part(name):

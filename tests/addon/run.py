@@ -48,7 +48,8 @@ def for_this_blender(suite):
     for each in suite:
         if isinstance(each, unittest.TestSuite):
             yield from for_this_blender(each)
-        elif not between or getattr(getattr(each, each.id().rsplit(".")[-1], None), "everywhere", True):
+        elif not between or all(getattr(marked, "everywhere", True)
+                                for marked in (each, getattr(each, each.id().rsplit(".")[-1], None))):
             yield each
 
 

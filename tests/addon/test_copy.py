@@ -203,6 +203,7 @@ class Copy(SolidTest):
                 self.assertGreaterEqual(len(own), len(once))  # one beside a pinched edge is halved
                 self.assertLess(abs(sum(own) - sum(once.values())), 1e-5 * sum(own))
 
+    @oldest_and_newest
     def test_of_a_repaired_source_it_is_what_its_tetrahedra_fill(self):
         """With holes, polygons wound anyhow, doubles, inside out: the volume is that of the tetrahedra, not of what
         some cap over the border leaves; the polygons are the part's own, with their layers."""

@@ -69,6 +69,7 @@ class Isolation(MeshTest):
                     self.assertIn("The worker process", message)
                     self.unharmed(obj, before)
 
+    @oldest_and_newest
     def test_bad_memory_at_each_stage(self):
         obj, before = self.edited()
         for stage in package().Stage:

@@ -14,7 +14,8 @@ import bpy
 import common
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from common import BOX, SHEET, MeshTest, WritesBack, alive, flags, package, part, read_off, selected, until
+from common import (BOX, SHEET, MeshTest, WritesBack, alive, flags, oldest_and_newest, package, part, read_off, selected,
+                    until)
 from gate import Gate
 from mathutils import Euler, Matrix, Vector
 
@@ -772,6 +773,7 @@ class WhileBuilding(HeldWorkers):
             self.assertEqual(part("parts.registry").hierarchy(self.obj) is None, over == "ESC")
 
 
+@oldest_and_newest
 class ManyMeshes(HeldWorkers):
     """More clicks than one while parts are being found, on the same mesh and on others."""
 

@@ -48,6 +48,7 @@ class Swap(SolidTest):
         off = max(abs(a - b) for ours, theirs in zip(matrix, Matrix()) for a, b in zip(ours, theirs))
         self.assertLess(off, tolerance)
 
+    @oldest_and_newest
     def test_a_known_motion_is_found_again(self):
         """A duplicate that was moved, turned and scaled: each part's own twin is its first, and comes to its place."""
         swapping = part("compose.swapping")
@@ -78,6 +79,7 @@ class Swap(SolidTest):
         self.assertSolid(model.data)
         self.assertLess(abs(volume(model.data) / whole - 1), 0.02)
 
+    @oldest_and_newest
     def test_volume_by_inclusion_and_exclusion(self):
         """Limbs of other models: what is left, what was placed and the union, as manifold3d has them."""
         swapping, pairs, measured = part("compose.swapping"), [], []

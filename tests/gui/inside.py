@@ -1,6 +1,6 @@
 """Runs inside Blender, started by run.py: plays one scenario in Blender's window and writes what came of it.
 
-    blender --python inside.py -- SCENARIO DRIVER WORK_DIRECTORY PICTURE_PREFIX RESULT.json
+    blender --python inside.py -- SCENARIO DRIVER LOOKS WORK_DIRECTORY PICTURE_PREFIX RESULT.json
 """
 import importlib
 import pathlib
@@ -11,5 +11,5 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "faults")]
 from stage import Stage  # noqa: E402
 
-name, driver, *paths = sys.argv[sys.argv.index("--") + 1:]
-Stage(driver, *map(pathlib.Path, paths)).play(importlib.import_module(f"scenarios.{name}").play)
+name, driver, looks, *paths = sys.argv[sys.argv.index("--") + 1:]
+Stage(driver, looks, *map(pathlib.Path, paths)).play(importlib.import_module(f"scenarios.{name}").play)

@@ -43,7 +43,7 @@ TIME_LIMIT = 3600  # seconds a scenario, so that nothing hangs for ever: a hundr
 ONLY_BY_NAME = ("felt", "felt_million", "felt_modes", "repository", "tasks")
 ALSO_WITH_XDOTOOL = ("pick_and_click", "empty_space", "navigate")
 # Pixels of a window. Most of a scenario's time goes into drawing, by the processor: a third less in a small one, in
-# which not all texts have room.
+# which not all texts have room; and half of the rest where nothing is drawn that no test looks at, see Stage.
 SMALL, LARGE = (960, 640), (1280, 800)
 ALWAYS_LARGE = ("industry", "picked_objects", "related", "tool_keys", "words", *ONLY_BY_NAME)
 
@@ -56,7 +56,7 @@ def main():
     parser.add_argument("zip", type=pathlib.Path, help="the add-on as made by scripts/package")
     parser.add_argument("result", type=pathlib.Path, help="where to write the result (JSON)")
     parser.add_argument("scenario", nargs="*", help="run only these (names of files in scenarios/)")
-    parser.add_argument("--large", action="store_true", help="large windows, as for pictures")
+    parser.add_argument("--large", action="store_true", help="large windows in which all is drawn, as for pictures")
     arguments = parser.parse_args()
 
     known = sorted(path.stem for path in (HERE / "scenarios").glob("*.py"))
@@ -94,7 +94,8 @@ def played(name, driver, large, work, environment):
     """Runs a scenario and says how it went; returns the sentence that says what failed or "", and the seconds."""
     began = time.monotonic()
     size = LARGE if large or name in ALWAYS_LARGE else SMALL
-    failure, checks = run_scenario(name, driver, size, work, environment)
+    looks = "full" if large or name in ONLY_BY_NAME else "plain"
+    failure, checks = run_scenario(name, driver, size, looks, work, environment)
     seconds = time.monotonic() - began
     print(f"{name} ({driver}): {failure or f'ok, {checks} checks'}, {seconds:.1f} s", flush=True)
     return failure and f"{name} ({driver}): {failure}", seconds
@@ -155,13 +156,13 @@ def install(zip_path, environment):
         sys.exit(f"The add-on could not be installed from {zip_path}: see {log}.")
 
 
-def run_scenario(name, driver, size, work, environment):
+def run_scenario(name, driver, size, looks, work, environment):
     """Returns (sentence that says what failed or "", number of checks made)."""
     title = name if driver == "simulate" else f"{name}-{driver}"
     result_path, log_path = work / f"{title}.json", OUTPUT / f"{title}.log"
     command = [BLENDER, "-noaudio", "--window-geometry", "0", "0", *map(str, size), "--python-exit-code", "9",
                *(["--enable-event-simulate"] if driver == "simulate" else []),
-               "--python", HERE / "inside.py", "--", name, driver, work, OUTPUT / title, result_path]
+               "--python", HERE / "inside.py", "--", name, driver, looks, work, OUTPUT / title, result_path]
     home, temporary = work / "homes" / title, work / "tmp" / title
     shutil.copytree(environment["HOME"], home, symlinks=True)
     temporary.mkdir()

@@ -28,7 +28,7 @@ from model import Wheels
 from view import View, picture
 
 WAIT = int(os.environ.get("PARTWHEEL_WAIT", 600))  # seconds until something counts as never happening, far more than a machine under load needs for it
-TICK = 0.01
+TICK = 0.01  # seconds
 SLOW = 1.0  # seconds for one step; the log tells which took longer
 FILL = 0.8  # share of the viewport's height or width that an opened model takes
 # How each model is looked at, in its own space: the rotation that the view has (w, x, y, z).
@@ -66,9 +66,9 @@ class WM_OT_stage_timers(bpy.types.Operator):
 
 
 class Stage:
-    def __init__(self, driver, work, pictures, result):
+    def __init__(self, driver, looks, work, pictures, result):
         self._work, self._pictures, self._result = work, pictures, result
-        self._driver = driver
+        self._driver, self._looks = driver, looks
         self.checks = 0
         self._ticks = self._draws = 0
         self._noted = time.monotonic()
@@ -91,12 +91,13 @@ class Stage:
                     if not predicate():
                         if time.monotonic() > deadline:
                             raise Failure(f"{_text(what)}: not seen in time")
-                        return TICK
+                        time.sleep(TICK)  # with --enable-event-simulate Blender itself never does, and keeps a core busy
+                        return 0
                     self._note(what, time.monotonic())
                 what, predicate = next(steps)
                 self._note("the scenario itself", time.monotonic())
                 waiting = what, predicate, time.monotonic() + WAIT
-                return TICK
+                return 0
             except StopIteration:
                 self._end("")
             except Failure as failure:
@@ -117,6 +118,8 @@ class Stage:
 
     def _all(self, scenario):
         yield "a first draw of the 3D viewport", lambda: self._draws > 0
+        if self._looks == "plain":
+            draw_plainly()
         self.mouse = DRIVERS[self._driver](self.window)
         yield from scenario(self)
         yield from self._nothing_left()
@@ -515,6 +518,16 @@ class Stage:
         path = self._pictures.with_name(f"{self._pictures.name}-{name}.png")
         subprocess.run(["import", "-window", "root", "-define", "png:compression-level=1", str(path)], check=True)
         return path
+
+
+def draw_plainly():
+    """Leaves out what takes the processor more than half of the time of a drawing and no test looks at."""
+    system = bpy.context.preferences.system
+    system.use_overlay_smooth_wire = system.use_edit_mode_smooth_wire = False
+    for space in (area.spaces.active for screen in bpy.data.screens for area in screen.areas if area.type == "VIEW_3D"):
+        overlay, shading = space.overlay, space.shading
+        overlay.show_floor = overlay.show_axis_x = overlay.show_axis_y = False
+        shading.show_object_outline = shading.show_shadows = shading.show_specular_highlight = False
 
 
 def leftovers(package):
