@@ -28,17 +28,14 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-frounding-math)
 endif()
 
-# What UndefinedBehaviorSanitizer asks at each access to memory, beside what AddressSanitizer asks there: as much code again.
-# Left out where it isn't our code that is looked at: in tests, and in rooms that are mostly CGAL's.
-set(partwheel_fewer_checks "")
-if(PARTWHEEL_SANITIZE MATCHES undefined)
-  set(partwheel_fewer_checks -fno-sanitize=null,alignment,object-size,vptr)
-endif()
-
 get_directory_property(partwheel_plain_options COMPILE_OPTIONS)  # of the release
 if(PARTWHEEL_SANITIZE)
   add_compile_options(-fsanitize=${PARTWHEEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${PARTWHEEL_SANITIZE})
+  if(PARTWHEEL_SANITIZE MATCHES undefined)
+    # What AddressSanitizer asks at each access to memory too: as much code again.
+    add_compile_options(-fno-sanitize=null,object-size,vptr)
+  endif()
   if(PARTWHEEL_FUZZERS)  # which are led by what has run
     add_compile_options(-fsanitize-coverage=inline-8bit-counters,pc-table)
   endif()
