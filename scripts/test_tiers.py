@@ -142,7 +142,8 @@ def addon():
     versions = output_of("bash", "-c", ". scripts/setup.sh && echo $bpy_versions").split()
     blender = ["blender", "-b", "-noaudio", "--factory-startup", "--python-exit-code", "9", "--python"]
     interpreters = {"blender": (blender, legacy)} | {
-        f"bpy-{version}": ([VENV / f"bpy-{version}/bin/python"], extension) for version in versions}
+        f"bpy-{version}": ([VENV / f"bpy-{version}/bin/python"], extension)
+        for version in reversed(versions)}  # the longest first: oldest and newest run all tests
     result = Result()
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for each in pool.map(lambda name: in_blender(name, *interpreters[name]), interpreters):
