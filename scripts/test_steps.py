@@ -13,6 +13,7 @@ import re
 import shutil
 import signal
 import subprocess
+import threading
 import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
@@ -67,14 +68,23 @@ set_ups = {}  # function of setup.sh -> its Future
 
 
 def build(log, preset, *targets):
-    require(log, "scripts/build", preset, *targets)
+    with compiling:
+        require(log, "scripts/build", preset, *targets)
+
+
+def make_packages():
+    """The add-on for Blender 4.2 and later, and the legacy one: made once for all tiers that need them."""
+    with compiling:
+        return made_packages()
 
 
 @functools.cache
-def make_packages():
-    """The add-on for Blender 4.2 and later, and the legacy one: made once for all tiers that need them."""
+def made_packages():
     require("package", "scripts/package")
     return tuple(map(pathlib.Path, (OUTPUT / "package.log").read_text().splitlines()[-2:]))
+
+
+compiling = threading.Lock()  # one at a time: what was compiled once, the next finds in the compiler's cache
 
 
 def installed(venv):
@@ -191,7 +201,7 @@ def run(log, command, environment=None):
             output.write(f"\nstopped after {TIME_LIMIT} s\n")
     if code:
         shown = path.read_text(errors="replace").splitlines()[-SHOWN:]
-        print("".join(f"   | {line}\n" for line in shown), end="")
+        print(f"   {log} ended with code {code}:\n" + "".join(f"   | {line}\n" for line in shown), end="")
     return code
 
 

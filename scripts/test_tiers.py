@@ -1,6 +1,7 @@
 """The test tiers, one function each: builds what it needs, runs it, returns what passed and failed.
 
-Called by scripts/test. What all of them need to be set up is set up in that order, while the first tests run.
+Called by scripts/test. What all of them need to be set up is set up in that order, while the first tests run. Two tiers run
+at once: each waits now and then, for a window, a link or its last test.
 """
 
 import argparse
@@ -39,6 +40,7 @@ QUICK_ADDON = ("test_registration", "test_select", "test_modal", "test_saved", "
                "test_command")
 QUICK_BPY = "4.5"
 QUICK_GUI = ("three_clicks",)
+AT_ONCE = 2  # tiers
 SLOWEST = 10  # tests that are named at the end
 
 PACKAGES = ("setup_build", "setup_package")  # what make_packages() needs
@@ -214,17 +216,21 @@ def has_suite(suite):
     return True
 
 
-@needs(*PACKAGES, "setup_core", "setup_hooks", "setup_blender", "setup_display", f"setup_bpy {QUICK_BPY}")
+@needs(begins=[*PACKAGES, "setup_core", "setup_hooks", f"setup_bpy {QUICK_BPY}", "setup_blender", "setup_display"])
 def quick():
     """For every day: all of native and core, the heart of the add-on in one bpy, and a click and a notch in a window."""
-    result = native()
-    result += core()
-    extension, legacy = make_packages()
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        windowless = pool.submit(in_blender, f"bpy-{QUICK_BPY}", [VENV / f"bpy-{QUICK_BPY}/bin/python"], extension,
-                                 *QUICK_ADDON)
-        result += in_windows(legacy, *QUICK_GUI)
-    result += windowless.result()
+    @needs(*PACKAGES, f"setup_bpy {QUICK_BPY}")
+    def without_window():
+        return in_blender(f"bpy-{QUICK_BPY}", [VENV / f"bpy-{QUICK_BPY}/bin/python"], make_packages()[0], *QUICK_ADDON)
+
+    @needs(*PACKAGES, "setup_core", "setup_blender", "setup_display")
+    def with_window():
+        return in_windows(make_packages()[1], *QUICK_GUI)
+
+    result = Result()
+    with concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool:
+        for each in pool.map(set_up_and_run, (native, core, without_window, with_window)):
+            result += each
     return result
 
 
@@ -251,6 +257,27 @@ TIERS = {function.__name__: function
 BY_NAME = {"quick", "ship"}  # only when they are named
 
 
+def set_up_and_run(tests):
+    for function in tests.needs:
+        set_up(function)
+    return tests()
+
+
+def run(name):
+    """A tier's Result, and the line that says so."""
+    print(f"== {name}: {TIERS[name].__doc__}\n", end="")  # in one piece, beside another tier's
+    began = time.monotonic()
+    try:
+        result = set_up_and_run(TIERS[name])
+    except CouldNotRun as reason:
+        result = broken(f"{name} could not run: {reason}")
+    skipped = f", {result.skipped} skipped" if result.skipped else ""
+    line = (f"{name:<12}{result.passed} passed, {result.failed} failed{skipped}, "
+            f"{time.monotonic() - began:.0f} s")
+    print("".join(f"   {each}\n" for each in (*(f"FAILED {failure}" for failure in result.failures), line)), end="")
+    return result, line
+
+
 def main():
     parser = argparse.ArgumentParser(prog="scripts/test",
                                      description="Runs the test tiers but quick and ship, or only those named.")
@@ -264,22 +291,10 @@ def main():
     begin_setting_up(*(function for name in names for function in TIERS[name].begins))
     total = Result()
     lines = []
-    for name in names:
-        print(f"== {name}: {TIERS[name].__doc__}")
-        began = time.monotonic()
-        try:
-            for function in TIERS[name].needs:
-                set_up(function)
-            result = TIERS[name]()
-        except CouldNotRun as reason:
-            result = broken(f"{name} could not run: {reason}")
-        for failure in result.failures:
-            print(f"   FAILED {failure}")
-        skipped = f", {result.skipped} skipped" if result.skipped else ""
-        lines.append(f"{name:<12}{result.passed} passed, {result.failed} failed{skipped}, "
-                     f"{time.monotonic() - began:.0f} s")
-        print(f"   {lines[-1]}")
-        total += result
+    with concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool:
+        for result, line in pool.map(run, names):
+            total += result
+            lines.append(line)
 
     print("== the slowest tests")
     for seconds, test in sorted(total.times, reverse=True)[:SLOWEST]:

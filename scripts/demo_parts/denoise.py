@@ -1,6 +1,6 @@
 """Takes the grain out of a picture of light: the edge-avoiding à-trous wavelet filter of Dammertz et al. 2010.
 
-Debian's Blender comes without a denoiser; with this a dozen light paths a pixel look like hundreds.
+Debian's Blender comes without a denoiser; with this two light paths a pixel look like hundreds.
 """
 
 import numpy
@@ -12,13 +12,14 @@ def denoise(light, normal, depth, strength=1.0, passes=5):
     """Returns light (h, w, channels), smoothed where the surface is and where its first three channels are alike.
 
     normal: (h, w, 3) of the surface seen, not noisy.  depth: (h, w) its distance from the camera.  strength: how
-    large a difference of light, relative to the light there, may be grain.
+    large a difference of light, relative to the light there, may be grain; between neighbours any may, so that no dark
+    speck stays.
     """
     light = light.astype(numpy.float32)
     depth = numpy.minimum(depth, depth.min() * 100.0)
     slope = numpy.maximum(*(abs(part) for part in numpy.gradient(depth))) + 2e-3 * depth
     for step in range(passes):
-        light = _smooth(light, normal, depth, slope, strength * 0.7 ** step, 2 ** step)
+        light = _smooth(light, normal, depth, slope, strength * 0.7 ** step if step else numpy.inf, 2 ** step)
     return light
 
 

@@ -1,6 +1,6 @@
 """The demo inside Blender: one model is opened, built, clicked and turned through the wheel; leaves layers, a .blend.
 
-Run as: blender -b --python perform.py -- MODEL MESHES FOLDER
+Run as: blender -b --python perform.py -- MODEL MESHES FOLDER [--all]
 with the add-on installed and enabled. In FOLDER it leaves MODEL.blend and, in layers/MODEL/, report.json (what
 happened, numbers and times) and a .npz of layers for each picture; paint.py makes the pictures of those.
 A surface that the library refuses is a result too: then report.json holds the error and there are no layers.
@@ -242,8 +242,8 @@ def play_ways(count, thing, hierarchy, folder, report):
                                "parts": count})
 
 
-def perform(model, meshes, folder):
-    """Plays the whole job with one model and returns the report."""
+def perform(model, meshes, folder, ways):
+    """Plays the whole job with one model and returns the report. ways: also build it in other ways."""
     layers = os.path.join(folder, "layers", model.name)
     os.makedirs(layers, exist_ok=True)
     thing = open_model(model, meshes)
@@ -269,7 +269,7 @@ def perform(model, meshes, folder):
         part = play_click(spot, thing, studio, whole, hierarchy, layers, report)
     for count in model.parts:
         play_cut(count, studio, whole, hierarchy, layers, report)
-    if model.ways:
+    if ways and model.ways:
         play_ways(model.ways, thing, hierarchy, layers, report)
     show_ready(thing, studio, part)
     studio.close()
@@ -279,9 +279,9 @@ def perform(model, meshes, folder):
 
 
 def main():
-    name, meshes, folder = sys.argv[sys.argv.index("--") + 1:]
+    name, meshes, folder, *more = sys.argv[sys.argv.index("--") + 1:]
     model = next(model for model in MODELS if model.name == name)
-    report = perform(model, meshes, folder)
+    report = perform(model, meshes, folder, bool(more))
     with open(os.path.join(folder, "layers", name, "report.json"), "w", encoding="utf-8") as file:
         json.dump(report, file, indent=1, default=lambda number: number.item())
 

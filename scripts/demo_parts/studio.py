@@ -18,7 +18,7 @@ from denoise import denoise
 from layers import OVERSAMPLING, Layers
 
 FIELD_OF_VIEW = math.radians(16.0)
-SAMPLES = 3  # light paths for each pixel of a layer; denoise() does the rest
+SAMPLES = 2  # light paths for each pixel of a layer; denoise() does the rest
 
 
 class View(NamedTuple):
@@ -219,6 +219,7 @@ class Studio:
         source.scene = self.scene
         target = tree.nodes.new("CompositorNodeOutputFile")
         target.format.file_format, target.format.color_depth = "OPEN_EXR", "32"
+        target.format.exr_codec = "NONE"
         target.file_slots.clear()
         for name, (switch, socket) in passes.items():
             setattr(layer, switch, True)

@@ -10,8 +10,8 @@ import tempfile
 from platforms import ROOT
 
 DEPS = ROOT / "build" / "deps"
-OURS = ("CMakeLists.txt", "CMakePresets.json", "cmake", "native/include", "native/src", "native/python",
-        "native/partwheel.map", "pyproject.toml", "LICENSE", "README.md", "CHANGELOG.md")
+OURS = ("CMakeLists.txt", "CMakePresets.json", "cmake", "native/CMakeLists.txt", "native/include", "native/src",
+        "native/python", "native/partwheel.map", "pyproject.toml", "LICENSE", "README.md", "CHANGELOG.md")
 # What other compilers may include: each has headers of its own there.
 WHOLE = ("root/usr/include/boost/config", "root/usr/include/boost/predef")
 
