@@ -173,10 +173,13 @@ TEST(Points, BrokenModelsAreFilledAsWhatTheyWere) {
             loose.vertices.push_back(whole.vertices[at(v)]);
             v = static_cast<int32_t>(loose.vertices.size() - 1);
         }
-    for (const TriMesh& mesh : {damaged(whole, "holes", [](size_t t) { return t % 9 != 0; }, none),
-                                damaged(whole, "turned", all, [](size_t t) { return t % 4 == 0; }),
-                                without_faces(doubled), without_faces(loose),
-                                together("within itself", whole, stretched(whole, {0.5, 0.5, 0.5}))}) {
+    std::vector<TriMesh> broken = {damaged(whole, "holes", [](size_t t) { return t % 9 != 0; }, none),
+                                   without_faces(loose)};
+    if (!light())
+        broken.insert(broken.end(), {damaged(whole, "turned", all, [](size_t t) { return t % 4 == 0; }),
+                                     without_faces(doubled),
+                                     together("within itself", whole, stretched(whole, {0.5, 0.5, 0.5}))});
+    for (const TriMesh& mesh : broken) {
         const Solid solid = filled(mesh);
         expect_fits(solid);
         EXPECT_NEAR(volume(solid), expected, 0.02 * expected) << mesh.name;
@@ -195,11 +198,13 @@ TEST(Points, PartsInsideOutAreFilledAndHollowsAreNot) {
     for (Triangle& t : turned.triangles) std::swap(t[1], t[2]);
     const double one = std::fabs(enclosed_volume(ball));
     const TriMesh hollow = stretched(turned, {0.5, 0.5, 0.5});
-    for (const auto& [mesh, volumes] : {std::pair(together("turned", moved(ball, {9, 0, 0}), turned), 2.0),
-                                        {together("hollow", ball, hollow), 1 - 0.125},
-                                        {together("within another", stretched(ball, {3, 3, 3}), turned), 26.0},
-                                        {together("both", moved(turned, {9, 0, 0}), together("hollow", ball, hollow)),
-                                         2 - 0.125}})
+    std::vector<std::pair<TriMesh, double>> cases = {
+        {together("both", moved(turned, {9, 0, 0}), together("hollow", ball, hollow)), 2 - 0.125}};
+    if (!light())
+        cases.insert(cases.end(), {{together("turned", moved(ball, {9, 0, 0}), turned), 2.0},
+                                   {together("hollow", ball, hollow), 1 - 0.125},
+                                   {together("within another", stretched(ball, {3, 3, 3}), turned), 26.0}});
+    for (const auto& [mesh, volumes] : cases)
         EXPECT_NEAR(volume(filled(without_faces(mesh))), volumes * one, 0.03 * volumes * one) << mesh.name;
 }
 
@@ -240,6 +245,7 @@ TEST(Points, AreBounded) {
     for (int i = 0; i < 40; ++i) thin.vertices.push_back({1.0 * (i % 2), 1e-9 * i, 1e-9 * (i % 3)});
     for (int32_t i = 2; i < 40; ++i) thin.triangles.push_back({0, i - 1, i});
     ASSERT_LT((Shell{thin.vertices, thin.triangles}.points(2000, 0.001).size()), 10000U);
+    if (light()) return;  // exact numbers for a minute, which other tests use too
     try {
         EXPECT_LT(filled(without_faces(thin)).mesh.vertices.size(), 10000U);
     } catch (const Error& error) {
