@@ -34,6 +34,7 @@ class Result:
     skipped: int = 0
     failures: list = dataclasses.field(default_factory=list)
     times: list = dataclasses.field(default_factory=list)  # (seconds, the test) of those that tell
+    tiers: list = dataclasses.field(default_factory=list)  # a line for each, which says how it went
 
     def __iadd__(self, other):
         self.passed += other.passed
@@ -41,7 +42,17 @@ class Result:
         self.skipped += other.skipped
         self.failures += other.failures
         self.times += other.times
+        self.tiers += other.tiers
         return self
+
+
+def side_by_side(tests, arguments, count):
+    """The sum, in their order, of the Results of a function called with each argument, so many calls at once."""
+    total = Result()
+    with concurrent.futures.ThreadPoolExecutor(count) as pool:
+        for result in pool.map(tests, arguments):
+            total += result
+    return total
 
 
 # ---- Steps of the tiers

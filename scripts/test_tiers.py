@@ -5,7 +5,6 @@ at once: each waits now and then, for a window, a link or its last test.
 """
 
 import argparse
-import concurrent.futures
 import os
 import re
 import shutil
@@ -13,7 +12,7 @@ import sys
 import time
 
 from test_steps import (OUTPUT, ROOT, VENV, CouldNotRun, Result, begin_setting_up, broken, build, ctest, gtests, installed,
-                        make_packages, output_of, own_runner, pytest, require, set_up)
+                        make_packages, output_of, own_runner, pytest, require, set_up, side_by_side)
 
 BENCHMARK = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # of which the tier quality scores a part
 HAS_BENCHMARK = bool(os.environ.get("PARTWHEEL_PSB")) or BENCHMARK.exists()
@@ -146,11 +145,7 @@ def addon():
     interpreters = {"blender": (blender, legacy)} | {
         f"bpy-{version}": ([VENV / f"bpy-{version}/bin/python"], extension)
         for version in reversed(versions)}  # the longest first: oldest and newest run all tests
-    result = Result()
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for each in pool.map(lambda name: in_blender(name, *interpreters[name]), interpreters):
-            result += each
-    return result
+    return side_by_side(lambda name: in_blender(name, *interpreters[name]), interpreters, os.cpu_count())
 
 
 def in_blender(name, interpreter, package, *tests):
@@ -216,22 +211,23 @@ def has_suite(suite):
     return True
 
 
-@needs(begins=[*PACKAGES, "setup_core", "setup_hooks", f"setup_bpy {QUICK_BPY}", "setup_blender", "setup_display"])
+@needs(*PACKAGES, f"setup_bpy {QUICK_BPY}")
+def quick_addon():
+    return in_blender(f"bpy-{QUICK_BPY}", [VENV / f"bpy-{QUICK_BPY}/bin/python"], make_packages()[0], *QUICK_ADDON)
+
+
+@needs(*PACKAGES, "setup_core", "setup_blender", "setup_display")
+def quick_gui():
+    return in_windows(make_packages()[1], *QUICK_GUI)
+
+
+QUICK = (native, core, quick_addon, quick_gui)
+
+
+@needs(begins=[function for part in QUICK for function in part.needs])
 def quick():
     """For every day: all of native and core, the heart of the add-on in one bpy, and a click and a notch in a window."""
-    @needs(*PACKAGES, f"setup_bpy {QUICK_BPY}")
-    def without_window():
-        return in_blender(f"bpy-{QUICK_BPY}", [VENV / f"bpy-{QUICK_BPY}/bin/python"], make_packages()[0], *QUICK_ADDON)
-
-    @needs(*PACKAGES, "setup_core", "setup_blender", "setup_display")
-    def with_window():
-        return in_windows(make_packages()[1], *QUICK_GUI)
-
-    result = Result()
-    with concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool:
-        for each in pool.map(set_up_and_run, (native, core, without_window, with_window)):
-            result += each
-    return result
+    return side_by_side(set_up_and_run, QUICK, AT_ONCE)
 
 
 @needs(*PACKAGES, "setup_core", "setup_bpy", "setup_workflows", begins=["setup_newest sid"])
@@ -264,7 +260,7 @@ def set_up_and_run(tests):
 
 
 def run(name):
-    """A tier's Result, and the line that says so."""
+    """A tier's Result, told when it is there."""
     print(f"== {name}: {TIERS[name].__doc__}\n", end="")  # in one piece, beside another tier's
     began = time.monotonic()
     try:
@@ -272,10 +268,10 @@ def run(name):
     except CouldNotRun as reason:
         result = broken(f"{name} could not run: {reason}")
     skipped = f", {result.skipped} skipped" if result.skipped else ""
-    line = (f"{name:<12}{result.passed} passed, {result.failed} failed{skipped}, "
-            f"{time.monotonic() - began:.0f} s")
-    print("".join(f"   {each}\n" for each in (*(f"FAILED {failure}" for failure in result.failures), line)), end="")
-    return result, line
+    result.tiers = [f"{name:<12}{result.passed} passed, {result.failed} failed{skipped}, {time.monotonic() - began:.0f} s"]
+    told = [*(f"FAILED {failure}" for failure in result.failures), *result.tiers]
+    print("".join(f"   {line}\n" for line in told), end="")
+    return result
 
 
 def main():
@@ -289,18 +285,12 @@ def main():
 
     OUTPUT.mkdir(parents=True, exist_ok=True)
     begin_setting_up(*(function for name in names for function in TIERS[name].begins))
-    total = Result()
-    lines = []
-    with concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool:
-        for result, line in pool.map(run, names):
-            total += result
-            lines.append(line)
-
+    total = side_by_side(run, names, AT_ONCE)
     print("== the slowest tests")
     for seconds, test in sorted(total.times, reverse=True)[:SLOWEST]:
         print(f"   {seconds:6.1f} s  {test}")
     print("== all tiers")
-    print("".join(f"   {line}\n" for line in lines), end="")
+    print("".join(f"   {line}\n" for line in total.tiers), end="")
     print(f"{total.passed} passed, {total.failed} failed")
     return 1 if total.failed else 0
 

@@ -6,7 +6,7 @@
 
 namespace partwheel::test {
 
-// True if the environment asks for smaller sizes (PARTWHEEL_TEST_LIGHT=1): nothing is skipped, only repeated less.
+// True if the environment asks for less (PARTWHEEL_TEST_LIGHT=1): smaller sizes, and fewer models that take the same code.
 inline bool light() {
     const char* value = std::getenv("PARTWHEEL_TEST_LIGHT");
     return value != nullptr && std::string_view(value) != "" && std::string_view(value) != "0";
