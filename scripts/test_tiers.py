@@ -27,13 +27,13 @@ MORE_OF_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "commands", 
                   "menu", "open_mesh", "overlays", "panel_solids", "pick_and_click", "quad_view", "recover", "restore",
                   "select_modes", "tool_keys", "while_building", "words")
 THREADED = "[Tt]hread|ProgressNever"  # the names of tests in which threads meet
-# What the sanitizers have seen already: native tests that build the same once more to compare results, and files of core
+# What the sanitizers have seen already: native tests that build the same once more to compare or count, and files of core
 # about what the package does with numbers and texts, where the library is called as in the other files, or as in the native
 # tests: "border", "convex", "progress", "regroup", which take long.
-COMPARED = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|SameBytes|TheSameForAny"
+COMPARED = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|SameBytes|TheSameForAny|AreFew"
 PACKAGES_OWN = ("bones", "border", "command_line", "compatible", "convex", "cut", "docs", "docs_commands", "hooks", "house",
-                "joint", "likeness", "locale", "primitives", "printing", "progress", "regroup", "seams", "shipping", "symmetry",
-                "words", "worker")
+                "interpreter", "joint", "likeness", "locale", "meshes", "primitives", "printing", "progress", "regroup", "seams",
+                "shipping", "symmetry", "versions", "words", "worker")
 # What scripts/test quick plays: how the add-on meets Blender, and the main job in a window.
 QUICK_ADDON = ("test_registration", "test_select", "test_modal", "test_saved", "test_staleness", "test_related", "test_api",
                "test_command")

@@ -15,7 +15,8 @@ def denoise(light, normal, depth, strength=1.0, passes=5):
     large a difference of light, relative to the light there, may be grain; between neighbours any may, so that no dark
     speck stays.
     """
-    light = numpy.nan_to_num(light.astype(numpy.float32))  # at slivers of a hull a path may end in no number
+    # At slivers of a hull a path may end in no number, or in one without end.
+    light = numpy.nan_to_num(light.astype(numpy.float32), posinf=0.0)
     depth = numpy.minimum(depth, depth.min() * 100.0)
     slope = numpy.maximum(*(abs(part) for part in numpy.gradient(depth))) + 2e-3 * depth
     for step in range(passes):

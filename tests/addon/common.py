@@ -21,7 +21,14 @@ MESHES = Path(__file__).resolve().parents[2] / "build" / "deps" / "meshes"
 def oldest_and_newest(tests):
     """For a test, or a class of them, that takes long and asks more of our own code than of Blender: the versions between
     are left out."""
-    tests.everywhere = False
+    tests.blenders = "oldest", "newest"
+    return tests
+
+
+def newest(tests):
+    """For those that take longest, and ask our own code alone: what goes on in the worker, say, or the shape of what it
+    made."""
+    tests.blenders = "newest",
     return tests
 
 

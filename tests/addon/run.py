@@ -43,13 +43,13 @@ def installed(zip_path):
 
 
 def for_this_blender(suite):
-    """The tests of a suite: all of them in the oldest and the newest Blender, see common.oldest_and_newest."""
-    between = (4, 0, 0) <= bpy.app.version < (5, 0, 0)
+    """The tests of a suite: all of them in the newest Blender, see common.oldest_and_newest and common.newest."""
+    this = "newest" if bpy.app.version >= (5, 0, 0) else "between" if bpy.app.version >= (4, 0, 0) else "oldest"
     for each in suite:
         if isinstance(each, unittest.TestSuite):
             yield from for_this_blender(each)
-        elif not between or all(getattr(marked, "everywhere", True)
-                                for marked in (each, getattr(each, each.id().rsplit(".")[-1], None))):
+        elif all(this in getattr(marked, "blenders", (this,))
+                 for marked in (each, getattr(each, each.id().rsplit(".")[-1], None))):
             yield each
 
 

@@ -120,7 +120,7 @@ def test_seams_that_only_seem_open_are_none(elephant):
     assert built.summary[:5] == closed.summary[:5] and np.array_equal(built.leaf, closed.leaf)
 
 
-@pytest.mark.parametrize("gap", [1e-5, 1e-4])
+@pytest.mark.parametrize("gap", shapes.lighter([1e-5, 1e-4], 1))
 def test_soups_of_triangles_come_to_few(elephant, gap):
     """Triangles moved apart have nothing in common: their vertices are united by cells."""
     size = np.ptp(elephant.vertices)

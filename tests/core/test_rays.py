@@ -21,7 +21,7 @@ def every(vertices, triangles, origin, direction, beyond=0.0):
     return (hits[np.argmin(distance[hits])], distance[hits].min()) if len(hits) else None
 
 
-@pytest.mark.parametrize("shuffled", (False, True))
+@pytest.mark.parametrize("shuffled", shapes.lighter((False, True), 1))
 def test_as_by_every_triangle(shuffled):
     draw = np.random.default_rng(1)
     vertices, triangles, *_ = shapes.off("homer")

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+import shapes
 from partwheel import Hierarchy, PartwheelError, Status
 from partwheel.library import Arrays
 
@@ -95,7 +96,7 @@ def ask(h):
         assert error.status in {Status.DATA, Status.EMPTY}
 
 
-@pytest.mark.parametrize("name", ["cube", "L", "three cubes apart", "star"])
+@pytest.mark.parametrize("name", shapes.lighter(["star", "cube", "L", "three cubes apart"], 1))
 def test_forged_bytes_are_refused_or_harmless(name, build_shape):
     sound = build_shape(name)[1].save()
     assert hash_of(sound[:-8]) == sound[-8:]
