@@ -17,9 +17,8 @@ COLUMNS = ("model", "from", "faces", "tets", "nodes", "saved kB", *(f"{stage} s"
 def row(report):
     """The cells of one model, in the order of COLUMNS."""
     if "refused" in report:
-        refused = report["refused"]
         blank = [""] * (len(COLUMNS) - 4)
-        return [report["model"], report["source"], report["faces"], *blank, f"refused: {refused['name']}"]
+        return [report["model"], report["source"], report["faces"], *blank, "refused"]
     seconds, clicks = report["seconds"], report["clicks"]
     return [report["model"], report["source"], report["faces"], report["tetrahedra"], report["nodes"],
             round(report["saved_bytes"] / 1000), *(f"{seconds[stage]:.3f}" for stage in STAGES),
@@ -40,7 +39,7 @@ def main():
     reports = [json.loads((folder / "layers" / name / "report.json").read_text("utf-8")) for name in sys.argv[2:]]
     rows = [COLUMNS, *map(row, reports)]
     accounts = [f"{report['model']}: {report['account']}" for report in reports if report.get("account")]
-    refusals = [f"{report['model']}: {report['refused']['sentence']}" for report in reports if "refused" in report]
+    refusals = [f"{report['model']}: {report['refused']}" for report in reports if "refused" in report]
     text = "\n".join([markdown(rows), "", *accounts, *refusals])
     (folder / "table.md").write_text(text + "\n", "utf-8")
     with open(folder / "table.csv", "w", newline="", encoding="utf-8") as file:
