@@ -236,7 +236,7 @@ TEST(ConvexParts, CoverTheSolidWithLittleBesides) {
     for (const TriMesh& mesh : models()) {
         const Hierarchy hierarchy = loaded(mesh);
         double before = HUGE_VAL;
-        for (const size_t hulls : {2u, 8u, 24u}) {
+        for (const size_t hulls : sized<std::vector<size_t>>({2, 8, 24}, {2, 24})) {
             const auto parts = parts_of(hierarchy, {.hulls = hulls});
             EXPECT_LE(parts.size(), hulls);
             expect_cover(hierarchy, parts);
@@ -281,7 +281,7 @@ TEST(ConvexParts, OfSeveralPiecesHaveOneEach) {
 TEST(ConvexParts, HaveNoMoreVerticesThanAskedForAndStillCover) {
     for (const TriMesh& mesh : models()) {
         const Hierarchy hierarchy = loaded(mesh);
-        for (const size_t most : {8u, 20u, 64u}) {
+        for (const size_t most : sized<std::vector<size_t>>({8, 20, 64}, {20})) {
             const auto parts = parts_of(hierarchy, {.hulls = 8, .max_vertices = most});
             for (const ConvexPart& part : parts) EXPECT_LE(part.hull.vertices.size(), most);
             expect_cover(hierarchy, parts);
