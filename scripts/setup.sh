@@ -31,6 +31,7 @@ bpy_versions="4.2 4.5 5.0"
 # The distribution's own tools only: another Python on the PATH breaks Debian's Blender.
 export PATH=/usr/sbin:/usr/bin:/sbin:/bin
 unset PYTHONPATH PYTHONHOME PYTHONSTARTUP VIRTUAL_ENV
+unset PYTHONDONTWRITEBYTECODE # each of a thousand processes would compile what it imports
 
 say() { printf '%s\n' "$*"; }
 
