@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Closed surfaces for tests: vertices (V,3), triangles (T,3), faces (T,) the polygon of each triangle, face_count."""
+"""Closed surfaces for tests: vertices (V,3), triangles (T,3), faces (T,) the polygon of each triangle, face_count; and how
+many of them a test runs on."""
 
 import itertools
 import os
