@@ -107,10 +107,10 @@ def installed(venv):
     return str(packages)
 
 
-def ctest(log, preset, *options):
+def ctest(log, preset, *options, **environment):
     report = fresh(log, "xml")
     code = run(log, ["ctest", "--preset", preset, "--parallel", str(os.cpu_count()), "--output-junit", report,
-                     *options])
+                     *options], os.environ | environment)
     return read_junit(log, report, code)
 
 

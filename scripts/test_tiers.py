@@ -34,6 +34,7 @@ COMPARED = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|Sam
 PACKAGES_OWN = ("bones", "border", "command_line", "compatible", "convex", "cut", "docs", "docs_commands", "hooks", "house",
                 "interpreter", "joint", "likeness", "locale", "meshes", "primitives", "printing", "progress", "regroup", "seams",
                 "shipping", "symmetry", "versions", "words", "worker")
+LIGHT = {"PARTWHEEL_TEST_LIGHT": "1"}  # fewer models that take the same code, smaller sizes
 # What scripts/test quick plays: how the add-on meets Blender, and the main job in a window.
 QUICK_ADDON = ("test_registration", "test_select", "test_modal", "test_saved", "test_staleness", "test_related", "test_api",
                "test_command")
@@ -54,10 +55,10 @@ def needs(*functions, begins=()):
 
 
 @needs("setup_build")
-def native():
+def native(**environment):
     """GoogleTest through CTest, as shipped."""
     build("native", "release")
-    return ctest("native", "release")
+    return ctest("native", "release", **environment)
 
 
 @needs("setup_build", "setup_core")
@@ -68,8 +69,8 @@ def sanitizers():
     result = ctest("sanitizers-native", "asan", "--exclude-regex", COMPARED)
     tests = [path for path in sorted((ROOT / "tests/core").glob("test_*.py")) if path.stem[5:] not in PACKAGES_OWN]
     result += pytest("sanitizers-core", *tests, shared="loadfile", LD_PRELOAD=runtimes(), ASAN_OPTIONS="detect_leaks=0",
-                     UBSAN_OPTIONS="print_stacktrace=1", PARTWHEEL_TEST_LIGHT="1", PARTWHEEL_TEST_COMMA="1",
-                     PARTWHEEL_LIBRARY=str(ROOT / "build/asan/libpartwheel.so"))
+                     UBSAN_OPTIONS="print_stacktrace=1", PARTWHEEL_TEST_COMMA="1",
+                     PARTWHEEL_LIBRARY=str(ROOT / "build/asan/libpartwheel.so"), **LIGHT)
     return result
 
 
@@ -105,11 +106,11 @@ def determinism():
 
 
 @needs(*PACKAGES, "setup_core", "setup_hooks")
-def core():
+def core(**environment):
     """The Python package as installed from its wheel, and the installed library, without Blender."""
     build("core", "release", "partwheel", "partwheel_checks")
     make_packages()
-    return pytest("core", "tests/core", shared="loadfile", PARTWHEEL_PACKAGES=installed("core"))
+    return pytest("core", "tests/core", shared="loadfile", PARTWHEEL_PACKAGES=installed("core"), **environment)
 
 
 @needs(*PACKAGES, "setup_batch")
@@ -211,6 +212,16 @@ def has_suite(suite):
     return True
 
 
+@needs(*native.needs)
+def quick_native():
+    return native(**LIGHT)
+
+
+@needs(*core.needs)
+def quick_core():
+    return core(**LIGHT)
+
+
 @needs(*PACKAGES, f"setup_bpy {QUICK_BPY}")
 def quick_addon():
     return in_blender(f"bpy-{QUICK_BPY}", [VENV / f"bpy-{QUICK_BPY}/bin/python"], make_packages()[0], *QUICK_ADDON)
@@ -221,12 +232,13 @@ def quick_gui():
     return in_windows(make_packages()[1], *QUICK_GUI)
 
 
-QUICK = (native, core, quick_addon, quick_gui)
+QUICK = (quick_native, quick_core, quick_addon, quick_gui)
 
 
 @needs(begins=[function for part in QUICK for function in part.needs])
 def quick():
-    """For every day: all of native and core, the heart of the add-on in one bpy, and a click and a notch in a window."""
+    """For every day: all of native and core, on fewer models; the heart of the add-on in one bpy; and a click and a notch in a
+    window."""
     return side_by_side(set_up_and_run, QUICK, AT_ONCE)
 
 
