@@ -9,8 +9,9 @@ import igl
 import manifold3d
 import numpy as np
 import pytest
+import shapes
 import trimesh
-from conftest import PLAIN, ROOT
+from conftest import ROOT
 from partwheel import Hierarchy, meshes
 from partwheel.cut import Cut
 from partwheel.cut.printing import ROOT as DEEP
@@ -21,7 +22,7 @@ from test_command_line import run
 GAP, WALL = 0.2, 1.2
 COS = np.cos(np.pi / SIDES)
 MODELS = {"homer": 6, "elephant": 9, "man": 8, "cow": 8}  # into so many parts; the last two are broken
-if not PLAIN:
+if shapes.LIGHT:
     del MODELS["man"]  # takes minutes, and the cow is repaired as well
 ALL = {"elephant", "man"}  # in which each cut has a peg; homer's neck is too narrow where his arms begin
 
