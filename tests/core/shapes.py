@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 MESHES = Path(__file__).resolve().parents[2] / "build" / "deps" / "meshes"
-LIGHT = bool(os.environ.get("PARTWHEEL_TEST_LIGHT"))
+LIGHT = os.environ.get("PARTWHEEL_TEST_LIGHT", "0") not in ("", "0")  # as in tests/native/support/sizes.h
 
 
 def lighter(arguments, count):
