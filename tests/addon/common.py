@@ -18,18 +18,14 @@ NEVER = 600  # seconds until something counts as never happening, however busy t
 MESHES = Path(__file__).resolve().parents[2] / "build" / "deps" / "meshes"
 
 
-def oldest_and_newest(tests):
-    """For a test, or a class of them, that takes long and asks more of our own code than of Blender: the versions between
-    are left out."""
-    tests.blenders = "oldest", "newest"
-    return tests
-
-
-def newest(tests):
-    """For those that take longest, and ask our own code alone: what goes on in the worker, say, or the shape of what it
-    made."""
-    tests.blenders = "newest",
-    return tests
+def only_in(*blenders):
+    """For a test, or a class of them, that is not for each Blender, "oldest", "between" and "newest". What takes long and asks
+    more of our own code than of Blender leaves out those between; what takes longest, and asks our own code alone (what goes
+    on in the worker, say, or the shape of what it made), the oldest too."""
+    def marked(tests):
+        tests.blenders = blenders
+        return tests
+    return marked
 
 
 def part(name):

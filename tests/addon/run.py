@@ -43,7 +43,7 @@ def installed(zip_path):
 
 
 def for_this_blender(suite):
-    """The tests of a suite: all of them in the newest Blender, see common.oldest_and_newest and common.newest."""
+    """The tests of a suite: those that are for this Blender, see common.only_in."""
     this = "newest" if bpy.app.version >= (5, 0, 0) else "between" if bpy.app.version >= (4, 0, 0) else "oldest"
     for each in suite:
         if isinstance(each, unittest.TestSuite):

@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 import common
 import numpy as np
-from common import BOX, SHEET, MeshTest, oldest_and_newest, package, part, read_off
+from common import BOX, SHEET, MeshTest, only_in, package, part, read_off
 
 
 def contents(mesh):
@@ -30,7 +30,7 @@ class Build(MeshTest):
         self.assertEqual(h.save(), expected.save())
         self.assertEqual(len(h.order), len(obj.data.polygons))
 
-    @oldest_and_newest
+    @only_in("oldest", "newest")
     def test_triangles_quads_and_ngons(self):
         for name in ("hand", "cube_quad", "cross_quad", "P", "corner_poly", "homer"):
             with self.subTest(name):

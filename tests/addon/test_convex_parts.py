@@ -3,7 +3,7 @@
 
 import bpy
 import numpy as np
-from common import BOX, MeshTest, oldest_and_newest, part, read_off
+from common import BOX, MeshTest, only_in, part, read_off
 from mathutils import Matrix, Vector
 from mathutils.bvhtree import BVHTree
 from mathutils.geometry import convex_hull_2d
@@ -71,7 +71,7 @@ class ConvexParts(MeshTest):
                         outside.append(distance if (vertex.co - near).dot(normal) > 0 else 0)
                     self.assertLess(min(outside), 1e-5 * size)
 
-    @oldest_and_newest
+    @only_in("oldest", "newest")
     def test_the_error_is_a_share_of_the_diagonal(self):
         obj = self.add(*read_off("hand"))
         diagonal = Vector(np.ptp([vertex.co[:] for vertex in obj.data.vertices], axis=0)).length
@@ -102,7 +102,7 @@ class ConvexParts(MeshTest):
                     self.assertIsNone(bpy.context.active_object.rigid_body)
                     bpy.ops.object.mode_set(mode="OBJECT")
 
-    @oldest_and_newest
+    @only_in("oldest", "newest")
     def test_refused_and_nothing_has_changed(self):
         obj = self.add(*read_off("hand"), "hand")
         bpy.ops.mesh.partwheel_convex(hulls=3)
@@ -201,7 +201,7 @@ class ConvexParts(MeshTest):
         for child in obj.children:
             self.assertGreater(places(child)[:, 2].min(), -0.01)  # they have gone with it
 
-    @oldest_and_newest
+    @only_in("oldest", "newest")
     def test_models_come_to_rest(self):
         """With no vertex below the floor, a hull on it, and the middle of their weight above what they stand on."""
         for name, turn in (("homer", (0.4, 0.3, 0)), ("cow", (1, 0.5, 0.2))):

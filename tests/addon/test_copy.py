@@ -6,7 +6,7 @@ import itertools
 import bmesh
 import bpy
 import numpy
-from common import oldest_and_newest, package, part, read_off
+from common import only_in, package, part, read_off
 from mathutils import Vector
 from solid_case import SolidTest, arrays, caps, volume
 
@@ -203,7 +203,7 @@ class Copy(SolidTest):
                 self.assertGreaterEqual(len(own), len(once))  # one beside a pinched edge is halved
                 self.assertLess(abs(sum(own) - sum(once.values())), 1e-5 * sum(own))
 
-    @oldest_and_newest
+    @only_in("oldest", "newest")
     def test_of_a_repaired_source_it_is_what_its_tetrahedra_fill(self):
         """With holes, polygons wound anyhow, doubles, inside out: the volume is that of the tetrahedra, not of what
         some cap over the border leaves; the polygons are the part's own, with their layers."""
@@ -258,7 +258,7 @@ class Copy(SolidTest):
         share = hierarchy.area / hierarchy.area[-1]
         return obj, hierarchy, rng.permutation(numpy.flatnonzero((share > 0.01) & (share < 0.8))).tolist()
 
-    @oldest_and_newest
+    @only_in("oldest", "newest")
     def test_filled_from_points_it_is_nearly_what_its_tetrahedra_fill(self):
         """The part's own polygons, and caps that follow the facets inside. A few of the parts are other than what they
         fill, one even inside out: of few polygons and many facets, whose borders are far from each other."""

@@ -5,14 +5,13 @@ import sys
 import tempfile
 from pathlib import Path
 
-from common import MESHES, MeshTest
+from common import MESHES, MeshTest, only_in
 
 PARTS = Path(__file__).resolve().parents[2] / "scripts" / "demo_parts"
 
 
+@only_in("oldest")  # the distribution's, in which the demo runs
 class Demo(MeshTest):
-    blenders = "oldest",  # the distribution's, in which the demo runs
-
     def test_a_sheet_is_told_of_as_refused(self):
         sys.path.insert(0, str(PARTS))
         self.addCleanup(sys.path.remove, str(PARTS))

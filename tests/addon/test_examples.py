@@ -9,7 +9,7 @@ from pathlib import Path
 import bmesh
 import bpy
 import numpy as np
-from common import MeshTest, oldest_and_newest, part, read_off, selected
+from common import MeshTest, only_in, part, read_off, selected
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "scripting.md"
 ACTIVE, BY_API = [text for text in re.findall(r"```python\n(.*?)```", PAGE.read_text("utf-8"), re.S)
@@ -28,7 +28,7 @@ def with_42(name, face):
     return vertices, polygons
 
 
-@oldest_and_newest
+@only_in("oldest", "newest")
 class Examples(MeshTest):
     def test_shell_command(self):
         commands = re.findall(r"^    blender --command partwheel (.+)$", PAGE.read_text("utf-8"), re.M)

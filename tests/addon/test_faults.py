@@ -16,7 +16,7 @@ import bmesh
 import bpy
 import common
 import numpy as np
-from common import newest, package, part, read_off, until
+from common import only_in, package, part, read_off, until
 from solid_case import SolidTest
 from test_modal import FakeContext, event, prepared, show, view
 from test_swap import limb
@@ -77,7 +77,7 @@ def operator(cls, options, draws):
     return tool
 
 
-@newest
+@only_in("newest")
 class Faults(SolidTest):
     def everything(self):
         """All that an operator could leave behind."""

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import bpy
 import common
-from common import MeshTest, alive, flags, newest, oldest_and_newest, package, part, read_off, until
+from common import MeshTest, alive, flags, only_in, package, part, read_off, until
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "faults"))
 import faults  # noqa: E402
@@ -57,7 +57,7 @@ class Isolation(MeshTest):
         self.assertIsNone(part("parts.registry").hierarchy(obj))
         self.assertEqual([thread.name for thread in threading.enumerate() if thread.name.startswith("partwheel-")], [])
 
-    @newest
+    @only_in("newest")
     def test_crashes_at_each_stage(self):
         obj, before = self.edited()
         for stage in package().Stage:
@@ -69,7 +69,7 @@ class Isolation(MeshTest):
                     self.assertIn("The worker process", message)
                     self.unharmed(obj, before)
 
-    @newest
+    @only_in("newest")
     def test_bad_memory_at_each_stage(self):
         obj, before = self.edited()
         for stage in package().Stage:
@@ -91,7 +91,7 @@ class Isolation(MeshTest):
             part("parts.picks").forget(obj)
         self.unharmed(obj, before)
 
-    @newest
+    @only_in("newest")
     def test_endless_loops_and_stopped_workers_at_each_stage(self):
         obj, before = self.edited()
         build = part("parts.builds").Job
@@ -104,7 +104,7 @@ class Isolation(MeshTest):
                     self.assertRegex(self.refusal(face_index=3), "was stopped|did not begin in 0.3")
                     self.unharmed(obj, before)
 
-    @newest
+    @only_in("newest")
     def test_memory_at_each_stage(self):
         obj, before = self.edited("hand")
         available = part("parts.builds").available_memory
@@ -155,7 +155,7 @@ class Isolation(MeshTest):
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=3), {"FINISHED"})
         self.assertEqual(len(part("parts.registry").hierarchy(obj).order), len(obj.data.polygons))
 
-    @oldest_and_newest
+    @only_in("oldest", "newest")
     def test_a_hostile_path(self):
         """Where python and python3 of the PATH are shims that fail, hang, or are not there, Blender started anew finds
         parts all the same: in Debian's, sys.executable is what the PATH has."""

@@ -14,7 +14,7 @@ import bpy
 import common
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from common import (BOX, SHEET, MeshTest, WritesBack, alive, flags, oldest_and_newest, package, part, read_off, selected,
+from common import (BOX, SHEET, MeshTest, WritesBack, alive, flags, only_in, package, part, read_off, selected,
                     until)
 from gate import Gate
 from mathutils import Euler, Matrix, Vector
@@ -773,7 +773,7 @@ class WhileBuilding(HeldWorkers):
             self.assertEqual(part("parts.registry").hierarchy(self.obj) is None, over == "ESC")
 
 
-@oldest_and_newest
+@only_in("oldest", "newest")
 class ManyMeshes(HeldWorkers):
     """More clicks than one while parts are being found, on the same mesh and on others."""
 

@@ -6,7 +6,7 @@ import json
 import bmesh
 import bpy
 import numpy
-from common import newest, part, read_off
+from common import only_in, part, read_off
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 from partwheel.cut import Cut
@@ -161,7 +161,7 @@ class Written(PartsCase):
         self.assertTrue(all(obj.data.materials[slot] == old[was] for slot, was in zip(index, before)))
         self.assertTrue(all(len({*cut.labels[index == slot]}) == 1 for slot in range(len(cut) + 1)))
 
-    @newest
+    @only_in("newest")
     def test_objects_are_closed_and_make_the_whole(self):
         for name, obj, cut in self.each(EXACT + BROKEN + REPAIRED):
             for each in (cut, cut.merge(0, len(cut) - 1)):

@@ -3,7 +3,7 @@
 
 import bpy
 import numpy
-from common import newest, part
+from common import only_in, part
 from test_parts_to import PartsCase, read
 from uv_measures import islands, measured
 
@@ -62,7 +62,7 @@ def islands_by_seams(mesh):
 
 
 class Seams(PartsCase):
-    @newest
+    @only_in("newest")
     def test_each_island_is_a_disk(self):
         for name, obj, cut in self.each():
             obj.data.edges.foreach_set("use_seam", numpy.arange(len(obj.data.edges)) % 7 == 0)  # the artist's, that go
@@ -74,7 +74,7 @@ class Seams(PartsCase):
             part("api").write(obj, cut, {"SEAMS"})
             self.assertTrue((seams(obj.data) == before).all())
 
-    @newest
+    @only_in("newest")
     def test_polygons_of_more_corners(self):
         for add in (bpy.ops.mesh.primitive_torus_add, bpy.ops.mesh.primitive_cylinder_add,
                     bpy.ops.mesh.primitive_uv_sphere_add, bpy.ops.mesh.primitive_monkey_add):
@@ -87,7 +87,7 @@ class Seams(PartsCase):
                 self.assertEqual({*euler}, {1}, (obj.name, count))
                 self.assertGreaterEqual(len(euler), count)
 
-    @newest
+    @only_in("newest")
     def test_unwrapped_as_the_seams_say_with_fewer_islands_than_smart_uv(self):
         for name, obj, cut in self.each():
             part("api").write(obj, cut, {"SEAMS"}, unwrap=True)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import bpy
 import common
-from common import BOX, MeshTest, newest, package, part, read_off
+from common import BOX, MeshTest, only_in, package, part, read_off
 
 
 class Saved(MeshTest):
@@ -201,7 +201,7 @@ class Saved(MeshTest):
     def test_sound_bytes_are_taken(self):
         self.assertIsNotNone(self.after_tampering(lambda packed: packed))
 
-    @newest
+    @only_in("newest")
     def test_tampered_bytes_are_refused(self):
         draw = random.Random(3)
         stored = part("parts.stored")

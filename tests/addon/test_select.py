@@ -5,7 +5,7 @@ import random
 
 import bmesh
 import bpy
-from common import BOX, SHEET, MeshTest, flags, oldest_and_newest, part, read_off, selected
+from common import BOX, SHEET, MeshTest, flags, only_in, part, read_off, selected
 from mathutils import Vector
 
 
@@ -14,7 +14,7 @@ class Select(MeshTest):
         self.assertEqual(bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", face_index=face, level=level, **more),
                          {"FINISHED"})
 
-    @oldest_and_newest
+    @only_in("oldest", "newest")
     def test_every_level_of_real_meshes(self):
         for name in ("hand", "homer", "cross_quad", "P", "corner_poly"):
             with self.subTest(name):

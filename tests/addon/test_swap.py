@@ -4,7 +4,7 @@ another library says, one operator does it all, and what is refused changes noth
 
 import bpy
 import numpy
-from common import oldest_and_newest, package, part, read_off
+from common import only_in, package, part, read_off
 from mathutils import Matrix
 from solid_case import SolidTest, arrays, volume
 from test_unite import reference, triangles
@@ -48,7 +48,7 @@ class Swap(SolidTest):
         off = max(abs(a - b) for ours, theirs in zip(matrix, Matrix()) for a, b in zip(ours, theirs))
         self.assertLess(off, tolerance)
 
-    @oldest_and_newest
+    @only_in("oldest", "newest")
     def test_a_known_motion_is_found_again(self):
         """A duplicate that was moved, turned and scaled: each part's own twin is its first, and comes to its place."""
         swapping = part("compose.swapping")
@@ -79,7 +79,7 @@ class Swap(SolidTest):
         self.assertSolid(model.data)
         self.assertLess(abs(volume(model.data) / whole - 1), 0.02)
 
-    @oldest_and_newest
+    @only_in("oldest", "newest")
     def test_volume_by_inclusion_and_exclusion(self):
         """Limbs of other models: what is left, what was placed and the union, as manifold3d has them."""
         swapping, pairs, measured = part("compose.swapping"), [], []
@@ -134,7 +134,7 @@ class Swap(SolidTest):
         self.assertGreater(abs(united[0] / united[1] - 1), 1e-4)
         self.assertAlmostEqual(volume(again.data), united[1], delta=1e-5 * united[1])
 
-    @oldest_and_newest
+    @only_in("oldest", "newest")
     def test_legs_of_one_animal(self):
         """The first that is offered for a leg is a leg, the opposite one is among the first two, and it fits."""
         api = part("api")
