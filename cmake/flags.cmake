@@ -28,7 +28,6 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-frounding-math)
 endif()
 
-get_directory_property(partwheel_plain_options COMPILE_OPTIONS)  # of the release
 if(PARTWHEEL_SANITIZE)
   add_compile_options(-fsanitize=${PARTWHEEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${PARTWHEEL_SANITIZE})

@@ -22,7 +22,9 @@ target_link_libraries(partwheel_fuzzed PUBLIC partwheel_engine GTest::gtest)
 file(GLOB programs CONFIGURE_DEPENDS tests/fuzz/*_fuzzer.cpp)
 foreach(source ${programs})
   get_filename_component(name "${source}" NAME_WE)
-  add_executable(${name} "${source}" $<TARGET_OBJECTS:partwheel_test_sources>)
+  add_executable(${name} "${source}"
+                         $<FILTER:$<TARGET_OBJECTS:partwheel_engine>,EXCLUDE,/packed\\.cpp> $<TARGET_OBJECTS:partwheel_lower_rungs>
+                         $<TARGET_OBJECTS:partwheel_test_sources>)
   target_link_libraries(${name} PRIVATE partwheel_fuzzed)
   target_link_options(${name} PRIVATE -fsanitize=fuzzer)
 endforeach()
