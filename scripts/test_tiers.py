@@ -17,15 +17,17 @@ from test_steps import (OUTPUT, ROOT, VENV, CouldNotRun, Result, begin_setting_u
 BENCHMARK = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # of which the tier quality scores a part
 HAS_BENCHMARK = bool(os.environ.get("PARTWHEEL_PSB")) or BENCHMARK.exists()
 SUITES = os.environ.get("PARTWHEEL_SUITES", "sid").split()
-# The scenarios that the newest Blender plays: those where Blenders differed, and each way of use once. With
-# PARTWHEEL_NEWEST=all these too: all but those that build large models, measure, or only make pictures.
-NEWEST = ("bones", "cage", "compose_finger", "deform_keys", "deform_more", "gather", "hands", "imports", "industry", "linked",
-          "modes", "move", "navigate", "panel", "parts_to", "picked_objects", "related", "seen", "similar_across",
-          "three_clicks", "tool", "ways", "wheel_at_click", "windows")
-MORE_OF_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "commands", "confirm_enter", "convex_parts",
+# The scenarios that the newest Blender plays: the heart, as well as the oldest; and instead of it, each way of use once. With
+# PARTWHEEL_NEWEST=all the oldest plays those too, and the newest more: all but those that measure or only make pictures.
+IN_BOTH = ("panel", "three_clicks", "tool")
+IN_NEWEST = ("bones", "cage", "compose_finger", "deform_keys", "deform_more", "gather", "hands", "imports", "industry",
+             "linked", "modes", "move", "navigate", "parts_to", "picked_objects", "related", "seen", "similar_across", "ways",
+             "wheel_at_click", "windows")
+MORE_IN_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "commands", "confirm_enter", "convex_parts",
                   "creases", "deform", "deform_within", "duplicate", "empty_space", "finds_first", "left_out", "limits",
                   "menu", "open_mesh", "overlays", "panel_solids", "pick_and_click", "quad_view", "recover", "restore",
                   "select_modes", "tool_keys", "while_building", "words")
+ALL_IN_BOTH = os.environ.get("PARTWHEEL_NEWEST") == "all"
 THREADED = "[Tt]hread|ProgressNever"  # the names of tests in which threads meet
 # What the sanitizers have seen already: native tests that build the same once more to compare or count, and files of core
 # about what the package does with numbers and texts, where the library is called as in the other files, or as in the native
@@ -161,44 +163,47 @@ def in_blender(name, interpreter, package, *tests):
     return own_runner(f"addon-{name}", [*interpreter, "tests/addon/run.py", "--", package, report, *tests], clean, report)
 
 
-@needs(*PACKAGES, "setup_core", "setup_blender", "setup_display")
+WINDOWS = (*PACKAGES, "setup_core", "setup_blender", "setup_display")
+
+
+@needs(*WINDOWS)
 def gui():
-    """Blender's own window under Xvfb, driven by mouse and key events."""
+    """Blender's own window under Xvfb, driven by mouse and key events, in the distribution's Blender."""
+    return in_windows("gui", *([] if ALL_IN_BOTH else ["--but", *IN_NEWEST]))
+
+
+def in_windows(log, *scenarios):
     _, legacy = make_packages()
-    return in_windows(legacy)
+    report = OUTPUT / f"{log}.json"
+    return own_runner(log, [VENV / "core/bin/python", "tests/gui/run.py", legacy, report, *scenarios], dict(os.environ), report)
 
 
-def in_windows(package, *scenarios):
-    report = OUTPUT / "gui.json"
-    return own_runner("gui", [VENV / "core/bin/python", "tests/gui/run.py", package, report, *scenarios],
-                      dict(os.environ), report)
-
-
-@needs(*PACKAGES, "setup_core", begins=[f"setup_newest {suite}" for suite in SUITES])
+@needs(*WINDOWS, begins=[f"setup_newest {suite}" for suite in SUITES])
 def newest():
-    """Scenarios of the GUI tier in the newest Blender that Debian has. It moves: without it they are skipped."""
-    extension, _ = make_packages()
+    """More of it in the newest Blender that Debian has, which moves; where that can't be had, in the distribution's."""
+    suites = [suite for suite in SUITES if has_suite(suite)]
+    if not suites:
+        return in_windows("newest", *IN_NEWEST)
     result = Result()
-    for suite in SUITES:
-        result += in_suite(suite, extension)
+    for suite in suites:
+        result += in_suite(suite)
     return result
 
 
-def in_suite(suite, package):
-    """The same in another Debian's Blender."""
+def in_suite(suite):
+    """In another Debian's Blender."""
+    extension, _ = make_packages()
     log = f"newest-{suite}"
-    scenarios = NEWEST + (MORE_OF_NEWEST if os.environ.get("PARTWHEEL_NEWEST") == "all" else ())
-    if not has_suite(suite):
-        return Result(skipped=len(scenarios))
+    scenarios = IN_BOTH + IN_NEWEST + (MORE_IN_NEWEST if ALL_IN_BOTH else ())
     inside = ROOT / f"build/deps/blender-{suite}"
     room = inside / "partwheel"  # nothing is mounted: what the scenarios need is copied
     shutil.rmtree(room, ignore_errors=True)
     for tests in ("tests/gui", "tests/faults"):
         shutil.copytree(ROOT / tests, room / tests)
     shutil.copytree(ROOT / "build/deps/meshes", room / "build/deps/meshes")
-    shutil.copy(package, room)
+    shutil.copy(extension, room)
     clean = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "LANG": "C.UTF-8"}
-    command = ["chroot", inside, "python3", "/partwheel/tests/gui/run.py", f"/partwheel/{package.name}",
+    command = ["chroot", inside, "python3", "/partwheel/tests/gui/run.py", f"/partwheel/{extension.name}",
                "/partwheel/result.json", *scenarios]
     return own_runner(log, command, clean, room / "result.json")
 
@@ -227,9 +232,9 @@ def quick_addon():
     return in_blender(f"bpy-{QUICK_BPY}", [VENV / f"bpy-{QUICK_BPY}/bin/python"], make_packages()[0], *QUICK_ADDON)
 
 
-@needs(*PACKAGES, "setup_core", "setup_blender", "setup_display")
+@needs(*WINDOWS)
 def quick_gui():
-    return in_windows(make_packages()[1], *QUICK_GUI)
+    return in_windows("gui", *QUICK_GUI)
 
 
 QUICK = (quick_native, quick_core, quick_addon, quick_gui)
