@@ -6,7 +6,7 @@ import math
 
 import bpy
 import numpy
-from common import part
+from common import only_in, part
 from mathutils import Matrix, Vector
 from test_parts_to import PartsCase
 
@@ -29,6 +29,7 @@ def turn(rig, name, degrees):
 
 
 class Bones(PartsCase):
+    @only_in("oldest", "newest")
     def test_an_armature_of_the_parts(self):
         for model, obj, cut in self.each():
             obj.location, obj.rotation_euler = (3, 1, 2), (0.3, 0.2, 1)
@@ -49,6 +50,7 @@ class Bones(PartsCase):
             self.assertEqual(bpy.context.view_layer.objects.active, obj)
             self.assertEqual(bpy.context.mode, "OBJECT")
 
+    @only_in("oldest", "newest")
     def test_posing_works_at_once(self):
         for model, obj, cut in self.each():
             names = part("api").write(obj, cut, {"BONES"}).names

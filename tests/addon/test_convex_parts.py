@@ -43,6 +43,7 @@ class ConvexParts(MeshTest):
         return sorted([each.name for kind in (bpy.data.objects, bpy.data.meshes, bpy.data.collections) for each in kind]
                       + [str(bool(bpy.context.scene.rigidbody_world))])
 
+    @only_in("newest")
     def test_children_that_hold_the_mesh_by_each_engines_names(self):
         obj = self.add(*read_off("hand"), "Right Hand")
         obj.location, obj.scale = (1, 2, 3), (2, 2, 2)
@@ -71,7 +72,7 @@ class ConvexParts(MeshTest):
                         outside.append(distance if (vertex.co - near).dot(normal) > 0 else 0)
                     self.assertLess(min(outside), 1e-5 * size)
 
-    @only_in("oldest", "newest")
+    @only_in("newest")
     def test_the_error_is_a_share_of_the_diagonal(self):
         obj = self.add(*read_off("hand"))
         diagonal = Vector(np.ptp([vertex.co[:] for vertex in obj.data.vertices], axis=0)).length
@@ -102,7 +103,7 @@ class ConvexParts(MeshTest):
                     self.assertIsNone(bpy.context.active_object.rigid_body)
                     bpy.ops.object.mode_set(mode="OBJECT")
 
-    @only_in("oldest", "newest")
+    @only_in("newest")
     def test_refused_and_nothing_has_changed(self):
         obj = self.add(*read_off("hand"), "hand")
         bpy.ops.mesh.partwheel_convex(hulls=3)
@@ -201,7 +202,7 @@ class ConvexParts(MeshTest):
         for child in obj.children:
             self.assertGreater(places(child)[:, 2].min(), -0.01)  # they have gone with it
 
-    @only_in("oldest", "newest")
+    @only_in("newest")
     def test_models_come_to_rest(self):
         """With no vertex below the floor, a hull on it, and the middle of their weight above what they stand on."""
         for name, turn in (("homer", (0.4, 0.3, 0)), ("cow", (1, 0.5, 0.2))):

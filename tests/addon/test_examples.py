@@ -28,7 +28,7 @@ def with_42(name, face):
     return vertices, polygons
 
 
-@only_in("oldest", "newest")
+@only_in("newest")
 class Examples(MeshTest):
     def test_shell_command(self):
         commands = re.findall(r"^    blender --command partwheel (.+)$", PAGE.read_text("utf-8"), re.M)

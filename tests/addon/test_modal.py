@@ -773,7 +773,7 @@ class WhileBuilding(HeldWorkers):
             self.assertEqual(part("parts.registry").hierarchy(self.obj) is None, over == "ESC")
 
 
-@only_in("oldest", "newest")
+@only_in("newest")
 class ManyMeshes(HeldWorkers):
     """More clicks than one while parts are being found, on the same mesh and on others."""
 

@@ -6,7 +6,7 @@ import tempfile
 
 import bmesh
 import bpy
-from common import BOX, MeshTest, part, read_off, selected
+from common import BOX, MeshTest, only_in, part, read_off, selected
 
 
 class Paint(MeshTest):
@@ -170,6 +170,7 @@ class Paint(MeshTest):
             bpy.ops.ed.redo()
             self.assertEqual(picks.picked(bpy.context.view_layer.objects.active).face, 1100)
 
+    @only_in("oldest", "newest")
     def test_masks_of_multires_levels_leave_nothing_hidden(self):
         self.begin("OBJECT")
         modifier = self.obj.modifiers.new("multires", "MULTIRES")

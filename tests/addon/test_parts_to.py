@@ -188,6 +188,7 @@ class Written(PartsCase):
                 for new in made:
                     bpy.data.objects.remove(new)
 
+    @only_in("oldest", "newest")
     def test_objects_hang_on_each_other_by_their_borders(self):
         for name, obj, cut in self.each():
             obj.location, obj.rotation_euler, obj.scale = (3, 1, 2), (0.3, 0.2, 1), (2, 2, 2)

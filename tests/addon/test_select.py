@@ -14,7 +14,7 @@ class Select(MeshTest):
         self.assertEqual(bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", face_index=face, level=level, **more),
                          {"FINISHED"})
 
-    @only_in("oldest", "newest")
+    @only_in("newest")
     def test_every_level_of_real_meshes(self):
         for name in ("hand", "homer", "cross_quad", "P", "corner_poly"):
             with self.subTest(name):

@@ -15,8 +15,8 @@ KINDS = {
     "paper": (1 + 32, 1), "fine": (1, 8), "rough": (1, 8 + (2 << 4)), "crossing": (3, 8 + (3 << 4)),
     "coarse": (7, 128),
 }
-# Kinds that take long -> how many meshes they are made of, beginning with the cube.
-FEW = {"fine": 1, "rough": 1, "crossing": 1, "coarse": 12}
+# Kinds that are not made of all meshes, as "exact" and "regrouped" are -> of how many, beginning with the cube.
+FEW = {"repaired": 20, "inside": 20, "polygons": 20, "paper": 20, "fine": 1, "rough": 1, "crossing": 1, "coarse": 12}
 # Kind of a saved hierarchy -> how it is built.
 SAVED = {"regrouped": {}, "inside": {"quality": 1.4}, "paper": {"mode": Mode.PAPER}}
 MOST_FILE, MOST_SAVED = 40_000, 8_000  # bytes of a file of the demo, and of a saved hierarchy: small ones run faster
@@ -81,6 +81,8 @@ def write(directory):
             for flags, kind in enumerate(("triangles", "polygons")):
                 put("surface", kind, name, for_surface(vertices, triangles, flags))
         for kind, options in SAVED.items():
+            if number >= FEW.get(kind, math.inf):
+                continue
             try:
                 saved = Hierarchy.build(vertices, triangles, rungs=3, **options).save()
             except PartwheelError:
