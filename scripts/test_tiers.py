@@ -29,10 +29,11 @@ MORE_IN_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "commands", 
                   "select_modes", "tool_keys", "while_building", "words")
 ALL_IN_BOTH = os.environ.get("PARTWHEEL_NEWEST") == "all"
 THREADED = "[Tt]hread|ProgressNever"  # the names of tests in which threads meet
-# What the sanitizers have seen already: native tests that build the same once more to compare or count, and files of core
-# about what the package does with numbers and texts, where the library is called as in the other files, or as in the native
-# tests: "border", "convex", "progress", "regroup", which take long.
-COMPARED = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|SameBytes|TheSameForAny|AreFew|AreBounded"
+# What the sanitizers have seen already: native tests that build the same once more to compare or count, and shapes by formula
+# beside real models; and files of core about what the package does with numbers and texts, where the library is called as in
+# the other files, or as in the native tests: "border", "convex", "progress", "regroup", which take long.
+COMPARED = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|SameBytes|TheSameForAny|AreFew|AreBounded" \
+           r"|SurfacesByFormula|OfShapesByFormula|KeepTheError"
 PACKAGES_OWN = ("bones", "border", "command_line", "compatible", "convex", "cut", "docs", "docs_commands", "hooks", "house",
                 "interpreter", "joint", "likeness", "locale", "meshes", "primitives", "printing", "progress", "regroup", "seams",
                 "shipping", "symmetry", "versions", "words", "worker")

@@ -11,7 +11,7 @@ from partwheel.cut import mirror_planes
 from reference_regroup import NODE_NAMES, PAIR_NAMES, Regrouped
 
 # None is its own mirror image: there parts are copied from side to side, and the last bit of a volume decides ties.
-MODELS = ["hand", "elephant", "helmet", "femur", "blobby", "mpi", "knot", "nefertiti", "joint", "bull"]
+MODELS = ["hand", "elephant", "helmet", "mpi", "knot", "nefertiti", "joint", "bull"]
 OF_SEVERAL_PIECES = {
     "helmet, P": lambda: shapes.merged(of_length_1("helmet", 0), of_length_1("P", 1.5)),
     "P, mpi, hand": lambda: shapes.merged(of_length_1("P", 0), of_length_1("mpi", 1.5), of_length_1("hand", 4)),
