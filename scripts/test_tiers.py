@@ -94,7 +94,7 @@ def threads():
 
 @needs("setup_build", "setup_core")
 def fuzz():
-    """The fuzzers of the C API's three entrances, for some seconds each, watched by the sanitizers."""
+    """The fuzzers of the C API's three entrances, for a hundred inputs each, watched by the sanitizers."""
     build("fuzz", "asan", "mesh_fuzzer", "saved_fuzzer", "surface_fuzzer")
     build("fuzz", "release", "partwheel")  # makes the seeds
     return pytest("fuzz", "tests/fuzz", shared="worksteal")
