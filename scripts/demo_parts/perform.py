@@ -25,7 +25,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from models import MODELS, MONKEY  # noqa: E402
 from studio import Studio  # noqa: E402
 
-HEIGHT = 330  # of a picture, in pixels
+HEIGHT = 300  # of a picture, in pixels
 CLOSER = 0.17  # a part that is smaller than this in the picture, as a fraction of its size, gets a closer look
 
 
