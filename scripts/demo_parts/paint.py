@@ -154,7 +154,8 @@ def wheel_cells(click, folder):
         if stop["view"]:
             ImageDraw.Draw(image).text((image.width - 10, 10), f"{view['closer']:.1f} x", INK, font(13), "ra")
         label = f"{number + 1} / {len(click['stops'])}" + ("  the click" if number == click["start"] else "")
-        cells.append((image, label, f"{stop['faces']:,} faces, {percent(stop['area'])}"))
+        faces = "1 face" if stop["faces"] == 1 else f"{stop['faces']:,} faces"
+        cells.append((image, label, f"{faces}, {percent(stop['area'])}"))
     return cells
 
 
