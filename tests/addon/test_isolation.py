@@ -155,7 +155,7 @@ class Isolation(MeshTest):
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=3), {"FINISHED"})
         self.assertEqual(len(part("parts.registry").hierarchy(obj).order), len(obj.data.polygons))
 
-    @only_in("newest")
+    @only_in("oldest", "newest")
     def test_a_hostile_path(self):
         """Where python and python3 of the PATH are shims that fail, hang, or are not there, Blender started anew finds
         parts all the same: in Debian's, sys.executable is what the PATH has."""

@@ -112,4 +112,4 @@ def test_nothing_is_found(name, corpora):
     (WORK / f"{name}.log").write_text(result.stdout + result.stderr)
     assert result.returncode == 0, result.stdout[-3000:] + result.stderr[-6000:]
     executed = int(re.search(r"number_of_executed_units:\s*(\d+)", result.stderr).group(1))
-    assert SECONDS or executed >= given + INPUTS
+    assert executed >= given + INPUTS, "too slow to find anything"
