@@ -34,7 +34,7 @@ THREADED = "[Tt]hread|ProgressNever"  # the names of tests in which threads meet
 # the other files, or as in the native tests: "border", "convex", "progress", "regroup", which take long.
 COMPARED = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|SameBytes|TheSameForAny|AreFew|AreBounded" \
            r"|SurfacesByFormula|OfShapesByFormula|KeepTheError"
-PACKAGES_OWN = ("bones", "border", "command_line", "compatible", "convex", "cut", "docs", "docs_commands", "hooks", "house",
+PACKAGES_OWN = ("bones", "border", "command_line", "compatible", "convex", "cut", "docs", "docs_commands", "hooks", "layers",
                 "interpreter", "joint", "likeness", "locale", "meshes", "primitives", "printing", "progress", "regroup", "seams",
                 "shipping", "symmetry", "versions", "words", "worker")
 LIGHT = {"PARTWHEEL_TEST_LIGHT": "1"}  # fewer models that take the same code, smaller sizes

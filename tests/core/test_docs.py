@@ -11,7 +11,6 @@ from conftest import PLAIN, ROOT
 
 PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")])
 LONGEST_README = 150  # lines
-LINK = re.compile(r"(?<!!)\[([^]]+)\]\(([^)\s]+)\)")
 EXAMPLES = re.compile(r"```python\n(.*?)```", re.S)
 
 named = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
@@ -69,73 +68,8 @@ def test_each_picture_is_made_by_what_the_table_says():
         assert any(re.search(rf"\b{name.split('.')[0]}\b", source.read_text()) for source in sources), (name, by)
 
 
-# What a newcomer asks: the links that are clicked from the README and from the site's first page, two at most, and what is
-# read where the last one leads.
-ASKED = {
-    "install on Windows": (
-        ["On Windows"], ["On Windows"],
-        r"windows-x64\.zip.* drop the file on Blender's window"),
-    "mask a part while sculpting": (
-        ["Mask a part while sculpting"], ["Mask a part while sculpting"],
-        r"In Sculpt Mode take the tool \*\*Select Part\*\*.*\*\*Click\*\* it.*it is masked"),
-    "get colliders into Godot": (
-        ["Godot"], ["Into Godot"],
-        r"partwheel convex chair\.obj -o folder --formats godot.*_godot\.glb.*Put that file into the Godot project"),
-    "call it from a script": (
-        ["Script it"], ["Script it"],
-        r"from partwheel import api.*api\.part\(obj, 42, level=2\)"),
-    "what to do when a model is refused": (
-        ["a model was refused"], ["A model was refused"],
-        r"\*Solidify\*.* press \*Take as Thin Solid\*"),
-    "why a part came out wrong": (
-        ["a part came out wrong"], ["a part came out wrong"],
-        r"found by shape alone.* What helps: click"),
-    "how to build it": (
-        [], ["Build it yourself"],
-        r"Debian 12 with git and root.*scripts/package "),
-    "where the wheel's stops are computed": (
-        ["Where to look"], ["Where to look"],
-        r"where the wheel stops.*`wheel_stops` in `native/src/tree/dendrogram\.cpp`"),
-}
-
-
-def section(page, anchor=""):
-    """What is read first where a link leads: a heading and all until the next one as high; without an anchor the page."""
-    lines = page.read_text().splitlines()
-    levels = {number: line.index(" ") for number, line in enumerate(lines) if re.match(r"#+ ", line)}
-    begin = next((number for number in levels if anchor_of(lines[number]) == anchor), 0)
-    end = next((number for number, level in levels.items() if number > begin and level <= levels[begin]), len(lines))
-    return re.sub(r"\s+", " ", " ".join(lines[begin:end]))
-
-
-@pytest.mark.parametrize("first", ["README.md", "docs/index.md"])
-@pytest.mark.parametrize("asked", ASKED)
-def test_two_clicks_answer_what_a_newcomer_asks(asked, first):
-    of_readme, of_site, answer = ASKED[asked]
-    clicks = of_readme if first == "README.md" else of_site
-    page, anchor = ROOT / first, ""
-    assert len(clicks) <= 2
-    for text in clicks:
-        links = {re.sub(r"\s+", " ", words): target for words, target in LINK.findall(page.read_text())}
-        path, _, anchor = links[text].partition("#")
-        page = (page.parent / path).resolve()
-    assert re.search(answer, section(page, anchor)), section(page, anchor)
-
-
 def test_the_readme_is_short():
     assert len((ROOT / "README.md").read_text().splitlines()) <= LONGEST_README
-
-
-def test_shortcuts_of_a_part_are_in_the_keymap():
-    """The docs speak of Shift, Ctrl and a letter; the add-on binds those letters and no others."""
-    text = "".join(page.read_text() for page in PAGES)
-    told = set(re.findall(r"Shift Ctrl ([A-Z])\b", text)) | set(re.findall(r"\*\*([A-Z])\*\*", re.search(
-        r"have Shift, Ctrl and a letter.*?status bar", text, re.S)[0]))
-    view = (ROOT / "addon/partwheel/view/keys.py").read_text()
-    keymap = (ROOT / "addon/partwheel/ui/keymap.py").read_text()
-    bound = set(re.findall(r'Command\("[\w.]+", "([A-Z])"', view)) | set(re.findall(r'"([A-Z])", "PRESS"', keymap))
-    bound |= set(re.findall(r'Key\("SNAP_BORDER", frozenset\("(\w)"\)', view))
-    assert told == bound
 
 
 def test_the_python_examples_run():

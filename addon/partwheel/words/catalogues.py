@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The catalogues beside this file, one a language: {what the sources say: what it is there}. tests/core/test_words.py holds
-them complete."""
+"""The catalogues beside this file, one per language: {English message: translation}. Blender shows a message that has none
+in English."""
 
 import importlib
 
