@@ -6,8 +6,8 @@
 #   setup_core      build/venv/core: Python with numpy, trimesh and what it writes 3MF by, pytest and pytest-xdist, libigl,
 #                   pyfqmr, mujoco, yourdfpy, usd-core, check-jsonschema; a locale for its tests
 #   setup_docs      build/venv/docs: what makes the site of docs/
-#   setup_batch     build/venv/batch: what partwheel batch draws previews with as well; a Blender, a browser;
-#                   Ray and a server like S3's if PARTWHEEL_RAY is set
+#   setup_batch     build/venv/batch: what partwheel batch draws previews with as well; a Blender, a browser,
+#                   Ray and a server like S3's
 #   setup_psb       build/deps/psb: the benchmark that parts are judged by, where it lies beside the project
 #   setup_package   build/venv/package: what makes and checks wheels
 #   setup_workflows build/venv/workflows: what checks the workflow files of public CI
@@ -184,7 +184,7 @@ setup_docs() {
 setup_batch() {
     setup_build && setup_blender && packages chromium procps &&
         venv batch /usr/bin/python3 numpy scipy trimesh networkx lxml embreex pillow pytest \
-            ${PARTWHEEL_RAY:+ray fsspec s3fs "moto[server]"}
+            ray fsspec s3fs "moto[server]"
 }
 
 # Half of the Princeton Segmentation Benchmark, which is not ours to pass on; or PARTWHEEL_PSB names where it is.

@@ -31,7 +31,7 @@ class CouldNotRun(Exception):
 class Result:
     passed: int = 0
     failed: int = 0
-    skipped: int = 0
+    skipped: list = dataclasses.field(default_factory=list)  # "test: why" of each
     failures: list = dataclasses.field(default_factory=list)
     times: list = dataclasses.field(default_factory=list)  # (seconds, the test) of those that tell
     tiers: list = dataclasses.field(default_factory=list)  # a line for each, which says how it went
@@ -133,6 +133,16 @@ def pytest(log, *tests, venv="core", shared=None, **environment):
     return read_junit(log, report, code)
 
 
+def pre_commit(log):
+    """Each of its checks counts as a test."""
+    safe = {"GIT_CONFIG_COUNT": "1", "GIT_CONFIG_KEY_0": "safe.directory", "GIT_CONFIG_VALUE_0": "*"}  # whoever owns the clone
+    code = run(log, [VENV / "hooks/bin/pre-commit", "run", "--all-files", "--color", "never"],
+               os.environ | safe | {"PRE_COMMIT_HOME": str(ROOT / "build/deps/hooks")})
+    outcomes = re.findall(r"^(.+?)\.{3,}(?:\(.*\))?(Passed|Failed)$", (OUTPUT / f"{log}.log").read_text(), re.MULTILINE)
+    failures = [f"{log}: {check}" for check, outcome in outcomes if outcome == "Failed"]
+    return checked(log, code, Result(len(outcomes) - len(failures), len(failures), failures=failures))
+
+
 def own_runner(log, command, environment, report):
     """Runs tests/addon/run.py or tests/gui/run.py, which write to report {"passed": n, "failed": n, "failures": [...],
     "seconds": {test: s}}."""
@@ -159,8 +169,8 @@ def read_junit(log, report, code):
         if case.find("failure") is not None or case.find("error") is not None:
             result.failed += 1
             result.failures.append(test)
-        elif case.find("skipped") is not None:
-            result.skipped += 1
+        elif (skip := case.find("skipped")) is not None:
+            result.skipped.append(f"{test}: {skip.get('message', '')}")
         else:
             result.passed += 1
     return checked(log, code, result)

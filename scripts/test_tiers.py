@@ -12,37 +12,33 @@ import sys
 import time
 
 from test_steps import (OUTPUT, ROOT, VENV, CouldNotRun, Result, begin_setting_up, broken, build, ctest, gtests, installed,
-                        make_packages, output_of, own_runner, pytest, require, set_up, side_by_side)
+                        make_packages, output_of, own_runner, pre_commit, pytest, require, set_up, side_by_side)
 
 BENCHMARK = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # of which the tier quality scores a part
 HAS_BENCHMARK = bool(os.environ.get("PARTWHEEL_PSB")) or BENCHMARK.exists()
 SUITES = os.environ.get("PARTWHEEL_SUITES", "sid").split()
-# The scenarios that the newest Blender plays: the heart, as well as the oldest; and instead of it, each way of use once. With
-# PARTWHEEL_NEWEST=all the oldest plays those too, and the newest more: all but those that measure or only make pictures.
-IN_BOTH = ("panel", "three_clicks", "tool")
-IN_NEWEST = ("bones", "cage", "compose_finger", "deform_keys", "deform_more", "gather", "hands", "imports", "industry",
-             "linked", "modes", "move", "navigate", "parts_to", "picked_objects", "related", "seen", "similar_across", "ways",
-             "wheel_at_click", "windows")
-MORE_IN_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "commands", "confirm_enter", "convex_parts",
-                  "creases", "deform", "deform_within", "duplicate", "empty_space", "finds_first", "left_out", "limits",
-                  "menu", "open_mesh", "overlays", "panel_solids", "pick_and_click", "quad_view", "recover", "restore",
-                  "select_modes", "tool_keys", "while_building", "words")
-ALL_IN_BOTH = os.environ.get("PARTWHEEL_NEWEST") == "all"
+# The oldest Blender plays all scenarios, the newest these.
+IN_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "bones", "cage", "commands", "compose_finger",
+             "confirm_enter", "convex_parts", "creases", "deform", "deform_keys", "deform_more", "deform_within",
+             "duplicate", "empty_space", "finds_first", "gather", "hands", "imports", "industry", "left_out",
+             "limits", "linked", "menu", "modes", "move", "navigate", "open_mesh", "overlays", "panel",
+             "panel_solids", "parts_to", "pick_and_click", "picked_objects", "quad_view", "recover", "related",
+             "restore", "seen", "select_modes", "similar_across", "three_clicks", "tool", "tool_keys", "ways",
+             "wheel_at_click", "while_building", "windows", "words")
 THREADED = "[Tt]hread|ProgressNever"  # the names of tests in which threads meet
 # What the sanitizers have seen already: native tests that build the same once more to compare or count, and shapes by formula
 # beside real models; and files of core about what the package does with numbers and texts, where the library is called as in
 # the other files, or as in the native tests: "border", "convex", "progress", "regroup", which take long.
 COMPARED = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|SameBytes|TheSameForAny|AreFew|AreBounded" \
            r"|SurfacesByFormula|OfShapesByFormula|KeepTheError"
-PACKAGES_OWN = ("bones", "border", "command_line", "compatible", "convex", "cut", "docs", "docs_commands", "hooks", "layers",
+PACKAGES_OWN = ("bones", "border", "command_line", "compatible", "convex", "cut", "docs", "docs_commands", "layers",
                 "interpreter", "joint", "likeness", "locale", "meshes", "primitives", "printing", "progress", "regroup", "seams",
                 "shipping", "symmetry", "versions", "words", "worker")
 LIGHT = {"PARTWHEEL_TEST_LIGHT": "1"}  # fewer models that take the same code, smaller sizes
-# What scripts/test quick plays: how the add-on meets Blender, and the main job in a window.
-QUICK_ADDON = ("test_registration", "test_select", "test_modal", "test_saved", "test_staleness", "test_related", "test_api",
-               "test_command")
-QUICK_BPY = "4.5"
-QUICK_GUI = ("three_clicks",)
+GATE_BPY = ("5.0", "4.2")  # the newest and the oldest; the first one runs the tests that are for one Blender only
+# Click and wheel in each mode, parts to objects, an import, and the whole job.
+GATE_SCENARIOS = ("tool", "modes", "picked_objects", "parts_to", "imports", "three_clicks")
+TEN_MODELS = "tests/quality/test_floors.py::test_ten_models_of_the_benchmark"
 AT_ONCE = 2  # tiers
 SLOWEST = 10  # tests that are named at the end
 
@@ -108,7 +104,7 @@ def determinism():
     return pytest("determinism", "tests/determinism", PARTWHEEL_RUNTIMES=runtimes())
 
 
-@needs(*PACKAGES, "setup_core", "setup_hooks")
+@needs(*PACKAGES, "setup_core")
 def core(**environment):
     """The Python package as installed from its wheel, and the installed library, without Blender."""
     build("core", "release", "partwheel", "partwheel_checks")
@@ -135,9 +131,7 @@ def quality():
     """How well parts are selected: 24 models of the benchmark where it is, and mirror images, against floors."""
     build("quality", "release", "partwheel")
     build("quality", "bench", "quality_trace")
-    if not HAS_BENCHMARK:
-        print(f"   SKIPPED all but libcgal-demo's symmetric models: {BENCHMARK} is not here")
-    return pytest("quality", "tests/quality", shared="loadfile")
+    return pytest("quality", "tests/quality", "--deselect", TEN_MODELS, shared="loadfile")
 
 
 @needs(*PACKAGES, "setup_core", "setup_blender", "setup_bpy")
@@ -146,14 +140,18 @@ def addon():
     extension, legacy = make_packages()
     versions = output_of("bash", "-c", ". scripts/setup.sh && echo $bpy_versions").split()
     blender = ["blender", "-b", "-noaudio", "--factory-startup", "--python-exit-code", "9", "--python"]
-    interpreters = {"blender": (blender, legacy)} | {
-        f"bpy-{version}": ([VENV / f"bpy-{version}/bin/python"], extension)
-        for version in reversed(versions)}  # the longest first: oldest and newest run all tests
-    return side_by_side(lambda name: in_blender(name, *interpreters[name]), interpreters, os.cpu_count())
+    # The longest first: the oldest and the newest run all tests.
+    runs = [lambda: in_blender("blender", blender, legacy),
+            *(lambda version=version: in_bpy(version, extension) for version in reversed(versions))]
+    return side_by_side(lambda run: run(), runs, os.cpu_count())
 
 
-def in_blender(name, interpreter, package, *tests):
-    """The tests of the add-on with these names, or all, in one Blender."""
+def in_bpy(version, package):
+    return in_blender(f"bpy-{version}", [VENV / f"bpy-{version}/bin/python"], package)
+
+
+def in_blender(name, interpreter, package):
+    """The tests of the add-on in one Blender."""
     home = OUTPUT / "home" / name  # a new one, so that nothing installed before is there
     shutil.rmtree(home, ignore_errors=True)
     home.mkdir(parents=True)
@@ -161,13 +159,13 @@ def in_blender(name, interpreter, package, *tests):
     clean |= {name: value for name, value in os.environ.items()
               if name in {"PARTWHEEL_UNITES", "PARTWHEEL_UNITES_SEED", "PARTWHEEL_EVENTS"}}
     report = OUTPUT / f"addon-{name}.json"
-    return own_runner(f"addon-{name}", [*interpreter, "tests/addon/run.py", "--", package, report, *tests], clean, report)
+    return own_runner(f"addon-{name}", [*interpreter, "tests/addon/run.py", "--", package, report], clean, report)
 
 
 @needs(*WINDOWS)
 def gui():
     """Blender's own window under Xvfb, driven by mouse and key events, in the distribution's Blender."""
-    return in_windows("gui", *([] if ALL_IN_BOTH else ["--but", *IN_NEWEST]))
+    return in_windows("gui")
 
 
 def in_windows(log, *scenarios):
@@ -191,9 +189,8 @@ def in_suite(suite):
     """In another Debian's Blender."""
     extension, _ = make_packages()
     log = f"newest-{suite}"
-    scenarios = IN_BOTH + IN_NEWEST + (MORE_IN_NEWEST if ALL_IN_BOTH else ())
     if not has_suite(suite):
-        return Result(skipped=len(scenarios))
+        return Result(skipped=[f"newest: {name}: there is no Blender of Debian {suite}" for name in IN_NEWEST])
     inside = ROOT / f"build/deps/blender-{suite}"
     room = inside / "partwheel"  # nothing is mounted: what the scenarios need is copied
     shutil.rmtree(room, ignore_errors=True)
@@ -203,7 +200,7 @@ def in_suite(suite):
     shutil.copy(extension, room)
     clean = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "LANG": "C.UTF-8"}
     command = ["chroot", inside, "python3", "/partwheel/tests/gui/run.py", f"/partwheel/{extension.name}",
-               "/partwheel/result.json", *scenarios]
+               "/partwheel/result.json", *IN_NEWEST]
     return own_runner(log, command, clean, room / "result.json")
 
 
@@ -211,39 +208,46 @@ def has_suite(suite):
     try:
         set_up(f"setup_newest {suite}")
     except CouldNotRun as reason:
-        print(f"   SKIPPED the Blender of Debian {suite}: {reason}")
+        print(f"   The Blender of Debian {suite} could not be installed: {reason}")
         return False
     return True
 
 
+@needs("setup_hooks")
+def sources():
+    """The checks of .pre-commit-config.yaml, on all files."""
+    return pre_commit("sources")
+
+
 @needs(*native.needs)
-def quick_native():
+def gate_native():
+    """GoogleTest through CTest, as shipped, on fewer models."""
     return native(**LIGHT)
 
 
 @needs(*core.needs)
-def quick_core():
+def gate_core():
+    """The Python package as installed from its wheel, on fewer models."""
     return core(**LIGHT)
 
 
-@needs(*PACKAGES, f"setup_bpy {QUICK_BPY}")
-def quick_addon():
-    return in_blender(f"bpy-{QUICK_BPY}", [VENV / f"bpy-{QUICK_BPY}/bin/python"], make_packages()[0], *QUICK_ADDON)
+@needs(*PACKAGES, *(f"setup_bpy {version}" for version in GATE_BPY))
+def gate_addon():
+    """The add-on as installed from the zip, without a window, in the newest and the oldest bpy."""
+    return side_by_side(lambda version: in_bpy(version, make_packages()[0]), GATE_BPY, os.cpu_count())
 
 
 @needs(*WINDOWS)
-def quick_gui():
-    return in_windows("gui", *QUICK_GUI)
+def gate_gui():
+    """Six scenarios in the distribution's Blender, driven by mouse and key events."""
+    return in_windows("gui", *GATE_SCENARIOS)
 
 
-QUICK = (quick_native, quick_core, quick_addon, quick_gui)
-
-
-@needs(begins=[function for part in QUICK for function in part.needs])
-def quick():
-    """For every day: all of native and core, on fewer models; the heart of the add-on in one bpy; and a click and a notch in a
-    window."""
-    return side_by_side(set_up_and_run, QUICK, AT_ONCE)
+@needs(*quality.needs)
+def gate_quality():
+    """How well parts are selected, on ten models."""
+    build("gate_quality", "release", "partwheel")
+    return pytest("gate_quality", TEN_MODELS)
 
 
 @needs(*PACKAGES, "setup_core", "setup_bpy", "setup_workflows", begins=["setup_newest sid"])
@@ -263,10 +267,12 @@ def ship():
     return result
 
 
-TIERS = {function.__name__: function
-         for function in (native, sanitizers, threads, determinism, fuzz, core, batch, quality, reliability, addon, gui,
-                          newest, quick, ship)}
-BY_NAME = {"quick", "ship"}  # only when they are named
+GATE = {function.__name__: function
+        for function in (gate_native, gate_core, gate_addon, gate_gui, gate_quality, sources)}
+ALL = {function.__name__: function
+       for function in (native, sanitizers, threads, determinism, fuzz, core, batch, quality, reliability, addon, gui, newest,
+                        sources, ship)}
+TIERS = GATE | ALL
 
 
 def set_up_and_run(tests):
@@ -283,7 +289,7 @@ def run(name):
         result = set_up_and_run(TIERS[name])
     except CouldNotRun as reason:
         result = broken(f"{name} could not run: {reason}")
-    skipped = f", {result.skipped} skipped" if result.skipped else ""
+    skipped = f", {len(result.skipped)} skipped" if result.skipped else ""
     result.tiers = [f"{name:<12}{result.passed} passed, {result.failed} failed{skipped}, {time.monotonic() - began:.0f} s"]
     told = [*(f"FAILED {failure}" for failure in result.failures), *result.tiers]
     print("".join(f"   {line}\n" for line in told), end="")
@@ -291,10 +297,11 @@ def run(name):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="scripts/test",
-                                     description="Runs the test tiers but quick and ship, or only those named.")
-    parser.add_argument("tier", nargs="*", help=" ".join(TIERS))
-    names = parser.parse_args().tier or [name for name in TIERS if name not in BY_NAME]
+    parser = argparse.ArgumentParser(prog="scripts/test", description="Runs the gate, all tiers, or the tiers named.")
+    parser.add_argument("tier", nargs="*", metavar="all | TIER", help=" ".join(TIERS))
+    names = parser.parse_args().tier or list(GATE)
+    if names == ["all"]:
+        names = list(ALL)
     for name in names:
         if name not in TIERS:
             parser.error(f"there is no tier {name}: {', '.join(TIERS)}")
@@ -305,7 +312,10 @@ def main():
     print("== the slowest tests")
     for seconds, test in sorted(total.times, reverse=True)[:SLOWEST]:
         print(f"   {seconds:6.1f} s  {test}")
-    print("== all tiers")
+    if total.skipped:
+        print("== skipped")
+        print("".join(f"   {reason}\n" for reason in total.skipped), end="")
+    print("== tiers")
     print("".join(f"   {line}\n" for line in total.tiers), end="")
     print(f"{total.passed} passed, {total.failed} failed")
     return 1 if total.failed else 0

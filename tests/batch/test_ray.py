@@ -10,7 +10,7 @@ import pytest
 from conftest import PACKAGES, box, command, environment, results, run
 from test_command import done, until
 
-ray_cluster = pytest.importorskip("ray.cluster_utils", reason="Ray is not installed: PARTWHEEL_RAY=1 scripts/test batch does it")
+ray_cluster = pytest.importorskip("ray.cluster_utils", reason="Ray is not installed: `scripts/test batch` installs it")
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import json
 import pytest
 from conftest import run
 
-MISSING = "moto and s3fs are not installed: PARTWHEEL_RAY=1 scripts/test batch does it"
+MISSING = "moto and s3fs are not installed: `scripts/test batch` installs it"
 moto_server = pytest.importorskip("moto.server", reason=MISSING)
 pytest.importorskip("s3fs", reason=MISSING)
 
