@@ -165,6 +165,7 @@ def test_two_at_once(build_shape):
 
 def test_the_worker_is_started_by_the_caller_itself(monkeypatch):
     """A thread with much Python to run is a danger to Blender: see Job."""
+    Job(*shapes.cube(), **UNLIMITED).result()  # by now a Python is known
     starters, popen = [], subprocess.Popen
 
     def noted(*arguments, **options):

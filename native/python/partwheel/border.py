@@ -4,10 +4,10 @@
 import numpy as np
 
 from .hierarchy import surface
-from .library import Handle, check, load, made
+from .library import Handle, NonCopyable, check, load, made
 
 
-class Creases:
+class Creases(NonCopyable):
     """A surface whose parts' borders can be moved to creases: see pw_creases in partwheel_edit.h. It never changes.
 
     vertices (V,3); triangles (T,3) indices into them; faces (T,) the polygon of each triangle and face_count their

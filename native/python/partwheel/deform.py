@@ -7,7 +7,7 @@ from ctypes import c_double
 import numpy as np
 
 from .hierarchy import indices, surface
-from .library import Handle, PartwheelError, Status, check, load, made, told
+from .library import Handle, NonCopyable, PartwheelError, Status, check, load, made, told
 
 FREE, FIXED = -1, -2  # PW_VERTEX_FREE, PW_VERTEX_FIXED
 # Deforming at once, without a mouse: the handle turns by at most so much a step.
@@ -18,7 +18,7 @@ SETTLED = 1e-4
 MOST_ITERATIONS = 300
 
 
-class Deformation:
+class Deformation(NonCopyable):
     """A surface at rest, and where it is now: see pw_deformation in partwheel_edit.h for the energy and its source.
 
     vertices (V,3) at rest; triangles (T,3) indices into them; roles (V,) FREE, FIXED or the number of the handle that a

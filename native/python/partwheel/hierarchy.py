@@ -222,6 +222,10 @@ class Hierarchy:
         """The hierarchy as bytes, the same on every machine."""
         return self._ask(load().pw_hierarchy_save, np.uint8).tobytes()
 
+    def __reduce__(self):
+        """A copy, here or in another process, is loaded from the saved form: addresses mean nothing there."""
+        return type(self).load, (self.save(),), {"seconds": self.seconds}
+
     def path(self, face):
         """(n,) the nodes that hold a source face, from its leaf up to the root."""
         return self._ask(load().pw_hierarchy_path, np.int32, _number(face))

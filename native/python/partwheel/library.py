@@ -176,6 +176,15 @@ class Error(Exception):
 
     name, seconds = "error", {}
 
+    def __reduce__(self):
+        """As it is, for a copy or another process: constructors take other arguments than args."""
+        return _restored, (type(self), self.args), vars(self)
+
+
+def _restored(kind, arguments):
+    """An Error without its attributes."""
+    return kind.__new__(kind, *arguments)
+
 
 class LibraryError(Error, OSError):
     """The native library is missing, or is not the one this Python code was written for."""
@@ -247,7 +256,15 @@ def made(create, *arguments):
     return told([c_void_p], create, *arguments)[0]
 
 
-class Handle:
+class NonCopyable:
+    """What has native memory or a process of its own, and no saved form."""
+
+    def __reduce__(self):
+        raise TypeError(f"{type(self).__name__} can't be copied or pickled: it refers to memory of this process. Make "
+                        "another one from the same data. A Hierarchy can be pickled.")
+
+
+class Handle(NonCopyable):
     """A native object, freed with the last reference to this."""
 
     def __init__(self, free, address):

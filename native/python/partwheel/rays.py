@@ -4,10 +4,10 @@
 from ctypes import c_double, c_int32
 
 from .hierarchy import surface
-from .library import Handle, load, made, told
+from .library import Handle, NonCopyable, load, made, told
 
 
-class RayTarget:
+class RayTarget(NonCopyable):
     """A surface that rays can be sent at: see pw_ray_target in partwheel_edit.h. It never changes.
 
     vertices (V,3); triangles (T,3) indices into them. Raises PartwheelError.

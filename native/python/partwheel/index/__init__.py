@@ -4,10 +4,10 @@
 import numpy as np
 
 from ..hierarchy import indices
-from ..library import Handle, check, load, made
+from ..library import Handle, NonCopyable, check, load, made
 
 
-class Index:
+class Index(NonCopyable):
     """A hierarchy to be asked where things are: see pw_index in partwheel_edit.h. It never changes.
 
     bounds (K+1,) of a cut: its parts are the convex hulls of the cut's K parts. None: exact, its parts are the

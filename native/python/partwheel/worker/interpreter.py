@@ -9,6 +9,7 @@ from pathlib import Path
 
 from .ending import ending
 from .said import Said
+from ..library import Error
 
 # -I: nothing of this process's Python, such as Blender's paths, reaches the other. -S, -B: it starts faster, and writes
 # no bytecode.
@@ -23,14 +24,16 @@ NONE = "there is none"
 _found = {}  # candidates -> the one that runs
 
 
-class NoInterpreter(Exception):
+class NoInterpreter(Error):
     """None of the candidates runs. said: what became of each."""
 
+    name = "interpreter"
+
     def __init__(self, failed):
-        super().__init__()
         values = {f"path{number}": path for number, path in enumerate(failed)}
         values |= {f"how{number}": how for number, how in enumerate(failed.values())}
         self.said = Said("; ".join(f"{{path{number}}} {{how{number}}}" for number in range(len(failed))) or NONE, **values)
+        super().__init__(str(self.said))
 
 
 def start(python, *arguments, **options):
@@ -61,8 +64,8 @@ class Search:
 
     def poll(self):
         """Its path, or None for not yet. Raises NoInterpreter."""
-        if self._candidates in _found:
-            return _found[self._candidates]
+        if known := _found.get(self._candidates):  # one look: another thread may forget() at any time
+            return known
         for path, probe in self._probes.items():
             if probe.poll() == 0:
                 _found[self._candidates] = path

@@ -16,7 +16,7 @@ from . import interpreter
 from .ending import ending
 from .said import Said
 from ..hierarchy import Hierarchy, checked_surface
-from ..library import RUNGS, Mode, PartwheelError, Rung, Status, load
+from ..library import RUNGS, Mode, NonCopyable, PartwheelError, Rung, Status, load
 
 ENTRY = Path(__file__).with_name("process.py")
 MEMORY_SHARE = 0.8  # of the memory that is available when the build starts
@@ -61,7 +61,7 @@ class WorkerError(PartwheelError):
         self.name, self.sentences, self.values = name, said.sentences, said.values
 
 
-class Job:
+class Job(NonCopyable):
     """One build in a worker process; arguments as for Hierarchy.build().
 
     memory_limit: bytes that the worker may use (None: 80 % of what is available now; 0: no limit). Kept on Linux only:
