@@ -202,9 +202,17 @@ class PartwheelError(Error):
         self.seconds = seconds or {}
 
 
+_loading = threading.Lock()
+
+
 @functools.cache
 def load():
     """The native library with every function's types declared. Raises LibraryError."""
+    with _loading:  # opening it writes files on Windows
+        return _load()
+
+
+def _load():
     # Another one, for tests and sanitizers, in the source tree alone: what is installed loads what it brings.
     other = SOURCES.is_dir() and os.environ.get("PARTWHEEL_LIBRARY")
     path = other or str(LIBRARY)

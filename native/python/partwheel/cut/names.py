@@ -13,19 +13,22 @@ from ..library import check, load
 SAMPLES = 2048  # points on the surface
 MIRRORED = 0.5  # of a part's points whose mirror images are on its counterpart
 ALIKE = 0.2  # lengths differ by at most a fifth, nearly
-_last = [None, None]  # the surface that mirror_planes() was asked for last, and its planes
+# The surface that mirror_planes() was last called with, and its planes: one tuple, so threads never see half of a change.
+_last = (None, None)
 
 
 def mirror_planes(vertices, triangles):
     """[(normal (3,), offset), ...] the planes in which a surface is its own mirror image, at most three, the best
     first: see pw_mirror_planes in partwheel_edit.h. vertices (V,3), triangles (T,3). Raises PartwheelError."""
+    global _last
     given = surface(vertices, triangles)[:4]
-    key = [hashlib.blake2b(np.ascontiguousarray(each)).digest() for each in (vertices, triangles)]
-    if _last[0] != key:  # names and bones ask for the same
+    key = [hashlib.blake2b(each).digest() for each in (given[0], given[2])]
+    last = _last
+    if last[0] != key:  # names and bones ask for the same
         planes, count = np.empty((3, 4)), ctypes.c_size_t()
         check(load().pw_mirror_planes(*given, planes, ctypes.byref(count)))
-        _last[:] = key, planes[:count.value]
-    return [(plane[:3].copy(), float(plane[3])) for plane in _last[1]]
+        last = _last = key, planes[:count.value]
+    return [(plane[:3].copy(), float(plane[3])) for plane in last[1]]
 
 
 def named(cut, vertices, triangles, faces, word="Part"):

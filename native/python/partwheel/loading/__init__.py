@@ -24,9 +24,19 @@ def open_library(path):
     try:
         if cut_short(path):
             raise OSError(f"{path}: the file is cut short")
-        return ctypes.CDLL(str(replaceable(path) if SYSTEM == "windows" else path))
+        return _open_copy(path) if SYSTEM == "windows" else ctypes.CDLL(str(path))
     except OSError as error:
         raise OSError(why(path, str(error), getattr(error, "winerror", None))) from error
+
+
+def _open_copy(path):
+    copy = replaceable(path)
+    try:
+        return ctypes.CDLL(str(copy))
+    except OSError:
+        if copy == path:
+            raise
+        return ctypes.CDLL(str(path))  # a policy may forbid libraries in %TEMP%; better in use than not at all
 
 
 def replaceable(path):
