@@ -1,6 +1,9 @@
 // Fuzzer of pw_hierarchy_load(): any bytes are refused, or every question about what was loaded has an answer that the
 // header documents. The hash at the end of the bytes is not compared (see cmake/fuzzers.cmake), so forged ones get in.
+// Most inputs are made by changing fields: they get behind the checks of the packed form, which changed bytes seldom do.
+#include "base/error.h"
 #include "support/built.h"
+#include "tree/saved.h"
 
 #include <gtest/gtest.h>
 
@@ -11,11 +14,146 @@
 #include <cstdlib>
 #include <limits>
 #include <memory>
+#include <numeric>
+#include <random>
 #include <vector>
 
 using namespace partwheel::test;
+using partwheel::SavedHierarchy;
+
+extern "C" size_t LLVMFuzzerMutate(uint8_t* data, size_t size, size_t max_size);
 
 namespace {
+
+// Changes fields of a saved hierarchy. The sizes of its arrays keep matching each other.
+class FieldMutator {
+public:
+    FieldMutator(SavedHierarchy& saved, unsigned seed) : saved_(saved), random_(seed) {}
+
+    void mutate() {
+        for (size_t changes = 1 + below(3); changes > 0; --changes) change();
+    }
+
+private:
+    void change() {
+        switch (below(12)) {
+            case 0: return change_tetrahedron();
+            case 1: return change_vertices();
+            case 2: return keep_tetrahedra(1 + below(std::min<size_t>(saved_.tetrahedra.size(), 4)));
+            case 3: return change_index(saved_.borders, saved_.tetrahedra.size());
+            case 4: return change_index(saved_.leaf, saved_.tetrahedra.size());
+            case 5: return change_index(saved_.source, saved_.vertices.size());
+            case 6: return change_index(saved_.outer_faces, saved_.leaf.size());
+            case 7: return change_number(saved_.concavities);
+            case 8: return change_number(saved_.face_area);
+            case 9: return change_number(saved_.scores);
+            case 10: return change_header();
+            default: return change_sizes();
+        }
+    }
+
+    size_t below(size_t count) { return random_() % count; }
+
+    int32_t index(size_t count) {
+        const auto size = static_cast<int32_t>(count);
+        const int32_t wild[] = {-2, -1, 0, 1, size - 1, size, std::numeric_limits<int32_t>::max()};
+        return below(4) ? static_cast<int32_t>(below(count)) : wild[below(std::size(wild))];
+    }
+
+    double number(double given) {
+        const double infinity = std::numeric_limits<double>::infinity();
+        const double wild[] = {0, -0.0, 1, -given, 2 * given, std::nextafter(given, infinity), 1e-300, 5e-324, 1e-81, 1e100, 1e300,
+                               infinity, std::numeric_limits<double>::quiet_NaN()};
+        return wild[below(std::size(wild))];
+    }
+
+    void change_index(std::vector<int32_t>& numbers, size_t count) {
+        if (numbers.empty()) return;
+        int32_t& changed = numbers[below(numbers.size())];
+        if (below(2))
+            changed = index(count);
+        else
+            std::swap(changed, numbers[below(numbers.size())]);
+    }
+
+    void change_number(std::vector<double>& numbers) {
+        if (numbers.empty()) return;
+        double& changed = numbers[below(numbers.size())];
+        changed = number(changed);
+    }
+
+    void change_tetrahedron() {
+        auto& t = saved_.tetrahedra[below(saved_.tetrahedra.size())];
+        switch (below(5)) {
+            case 0: t = saved_.tetrahedra[below(saved_.tetrahedra.size())]; break;
+            case 1: t[below(4)] = t[below(4)]; break;
+            case 2: std::swap(t[below(4)], t[below(4)]); break;
+            case 3: t.fill(t[below(4)]); break;
+            default: t[below(4)] = index(saved_.vertices.size());
+        }
+    }
+
+    void change_vertices() {
+        auto& p = saved_.vertices[below(saved_.vertices.size())];
+        const size_t k = below(3);
+        switch (below(4)) {
+            case 0: p = saved_.vertices[below(saved_.vertices.size())]; break;
+            case 1: p[k] = number(p[k]); break;
+            case 2:  // in one plane
+                for (auto& q : saved_.vertices) q[k] = p[k];
+                break;
+            default: {
+                const double scale = number(1);
+                for (auto& q : saved_.vertices)
+                    for (double& c : q) c *= scale;
+            }
+        }
+    }
+
+    void keep_tetrahedra(size_t count) {
+        const auto last = static_cast<int32_t>(count - 1);
+        saved_.tetrahedra.resize(count);
+        saved_.borders.resize(count - 1);
+        std::iota(saved_.borders.begin(), saved_.borders.end(), 1);
+        saved_.concavities.resize(count - 1);
+        for (int32_t& l : saved_.leaf) l = std::min(l, last);
+        saved_.scores.clear();
+        saved_.components = std::min<uint64_t>(saved_.components, count);
+        saved_.outer_faces.resize(below(4 * count + 1));
+    }
+
+    void change_header() {
+        const uint64_t count = index(saved_.tetrahedra.size());
+        switch (below(6)) {
+            case 0: saved_.components = count; break;
+            case 1: saved_.cavities = count; break;
+            case 2: saved_.added_vertices = count; break;
+            case 3: saved_.deviation = number(saved_.deviation); break;
+            case 4: saved_.hull_volume = number(saved_.hull_volume); break;
+            default:
+                saved_.rung = 1U << below(5);
+                saved_.account = saved_.rung == PW_RUNG_EXACT ? "" : "Changed.";
+        }
+    }
+
+    void change_sizes() {
+        const auto resize = [&](auto& array) { array.resize(1 + below(array.size() + 2)); };
+        switch (below(4)) {
+            case 0: resize(saved_.outer_faces); break;
+            case 1: resize(saved_.scores); break;
+            case 2:
+                resize(saved_.leaf);
+                saved_.face_area.resize(saved_.leaf.size());
+                break;
+            default:
+                resize(saved_.vertices);
+                saved_.source.resize(saved_.vertices.size());
+        }
+    }
+
+    SavedHierarchy& saved_;
+    std::mt19937 random_;
+};
 
 // The surface, and where it comes from: indices that exist, and coordinates that are the hierarchy's or between them.
 void expect_solid(const Handle& handle, pw_status status, pw_mesh* made) {
@@ -84,7 +222,63 @@ void expect_index(const Handle& handle, const int32_t* bounds, size_t bound_coun
     EXPECT_TRUE(pair[0] >= 0 && pair[1] >= 0);
 }
 
+// The cuts of every kind, each a division of all tetrahedra; returns the automatic one.
+std::vector<int32_t> expect_cuts(const Handle& handle) {
+    const pw_hierarchy* h = handle.get();
+    const size_t tets = arrays(handle).tetrahedron_count, parts = std::min<size_t>(tets, 5);
+    std::vector<int32_t> bounds(tets + 1);
+    size_t count = 0;
+    const auto expect_cut = [&](pw_status status) {
+        EXPECT_EQ(status, PW_OK) << pw_error_message();
+        EXPECT_TRUE(count >= 2 && count <= bounds.size());
+        EXPECT_EQ(bounds[0], 0);
+        EXPECT_EQ(static_cast<size_t>(bounds[count - 1]), tets);
+        for (size_t k = 1; k < count; ++k) EXPECT_LT(bounds[k - 1], bounds[k]);
+    };
+    expect_cut(pw_hierarchy_cut_height(h, 0, bounds.data(), bounds.size(), &count));
+    expect_cut(pw_hierarchy_cut_parts(h, parts, bounds.data(), bounds.size(), &count));
+    expect_cut(pw_hierarchy_cut_least_concavity(h, parts, bounds.data(), bounds.size(), &count));
+    expect_cut(pw_hierarchy_cut_automatic(h, bounds.data(), bounds.size(), &count));
+    bounds.resize(count);
+    return bounds;
+}
+
+// Hulls whose vertices are finite.
+void expect_convex_parts(const Handle& handle, const pw_convex_options& options) {
+    pw_convex_parts* made = nullptr;
+    const pw_status status = pw_hierarchy_convex_parts(nullptr, handle.get(), &options, &made);
+    const std::unique_ptr<pw_convex_parts, decltype(&pw_convex_parts_free)> parts(made, pw_convex_parts_free);
+    ASSERT_EQ(status, PW_OK) << pw_error_message();
+    size_t count = 0;
+    ASSERT_EQ(pw_convex_parts_count(made, &count), PW_OK);
+    for (size_t i = 0; i < count; ++i) {
+        const double* vertices = nullptr;
+        const int32_t* triangles = nullptr;
+        size_t vertex_count = 0, triangle_count = 0;
+        double volume = 0, error = 0;
+        ASSERT_EQ(pw_convex_parts_hull(made, i, &vertices, &vertex_count, &triangles, &triangle_count, &volume, &error), PW_OK);
+        for (size_t k = 0; k < 3 * vertex_count; ++k) EXPECT_TRUE(std::isfinite(vertices[k]));
+        EXPECT_TRUE(std::isfinite(volume) && std::isfinite(error));
+    }
+}
+
 }  // namespace
+
+extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t max_size, unsigned seed) {
+    std::vector<uint8_t> bytes;
+    if (seed % 8 != 0) {
+        try {
+            SavedHierarchy saved = SavedHierarchy::unpack({data, size});
+            FieldMutator(saved, seed).mutate();
+            bytes = saved.pack();
+        } catch (const partwheel::Error&) {  // the bytes were changed before
+            bytes.clear();
+        }
+    }
+    if (bytes.empty() || bytes.size() > max_size) return LLVMFuzzerMutate(data, size, max_size);
+    std::copy(bytes.begin(), bytes.end(), data);
+    return bytes.size();
+}
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
     GTEST_FLAG_SET(throw_on_failure, true);  // out of the fuzzer: a crash for libFuzzer
@@ -116,15 +310,16 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         (void)hull(loaded.handle, first, last);
         expect_solids(loaded.handle, first, last);
     }
-    std::vector<int32_t> bounds(a.tetrahedron_count + 1);
-    size_t count = 0;
-    EXPECT_EQ(pw_hierarchy_cut_automatic(loaded.handle.get(), bounds.data(), bounds.size(), &count), PW_OK);
-    EXPECT_TRUE(count >= 2 && count <= bounds.size());
-    EXPECT_EQ(bounds[0], 0);
-    EXPECT_EQ(static_cast<size_t>(bounds[count - 1]), a.tetrahedron_count);
-    for (size_t k = 1; k < count; ++k) EXPECT_LT(bounds[k - 1], bounds[k]);
+    const std::vector<int32_t> bounds = expect_cuts(loaded.handle);
     expect_index(loaded.handle, nullptr, 0);
-    expect_index(loaded.handle, bounds.data(), count);
+    expect_index(loaded.handle, bounds.data(), bounds.size());
+    constexpr size_t few_tetrahedra = 100;  // of more, convex parts take too long here
+    if (a.tetrahedron_count <= few_tetrahedra) {
+        double longest = 0;
+        for (size_t i = 0; i < 3 * a.vertex_count; ++i) longest = std::max(longest, std::fabs(a.vertices[i] - a.vertices[i % 3]));
+        expect_convex_parts(loaded.handle, {sizeof(pw_convex_options), 3, 0, 0});
+        expect_convex_parts(loaded.handle, {sizeof(pw_convex_options), 0, 0.1 * longest, 0});
+    }
     // What is saved loads, and is saved as the same again. (These bytes may have said it at greater length.)
     const std::vector<uint8_t> saved = save(loaded.handle);
     const Built again = try_load(saved);

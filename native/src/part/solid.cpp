@@ -5,6 +5,7 @@
 #include "base/groups.h"
 #include "base/numbered.h"
 #include "part/border.h"
+#include "tree/adjacency.h"
 
 #include <algorithm>
 #include <map>
@@ -26,46 +27,11 @@ int32_t corner_of(const Tetrahedron& tet, int32_t vertex) {
     refuse();
 }
 
-std::vector<std::array<int32_t, 4>> neighbours_of(std::span<const Tetrahedron> tetrahedra) {
-    struct Outside {
-        int32_t middle, high, tet, corner;
-    };
-    // By the lowest vertex of the facet: then there are few to compare.
-    int32_t vertices = 0;
-    for (const Tetrahedron& t : tetrahedra) vertices = std::max({vertices, t[0] + 1, t[1] + 1, t[2] + 1, t[3] + 1});
-    Grouped<Outside> by_lowest(at(vertices), [&](const auto& put) {
-        for (size_t t = 0; t < tetrahedra.size(); ++t)
-            for (size_t c = 0; c < 4; ++c) {
-                Triangle v = facet(tetrahedra[t], c);
-                std::sort(v.begin(), v.end());
-                if (v[0] == v[1] || v[1] == v[2]) refuse();
-                put(at(v[0]), Outside{v[1], v[2], static_cast<int32_t>(t), static_cast<int32_t>(c)});
-            }
-    });
-
-    std::vector<std::array<int32_t, 4>> neighbours(tetrahedra.size(), {-1, -1, -1, -1});
-    const auto same = [](const Outside& a, const Outside& b) { return a.middle == b.middle && a.high == b.high; };
-    for (size_t v = 0; v < at(vertices); ++v) {
-        const std::span<Outside> here = by_lowest.with(v);
-        std::sort(here.begin(), here.end(), [](const Outside& a, const Outside& b) {
-            return std::tie(a.middle, a.high, a.tet) < std::tie(b.middle, b.high, b.tet);
-        });
-        for (auto s = here.begin(); s != here.end(); ++s) {
-            if (s + 1 == here.end() || !same(s[0], s[1])) continue;
-            if (s[0].tet == s[1].tet || (s + 2 != here.end() && same(s[1], s[2]))) refuse();
-            neighbours[at(s[0].tet)][at(s[0].corner)] = s[1].tet;
-            neighbours[at(s[1].tet)][at(s[1].corner)] = s[0].tet;
-            ++s;
-        }
-    }
-    return neighbours;
-}
-
 }  // namespace
 
 Facets::Facets(std::span<const Tetrahedron> tetrahedra, std::span<const int32_t> outer_faces,
                std::span<const int32_t> leaf, bool whole_faces)
-    : neighbours_(neighbours_of(tetrahedra)), faces_(tetrahedra.size(), {-1, -1, -1, -1}), home_(tetrahedra.size()) {
+    : neighbours_(neighbors_of(tetrahedra)), faces_(tetrahedra.size(), {-1, -1, -1, -1}), home_(tetrahedra.size()) {
     auto next = outer_faces.begin();
     for (size_t t = 0; t < tetrahedra.size(); ++t) {
         int32_t only = -1;  // the face at it; -2: several

@@ -4,9 +4,9 @@
 #include "cluster/hull/hull.h"
 #include "tree/mirror/claims.h"
 #include "tree/packed.h"
+#include "tree/saved.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <string>
@@ -73,6 +73,9 @@ std::vector<int32_t> faces_of_outer_facets(const Surface& surface, const TetMesh
     return faces;
 }
 
+// What a saved hierarchy and a summary both have.
+auto common(auto& s) { return std::tie(s.components, s.cavities, s.added_vertices, s.deviation, s.hull_volume); }
+
 }  // namespace
 
 Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const Regrouped& regrouped,
@@ -110,7 +113,7 @@ Hierarchy::Hierarchy(const Surface& surface, const TetMesh& mesh, const Regroupe
     finish();
 }
 
-// Everything that follows from the stored arrays, which are known to be sound.
+// Everything that follows from the stored arrays, which are known to be sound: see SavedHierarchy::check().
 void Hierarchy::finish() {
     const size_t leaves = tetrahedra_.size(), merges = merges_.size(), clusters = leaves + merges;
     const size_t faces = leaf_.size(), top = clusters - regrouped_merges();
@@ -323,98 +326,42 @@ TriangleMesh Hierarchy::hull(size_t tet_first, size_t tet_last) const {
     return mesh;
 }
 
-// ---- Saved form: a header, the stored arrays packed, a hash. ----
-
-namespace {
-
-constexpr std::array<char, 8> magic = {'P', 'W', 'H', 'I', 'E', 'R', '\r', '\n'};
-constexpr uint32_t format_version = 5;
-
-struct Header {
-    std::array<char, 8> magic = partwheel::magic;
-    uint32_t version = format_version;
-    uint32_t rung = 0;
-    uint64_t faces = 0, tetrahedra = 0, vertices = 0, components = 0, cavities = 0, added_vertices = 0, account = 0;
-    uint64_t outer = 0, scores = 0;
-    double deviation = 0, hull_volume = 0;
-};
-
-static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Header) == 104);
-
-// What a header and a summary both have.
-auto common(auto& s) { return std::tie(s.components, s.cavities, s.added_vertices, s.deviation, s.hull_volume); }
-
-template <class T, size_t n>
-std::span<const T> numbers(const std::vector<std::array<T, n>>& arrays) {
-    return {arrays.data()->data(), n * arrays.size()};
-}
-
-}  // namespace
-
 std::vector<uint8_t> Hierarchy::save() const {
-    Header header;
-    header.faces = leaf_.size();
-    header.tetrahedra = tetrahedra_.size();
-    header.vertices = vertices_.size();
-    header.account = account_.size();
-    header.outer = outer_faces_.size();
-    header.scores = scores_.size();
-    header.rung = summary_.rung;
-    common(header) = common(summary_);
+    SavedHierarchy saved;
+    saved.rung = summary_.rung;
+    common(saved) = common(summary_);
+    saved.account = account_;
     // A merge joins the slices on both sides of a border between two tetrahedra, so that says all of it.
-    std::vector<int32_t> borders;
-    std::vector<double> concavities;
     for (const Merge& merge : merges_) {
         const size_t leaves = tetrahedra_.size(), left = at(merge.left);
-        borders.push_back(left < leaves ? merge.left + 1 : merge_last_[left - leaves]);
-        concavities.push_back(merge.concavity);
+        saved.borders.push_back(left < leaves ? merge.left + 1 : merge_last_[left - leaves]);
+        saved.concavities.push_back(merge.concavity);
     }
-    Packer out;
-    out.put(header);
-    out.put_bytes(account_.data(), account_.size());
-    out.put_integers(borders);
-    out.put_doubles(concavities);
-    out.put_doubles(numbers(vertices_));
-    out.put_integers(source_);
-    out.put_integers(numbers(tetrahedra_));
-    out.put_integers(leaf_);
-    out.put_doubles(face_area_);
-    out.put_integers(outer_faces_);
-    out.put_doubles(scores_);
-    return out.finish();
+    saved.vertices = vertices_;
+    saved.source = source_;
+    saved.tetrahedra = tetrahedra_;
+    saved.leaf = leaf_;
+    saved.face_area = face_area_;
+    saved.outer_faces = outer_faces_;
+    saved.scores = scores_;
+    return saved.pack();
 }
 
 Hierarchy Hierarchy::load(std::span<const uint8_t> bytes) {
-    if (bytes.size() < magic.size() || !std::equal(magic.begin(), magic.end(), bytes.begin()))
-        refuse_saved("it is something else");
-    // All versions have theirs behind the magic bytes; what follows, and how it is hashed, may be another matter in each.
-    uint32_t version;
-    if (bytes.size() < magic.size() + sizeof version) refuse_saved("it is cut short");
-    std::memcpy(&version, bytes.data() + magic.size(), sizeof version);
-    if (version > format_version) refuse_saved("it was written by a newer version of Partwheel, which can read it");
-    if (version < format_version) refuse_saved("it was written by an older version of Partwheel");
-    Unpacker in(bytes);
-    const auto header = in.get<Header>();
-    for (uint64_t n : {header.faces, header.tetrahedra, header.vertices})
-        if (n == 0 || n > PW_MAX_COUNT) refuse_saved("its sizes are impossible");
-
+    SavedHierarchy saved = SavedHierarchy::unpack(bytes);
+    saved.check();
     Hierarchy h;
-    h.account_ = in.get_text(header.account);
-    const std::vector<int32_t> borders = in.get_integers(header.tetrahedra - 1);
-    h.plant(borders, in.get_doubles(header.tetrahedra - 1));
-    h.vertices_ = in.get_doubles<Point>(header.vertices);
-    h.source_ = in.get_integers(header.vertices);
-    h.tetrahedra_ = in.get_integers<Tetrahedron>(header.tetrahedra);
-    h.leaf_ = in.get_integers(header.faces);
-    h.face_area_ = in.get_doubles(header.faces);
-    h.outer_faces_ = in.get_integers(header.outer);
-    h.scores_ = in.get_doubles(header.scores);
-    if (!std::has_single_bit(header.rung) || header.rung > PW_RUNG_COARSE)
-        refuse_saved("its rung is unknown");
-    h.summary_.rung = static_cast<pw_rung>(header.rung);
-    common(h.summary_) = common(header);
-    if (!in.at_end()) refuse_saved("it goes on after its end");
-    h.check_stored();
+    h.plant(saved.borders, saved.concavities);
+    h.summary_.rung = static_cast<pw_rung>(saved.rung);
+    common(h.summary_) = common(saved);
+    h.account_ = std::move(saved.account);
+    h.vertices_ = std::move(saved.vertices);
+    h.source_ = std::move(saved.source);
+    h.tetrahedra_ = std::move(saved.tetrahedra);
+    h.leaf_ = std::move(saved.leaf);
+    h.face_area_ = std::move(saved.face_area);
+    h.outer_faces_ = std::move(saved.outer_faces);
+    h.scores_ = std::move(saved.scores);
     h.finish();
     if (!std::isfinite(h.summary_.volume)) refuse_saved("its measures are impossible");
     return h;
@@ -441,58 +388,6 @@ void Hierarchy::plant(std::span<const int32_t> borders, std::span<const double> 
         left[at(b.far)] = {merged, a.far};
         a.cluster = b.cluster = -1;
     }
-}
-
-// Somewhat more than the caller's may have: a sheet is given a thickness.
-constexpr double largest_coordinate = 1e101;
-
-// A hash can be forged: what finish() and the questions rely on is checked as well.
-void Hierarchy::check_stored() const {
-    const size_t leaves = tetrahedra_.size();
-    const auto below = [](int32_t i, size_t size) { return i >= 0 && at(i) < size; };
-    const auto measure = [](double x) { return x >= 0 && std::isfinite(x); };
-    for (const Point& p : vertices_)
-        for (double c : p)
-            if (!(std::fabs(c) <= largest_coordinate)) refuse_saved("a vertex is out of range");
-    if (Frame::around(vertices_).longest == 0) refuse_saved("its vertices are all at one place");
-    for (int32_t s : source_)
-        if (s < -1 || s >= PW_MAX_COUNT) refuse_saved("a vertex has no source");
-    for (const Tetrahedron& t : tetrahedra_)
-        for (int32_t v : t)
-            if (!below(v, vertices_.size())) refuse_saved("a tetrahedron names a missing vertex");
-    for (int32_t l : leaf_)
-        if (!below(l, leaves)) refuse_saved("a face names a missing tetrahedron");
-    for (double a : face_area_)
-        if (!measure(a)) refuse_saved("an area is impossible");
-    for (int32_t f : outer_faces_)  // how many there must be shows when a solid is asked for
-        if (f != -1 && !below(f, leaf_.size())) refuse_saved("a facet names a missing face");
-    // Sums of some are finite if that of all is.
-    double concavities = 0;
-    for (const Merge& m : merges_) {
-        if (!measure(m.concavity)) refuse_saved("a volume is impossible");
-        concavities += m.concavity;
-    }
-    if (!measure(summary_.hull_volume) || !std::isfinite(concavities) ||
-        !std::isfinite(std::reduce(face_area_.begin(), face_area_.end())))
-        refuse_saved("its measures are impossible");
-    // One for each part and each merge that joins them; with no parts there is none.
-    if (!scores_.empty() && (scores_.size() % 2 == 0 || scores_.size() > 2 * leaves - 1))
-        refuse_saved("its scores are odd");
-    for (size_t i = 0; i < scores_.size(); ++i) {
-        // 0 is for what is below the parts, and for steps to what is joined from more than two.
-        const bool may_be_step = i > scores_.size() / 2 && i + 1 < scores_.size();
-        if (!(may_be_step ? scores_[i] >= 0 : scores_[i] > 0) || scores_[i] > 1) refuse_saved("a score is impossible");
-    }
-    if (summary_.components == 0 || summary_.components > leaves) refuse_saved("its counts are impossible");
-
-    const auto strangers = static_cast<size_t>(std::count(source_.begin(), source_.end(), -1));
-    const bool exact = summary_.rung == PW_RUNG_EXACT;
-    if (exact ? summary_.added_vertices != strangers : summary_.added_vertices > strangers)
-        refuse_saved("its counts are impossible");
-    if (!measure(summary_.deviation) || (exact && summary_.deviation != 0)) refuse_saved("its deviation is impossible");
-    const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
-    if (exact != account_.empty() || !std::all_of(account_.begin(), account_.end(), printable))
-        refuse_saved("its account can't be read");
 }
 
 }  // namespace partwheel

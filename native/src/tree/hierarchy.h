@@ -51,7 +51,6 @@ public:
 
 private:
     Hierarchy() = default;
-    void check_stored() const;
     void plant(std::span<const int32_t> borders, std::span<const double> concavities);
     void finish();
     std::vector<uint8_t> kept_merges() const;  // those that are nodes

@@ -86,12 +86,13 @@ BoxTree::BoxTree(std::span<const Box> items) {
         all.add(box.high);
     }
     const double longest = std::max({all.high[0] - all.low[0], all.high[1] - all.low[1], all.high[2] - all.low[2]});
+    const double scale = longest > 0 ? 0.4999 / longest : 0;
     std::vector<std::pair<uint64_t, size_t>> places;
     for (size_t i = 0; i < items.size(); ++i)
-        places.push_back({place_in_cube(0.4999 / longest * (items[i].low + items[i].high - all.low - all.low), curve_bits), i});
+        places.push_back({place_in_cube(scale * (items[i].low + items[i].high - all.low - all.low), curve_bits), i});
     std::ranges::sort(places);
     for (const auto& [place, i] : places) order.push_back(i);
-    bound(items, 0, 0, items.size());
+    if (!items.empty()) bound(items, 0, 0, items.size());
 }
 
 void BoxTree::bound(std::span<const Box> items, size_t node, size_t first, size_t last) {
@@ -152,8 +153,8 @@ void Distances::look(size_t node, size_t first, size_t last, const Point& p, dou
 Point Distances::nearest(const Point& p, double enough) const {
     Found best;
     const double limit = std::max(enough, 0.0) * std::max(enough, 0.0);
-    look(0, 0, surface_.size(), p, limit, best);
-    return best.squared > limit && inside(0, 0, tetrahedra_.size(), p) ? p : best.point;
+    if (!surface_.empty()) look(0, 0, surface_.size(), p, limit, best);
+    return best.squared > limit && !tetrahedra_.empty() && inside(0, 0, tetrahedra_.size(), p) ? p : best.point;
 }
 
 double Distances::farthest(const TriangleMesh& surface, double slack, double enough) const {

@@ -109,7 +109,7 @@ void PartIndex::take_hulls(const Hierarchy& hierarchy, std::span<const int32_t> 
     for (size_t part = 0; part + 1 < bounds.size(); ++part) {
         const TriangleMesh hull = hierarchy.hull(at(bounds[part]), at(bounds[part + 1]));
         const auto before = static_cast<int32_t>(vertices_.size());
-        pieces_.push_back({before, static_cast<int32_t>(part)});
+        if (!hull.vertices.empty()) pieces_.push_back({before, static_cast<int32_t>(part)});
         vertices_.insert(vertices_.end(), hull.vertices.begin(), hull.vertices.end());
         for (const auto& [a, b, c] : hull.triangles) {
             sides_.push_back({a + before, b + before, c + before});
@@ -218,7 +218,7 @@ struct PartIndex::Sent {
 
 RayHit PartIndex::first(const Point& origin, const Point& direction) const {
     Sent sent{*this, Ray(frame_.to_working(origin), 1 / frame_.scale * direction)};
-    sent.look(surface_.root.child, surface_.root.count);
+    if (!surface_.root.empty()) sent.look(surface_.root.child, surface_.root.count);
     return sent.best.triangle < 0 ? RayHit{} : sent.best;
 }
 
@@ -262,7 +262,7 @@ NearPart PartIndex::nearest(const Point& p) const {
     const int32_t body = holding(p);
     if (body >= 0) return {body, 0, p};
     Sought sought{*this, frame_.to_working(p)};
-    sought.look(surface_.root.child, surface_.root.count);
+    if (!surface_.root.empty()) sought.look(surface_.root.child, surface_.root.count);
     return {sought.body, std::sqrt(sought.best) * frame_.scale, frame_.to_caller(sought.point)};
 }
 

@@ -107,11 +107,13 @@ int32_t PartIndex::holding(const Point& p, const Box& near, bool turned, const P
             for (auto i = at(child); i < at(child + count); ++i) {
                 const int32_t body = bodies_.order[i];
                 if (lowest >= 0 && lowest < body) continue;
+                bool has_sides = false;  // the hull of what lies in a plane has none
                 const bool inside = sides_of(body, [&](const Triangle& t) {
+                    has_sides = true;
                     const int side = orientation(place(t[0]), place(t[1]), place(t[2]), p);
                     return turned ? side >= 0 : side <= 0;
                 });
-                if (inside) lowest = body;
+                if (has_sides && inside) lowest = body;
             }
             return;
         }

@@ -121,7 +121,8 @@ public:
     }
 
     TouchingParts touching() {
-        if (!look(a_.surface_.root, b_.surface_.root)) look_inside();
+        const bool has_surfaces = !a_.surface_.root.empty() && !b_.surface_.root.empty();
+        if (has_surfaces && !look(a_.surface_.root, b_.surface_.root)) look_inside();
         return found_;
     }
 

@@ -21,7 +21,11 @@ float rounded(double x, float towards) {
     return (towards < 0 ? f > x : f < x) ? std::nextafter(f, towards) : f;
 }
 
+// Of an item without points.
+bool is_empty(const Box& box) { return box.low[0] > box.high[0]; }
+
 void add(Box& box, const Box& other) {
+    if (is_empty(other)) return;
     box.add(other.low);
     box.add(other.high);
 }
@@ -31,7 +35,7 @@ double half_area(const Box& box) {
     return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
 }
 
-Point twice_centre(const Box& box) { return box.low + box.high; }
+Point twice_centre(const Box& box) { return is_empty(box) ? Point{} : box.low + box.high; }
 
 }  // namespace
 
@@ -45,7 +49,7 @@ Tree::Tree(std::span<const Box> items, const Top& top) : order(items.size()) {
     }
     for (const auto& [a, b] : top.joins) {
         const Subtree &left = made[at(a)], &right = made[at(b)];
-        Subtree whole = left.child < 0 ? right : right.child < 0 ? left : join(left, right);
+        Subtree whole = left.empty() ? right : right.empty() ? left : join(left, right);
         whole.number = static_cast<int32_t>(made.size());
         made.push_back(whole);
     }
@@ -118,7 +122,7 @@ size_t Tree::middle(std::span<const Box> items, size_t first, size_t last, int d
         if (m != begin && m != end) return static_cast<size_t>(m - order.begin());
     }
     const auto m = begin + (end - begin) / 2;
-    std::nth_element(begin, m, end, [&](int32_t i, int32_t j) {
+    std::sort(begin, end, [&](int32_t i, int32_t j) {
         const double x = twice_centre(items[at(i)])[axis], y = twice_centre(items[at(j)])[axis];
         return x != y ? x < y : i < j;
     });

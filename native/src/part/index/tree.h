@@ -37,6 +37,8 @@ struct Tree {
         Box box;
         int32_t child = -1, count = 0;
         int32_t number = -1;  // of the group or join that it is all of; -1: less than a group
+
+        bool empty() const { return child < 0; }
     };
 
     Subtree root;

@@ -1,0 +1,17 @@
+// Which tetrahedra share a facet.
+#pragma once
+
+#include "base/geometry.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace partwheel {
+
+// Of each tetrahedron the one across the facet opposite each corner; -1: none. Throws Error(PW_ERROR_DATA) if a tetrahedron
+// repeats a corner or if more than two share a facet.
+std::vector<std::array<int32_t, 4>> neighbors_of(std::span<const Tetrahedron> tetrahedra);
+
+}  // namespace partwheel

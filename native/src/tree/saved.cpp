@@ -1,0 +1,208 @@
+// A saved hierarchy: a header, the arrays packed, a hash.
+#include "tree/saved.h"
+
+#include "surface/surface.h"
+#include "tree/adjacency.h"
+#include "tree/packed.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+namespace partwheel {
+
+namespace {
+
+constexpr std::array<char, 8> magic = {'P', 'W', 'H', 'I', 'E', 'R', '\r', '\n'};
+constexpr uint32_t format_version = 5;
+
+struct Header {
+    std::array<char, 8> magic = partwheel::magic;
+    uint32_t version = format_version;
+    uint32_t rung = 0;
+    uint64_t faces = 0, tetrahedra = 0, vertices = 0, components = 0, cavities = 0, added_vertices = 0, account = 0;
+    uint64_t outer = 0, scores = 0;
+    double deviation = 0, hull_volume = 0;
+};
+
+static_assert(sizeof(Point) == 24 && sizeof(Tetrahedron) == 16 && sizeof(Header) == 104);
+
+// What both have.
+auto common(auto& s) {
+    return std::tie(s.rung, s.components, s.cavities, s.added_vertices, s.deviation, s.hull_volume);
+}
+
+template <class T, size_t n>
+std::span<const T> numbers(const std::vector<std::array<T, n>>& arrays) {
+    return {arrays.data()->data(), n * arrays.size()};
+}
+
+// Coordinates may be somewhat larger than the caller's, and a model smaller: a sheet is given a thickness.
+constexpr double largest_coordinate = 1e101, smallest_model = 1e-81;
+
+bool is_below(int32_t i, size_t count) { return i >= 0 && at(i) < count; }
+
+bool is_measure(double x) { return x >= 0 && std::isfinite(x); }
+
+void check_vertices(const SavedHierarchy& saved) {
+    for (const Point& p : saved.vertices)
+        for (const double c : p)
+            if (!(std::fabs(c) <= largest_coordinate)) refuse_saved("a vertex is out of range");
+    if (!(Frame::around(saved.vertices).longest >= smallest_model)) refuse_saved("its vertices are all at one place");
+    std::vector<int32_t> sources;
+    for (const int32_t s : saved.source) {
+        if (s < -1 || s >= PW_MAX_COUNT) refuse_saved("a vertex has no source");
+        if (s >= 0) sources.push_back(s);
+    }
+    std::sort(sources.begin(), sources.end());
+    if (std::adjacent_find(sources.begin(), sources.end()) != sources.end())
+        refuse_saved("two vertices have one source");
+}
+
+// Six times the volume, in the frame, that may be lost where coordinates are rounded to the caller's.
+double rounding_of_volumes(std::span<const Point> vertices, const Frame& frame) {
+    double largest = 0;
+    for (const Point& p : vertices)
+        for (const double c : p) largest = std::max(largest, std::fabs(c));
+    constexpr double per_coordinate = 256;  // of how many each volume is a product, times the frame's extent
+    return per_coordinate * std::numeric_limits<double>::epsilon() * (1 + largest / frame.scale);
+}
+
+void check_tetrahedra(const SavedHierarchy& saved) {
+    const std::vector<Point>& vertices = saved.vertices;
+    for (const Tetrahedron& t : saved.tetrahedra)
+        for (const int32_t v : t)
+            if (!is_below(v, vertices.size())) refuse_saved("a tetrahedron names a missing vertex");
+    const Frame frame = Frame::around(vertices);
+    const double rounding = rounding_of_volumes(vertices, frame);
+    double volume = 0;
+    for (const Tetrahedron& t : saved.tetrahedra) {
+        const auto corner = [&](size_t k) { return frame.to_working(vertices[at(t[k])]); };
+        const double six = six_volumes(corner(0), corner(1), corner(2), corner(3));
+        if (six < -rounding) refuse_saved("a tetrahedron is inside out");
+        volume += std::max(0.0, six);
+    }
+    const std::vector<std::array<int32_t, 4>> neighbors = neighbors_of(saved.tetrahedra);
+    size_t outer = 0;
+    for (const auto& of_tet : neighbors) outer += static_cast<size_t>(std::count(of_tet.begin(), of_tet.end(), -1));
+    if (outer == 0 || outer != saved.outer_faces.size()) refuse_saved("its surface is not that of its tetrahedra");
+    if (!(volume > 0)) refuse_saved("its tetrahedra have no volume");
+}
+
+void check_faces(const SavedHierarchy& saved) {
+    for (const int32_t l : saved.leaf)
+        if (!is_below(l, saved.tetrahedra.size())) refuse_saved("a face names a missing tetrahedron");
+    for (const double a : saved.face_area)
+        if (!is_measure(a)) refuse_saved("an area is impossible");
+    for (const int32_t f : saved.outer_faces)
+        if (f != -1 && !is_below(f, saved.leaf.size())) refuse_saved("a facet names a missing face");
+    if (!std::isfinite(std::reduce(saved.face_area.begin(), saved.face_area.end())))
+        refuse_saved("its measures are impossible");
+}
+
+void check_merges(const SavedHierarchy& saved) {
+    double sum = 0;  // those of some are finite if that of all is
+    for (const double concavity : saved.concavities) {
+        if (!is_measure(concavity)) refuse_saved("a volume is impossible");
+        sum += concavity;
+    }
+    if (!is_measure(saved.hull_volume) || !std::isfinite(sum)) refuse_saved("its measures are impossible");
+}
+
+void check_scores(const SavedHierarchy& saved) {
+    // One for each part and each merge that joins them; with no parts there is none.
+    const std::vector<double>& scores = saved.scores;
+    if (!scores.empty() && (scores.size() % 2 == 0 || scores.size() > 2 * saved.tetrahedra.size() - 1))
+        refuse_saved("its scores are odd");
+    for (size_t i = 0; i < scores.size(); ++i) {
+        // 0 is for what is below the parts, and for steps to what is joined from more than two.
+        const bool may_be_step = i > scores.size() / 2 && i + 1 < scores.size();
+        if (!(may_be_step ? scores[i] >= 0 : scores[i] > 0) || scores[i] > 1) refuse_saved("a score is impossible");
+    }
+}
+
+void check_summary(const SavedHierarchy& saved) {
+    if (!std::has_single_bit(saved.rung) || saved.rung > PW_RUNG_COARSE) refuse_saved("its rung is unknown");
+    const bool exact = saved.rung == PW_RUNG_EXACT;
+    const auto strangers = static_cast<size_t>(std::count(saved.source.begin(), saved.source.end(), -1));
+    if (saved.components == 0 || saved.components > saved.tetrahedra.size() ||
+        (exact ? saved.added_vertices != strangers : saved.added_vertices > strangers))
+        refuse_saved("its counts are impossible");
+    if (!is_measure(saved.deviation) || (exact && saved.deviation != 0)) refuse_saved("its deviation is impossible");
+    const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
+    if (exact != saved.account.empty() || !std::all_of(saved.account.begin(), saved.account.end(), printable))
+        refuse_saved("its account can't be read");
+}
+
+}  // namespace
+
+std::vector<uint8_t> SavedHierarchy::pack() const {
+    Header header;
+    header.faces = leaf.size();
+    header.tetrahedra = tetrahedra.size();
+    header.vertices = vertices.size();
+    header.account = account.size();
+    header.outer = outer_faces.size();
+    header.scores = scores.size();
+    common(header) = common(*this);
+    Packer out;
+    out.put(header);
+    out.put_bytes(account.data(), account.size());
+    out.put_integers(borders);
+    out.put_doubles(concavities);
+    out.put_doubles(numbers(vertices));
+    out.put_integers(source);
+    out.put_integers(numbers(tetrahedra));
+    out.put_integers(leaf);
+    out.put_doubles(face_area);
+    out.put_integers(outer_faces);
+    out.put_doubles(scores);
+    return out.finish();
+}
+
+SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
+    if (bytes.size() < magic.size() || !std::equal(magic.begin(), magic.end(), bytes.begin()))
+        refuse_saved("it is something else");
+    // All versions have theirs behind the magic bytes; what follows, and how it is hashed, may be another matter in each.
+    uint32_t version;
+    if (bytes.size() < magic.size() + sizeof version) refuse_saved("it is cut short");
+    std::memcpy(&version, bytes.data() + magic.size(), sizeof version);
+    if (version > format_version) refuse_saved("it was written by a newer version of Partwheel, which can read it");
+    if (version < format_version) refuse_saved("it was written by an older version of Partwheel");
+    Unpacker in(bytes);
+    const auto header = in.get<Header>();
+    for (uint64_t n : {header.faces, header.tetrahedra, header.vertices})
+        if (n == 0 || n > PW_MAX_COUNT) refuse_saved("its sizes are impossible");
+
+    SavedHierarchy saved;
+    common(saved) = common(header);
+    saved.account = in.get_text(header.account);
+    saved.borders = in.get_integers(header.tetrahedra - 1);
+    saved.concavities = in.get_doubles(header.tetrahedra - 1);
+    saved.vertices = in.get_doubles<Point>(header.vertices);
+    saved.source = in.get_integers(header.vertices);
+    saved.tetrahedra = in.get_integers<Tetrahedron>(header.tetrahedra);
+    saved.leaf = in.get_integers(header.faces);
+    saved.face_area = in.get_doubles(header.faces);
+    saved.outer_faces = in.get_integers(header.outer);
+    saved.scores = in.get_doubles(header.scores);
+    if (!in.at_end()) refuse_saved("it goes on after its end");
+    return saved;
+}
+
+void SavedHierarchy::check() const {
+    check_vertices(*this);
+    check_tetrahedra(*this);
+    check_faces(*this);
+    check_merges(*this);
+    check_scores(*this);
+    check_summary(*this);
+}
+
+}  // namespace partwheel

@@ -1,0 +1,39 @@
+// What is saved of a hierarchy: the arrays that all others follow from, their bytes, and what must hold of them.
+#pragma once
+
+#include "base/geometry.h"
+#include "partwheel.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace partwheel {
+
+struct SavedHierarchy {
+    uint32_t rung = 0;
+    uint64_t components = 0, cavities = 0, added_vertices = 0;
+    double deviation = 0, hull_volume = 0;
+    std::string account;
+    std::vector<int32_t> borders;  // of each merge: the border between two tetrahedra that it takes away
+    std::vector<double> concavities;
+    std::vector<Point> vertices;
+    std::vector<int32_t> source;
+    std::vector<Tetrahedron> tetrahedra;
+    std::vector<int32_t> leaf;
+    std::vector<double> face_area;
+    std::vector<int32_t> outer_faces;
+    std::vector<double> scores;
+
+    std::vector<uint8_t> pack() const;
+
+    // Throws Error(PW_ERROR_DATA) for bytes that pack() does not write. The arrays have matching sizes, no more: see check().
+    static SavedHierarchy unpack(std::span<const uint8_t> bytes);
+
+    // Throws Error(PW_ERROR_DATA) unless all holds that a hierarchy and the queries rely on: a hash can be forged.
+    void check() const;
+};
+
+}  // namespace partwheel

@@ -1,0 +1,121 @@
+// Saved hierarchies whose fields were changed: the hash fits, so only what is checked of the fields keeps them out.
+#include "tree/saved.h"
+
+#include "part/convex/apart.h"
+#include "part/index/tree.h"
+#include "support/built.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+using namespace partwheel;
+using namespace partwheel::test;
+
+namespace {
+
+struct Forgery {
+    const char* name;
+    const char* message;
+    std::function<void(SavedHierarchy&)> change;
+};
+
+SavedHierarchy saved_of(const TriMesh& mesh) { return SavedHierarchy::unpack(save(build(mesh))); }
+
+// One tetrahedron, with a face for each of its facets.
+SavedHierarchy single_tetrahedron() {
+    SavedHierarchy saved;
+    saved.rung = PW_RUNG_EXACT;
+    saved.components = 1;
+    saved.hull_volume = 1.0 / 6;
+    saved.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    saved.source = {0, 1, 2, 3};
+    saved.tetrahedra = {{0, 1, 2, 3}};
+    saved.leaf = {0, 0, 0, 0};
+    saved.face_area = {0.5, 0.5, 0.5, 0.8};
+    saved.outer_faces = {0, 1, 2, 3};
+    return saved;
+}
+
+// The boundary of a simplex of four dimensions: each facet is that of two tetrahedra, so nothing is outside.
+SavedHierarchy without_surface() {
+    SavedHierarchy saved = single_tetrahedron();
+    saved.vertices.push_back({0.25, 0.25, 0.25});
+    saved.source.push_back(4);
+    saved.tetrahedra = {{0, 1, 2, 3}, {4, 1, 3, 2}, {4, 0, 2, 3}, {4, 0, 3, 1}, {4, 0, 1, 2}};
+    saved.borders = {1, 2, 3, 4};
+    saved.concavities = {0, 0, 0, 0};
+    saved.outer_faces.clear();
+    return saved;
+}
+
+void expect_refused(const SavedHierarchy& saved, const std::string& name, const std::string& message) {
+    const Built loaded = try_load(saved.pack());
+    EXPECT_EQ(loaded.status, PW_ERROR_DATA) << name;
+    EXPECT_NE(loaded.message.find(message), std::string::npos) << name << ": " << loaded.message;
+}
+
+const Forgery forgeries[] = {
+    {"all corners one vertex", "vertex twice", [](SavedHierarchy& s) { s.tetrahedra[0] = {0, 0, 0, 0}; }},
+    {"two corners one vertex", "vertex twice", [](SavedHierarchy& s) { s.tetrahedra[0][3] = s.tetrahedra[0][0]; }},
+    {"inside out", "inside out", [](SavedHierarchy& s) { std::swap(s.tetrahedra[0][0], s.tetrahedra[0][1]); }},
+    {"missing vertex", "missing vertex", [](SavedHierarchy& s) { s.tetrahedra[0][2] = 1000; }},
+    {"a facet of the surface too few", "surface", [](SavedHierarchy& s) { s.outer_faces.pop_back(); }},
+    {"a facet of the surface too many", "surface", [](SavedHierarchy& s) { s.outer_faces.push_back(-1); }},
+    {"one source of two vertices", "source", [](SavedHierarchy& s) { s.source[1] = s.source[0]; }},
+    {"a coordinate that is no number", "out of range",
+     [](SavedHierarchy& s) { s.vertices[0][1] = std::numeric_limits<double>::quiet_NaN(); }},
+    {"an infinite coordinate", "out of range",
+     [](SavedHierarchy& s) { s.vertices[0][1] = std::numeric_limits<double>::infinity(); }},
+    {"too small to be measured", "one place",
+     [](SavedHierarchy& s) {
+         for (Point& p : s.vertices) p = 5e-324 * p;
+     }},
+    {"flat", "no volume",
+     [](SavedHierarchy& s) {
+         for (Point& p : s.vertices) p[2] = 0;
+     }},
+    {"a negative area", "area", [](SavedHierarchy& s) { s.face_area[0] = -1; }},
+    {"a missing leaf", "missing tetrahedron", [](SavedHierarchy& s) { s.leaf[0] = 1000; }},
+    {"a missing face", "missing face", [](SavedHierarchy& s) { s.outer_faces[0] = 1000; }},
+    {"no components", "counts", [](SavedHierarchy& s) { s.components = 0; }},
+    {"two rungs", "rung", [](SavedHierarchy& s) { s.rung = 3; }},
+};
+
+}  // namespace
+
+TEST(Saved, ASoundOneLoads) {
+    EXPECT_EQ(try_load(single_tetrahedron().pack()).status, PW_OK) << pw_error_message();
+    for (const TriMesh& mesh : {cube(), star_prism(5, 1, 2, 1)}) {
+        const std::vector<uint8_t> bytes = save(build(mesh));
+        EXPECT_EQ(SavedHierarchy::unpack(bytes).pack(), bytes);
+    }
+}
+
+TEST(Saved, ChangedFieldsAreRefused) {
+    for (const Forgery& forgery : forgeries)
+        for (SavedHierarchy saved : {single_tetrahedron(), saved_of(cube()), saved_of(star_prism(5, 1, 2, 1))}) {
+            forgery.change(saved);
+            expect_refused(saved, forgery.name, forgery.message);
+        }
+}
+
+TEST(Saved, TetrahedraThatShareOneFacetByThreeAreRefused) {
+    SavedHierarchy saved = saved_of(cube());
+    for (size_t t = 1; t < 3; ++t) saved.tetrahedra[t] = saved.tetrahedra[0];
+    expect_refused(saved, "three alike", "share a facet");
+}
+
+TEST(Saved, TetrahedraWithoutASurfaceAreRefused) { expect_refused(without_surface(), "no surface", ""); }
+
+// What no loaded hierarchy has any more, but a tree of boxes must bear.
+TEST(Saved, TreesOfNothingAnswer) {
+    const convex::Distances none({}, {});
+    EXPECT_EQ(none.farthest({}, 0.1), 0);
+    (void)none.nearest({1, 2, 3});
+    EXPECT_TRUE(convex::BoxTree({}).order.empty());
+    EXPECT_TRUE(index::Tree({}, {{0, 0, 0}, {{0, 1}}}).root.empty());
+    const Box empty[10] = {};
+    EXPECT_EQ(index::Tree(empty, {{0, 10}, {}}).order.size(), 10U);
+}
