@@ -3,12 +3,12 @@
 
 from typing import NamedTuple
 
-import bpy
 import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 
 from ..mesh import arrays
-from ..solid.composition import home, update_matrices
+from ..mesh.datablocks import all_or_nothing
+from ..solid.composition import beside, update_matrices
 from partwheel import compatible
 from ..mesh.refusing import Refused
 from ..solid.solids import CAP
@@ -105,15 +105,15 @@ def place(part, target, pose, mirror=False):
     return mirrored(part, target) if mirror else None
 
 
+@all_or_nothing()
 def mirrored(part, target):
     """A new object: the part's mirror image across the target's own YZ plane. Its mesh is mirrored, not its matrix."""
     mesh = part.data.copy()
     flip = Matrix.Scale(-1, 4, (1, 0, 0))
-    new = bpy.data.objects.new(part.name, mesh)
-    home(part).objects.link(new)
+    new = beside(part, mesh, part.name)
     across = target.matrix_world @ flip @ target.matrix_world.inverted()
     # A mirror image of a mirror image is a turn: the matrix stays free of reflection.
-    mesh.transform(flip)
+    mesh.transform(flip, shape_keys=True)
     mesh.flip_normals()
     new.matrix_world = across @ part.matrix_world @ flip
     return new

@@ -66,6 +66,8 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
     def _swap(self, place, offer):
         self.other, self.whole = offer.name, offer.node is None
         self.other_node = -1 if self.whole else offer.node
+        for sentence in composition.bound(kept.named(place.name)):
+            self.report({"WARNING"}, sentence)
         place.swap(offer, self._adjustment(), self.blend)
         if self.build:
             find_parts(self)

@@ -10,6 +10,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from ..mesh import arrays
+from ..mesh.datablocks import all_or_nothing, dispose
 from ..parts import registry
 from ..solid import composition
 from . import placement, union
@@ -102,21 +103,20 @@ class Place:
         """A new mesh: the object's without the part, closed. Raises Refused or PartwheelError."""
         return composition.rest(named(self.name), self.hierarchy, self.node, self.snap)
 
+    @all_or_nothing()
     def stand_in(self, offer, adjustment=Adjustment()):
-        """A new object beside this part's: the one offered, in this part's place."""
+        """A new object beside this part's: the one offered, in this part's place. Its mesh alone: modifiers that act on it
+        afterwards are those of this part's object."""
         obj, source = named(self.name), named(offer.name)
         composition.update_matrices()
         if offer.node is None:
-            new = bpy.data.objects.new(source.name, source.data.copy())
-            composition.home(obj).objects.link(new)
+            mesh = source.data.copy()
         else:
-            new = composition.copied(source, _hierarchy_of(offer), offer.node, snap=self.snap,
-                                     collection=composition.home(obj))
-        try:
-            self.put(new, offer, adjustment)
-        except Exception:
-            dispose(new)
-            raise
+            mesh = composition.part_mesh(source, _hierarchy_of(offer), offer.node, snap=self.snap)
+        new = composition.bare(source, mesh, source.name, composition.home(obj))
+        for own, slot in zip(new.material_slots, source.material_slots):
+            own.link, own.material = slot.link, slot.material
+        self.put(new, offer, adjustment)
         return new
 
     def put(self, new, offer, adjustment):
@@ -139,17 +139,15 @@ class Place:
             self._cut[known] = _shape(named(offer.name), _hierarchy_of(offer), offer.node, snap=True) or offer.shape
         return self._cut[known]
 
+    @all_or_nothing()
     def swap(self, offer, adjustment=Adjustment(), blend=0.0):
         """Takes the part out of the object's mesh and unites what is left with the one offered; blend: as for
         union.unite(). Raises an Error before anything has changed."""
-        rest, new = self.rest(), None
-        try:
-            new = self.stand_in(offer, adjustment)
-            return union.unite(named(self.name), [new], blend, rest)
-        finally:
-            bpy.data.meshes.remove(rest)
-            if new:
-                dispose(new)
+        rest, new = self.rest(), self.stand_in(offer, adjustment)
+        solver = union.unite(named(self.name), [new], blend, rest)
+        bpy.data.meshes.remove(rest)
+        dispose(new)
+        return solver
 
 
 def _hierarchy_of(offer):
@@ -158,13 +156,6 @@ def _hierarchy_of(offer):
     if not hierarchy or offer.node >= len(hierarchy.parent):
         raise Refused("{name} was changed and has other parts now. Start again.", name=offer.name)
     return hierarchy
-
-
-def dispose(obj):
-    """Removes an object that stand_in() made, and its mesh."""
-    mesh = obj.data
-    bpy.data.objects.remove(obj)
-    bpy.data.meshes.remove(mesh)
 
 
 def sources(context, obj):

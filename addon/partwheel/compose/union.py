@@ -2,12 +2,16 @@
 """Closed meshes united into one by Blender's Boolean. What it gives is never trusted: it is checked, and the next
 solver is tried."""
 
+from contextlib import contextmanager
+
 import bpy
 import numpy as np
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
 from ..mesh import arrays, pieces
+from ..mesh.datablocks import all_or_nothing
+from ..solid import composition, solids
 from . import pinches, seams
 from partwheel import RayTarget, polygon_faults
 from ..mesh.refusing import Refused
@@ -20,23 +24,24 @@ SAMPLES = 200  # vertices that are looked at to see whether a mesh lies inside a
 RAY = Vector((0.5377, 0.3141, 0.7823)).normalized()  # no model is likely to be built along it
 SUSPICIOUS = 0.1  # of the smaller volume: with more of it inside the other, what is missing is looked for
 MISSING = 0.05  # of the samples: a few may lie in faces of the other
+NEAR_CORNER = 1e-5  # a share: what is so near to a vertex is taken for it
 TOLERANCE = 1e-5  # of the sum of the volumes: coordinates are of 24 bits
-# How the properties begin that are a mesh's settings.
-SETTINGS = ("remesh_", "use_remesh_", "use_mirror_", "use_paint_", "use_auto_", "auto_smooth", "radial", "texspace")
 
 
+@all_or_nothing()
 def unite(target, others, blend=0.0, instead=None):
     """Makes the target's mesh the union of it, as it is without modifiers, and of the other objects, with theirs. The
     others stay. blend: the width of a smooth transition on either side of each seam, times the seam's radius. instead:
-    a mesh to be taken for the target's own. Returns the solver that did it. Raises Refused before anything has
-    changed."""
-    slots = []
+    a mesh to be taken for the target's own. What is left of the target's surface keeps its shape keys. Returns the solver
+    that did it. Raises Refused before anything has changed."""
+    slots, keyed = [], instead or target.data
+    solids.check_resolution(target)
     base = _input(target, instead or target.data, slots)
     try:
         if blend > 0:
             seams.mark(base, 0)
         for side, other in enumerate(others, 1):
-            operand = _evaluated(other, slots)
+            operand = _evaluated(other, slots, target)
             try:
                 if blend > 0:
                     seams.mark(operand, side)
@@ -48,14 +53,26 @@ def unite(target, others, blend=0.0, instead=None):
                 bpy.data.meshes.remove(operand)
             bpy.data.meshes.remove(base)
             base = result
+        offsets = _key_offsets(keyed, base)
         if blend > 0:
             seams.blend(base, blend)
             seams.unmark(base)
     except Exception:
         bpy.data.meshes.remove(base)
         raise
-    _replace(target, base, slots)
+    with composition.hooks_kept(target):
+        _replace(target, base, slots, offsets)
     return solver
+
+
+def losses(target, others):
+    """Sentences on what of these objects a union can't keep, to be said beforehand."""
+    found = composition.bound(target)
+    keyed = [obj.name for obj in others if obj.data.shape_keys]
+    if keyed:
+        found.append(rpt_("The shape keys of {names} can't be kept: the parts stay as they are now. The shape keys of {target} "
+                          "move its own surface only.").format(names=", ".join(keyed), target=target.name))
+    return found
 
 
 def problem(mesh):
@@ -85,7 +102,13 @@ def volume(mesh):
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
-def _evaluated(obj, slots):
+def _evaluated(obj, slots, target):
+    """A copy of the object's mesh with its modifiers, but for those that the target has too: they act on the union."""
+    shared = [modifier.name for modifier in obj.modifiers
+              if any(_settings(modifier) == _settings(other) for other in target.modifiers)]
+    if shared:
+        with _without(obj, shared) as double:
+            return _evaluated(double, slots, double)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     mesh = bpy.data.meshes.new_from_object(obj.evaluated_get(depsgraph), preserve_all_data_layers=True,
                                            depsgraph=depsgraph)
@@ -93,6 +116,26 @@ def _evaluated(obj, slots):
         return _input(obj, mesh, slots)
     finally:
         bpy.data.meshes.remove(mesh)
+
+
+def _settings(modifier):
+    """Of a modifier, to be compared."""
+    names = (each.identifier for each in modifier.bl_rna.properties if not each.is_readonly)
+    values = ((name, getattr(modifier, name)) for name in names if name not in {"is_active", "show_expanded"})
+    return {name: value[:] if hasattr(value, "foreach_get") else value for name, value in values}
+
+
+@contextmanager
+def _without(obj, modifiers):
+    """A double of the object for a while, without the modifiers of these names."""
+    double = obj.copy()
+    try:
+        bpy.context.scene.collection.objects.link(double)
+        for name in modifiers:
+            double.modifiers.remove(double.modifiers[name])
+        yield double
+    finally:
+        bpy.data.objects.remove(double)
 
 
 def _input(obj, mesh, slots):
@@ -109,7 +152,7 @@ def _input(obj, mesh, slots):
     copy = mesh.copy()
     copy.materials.clear()
     arrays.set_material_indices(copy, numbers[np.minimum(indices, len(own) - 1)])
-    if copy.shape_keys:  # they can't outlive a union
+    if copy.shape_keys:  # see _key_offsets()
         pieces.clear_keys(copy)
     return copy
 
@@ -211,34 +254,54 @@ def _boolean(base, operand, solver, within, slots):
         bpy.data.collections.remove(collection)
 
 
-def _replace(target, result, slots):
-    """Makes the result the target's mesh: name, settings, properties and users are those of the one before."""
+def _key_offsets(mesh, result):
+    """{key: (V,3) how far it moves each vertex of a result}, {} if the mesh has no shape keys. What lies on the mesh's surface
+    goes as that does there, the rest stays."""
+    if not mesh.shape_keys:
+        return {}
+    own, triangles = arrays.read(mesh.vertices, "co", np.float32, 3), arrays.triangles(mesh)[0]
+    places = arrays.read(result.vertices, "co", np.float32, 3)
+    tree = BVHTree.FromPolygons(own.tolist(), triangles.tolist(), all_triangles=True)
+    near = TOLERANCE * float(np.linalg.norm(np.ptp(own, axis=0)))
+    hits = [tree.find_nearest(place, near) for place in places.tolist()]
+    on = np.array([hit[2] is not None for hit in hits], bool)
+    corners = triangles[[hit[2] for hit in hits if hit[2] is not None]]
+    weights = _barycentric(np.array([hit[0] for hit in hits if hit[2] is not None]).reshape(-1, 3), own[corners].astype(float))
+    found, reference = {}, arrays.read(mesh.shape_keys.reference_key.data, "co", np.float32, 3)
+    for key in mesh.shape_keys.key_blocks:
+        offsets = arrays.read(key.data, "co", np.float32, 3) - reference
+        found[key.name] = np.zeros_like(places)
+        found[key.name][on] = np.einsum("ij,ijk->ik", weights, offsets[corners])
+    return found
+
+
+def _barycentric(places, corners):
+    """(n,3) the weights of the corners (n,3,3) of triangles at places (n,3) in them."""
+    sides = corners[:, 1:] - corners[:, :1]
+    products = np.einsum("ijk,ilk->ijl", sides, sides)
+    along = np.einsum("ijk,ik->ij", sides, places - corners[:, 0])
+    flat = np.linalg.det(products) <= 0
+    products[flat], along[flat] = np.eye(2), 0
+    two = np.linalg.solve(products, along[..., None])[..., 0]
+    found = np.clip(np.concatenate([1 - two.sum(axis=1, keepdims=True), two], axis=1), 0, 1)
+    return np.where((found > 1 - NEAR_CORNER).any(axis=1, keepdims=True), found > 0.5, found)
+
+
+def _replace(target, result, slots, offsets):
+    """Makes the result the target's mesh: name, settings, properties and users are those of the one before, and its shape
+    keys, by offsets, see _key_offsets()."""
     if slots == [None]:
         result.materials.clear()  # it was none
-    old, name = target.data, target.data.name
-    if old.animation_data or old.asset_data or old.use_fake_user:  # what a new one can't have
-        normals = arrays.custom_normals(result)
-        if old.users > 1 + old.use_fake_user:
-            target.data = old = old.copy()
-        if old.shape_keys:
-            pieces.clear_keys(old)
-        old.materials.clear()
-        for material in result.materials:
-            old.materials.append(material)
-        pieces.replace_geometry(old, result)
-        if normals is not None:
-            arrays.set_custom_normals(old, normals)
-        old.update()
-        bpy.data.meshes.remove(result)
-        return
-    for setting in old.bl_rna.properties:
-        if setting.identifier.startswith(SETTINGS) and not result.is_property_readonly(setting.identifier):
-            setattr(result, setting.identifier, getattr(old, setting.identifier))
-    for key in old.keys():
-        result[key] = old[key]
-    if old.users > 1:
-        target.data = result
-    else:
-        old.user_remap(result)
-        bpy.data.meshes.remove(old)
-        result.name = name
+    old = target.data
+    normals = arrays.custom_normals(result)
+    if old.users > 1 + old.use_fake_user:
+        target.data = old = old.copy()
+    old.materials.clear()
+    for material in result.materials:
+        old.materials.append(material)
+    places = arrays.read(result.vertices, "co", np.float32, 3)
+    pieces.replace_geometry(old, result, {key: places + offset for key, offset in offsets.items()})
+    if normals is not None:
+        arrays.set_custom_normals(old, normals)
+    old.update()
+    bpy.data.meshes.remove(result)

@@ -6,6 +6,7 @@ import bpy
 from ..parts import builds
 from . import union
 from partwheel import Error
+from ..mesh.datablocks import dispose
 from ..mesh.refusing import can, changeable
 from ..words.say import rpt_
 
@@ -52,6 +53,8 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
         if not others:
             self.report({"ERROR"}, rpt_(NO_OTHERS))
             return {"CANCELLED"}
+        for sentence in union.losses(target, others):
+            self.report({"WARNING"}, sentence)
         try:
             solver = union.unite(target, others, self.blend)
         except Error as error:
@@ -59,10 +62,7 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
             return {"CANCELLED"}
         if not self.keep:
             for other in others:
-                mesh = other.data
-                bpy.data.objects.remove(other)
-                if not mesh.users:
-                    bpy.data.meshes.remove(mesh)
+                dispose(other)
         if self.build:
             find_parts(self)
         self.report({"INFO"}, rpt_("{name} is one closed mesh now, of {count:,} faces (solver {solver}).").format(

@@ -5,24 +5,30 @@ layers.vertex_groups() writes. Outside Edit Mode; undo is the caller's."""
 import bpy
 
 from ..mesh import arrays
+from ..mesh.datablocks import all_or_nothing
 from ..solid import composition
 from partwheel.cut import bones, mirror_planes, tree
 
 OURS = "partwheel_bones"  # a property of armatures that were made here
 
 
+@all_or_nothing()
 def made(obj, cut, names, weights):
     """The armature object, with a bone for each part; the one that was made before, if the object still has it: pose
     and constraints of bones that keep their names stay. The object hangs on it. weights: of each part, as
-    layers.vertex_groups() has written them."""
+    layers.weights_of() gives them."""
     surface = arrays.surface(obj.data)
     labels = cut.labels[surface.faces]
     vertices, triangles = surface.vertices, surface.triangles
     found = bones(vertices, triangles, labels, tree(cut, vertices, triangles, labels), weights,
                   mirror_planes(vertices, triangles))
     modifier = _modifier(obj)
-    rig = modifier.object if modifier and _usable(obj, modifier.object) else _new(obj, modifier)
+    if modifier and _usable(obj, modifier.object):
+        _write(modifier.object, found, names)
+        return modifier.object
+    rig = _new(obj)
     _write(rig, found, names)
+    _hang(obj, rig, modifier)
     return rig
 
 
@@ -39,8 +45,8 @@ def _usable(obj, rig):
     return moved == [obj] and not rig.library and not rig.data.library and rig.data.users == 1 and rig.visible_get()
 
 
-def _new(obj, modifier):
-    """In the object's place in the tree of objects, which then hangs on it."""
+def _new(obj):
+    """In the object's place, also in the tree of objects."""
     composition.update_matrices()
     data = bpy.data.armatures.new(f"{obj.name} bones")
     data[OURS] = True
@@ -48,15 +54,20 @@ def _new(obj, modifier):
     composition.home(obj).objects.link(rig)
     rig.show_in_front = True
     rig.parent, rig.parent_type, rig.parent_bone = obj.parent, obj.parent_type, obj.parent_bone
-    rig.matrix_parent_inverse, place = obj.matrix_parent_inverse, obj.matrix_world.copy()
-    rig.matrix_world = place
-    obj.parent, obj.parent_type, obj.matrix_parent_inverse = rig, "OBJECT", place.inverted_safe()
-    obj.matrix_world = place
+    if obj.parent_type in {"VERTEX", "VERTEX_3"}:
+        rig.parent_vertices = obj.parent_vertices
+    rig.matrix_parent_inverse = obj.matrix_parent_inverse
+    rig.matrix_world = obj.matrix_world
+    return rig
+
+
+def _hang(obj, rig, modifier):
+    """The object stays where it is, and keeps its own transform: that may be animated."""
+    obj.parent, obj.parent_type, obj.matrix_parent_inverse = rig, "OBJECT", obj.matrix_basis.inverted_safe()
     modifier = modifier or obj.modifiers.new("Bones", "ARMATURE")
     modifier.object, modifier.use_vertex_groups = rig, True
     modifier.use_deform_preserve_volume = True  # or a joint gets thinner the further it bends
     composition.update_matrices()
-    return rig
 
 
 def _write(rig, found, names):

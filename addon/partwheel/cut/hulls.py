@@ -5,6 +5,7 @@ undo is the caller's."""
 import bpy
 from mathutils import Matrix
 
+from ..mesh.datablocks import all_or_nothing, dispose
 from ..mesh.refusing import Refused
 from ..solid import composition
 from partwheel import convex
@@ -15,33 +16,30 @@ NAMES = {"UNREAL": {kind: start + "_{model}_{number:02}" for kind, start in conv
          "UNITY": {"hull": "{model}_collider_{number:02}", "box": "{model}_box_{number:02}",
                    "sphere": "{model}_sphere_{number:02}", "capsule": "{model}_capsule_{number:02}"},
          "RIGID_BODY": {kind: "{model}_" + kind + "_{number:02}" for kind in ("hull", *convex.KINDS)}}
-OURS = "partwheel_hull"  # the property of objects that were made here: they make way for the next ones
 LONGEST = bpy.types.ID.bl_rna.properties["name"].length_max  # of a name, in bytes
 
 
+@all_or_nothing()
 def made(context, obj, hulls, engine="UNREAL", primitives=0.0):
     """[object, ...]: a child of the object for each partwheel.ConvexPart, named as the engine has it, one of NAMES; seen
     as wires and not rendered, in a new collection, or in that of the earlier ones, which are removed. RIGID_BODY: the
     object is a body whose shape they are together. primitives: the length that a box, sphere, capsule or cylinder may
     reach beyond a hull to be taken instead, as far as the engine has these; 0: hulls alone. Refused: nothing has changed."""
-    earlier = [child for child in obj.children if OURS in child]
+    earlier = [child for child in obj.children if composition.HULL in child]
     kinds = tuple(kind for kind in convex.KINDS if kind in NAMES[engine])
     shapes = [(primitives > 0 and convex.around(*hull[:2], primitives, kinds)) or hull for hull in hulls]
     names = [NAMES[engine][convex.kind_of(shape)].format(model=obj.name, number=number)
              for number, shape in enumerate(shapes)]
     _check(obj, names, earlier, engine)
     home = next((each.users_collection[0] for each in earlier if each.users_collection), None)
-    for each in earlier:
-        mesh = each.data
-        bpy.data.objects.remove(each)
-        if not mesh.users:
-            bpy.data.meshes.remove(mesh)
-    if not home:
-        home = bpy.data.collections.new(f"{obj.name} hulls")
-        composition.home(obj).children.link(home)
+    home = home or composition.new_collection(obj, f"{obj.name} hulls")
     found = [_child(obj, shape, name, home) for shape, name in zip(shapes, names)]
     if engine == "RIGID_BODY":
         _simulated(context, obj, {child: convex.kind_of(shape) for child, shape in zip(found, shapes)})
+    for each in earlier:  # now that nothing can fail any more
+        dispose(each)
+    for each, name in zip(found, names):  # which an earlier one had
+        each.name = each.data.name = name
     composition.update_matrices()
     return found
 
@@ -64,7 +62,7 @@ def _child(obj, shape, name, collection):
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(vertices.tolist(), [], triangles.tolist())
     new = bpy.data.objects.new(name, mesh)
-    new[OURS] = True
+    new[composition.HULL] = True
     collection.objects.link(new)
     new.parent, new.matrix_parent_inverse = obj, Matrix()
     if primitive:

@@ -17,12 +17,15 @@ def face_sets(obj, cut, _names):
     attribute.data.foreach_set("value", cut.labels + 1)
 
 
-def vertex_groups(obj, cut, names):
-    """One for each part, in place of groups of the same names: 1 within, falling smoothly across the borders. A
-    vertex's weights in them add up to 1. Returns them, as cut.weights() does."""
+def weights_of(obj, cut):
+    """Of each part, as cut.weights() gives them: 1 within, falling smoothly across the borders. A vertex's add up to 1."""
     surface = arrays.surface(obj.data)
-    found = weights(surface.vertices, surface.triangles, cut.labels[surface.faces], len(cut))
-    for name, (vertices, values) in zip(names, found):
+    return weights(surface.vertices, surface.triangles, cut.labels[surface.faces], len(cut))
+
+
+def vertex_groups(obj, names, weights):
+    """One for each part with these weights, in place of groups of the same names."""
+    for name, (vertices, values) in zip(names, weights):
         group = obj.vertex_groups.get(name)
         if group:
             obj.vertex_groups.remove(group)
@@ -31,7 +34,6 @@ def vertex_groups(obj, cut, names):
         group.add(vertices[whole].tolist(), 1.0, "REPLACE")
         for vertex, value in zip(vertices[~whole].tolist(), values[~whole].tolist()):
             group.add((vertex,), value, "REPLACE")
-    return found
 
 
 def check_locks(obj, names):

@@ -9,12 +9,13 @@ import numpy as np
 
 from ..mesh import kept
 from ..mesh.kept import counts
+from ..mesh.datablocks import all_or_nothing
 from ..mesh.refusing import Refused, can, changeable
 from ..parts import builds, picks, registry
 from ..pick.build import start, waited_for
 from ..pick.hover import highlight
 from ..pick.prepared import current, prepared
-from ..solid import copy_part, solids
+from ..solid import composition, copy_part, solids
 from ..view import keys, overlay, picking
 from ..view.in_view import InView, waiting
 from ..view.seen import NO_FACE
@@ -132,6 +133,20 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         return cut.sized(self.count) if self.count else cut
 
     def _write(self, context, obj, cut):
+        for sentence in self._losses(obj):
+            self.report({"WARNING"}, sentence)
+        with all_or_nothing():
+            return self._outside_edit_mode(context, obj, cut)
+
+    def _losses(self, obj):
+        """Sentences on what will be lost."""
+        found = composition.losses(obj) if "OBJECTS" in self.to else []
+        if "PRINT" in self.to and obj.modifiers:
+            found.append(rpt_("What is printed is the mesh of {name} itself: the effect of its modifiers is left out. Apply them "
+                              "first to print it.").format(name=obj.name))
+        return found
+
+    def _outside_edit_mode(self, context, obj, cut):
         mode = obj.mode
         if not self.properties.is_property_set("to"):
             self.to = USUAL[context.mode]
@@ -140,18 +155,14 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if mode == "EDIT":
             # Undo steps of Edit Mode hold its mesh alone: without this one, undo would leave the rest.
             bpy.ops.ed.undo_push(message="Leave Edit Mode")
-        made = []
-        try:
-            options = objects.Options(solids.Options(self.smooth, self.material), self.closed, self.origins,
-                                      self.explode, self.shell)
-            known = writing.known_names(obj, cut)
-            plan = self._planned(context, obj, cut, known) if "PRINT" in self.to else None
-            made = writing.write(obj, cut, self.to - {"PRINT"}, known, options, self.unwrap).objects
-            if plan:
-                made += printed.made(obj, plan)
-        finally:
-            if mode != "OBJECT" and not made:
-                bpy.ops.object.mode_set(mode=mode)
+        options = objects.Options(solids.Options(self.smooth, self.material), self.closed, self.origins,
+                                  self.explode, self.shell)
+        known = writing.known_names(obj, cut)
+        plan = self._planned(context, obj, cut, known) if "PRINT" in self.to else None
+        printables = printed.made(obj, plan) if plan else []
+        made = writing.write(obj, cut, self.to - {"PRINT"}, known, options, self.unwrap).objects + printables
+        if mode != "OBJECT" and not made:
+            bpy.ops.object.mode_set(mode=mode)
         if made:
             copy_part.only(context, made)
             if self.hide:

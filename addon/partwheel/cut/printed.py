@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays
+from ..mesh.datablocks import all_or_nothing
 from ..mesh.refusing import Refused
 from ..solid import composition
 from . import stored
@@ -43,18 +44,19 @@ def planned(context, obj, cut, known, pegs=None, wall=1.2, bed=None):
                                    named_by=lambda cut: stored.names_of(obj, cut, known)), scale)
 
 
+@all_or_nothing()
 def made(obj, plan):
-    """[object, ...] in the object's place, in a new collection: without its UVs and attributes, which cuts would tear.
+    """[object, ...] in the object's place, in a new collection: without its UVs and attributes, which cuts would tear, and
+    without its modifiers and all else, since what is printed is the mesh itself.
     What the checks found is the collection's property "notes"."""
     composition.update_matrices()
-    collection = bpy.data.collections.new(f"{obj.name} for printing")
-    composition.home(obj).children.link(collection)
+    collection = composition.new_collection(obj, f"{obj.name} for printing")
     collection["notes"] = "\n".join(plan.printable.notes)
     found = []
     for part, (vertices, triangles) in plan.printable.solids.items():
         mesh = bpy.data.meshes.new(plan.printable.names[part])
         mesh.from_pydata((vertices / plan.scale).tolist(), [], triangles.tolist())
-        new = composition.beside(obj, mesh, mesh.name, collection)
+        new = composition.bare(obj, mesh, mesh.name, collection)
         found.append(new)
     composition.update_matrices()
     return found

@@ -4,11 +4,11 @@
 from typing import NamedTuple
 
 from ..mesh import arrays
+from ..mesh.datablocks import all_or_nothing
 from . import armature, layers, objects, stored, unwrapping
 
-LAYERS = {"FACE_SETS": layers.face_sets, "VERTEX_GROUPS": layers.vertex_groups, "COLORS": layers.own_materials,
-          "MATERIALS": layers.kept_materials}
-TO = *LAYERS, "SEAMS", "OBJECTS", "BONES"
+LAYERS = {"FACE_SETS": layers.face_sets, "COLORS": layers.own_materials, "MATERIALS": layers.kept_materials}
+TO = "FACE_SETS", "VERTEX_GROUPS", "COLORS", "MATERIALS", "SEAMS", "OBJECTS", "BONES"
 
 
 class Written(NamedTuple):
@@ -24,6 +24,7 @@ def known_names(obj, cut):
     return kept[1] if kept else {}
 
 
+@all_or_nothing()
 def write(obj, cut, to=(), known=None, options=objects.Options(), unwrap=False):
     """Keeps the cut in the object's mesh and writes it: to, some of TO. known: {clusters: name} of parts that have one;
     None: those that are kept in the mesh. options: of objects. unwrap: also by the seams. Nothing has changed where it
@@ -35,15 +36,20 @@ def write(obj, cut, to=(), known=None, options=objects.Options(), unwrap=False):
     names = stored.names_of(obj, cut, known)
     if "VERTEX_GROUPS" in to:
         layers.check_locks(obj, names)
+        weights = layers.weights_of(obj, cut)
     take_back = unwrapping.mark(obj, cut, unwrap) if "SEAMS" in to else lambda: None
     try:
         made = objects.made(obj, cut, names, options) if "OBJECTS" in to else []  # with the new UVs
+        if "BONES" in to:
+            armature.made(obj, cut, names, weights)
     except Exception:
         take_back()
         raise
     stored.keep(obj.data, cut.labels, names)
-    layers_made = {layer: LAYERS[layer](obj, cut, names) for layer in LAYERS if layer in to}
-    if "BONES" in to:
-        armature.made(obj, cut, names, layers_made["VERTEX_GROUPS"])
+    if "VERTEX_GROUPS" in to:
+        layers.vertex_groups(obj, names, weights)
+    for layer, write_layer in LAYERS.items():
+        if layer in to:
+            write_layer(obj, cut, names)
     obj.data.update()
     return Written(names, made)

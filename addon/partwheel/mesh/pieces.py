@@ -11,6 +11,7 @@ import numpy as np
 
 from . import arrays
 from .arrays import read, write
+from .datablocks import copy_animation, copy_settings
 
 # Type of an attribute -> (its field, type of its numbers, how many they are, whether a mean has a meaning)
 _TYPES = {
@@ -127,6 +128,7 @@ def assembled(mesh, plan, name, selection):
     _copy_marks(mesh, made, first)
     _copy_own_layers(mesh, made, first)
     _copy_keys(mesh, made, plan)
+    _choose_layers(made, _chosen_layers(mesh))
     made.update()
     return made
 
@@ -226,9 +228,6 @@ def _copy_attributes(mesh, made, origins, but):
             new = made.uv_layers[uv.name].data
             new.foreach_set("uv", _picked(read(uv.data, "uv", np.float32, 2), origins["CORNER"], True).ravel())
             new.foreach_set("pin_uv", _picked(read(uv.data, "pin_uv", bool), origins["CORNER"]))
-        made.uv_layers[uv.name].active_render = uv.active_render
-    if mesh.uv_layers.active_index >= 0:
-        made.uv_layers.active_index = mesh.uv_layers.active_index
 
 
 def _copy_marks(mesh, made, origins):
@@ -336,14 +335,54 @@ def _copy_keys(mesh, made, plan):
             old_places = read(old.data, "co", np.float32, 3)
             places[own] = _picked(old_places, plan.vertices, True)[own]
             new.data.foreach_set("co", places.ravel())
-            for name in ("value", "slider_min", "slider_max", "mute", "vertex_group", "interpolation"):
-                setattr(new, name, getattr(old, name))
+            new.slider_min, new.slider_max = old.slider_min, old.slider_max  # or they bound the value
+            copy_settings(old, new, {"name", "relative_key"})
         for old in mesh.shape_keys.key_blocks:
             made.shape_keys.key_blocks[old.name].relative_key = made.shape_keys.key_blocks[old.relative_key.name]
-        made.shape_keys.use_relative = mesh.shape_keys.use_relative
+    copy_settings(mesh.shape_keys, made.shape_keys, {"name"})
+    for name in mesh.shape_keys.keys():
+        made.shape_keys[name] = mesh.shape_keys[name]
+    copy_animation(mesh.shape_keys, made.shape_keys)
 
 
-def replace_geometry(target, made):
-    """Puts a mesh's geometry, with all layers and shape keys, into another, whose name, properties and users stay."""
+def _chosen_layers(mesh):
+    """The names of the layers that Blender shows, renders, clones and masks by."""
+    uv = mesh.uv_layers
+    found = {"active": uv.active, "render": next((each for each in uv if each.active_render), None),
+             "uv_layer_clone": mesh.uv_layer_clone, "uv_layer_stencil": mesh.uv_layer_stencil}
+    colors = mesh.color_attributes
+    for role in ("active_color_index", "render_color_index"):
+        found[role] = colors[getattr(colors, role)] if 0 <= getattr(colors, role) < len(colors) else None
+    return {role: layer.name for role, layer in found.items() if layer}
+
+
+def _choose_layers(mesh, chosen):
+    """Only those that the mesh has, too."""
+    for role, name in chosen.items():
+        if role.endswith("color_index"):
+            if name in mesh.color_attributes:
+                setattr(mesh.color_attributes, role, mesh.color_attributes.find(name))
+        elif name in mesh.uv_layers:
+            if role == "active":
+                mesh.uv_layers.active = mesh.uv_layers[name]
+            elif role == "render":
+                mesh.uv_layers[name].active_render = True
+            else:
+                setattr(mesh, role, mesh.uv_layers[name])
+
+
+def replace_geometry(target, made, keys=None):
+    """Puts a mesh's geometry, with all layers, into another, whose name, properties and users stay, and shape keys but for the
+    places. keys: {name: (V,3) places} for them; None: made has the same."""
+    kept, chosen = len(target.shape_keys.key_blocks) if target.shape_keys else 0, _chosen_layers(target)
     with edited(made, target):
         pass
+    _choose_layers(target, chosen)
+    if kept:
+        # Blender goes by numbers of the keys that are others in each mesh, once one was removed: it mixes them up.
+        with _held(target) as holder:
+            for key in list(target.shape_keys.key_blocks)[kept:]:
+                holder.shape_key_remove(key)
+        for key in target.shape_keys.key_blocks:
+            write(key.data, "co", keys[key.name] if keys else
+                  read(made.shape_keys.key_blocks[key.name].data, "co", np.float32, 3))

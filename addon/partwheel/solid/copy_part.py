@@ -4,6 +4,7 @@
 import bpy
 
 from ..mesh import arrays
+from ..mesh.datablocks import all_or_nothing
 from ..mesh.refusing import NeedsMesh, Refused, changeable
 from ..parts import picks, registry
 from ..pick.build import Beside, waited_for
@@ -22,26 +23,34 @@ class OnParts(NeedsMesh):
 
     def execute(self, context):
         obj = context.active_object
-        was_edited = obj.mode == "EDIT"
         try:
             self.check(obj)
             if not waited_for(self, context, obj):
                 return {"CANCELLED"}
             hierarchy = self.hierarchy(obj)
-            if was_edited:
-                bpy.ops.object.mode_set(mode="OBJECT")
-                if not self.edits:
-                    # Undo steps of Edit Mode hold its mesh alone: without this one, undo would leave the new objects.
-                    bpy.ops.ed.undo_push(message="Leave Edit Mode")
-            self.work(context, obj, hierarchy)
-            if was_edited and self.edits:
-                bpy.ops.object.mode_set(mode="EDIT")
+            for sentence in self.losses(obj):
+                self.report({"WARNING"}, sentence)
+            with all_or_nothing():
+                self._outside_edit_mode(context, obj, hierarchy)
         except Error as error:
-            if was_edited and obj.mode != "EDIT":
-                bpy.ops.object.mode_set(mode="EDIT")
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         return {"FINISHED"}
+
+    def _outside_edit_mode(self, context, obj, hierarchy):
+        was_edited = obj.mode == "EDIT"
+        if was_edited:
+            bpy.ops.object.mode_set(mode="OBJECT")
+            if not self.edits:
+                # Undo steps of Edit Mode hold its mesh alone: without this one, undo would leave the new objects.
+                bpy.ops.ed.undo_push(message="Leave Edit Mode")
+        self.work(context, obj, hierarchy)
+        if was_edited and self.edits:
+            bpy.ops.object.mode_set(mode="EDIT")
+
+    def losses(self, _obj):
+        """Sentences on what will be lost."""
+        return []
 
     def _lacking(self, context):
         self.check(context.active_object)
@@ -102,6 +111,9 @@ class MESH_OT_partwheel_copy(OnPart, Beside, _Caps, bpy.types.Operator):
     bl_idname = "mesh.partwheel_copy"
     bl_label = "Copy Part as Solid"
 
+    def losses(self, obj):
+        return composition.losses(obj)
+
     def work(self, context, obj, hierarchy):
         only(context, [composition.copied(obj, hierarchy, self.node, self.caps(), self.snap)])
 
@@ -116,6 +128,9 @@ class MESH_OT_partwheel_remove(OnPart, Beside, _Caps, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         return super().poll(context) and changeable(cls, context.active_object)
+
+    def losses(self, obj):
+        return composition.bound(obj)
 
     def work(self, context, obj, hierarchy):
         composition.removed(obj, hierarchy, self.node, self.caps(), self.snap)
@@ -149,6 +164,9 @@ class MESH_OT_partwheel_split(OnParts, Beside, _Caps, bpy.types.Operator):
         layout.prop(self, "height" if self.by == "HEIGHT" else "parts")
         for name in ("explode", "hide", "smooth", "material"):
             layout.prop(self, name)
+
+    def losses(self, obj):
+        return composition.losses(obj)
 
     def work(self, context, obj, hierarchy):
         count = min(self.parts, len(hierarchy.tetrahedra))

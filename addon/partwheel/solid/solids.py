@@ -90,7 +90,7 @@ def check_resolution(obj):
     if any(other.data == obj.data and any(each.type == "MULTIRES" and each.total_levels for each in other.modifiers)
            for other in bpy.data.objects):
         raise Refused("{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution modifier "
-                      "first, or copy the part.", name=obj.name)
+                      "first.", name=obj.name)
 
 
 def _carved(mesh, hierarchy, solid, tet_first, tet_last, options, faces, alone):

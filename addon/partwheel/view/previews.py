@@ -5,6 +5,8 @@ when the tool ends; should Blender end first and save by itself, when that file 
 import bpy
 from bpy.app.handlers import persistent
 
+from ..mesh.datablocks import dispose
+
 MARK = "partwheel_preview"
 SHOWN, HIDDEN, SELECTED, ACTIVE = 0, 1, 2, 4  # what was hidden, with what it was before
 
@@ -32,9 +34,7 @@ def end(*_):
     """No preview is left, and what was hidden is seen again, selected and active if it was."""
     for obj in [obj for obj in bpy.data.objects if MARK in obj and not obj.library]:
         if obj[MARK] == SHOWN:
-            mesh = obj.data
-            bpy.data.objects.remove(obj)
-            bpy.data.meshes.remove(mesh)
+            dispose(obj)
             continue
         obj.hide_viewport = False
         layer = bpy.context.view_layer

@@ -1,0 +1,628 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What objects made from parts have of the object that they were made from: all that Blender's RNA knows, as Blender's own
+Separate keeps it; and nothing is left behind where it can't be made."""
+
+import contextlib
+import inspect
+import math
+import sys
+import tempfile
+from pathlib import Path
+
+import bpy
+import common
+import numpy
+from common import only_in, part, read_off
+from mathutils import Vector
+from mathutils.kdtree import KDTree
+from solid_case import SolidTest, arrays, caps
+
+# What is never the same: what makes it another data-block; of a mesh, what its other size makes of it.
+OWN = {"Object": {"name", "data", "dimensions", "matrix_local", "matrix_world", "matrix_basis", "use_fake_user", "use_extra_user",
+                  "tag", "asset_data"},
+       "Mesh": {"name", "use_fake_user", "use_extra_user", "tag", "asset_data", "uv_layer_clone", "uv_layer_stencil",
+                "uv_layer_clone_index", "uv_layer_stencil_index"}}  # see chosen_layers()
+# Of Parts to Objects, but for the root: each hangs on another part, and turns about its border.
+CHAINED = {"parent", "parent_type", "parent_bone", "matrix_parent_inverse", "location", "rotation_quaternion", "rotation_euler",
+           "rotation_axis_angle", "scale"}
+SHIFTED = "mesh texspace_location"  # with the origin
+# What would change more than itself, or hide the object from its tests.
+NOT_SET = {"parent_vertices", "parent", "parent_type", "parent_bone", "active_material", "active_material_index", "hide_viewport",
+           "active_shape_key_index", "show_only_shape_key", "use_shape_key_edit_mode", "instance_type", "auto_texspace",
+           "rotation_mode", "scale", "delta_scale", "is_runtime_data", "track_axis", "up_axis"}
+
+
+def writable(struct):
+    return [each for each in struct.bl_rna.properties
+            if not each.is_readonly and each.identifier not in OWN.get(struct.bl_rna.identifier, ())]
+
+
+def value(struct, name):
+    found = getattr(struct, name)
+    if isinstance(found, bpy.types.bpy_struct):
+        return found.name if hasattr(found, "name") else str(found)
+    return found if isinstance(found, (str, set, int, float)) or found is None else numpy.array(found).ravel().tolist()
+
+
+def values(struct):
+    return {each.identifier: value(struct, each.identifier) for each in writable(struct) if each.type != "COLLECTION"}
+
+
+def set_all(struct):
+    """Gives each property another value than its default, as far as Blender lets it: how many it has given."""
+    count = 0
+    for each in writable(struct):
+        name, before = each.identifier, value(struct, each.identifier)
+        if each.type in {"POINTER", "COLLECTION"} or name in NOT_SET or struct.is_property_readonly(name):
+            continue
+        with contextlib.suppress(TypeError, ValueError, AttributeError, RuntimeError):
+            if each.type == "BOOLEAN":
+                setattr(struct, name, [not one for one in before] if each.is_array else not before)
+            elif each.type in {"INT", "FLOAT"}:
+                step = 0.125 if each.type == "FLOAT" else 1
+                other = lambda one: one + step if one + step <= each.hard_max else one - step
+                setattr(struct, name, [other(one) for one in before] if each.is_array else other(before))
+            elif each.type == "ENUM" and not each.is_enum_flag:
+                setattr(struct, name, next(item.identifier for item in each.enum_items if item.identifier != before))
+        count += value(struct, name) != before
+    return count
+
+
+def custom(struct):
+    """Its custom properties."""
+    return {key: found.to_list() if hasattr(found, "to_list") else found for key, found in struct.items()}
+
+
+def animation(block):
+    """Of a data-block: what moves it."""
+    data = block.animation_data
+    if not data:
+        return None
+    tracks = [(track.name, track.mute, [(strip.name, strip.frame_start, strip.frame_end, strip.influence)
+                                        for strip in track.strips]) for track in data.nla_tracks]
+    return (curves(data), data.action_influence, data.action_blend_type, tracks,
+            [(curve.data_path, curve.array_index, curve.driver.type, curve.driver.expression,
+              [(variable.name, variable.type, [target.data_path for target in variable.targets])
+               for variable in curve.driver.variables]) for curve in data.drivers])
+
+
+def curves(data):
+    if not data.action:
+        return None
+    action = data.action
+    if not getattr(data, "action_slot", None):
+        found = action.fcurves
+    else:
+        found = action.layers[0].strips[0].channelbag(data.action_slot).fcurves
+    return [(curve.data_path, curve.array_index, [tuple(point.co) for point in curve.keyframe_points]) for curve in found]
+
+
+def chosen_layers(mesh):
+    """The names of those that Blender uses for something."""
+    chosen = mesh.uv_layers.active, mesh.uv_layer_clone, mesh.uv_layer_stencil
+    colors = mesh.color_attributes
+    return [each and each.name for each in (*chosen, *(layer for layer in mesh.uv_layers if layer.active_render),
+                                            *(colors[index] for index in (colors.active_color_index, colors.render_color_index)
+                                              if len(colors)))]
+
+
+def told(obj, but=()):
+    """All that an object has beside its mesh's geometry, to be compared; but: properties that are left out."""
+    mesh = obj.data
+    found = {f"object {name}": each for name, each in values(obj).items() if name not in but}
+    found |= {f"mesh {name}": each for name, each in values(mesh).items()}
+    found |= {"custom": custom(obj), "custom of the mesh": custom(mesh), "animation": animation(obj),
+              "animation of the mesh": animation(mesh),
+              "constraints": [(each.type, values(each)) for each in obj.constraints],
+              "modifiers": [(each.type, values(each)) for each in obj.modifiers],
+              "slots": [(slot.link, slot.material and slot.material.name) for slot in obj.material_slots],
+              "groups": [(group.name, group.lock_weight) for group in obj.vertex_groups],
+              "layers": chosen_layers(mesh), "rigid body": obj.rigid_body and values(obj.rigid_body)}
+    keys = mesh.shape_keys
+    if keys:
+        names = [each for each in values(keys.key_blocks[0]) if each not in {"frame"}]
+        found |= {"shape keys": [[value(key, name) for name in names] for key in keys.key_blocks],
+                  "all shape keys": {name: each for name, each in values(keys).items() if name not in OWN["Mesh"]},
+                  "animation of the keys": animation(keys)}
+    return found
+
+
+def evaluated(obj):
+    """(n,3) where its vertices are seen, in the world."""
+    bpy.context.view_layer.update()
+    shown = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = shown.to_mesh()
+    found = numpy.array([shown.matrix_world @ vertex.co for vertex in mesh.vertices])
+    shown.to_mesh_clear()
+    return found
+
+
+def blocks():
+    """All data-blocks, by kind."""
+    return {name: {block.name_full for block in getattr(bpy.data, name)} for name in dir(bpy.data)
+            if isinstance(getattr(bpy.data, name), bpy.types.bpy_prop_collection)}
+
+
+def arrays_of(obj):
+    return arrays(obj.data)[1], arrays(obj.data)[0].tolist()
+
+
+class Fault(RuntimeError):
+    """What nothing in the add-on knows."""
+
+
+class FailAt:
+    """While it is entered, the call of a function of the add-on's with this number fails, counted from where an operator leaves
+    Edit Mode. raised: its name."""
+
+    def __init__(self, number):
+        self.number, self.count, self.raised = number, -1, None
+
+    def __enter__(self):
+        self.root = str(Path(sys.modules[common.MODULE].__file__).parent)
+        self.handlers = {getattr(each, "__code__", None) for name in dir(bpy.app.handlers)
+                         for each in [getattr(bpy.app.handlers, name)] if isinstance(each, list) for each in each}
+        sys.setprofile(self._called)
+        return self
+
+    def __exit__(self, *_):
+        sys.setprofile(None)
+
+    def _called(self, frame, what, _):
+        code = frame.f_code
+        if what != "call" or not code.co_filename.startswith(self.root) or code.co_filename.endswith("datablocks.py"):
+            return
+        if self.count < 0 and code.co_name != "_outside_edit_mode":
+            return
+        if code.co_flags & inspect.CO_GENERATOR or code.co_name.startswith("<"):
+            return  # where it goes on, it would fail before its own "finally"
+        caller = frame
+        while caller and caller.f_code not in self.handlers:
+            caller = caller.f_back
+        if caller:
+            return  # Blender goes on where a handler fails
+        self.count += 1
+        if self.count == self.number:
+            self.raised = code.co_name
+            raise Fault(f"Fault in {code.co_name}")
+
+
+class ObjectData(SolidTest):
+    def setUp(self):
+        super().setUp()
+        for data in (bpy.data.collections, bpy.data.actions, bpy.data.armatures):
+            for item in list(data):
+                if item != bpy.context.collection:
+                    data.remove(item)
+
+    def armature(self):
+        """With a bone from the origin up."""
+        rig = bpy.data.objects.new("rig", bpy.data.armatures.new("rig"))
+        self.link(rig)
+        bpy.ops.object.mode_set(mode="EDIT")
+        bone = rig.data.edit_bones.new("bone")
+        bone.head, bone.tail = (0, 0, 0), (0, 0, 1)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        return rig
+
+    def keyed(self, obj):
+        """Shape keys, one of which was removed in between; a driver, which asks the object itself, and an action for them."""
+        for name in ("Basis", "gone", "wide", "tall"):
+            obj.shape_key_add(name=name, from_mix=False)
+        keys = obj.data.shape_keys
+        obj.shape_key_remove(keys.key_blocks["gone"])
+        for vertex, wide, tall in zip(obj.data.vertices, keys.key_blocks["wide"].data, keys.key_blocks["tall"].data):
+            wide.co = vertex.co * 1.5
+            tall.co = vertex.co + Vector((0, 0, vertex.co.z))
+        wide, tall = keys.key_blocks["wide"], keys.key_blocks["tall"]
+        wide.slider_min, wide.slider_max, wide.value, wide.mute = -2, 3, -0.5, False
+        tall.relative_key = wide
+        wide.keyframe_insert("value", frame=1)
+        curve = tall.driver_add("value")
+        variable = curve.driver.variables.new()
+        variable.name, variable.targets[0].id, variable.targets[0].data_path = "by", obj, '["by"]'
+        curve.driver.expression = "by * 0.25"
+        track = keys.animation_data.nla_tracks.new()
+        action = bpy.data.actions.new("strip")
+        if hasattr(action, "slots"):
+            action.slots.new("KEY", "strip")
+        strip = track.strips.new("strip", 5, action)
+        strip.influence, track.mute = 0.5, True
+
+    def rich(self, name="dragknob", animated=True):
+        """A model with parts and all that an object can have."""
+        obj, hierarchy = self.built(name)
+        obj["by"], obj["list"], obj.data["mesh's"] = 2.0, [1, 2, 3], "own"
+        for each in ("data", "object"):
+            obj.data.materials.append(bpy.data.materials.get(each) or bpy.data.materials.new(each))
+        obj.material_slots[1].link, obj.material_slots[1].material = "OBJECT", obj.data.materials[0]
+        group = obj.vertex_groups.new(name="bone")
+        group.add(range(len(obj.data.vertices)), 1, "REPLACE")
+        self.keyed(obj)
+        rig = self.armature()
+        rig.location = 1, 2, 3
+        bpy.context.view_layer.objects.active = obj
+        mirror = obj.modifiers.new("mirror", "MIRROR")
+        mirror.use_mirror_merge = False
+        obj.modifiers.new("bend", "ARMATURE").object = rig
+        hook = obj.modifiers.new("hook", "HOOK")
+        hook.object = rig
+        hook.vertex_indices_set([0, 1, 2, 3])
+        obj.modifiers.new("solid", "SOLIDIFY").thickness = 0.25
+        obj.location, obj.rotation_euler = (3, 1, 2), (0.3, 0.2, 1)
+        self.give_layers(obj.data)
+        self.assertGreater(set_all(obj), 30)
+        self.assertGreater(set_all(obj.data), 8)
+        if animated:
+            obj.constraints.new("LIMIT_ROTATION").influence = 0.5
+            obj.keyframe_insert("location", frame=1)
+            curve = obj.driver_add("pass_index")
+            curve.driver.expression = "7"
+            curve = obj.driver_add('modifiers["solid"].thickness')
+            variable = curve.driver.variables.new()
+            variable.name, variable.targets[0].id, variable.targets[0].data_path = "by", obj, '["by"]'
+            curve.driver.expression = "by * 0.125"
+        other = bpy.data.collections.new("other")
+        bpy.context.scene.collection.children.link(other)
+        other.objects.link(obj)
+        obj.parent, obj.parent_type, obj.parent_bone = rig, "BONE", "bone"
+        obj.update_tag()
+        bpy.context.view_layer.update()
+        return obj, hierarchy, rig
+
+    def give_layers(self, mesh):
+        for each in ("first", "second", "third"):
+            mesh.uv_layers.new(name=each)
+            mesh.color_attributes.new(f"{each} color", "BYTE_COLOR", "CORNER")
+        mesh.uv_layers["second"].active_render = True
+        mesh.color_attributes.active_color_index, mesh.color_attributes.render_color_index = 2, 1
+
+    def middle(self, hierarchy):
+        """A node of medium size."""
+        return self.nodes(hierarchy)[3]
+
+    def made_of(self, obj, hierarchy):
+        """{how: objects} of what makes objects of parts."""
+        api = part("api")
+        found = {"copy": [api.copy_part(obj, self.middle(hierarchy))],
+                 "copy with caps": [api.copy_part(obj, self.middle(hierarchy), smooth=True)],
+                 "split": api.split(obj, parts=4),
+                 "objects": api.write(obj, api.parts(obj, 4), {"OBJECTS"}).objects,
+                 "open": api.write(obj, api.parts(obj, 3), {"OBJECTS"}, closed=False, origins=False).objects}
+        bpy.context.view_layer.update()
+        return found
+
+    def compare(self, now, before, where):
+        self.assertEqual(now.keys(), before.keys(), where)
+        for name, each in before.items():
+            self.assertEqual(now[name], each, f"{name} {where}")
+
+    def test_all_that_rna_knows_is_kept(self):
+        for animated in (True, False):
+            obj, hierarchy, _ = self.rich(animated=animated)
+            part("api").write(obj, part("api").parts(obj, 4))  # or it would keep the parts in the mesh meanwhile
+            found = self.made_of(obj, hierarchy)
+            for how, objects in found.items():
+                for new in objects:
+                    chained = not animated and how in {"objects", "open"} and new.parent in objects
+                    but = CHAINED if chained else set()
+                    before, now = told(obj, but), told(new, but)
+                    if chained:
+                        before.pop(SHIFTED), now.pop(SHIFTED)
+                    for each in (before, now):  # whose number they have is another cut's
+                        each["custom of the mesh"].pop("partwheel_parts")
+                    self.compare(now, before, f"of {new.name}, {how}")
+                    missing = set(obj.users_collection) - set(new.users_collection)
+                    self.assertEqual(len(missing), not how.startswith("copy"), how)  # in place of which they have their own
+
+    def test_as_blender_separates(self):
+        """The same differences as an object has that Blender's own operator makes: of properties, whose actions they are, and
+        what drivers ask."""
+        for own_actions in (True, False):
+            bpy.context.preferences.edit.use_duplicate_action = own_actions
+            obj, hierarchy, _ = self.rich()
+            copy = part("api").copy_part(obj, self.middle(hierarchy))
+            self.link_active(obj)
+            self.edit(obj)
+            bpy.ops.object.mode_set(mode="OBJECT")
+            for face in hierarchy.faces(self.middle(hierarchy)).tolist():
+                obj.data.polygons[face].select = True
+            before = told(obj)
+            known = set(bpy.data.objects)
+            bpy.ops.object.mode_set(mode="EDIT")
+            bpy.ops.mesh.separate(type="SELECTED")
+            bpy.ops.object.mode_set(mode="OBJECT")
+            separated, = set(bpy.data.objects) - known
+            ours, blenders = told(copy), told(separated)
+            for name in before:
+                if ours[name] != before[name]:
+                    self.assertNotEqual(blenders[name], before[name], f"Separate keeps it: {name}")
+
+            def shared(new):
+                return [new_block.animation_data.action == block.animation_data.action for new_block, block in
+                        ((new, obj), (new.data.shape_keys, obj.data.shape_keys))]
+
+            def asked(new):
+                own = {obj: "the source", new: "itself"}
+                return [own.get(target.id) for block in (new, new.data.shape_keys) for curve in block.animation_data.drivers
+                        for variable in curve.driver.variables for target in variable.targets]
+
+            self.assertEqual(shared(copy), shared(separated))
+            self.assertEqual(asked(copy), asked(separated))
+            self.assertEqual({each.name for each in copy.users_collection}, {each.name for each in separated.users_collection})
+        bpy.context.preferences.edit.use_duplicate_action = True
+
+    def link_active(self, obj):
+        for other in bpy.context.view_layer.objects:
+            other.select_set(other == obj)
+        bpy.context.view_layer.objects.active = obj
+
+    def test_a_rigged_and_mirrored_model_moves_as_before(self):
+        """Each vertex of the parts is where one of the model is, at rest and posed."""
+        for name in ("dragknob", "hand"):
+            obj, hierarchy = self.built(name)
+            obj.location, obj.rotation_euler = (3, 1, 2), (0.3, 0.2, 1)
+            rig = self.armature()
+            rig.data.bones["bone"].use_deform = True
+            group = obj.vertex_groups.new(name="bone")
+            for vertex in obj.data.vertices:
+                group.add([vertex.index], (vertex.index % 5) / 4, "REPLACE")
+            obj.modifiers.new("mirror", "MIRROR").use_mirror_merge = False
+            obj.modifiers.new("bend", "ARMATURE").object = rig
+            obj.parent = rig
+            bpy.context.view_layer.update()
+            size = max(obj.dimensions)
+            found = self.made_of(obj, hierarchy)
+            for degrees in (0, 50):
+                bone = rig.pose.bones["bone"]
+                bone.rotation_mode, bone.rotation_euler = "XYZ", (math.radians(degrees), 0.2, 0)
+                rig.location.x = degrees
+                places = evaluated(obj)
+                tree = KDTree(len(places))
+                for number, place in enumerate(places):
+                    tree.insert(place, number)
+                tree.balance()
+                for how, objects in found.items():
+                    for new in objects:
+                        own = numpy.ones(len(new.data.vertices), bool)
+                        if "partwheel_cap" in new.data.attributes:
+                            of_caps = caps(new.data)
+                            own[:] = False
+                            for polygon in new.data.polygons:
+                                if not of_caps[polygon.index]:
+                                    own[list(polygon.vertices)] = True
+                        now = evaluated(new)
+                        self.assertEqual(len(now), 2 * len(own))
+                        away = numpy.array([tree.find(place)[2] for place in now[numpy.tile(own, 2)]])
+                        # Midpoints of polygons that were cut are of no vertex.
+                        self.assertGreater((away < 1e-5 * size).mean(), 0.8, f"{how} {new.name} {degrees}")
+                        self.assertLess(away.max(), 0.2 * size, f"{how} {new.name} {degrees}")
+
+    def test_removing_keeps_each_shape_key(self):
+        """Also where one was removed before, so that Blender counts them otherwise."""
+        obj, hierarchy, _ = self.rich()
+        before = told(obj)
+        api = part("api")
+        api.remove(obj, self.middle(hierarchy))
+        self.compare(told(obj), before, "after removing")
+        self.check_keys(obj, {"wide": lambda place: place * 1.5, "tall": lambda place: place * (1, 1, 2)})
+
+    def check_keys(self, obj, keys):
+        base = numpy.array([vertex.co for vertex in obj.data.vertices])
+        own = numpy.zeros(len(base), bool)
+        for polygon in obj.data.polygons:
+            if not obj.data.attributes["partwheel_cap"].data[polygon.index].value:
+                own[list(polygon.vertices)] = True
+        for name, expected in keys.items():
+            places = numpy.array([point.co for point in obj.data.shape_keys.key_blocks[name].data])
+            worst = abs(places - expected(base))[own].max()
+            self.assertLess(worst, 1e-5 * numpy.ptp(base, axis=0).max(), name)
+
+    def test_uniting_keeps_shape_keys_and_all_else(self):
+        obj, _ = self.built("dragknob")
+        obj["by"] = 2.0
+        self.keyed(obj)
+        hook = obj.modifiers.new("hook", "HOOK")
+        bottom = min(obj.data.vertices, key=lambda vertex: vertex.co.z)
+        hooked = bottom.co.copy()
+        hook.vertex_indices_set([bottom.index])
+        self.give_layers(obj.data)
+        set_all(obj)
+        set_all(obj.data)
+        bpy.context.view_layer.update()
+        before = told(obj)
+        base = {tuple(vertex.co): vertex.index for vertex in obj.data.vertices}
+        keys = {key.name: [tuple(point.co) for point in key.data] for key in obj.data.shape_keys.key_blocks}
+        top = max(obj.data.vertices, key=lambda vertex: vertex.co.z).co
+        bpy.ops.mesh.primitive_cube_add(size=0.3 * obj.data.vertices[0].co.length)
+        cube = bpy.context.active_object
+        bpy.context.view_layer.update()
+        cube.matrix_world = obj.matrix_world @ cube.matrix_world
+        cube.matrix_world.translation = obj.matrix_world @ top
+        bpy.context.view_layer.update()
+        part("api").unite(obj, [cube])
+        self.compare(told(obj), before, "after uniting")
+        size, kept = max(obj.dimensions), 0
+        for name, old in keys.items():
+            for vertex, point in zip(obj.data.vertices, obj.data.shape_keys.key_blocks[name].data):
+                number = base.get(tuple(vertex.co))
+                if number is not None:
+                    kept += 1
+                    self.assertLess((point.co - Vector(old[number])).length, 1e-5 * size)
+        self.assertGreater(kept, 2 * len(base))
+        self.assertEqual([tuple(obj.data.vertices[vertex].co) for vertex in obj.modifiers["hook"].vertex_indices],
+                         [tuple(hooked)])
+
+    def test_what_both_have_acts_once_on_a_union(self):
+        target, other = (self.cube(place) for place in ((0, 0, 0), (1, 0.9, 0.8)))
+        for obj in (target, other):
+            obj.modifiers.new("round", "SUBSURF").levels = 2
+        other.modifiers.new("more", "SOLIDIFY").thickness = 0
+        part("api").unite(target, [other])
+        self.assertLess(len(target.data.polygons), 40)
+
+    def cube(self, place):
+        bpy.ops.mesh.primitive_cube_add(location=place)
+        return bpy.context.active_object
+
+    def test_levels_of_sculpting_are_spoken_of(self):
+        obj, hierarchy = self.built("dragknob")
+        obj.modifiers.new("levels", "MULTIRES")
+        bpy.context.view_layer.objects.active = obj
+        bpy.ops.object.multires_subdivide(modifier="levels")
+        self.assertIn("several resolutions", " ".join(part("solid.composition").losses(obj)))
+        copy = part("api").copy_part(obj, self.middle(hierarchy))
+        self.assertEqual(len(copy.modifiers), 0)
+        bpy.ops.mesh.primitive_cube_add(size=obj.dimensions.x)
+        cube = bpy.context.active_object
+        before = len(obj.data.polygons)
+        with self.assertRaisesRegex(ValueError, "several resolutions"):
+            part("api").unite(obj, [cube])
+        self.assertEqual(len(obj.data.polygons), before)
+
+    # ---- Where Blender lets nothing be added
+
+    def library(self, obj):
+        """Path of a file with the object in a collection of its own; the object has gone."""
+        collection = bpy.data.collections.new("of the library")
+        collection.objects.link(obj)
+        path = str(Path(self.folder.name) / "library.blend")
+        bpy.data.libraries.write(path, {collection})
+        mesh = obj.data
+        bpy.data.objects.remove(obj)
+        bpy.data.meshes.remove(mesh)
+        bpy.data.collections.remove(collection)
+        return path
+
+    def linked_collection(self, obj):
+        """The object, linked with its collection."""
+        path = self.library(obj)
+        with bpy.data.libraries.load(path, link=True) as (_, wanted):
+            wanted.collections = ["of the library"]
+        collection, = wanted.collections
+        bpy.context.scene.collection.children.link(collection)
+        bpy.context.view_layer.update()
+        found = collection.objects[0]
+        self.link_active(found)
+        return found
+
+    def overridden(self, obj):
+        """The object, overridden with its collection; but its mesh is its own."""
+        linked = self.linked_collection(obj).users_collection[0]
+        collection = linked.override_hierarchy_create(bpy.context.scene, bpy.context.view_layer,
+                                                     do_fully_editable=True)
+        bpy.context.view_layer.update()
+        found = collection.all_objects[0]
+        self.assertTrue(found.override_library and collection.override_library)
+        self.link_active(found)
+        mesh = bpy.data.meshes.new("own")
+        mesh.from_pydata(*(arrays(found.data)[0].tolist(), [], arrays(found.data)[1]))
+        found.data = mesh
+        return found
+
+    def test_in_a_linked_collection(self):
+        with tempfile.TemporaryDirectory() as name:
+            self.folder = type("Folder", (), {"name": name})
+            obj = self.linked_collection(self.add(*read_off("dragknob")))
+            hierarchy = part("api").build(obj)
+            for operator, options in ((bpy.ops.mesh.partwheel_copy, {"node": self.middle(hierarchy), "snap": False}),
+                                      (bpy.ops.mesh.partwheel_split, {"parts": 3, "hide": False}),
+                                      (bpy.ops.mesh.partwheel_convex, {"hulls": 3})):
+                self.link_active(obj)
+                self.assertEqual(operator(**options), {"FINISHED"})
+                for new in set(bpy.data.objects) - {obj}:
+                    self.assertFalse(new.library)
+                    self.assertTrue(new.name in bpy.context.view_layer.objects)
+            self.nothing_left_behind()
+
+    def nothing_left_behind(self):
+        for kind in ("objects", "collections", "meshes", "armatures"):
+            for block in getattr(bpy.data, kind):
+                self.assertTrue(block.users and (kind != "objects" or block.users_collection), f"{kind}: {block.name}")
+
+    def test_in_an_overridden_collection(self):
+        """Also in Edit Mode, where Blender lets an object be there that is none."""
+        for edited in (False, True)[:1 + (bpy.app.version >= (4, 0, 0))]:
+            with tempfile.TemporaryDirectory() as name:
+                self.folder = type("Folder", (), {"name": name})
+                obj = self.overridden(self.add(*read_off("dragknob")))
+                if edited:
+                    obj = obj.make_local(clear_liboverride=True)
+                    self.assertTrue(obj.users_collection[0].override_library)
+                obj.location.x = 5
+                bpy.context.view_layer.update()
+                self.in_overridden(obj, edited)
+                self.nothing_left_behind()
+            self.setUp()
+
+    def in_overridden(self, obj, edited):
+        hierarchy = part("api").build(obj)
+        for operator, options in ((bpy.ops.mesh.partwheel_copy, {"node": self.middle(hierarchy), "snap": False}),
+                                  (bpy.ops.mesh.partwheel_split, {"parts": 3, "hide": False}),
+                                  (bpy.ops.mesh.partwheel_convex, {"hulls": 3}),
+                                  (bpy.ops.mesh.partwheel_parts, {"to": {"OBJECTS"}, "count": 3, "hide": False}),
+                                  (bpy.ops.mesh.partwheel_parts, {"to": {"BONES"}, "count": 3}),
+                                  (bpy.ops.mesh.partwheel_remove, {"node": self.middle(hierarchy), "snap": False})):
+            self.link_active(obj)
+            if edited:
+                bpy.ops.object.mode_set(mode="EDIT")
+            known = set(bpy.data.objects)
+            self.assertEqual(operator(**options), {"FINISHED"})
+            bpy.context.view_layer.update()
+            for new in set(bpy.data.objects) - known:
+                self.assertFalse(new.library or new.override_library, operator)
+                self.assertTrue(new.name in bpy.context.view_layer.objects)
+                self.assertLess(abs(new.matrix_world.translation.x - 5), max(obj.dimensions), operator)
+            if bpy.context.mode != "OBJECT":
+                bpy.ops.object.mode_set(mode="OBJECT")
+
+    # ---- Where it breaks off
+
+    @only_in("oldest", "newest")
+    def test_a_failure_anywhere_leaves_nothing_behind(self):
+        giver, _ = self.built("hand")
+        giver.location.x = 500
+        giver.shape_key_add(name="Basis")
+        bpy.context.view_layer.update()
+        for operator, options, changes in (
+                (bpy.ops.mesh.partwheel_copy, {"snap": False}, False),
+                (bpy.ops.mesh.partwheel_split, {"parts": 3}, False),
+                (bpy.ops.mesh.partwheel_convex, {"hulls": 2}, False),
+                (bpy.ops.mesh.partwheel_parts, {"to": {"OBJECTS"}, "count": 3}, False),
+                (bpy.ops.mesh.partwheel_parts, {"to": {"BONES"}, "count": 3}, True),
+                (bpy.ops.mesh.partwheel_remove, {"snap": False}, True),
+                (bpy.ops.mesh.partwheel_swap, {"snap": False, "build": False}, True)):
+            obj, hierarchy = self.built("dragknob")
+            self.keyed(obj)
+            obj["by"] = 1.0
+            if "node" in operator.get_rna_type().properties:
+                options["node"] = self.nodes(hierarchy)[-2]
+            self.link_active(obj)
+            if operator == bpy.ops.mesh.partwheel_parts:
+                part("api").write(obj, part("api").parts(obj, 3))  # kept in the mesh beforehand
+            bpy.ops.object.mode_set(mode="EDIT")
+            number, raised = 0, True
+            while raised:
+                before = blocks(), bpy.context.mode, told(obj), arrays_of(obj)
+                with FailAt(number) as fail:
+                    try:
+                        self.assertEqual(operator(**options), {"FINISHED"})
+                    except RuntimeError as error:
+                        self.assertIn("Fault", str(error), number)
+                raised = fail.raised
+                if raised:
+                    where = f"{operator.idname_py()}: {raised}, call {number}"
+                    now = blocks(), bpy.context.mode, told(obj), arrays_of(obj)
+                    self.assertEqual(now[0], before[0], where)
+                    self.assertEqual(now[1], before[1], where)
+                    self.assertEqual([each for each in bpy.context.view_layer.objects if each.select_get()], [obj], where)
+                    self.assertEqual(bpy.context.view_layer.objects.active, obj, where)
+                    if changes and now[3] != before[3]:
+                        break  # it was done by then
+                    self.compare(now[2], before[2], where)
+                    self.assertEqual(now[3], before[3], where)
+                number = 2 * number + 1
+            self.assertGreater(number, 30, operator)
+            if bpy.context.mode != "OBJECT":
+                bpy.ops.object.mode_set(mode="OBJECT")
+            bpy.data.objects.remove(obj)
