@@ -233,6 +233,6 @@ def test_inputs_are_files_folders_and_lists(tmp_path):
 
 
 def test_the_estimate_comes_from_the_share_that_is_done():
-    counts = run.Counts(10, 0, 5, {}, 0, 0, 0.25, 30.0)
+    counts = run.Counts(10, 0, 5, {}, 0, 0, 0.25, 30.0, {})
     assert counts.left == 90
     assert counts._replace(share=0.0).left is None

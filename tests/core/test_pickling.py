@@ -138,7 +138,7 @@ ERRORS = {
     "MeshFileError": lambda kind: kind("No mesh."),
     "PrintError": lambda kind: kind("Too thin."),
     "Busy": lambda kind: kind("Another run is here."),
-    "Trouble": lambda kind: kind("package", "A package is missing."),
+    "RequirementError": lambda kind: kind("A package is missing."),
     "WorkerError": lambda kind: kind("worker", worker.job.NO_START, worker.job.HARMLESS, reason=OSError(2, "No such file")),
     "NoInterpreter": lambda kind: kind({"/bin/false": worker.ending.ending(1), "/bin/cat": worker.ending.ending(-9)}),
 }

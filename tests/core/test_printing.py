@@ -15,7 +15,8 @@ from conftest import ROOT
 from partwheel import Hierarchy, meshes
 from partwheel.cut import Cut
 from partwheel.cut.printing import ROOT as DEEP
-from partwheel.cut.printing import SIDES, Options, PrintError, printable, thickness
+from partwheel.cut.printing import SIDES, Options, printable, thickness
+from partwheel.requirements import RequirementError
 from solid_checks import count_crossings
 from test_command_line import run
 
@@ -236,7 +237,7 @@ def test_walls_stay_around_every_socket(name):
 
 def test_manifold3d_is_asked_for(monkeypatch):
     monkeypatch.setitem(sys.modules, "manifold3d", None)
-    with pytest.raises(PrintError, match=r"pip install partwheel\[printing\]"):
+    with pytest.raises(RequirementError, match=r'pip install "partwheel\[printing\]"'):
         of_bar((30, 20), Options())
 
 

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import convex, meshes
+from . import contents, convex, meshes, requirements
 from .batch import command as batch
 from .batch.slot import memory
 from .cut import Cut, files, printing
@@ -69,7 +69,11 @@ def parse(arguments):
         command.add_argument("--json", action="store_true", help="print the report as JSON on one line")
         _add_build_options(command)
     batch.add_to(commands, _add_build_options)
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    if options.command == "parts":
+        options.printing = options.pegs is not None or options.flat or bool(options.bed or options.size)
+        options.formats = options.formats or (["3mf", "stl"] if options.printing else ["glb", "ply"])
+    return options
 
 
 def _add_print_options(printer):
@@ -142,9 +146,10 @@ def show_progress(fraction, stage):
 
 def build(options, report):
     """Reads, builds and saves; fills the report as far as it gets."""
+    requirements.check_command(options, [options.model])
     mesh = meshes.read(options.model)
     report.update(vertices=len(mesh.vertices), triangles=len(mesh.triangles), faces=mesh.face_count,
-                  welded_vertices=mesh.welded)
+                  welded_vertices=mesh.welded, dropped=mesh.dropped)
     try:
         hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count,
                                     quality=options.quality, rungs=options.rungs,
@@ -158,12 +163,11 @@ def build(options, report):
                   account=hierarchy.account, **hierarchy.summary._asdict())
     if options.command == "parts":
         cut = Cut.into(hierarchy, options.parts) if options.parts > 0 else Cut.automatic(hierarchy)
-        solids, usual = None, ["glb", "ply"]
-        if options.pegs is not None or options.flat or options.bed or options.size:
+        solids = None
+        if options.printing:
             cut, _, solids, pegs, notes = for_printer(options, mesh, cut)
-            usual = ["3mf", "stl"]
             report.update(pegs=len(pegs), notes=notes)
-        written = files.write(options.output, options.model.stem, mesh, cut, options.formats or usual, printed=solids)
+        written = files.write(options.output, options.model.stem, mesh, cut, options.formats, printed=solids)
         report.update(parts=len(cut), files=list(map(str, written)))
     elif options.command == "convex":
         count = {"error": options.error} if options.error else {"hulls": options.hulls}
@@ -195,6 +199,7 @@ def describe(report):
     if report.get("files"):
         lines += [f"{report['parts']} parts:" if "parts" in report else f"{report['hulls']} hulls:",
                   *(f"  {name}" for name in report["files"])]
+        lines += [contents.describe_contents(report["dropped"])] * bool(report["dropped"])
     if "pegs" in report:
         lines += [f"Pegs: {report['pegs']}", *report["notes"]]
     lines += [f"  {stage:<12} {seconds:9.3f} s" for stage, seconds in report["seconds"].items()]

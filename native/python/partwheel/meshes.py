@@ -2,12 +2,14 @@
 """Mesh files as arrays: OFF read here, every other format through trimesh (optional), nothing merged or repaired."""
 
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Tuple
 
 import numpy as np
 
+from .contents import find_contents
 from .library import Error
 from .polygons import triangulate
+from .requirements import load_module
 
 # Formats whose corners share vertices by index. All others store each triangle's corners apart (STL) or split vertices
 # along texture seams (OBJ, glTF), so theirs are welded where their coordinates are exactly equal.
@@ -22,13 +24,15 @@ class MeshFileError(Error):
 
 class Mesh(NamedTuple):
     """vertices (V,3) float64, triangles (T,3) int32, faces (T,) int32 the polygon of each triangle, face_count.
-    welded: how many vertices were exact copies of another and were joined with it; 0 for formats with indices."""
+    welded: how many vertices were exact copies of another and were joined with it; 0 for formats with indices. dropped:
+    what else the file has, of contents.KINDS, and no output will have."""
 
     vertices: np.ndarray
     triangles: np.ndarray
     faces: np.ndarray
     face_count: int
     welded: int
+    dropped: Tuple[str, ...] = ()
 
 
 def read(path):
@@ -36,13 +40,12 @@ def read(path):
     path = Path(path)
     with open(path, "rb"):
         pass  # trimesh takes a missing file for a format it does not know
-    if path.suffix.lower() == ".off":
-        return _read_off(path)
-    return _read_with_trimesh(path)
+    mesh = _read_off(path) if path.suffix.lower() == ".off" else _read_with_trimesh(path)
+    return mesh._replace(dropped=find_contents(path))
 
 
 def _read_with_trimesh(path):
-    trimesh = needed_trimesh(f"Reading {path.suffix or 'this'} files", " OFF files are read without it.")
+    trimesh = load_module("trimesh", f"Reading {path.suffix or 'such'} files")
     try:
         suffix = path.suffix.lower().lstrip(".")
         # Geometry alone: for pictures trimesh would need another package.
@@ -65,16 +68,6 @@ def _read_with_trimesh(path):
         vertices, triangles = unique, index.reshape(-1)[triangles]
     return Mesh(np.ascontiguousarray(vertices), np.ascontiguousarray(triangles, np.int32),
                 np.arange(len(triangles), dtype=np.int32), len(triangles), welded)
-
-
-def needed_trimesh(what, more=""):
-    """The module. Raises MeshFileError that says what needs it."""
-    try:
-        import trimesh
-    except ImportError as error:
-        raise MeshFileError(f"{what} needs the Python package trimesh, which is not installed: pip install "
-                            f"partwheel[meshes].{more}") from error
-    return trimesh
 
 
 def _placed(scene, matrix, name):

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..contents import KINDS
 from ..meshes import Mesh, MeshFileError
 from ..worker.ending import ending
 
@@ -16,7 +17,7 @@ from ..worker.ending import ending
 SCRIPT = """
 import bpy, sys, numpy
 folder = sys.argv[-1]
-points, corners, counts, start, polygons = [], [], [], 0, 0
+points, corners, counts, start, polygons, dropped = [], [], [], 0, 0, set()
 graph = bpy.context.evaluated_depsgraph_get()
 for one in sorted(bpy.context.scene.objects, key=lambda one: one.name):
     if one.type != "MESH" or one.hide_render:
@@ -39,8 +40,14 @@ for one in sorted(bpy.context.scene.objects, key=lambda one: one.name):
     counts.append(faces + polygons)
     polygons += len(mesh.polygons)
     start += len(mesh.vertices)
+    nodes = [node for used in mesh.materials if used and used.node_tree for node in used.node_tree.nodes]
+    here = {"names": True, "texture coordinates": mesh.uv_layers, "materials": mesh.materials, "skeletons": one.find_armature(),
+            "colors": mesh.color_attributes, "shape keys": one.data.shape_keys,
+            "textures": any(node.type == "TEX_IMAGE" for node in nodes)}
+    dropped |= {kind for kind, there in here.items() if there}
     evaluated.to_mesh_clear()
 join = lambda arrays, shape: numpy.concatenate(arrays) if arrays else numpy.zeros(shape)
+numpy.save(folder + "/dropped.npy", numpy.array(sorted(dropped), str))
 numpy.save(folder + "/vertices.npy", join(points, (0, 3)))
 numpy.save(folder + "/triangles.npy", join(corners, (0, 3)).astype(numpy.int32))
 numpy.save(folder + "/faces.npy", join(counts, 0).astype(numpy.int32))
@@ -73,11 +80,12 @@ def read(path, folder):
              "--python-exit-code", "9", "--python-expr", SCRIPT, "--", folder],
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         try:
-            vertices, triangles, faces = (np.load(f"{folder}/{name}.npy") for name in ("vertices", "triangles", "faces"))
+            vertices, triangles, faces, dropped = (np.load(f"{folder}/{name}.npy")
+                                                   for name in ("vertices", "triangles", "faces", "dropped"))
         except (OSError, ValueError) as error:
             said = result.stdout.decode("utf-8", "replace").strip().splitlines()[-1:] or ["nothing"]
             how = ending(result.returncode) if result.returncode else "wrote no mesh"
             raise MeshFileError(f"Blender can't read {Path(path).name}: it {how}; its last words: {said[0]}") from error
     if not len(triangles):
         raise MeshFileError(f"{Path(path).name} holds no mesh objects with faces.")
-    return Mesh(vertices, triangles, faces, int(faces.max()) + 1, 0)
+    return Mesh(vertices, triangles, faces, int(faces.max()) + 1, 0, tuple(kind for kind in KINDS if kind in dropped))

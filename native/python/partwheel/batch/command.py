@@ -12,6 +12,7 @@ from pathlib import Path
 from . import inputs
 from .model import OUTPUTS
 from .run import Options, Run, cores, memory
+from .. import requirements
 from ..library import Error
 
 DONE, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
@@ -76,9 +77,12 @@ def run(options):
     if options.ray:
         return _run_on_ray(options)
     try:
-        paths = inputs.found(options.inputs)
+        paths = inputs.of_shard(inputs.found(options.inputs), *options.shard)
+        requirements.check_command(options, paths)
     except OSError as error:
         return _refused(f"{error.strerror}: {error.filename}", USAGE)
+    except Error as error:
+        return _refused(str(error), FAILED)
     limits = Options(settings(options), options.jobs, memory() if options.memory is None else options.memory,
                      options.time, frozenset(options.retry), options.shard, options.threads or 1)
     show = _Progress()
@@ -114,7 +118,10 @@ def _run_on_ray(options):
         print(f"{done} of {total} files", file=sys.stderr, flush=True)
 
     try:
-        counts = on_ray.run(options.ray, options.inputs, options.output, limits, progress)
+        requirements.check_ray()
+        paths = on_ray.find_files(options.inputs, limits)
+        needs = requirements.check_command(options, paths)
+        counts = on_ray.run(options.ray, paths, options.output, limits, needs, progress)
     except KeyboardInterrupt:
         return _refused("Stopped. What was done is done; the same command goes on with the rest.", INTERRUPTED)
     except OSError as error:
@@ -133,6 +140,9 @@ def describe(counts):
     lines = [f"{counts.total} files in {_duration(counts.seconds)}: {counts.made} made now, {counts.old} were there, "
              f"{counts.same} the same as another, {failed} failed"]
     lines += [f"  {number:6} {name}" for name, number in sorted(counts.failed.items())]
+    if counts.dropped:
+        kinds = ", ".join(f"{kind} of {number} files" for kind, number in sorted(counts.dropped.items()))
+        lines.append(f"  Not in the output: {kinds}")
     if counts.skipped:
         lines.append(f"  {counts.skipped} changed while they were read: run it again")
     return "\n".join(lines)

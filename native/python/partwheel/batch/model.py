@@ -17,14 +17,6 @@ OUTPUTS = "hierarchy", "cut", "objects", "colliders", "preview"  # what can be m
 Y_UP = {".dae", ".glb", ".gltf"}  # formats whose second axis is up
 
 
-class Trouble(Error):
-    """What this room refuses. name: "package" where one is missing that an output needs."""
-
-    def __init__(self, name, message):
-        super().__init__(message)
-        self.name = name
-
-
 def make(path, folder, settings, *, memory=0, seconds=None, threads=1):
     """Makes what settings["outputs"] names, in the folder, and returns what is to be told of it.
 
@@ -51,7 +43,7 @@ def make(path, folder, settings, *, memory=0, seconds=None, threads=1):
     clock.lap("build")
     clock.laps.update(hierarchy.seconds)
     report = {"vertices": len(mesh.vertices), "triangles": len(mesh.triangles), "faces": mesh.face_count,
-              "welded_vertices": mesh.welded, "tets": len(hierarchy.tetrahedra), "nodes": len(hierarchy.parent),
+              "welded_vertices": mesh.welded, "dropped": mesh.dropped, "tets": len(hierarchy.tetrahedra), "nodes": len(hierarchy.parent),
               "account": hierarchy.account, **hierarchy.summary._asdict(),
               "worker_failures": [{"name": each.name, "message": str(each)} for each in job.failures],
               "seconds": clock.laps}
@@ -81,11 +73,7 @@ def make(path, folder, settings, *, memory=0, seconds=None, threads=1):
 
 
 def _draw(folder, mesh, cut, settings, suffix):
-    try:
-        preview(folder / "preview.png", mesh, cut, settings["preview"], suffix in Y_UP)
-    except ImportError as error:
-        raise Trouble("package", f"Previews need the packages embreex and Pillow: pip install partwheel[batch]. "
-                                 f"({error})") from error
+    preview(folder / "preview.png", mesh, cut, settings["preview"], suffix in Y_UP)
 
 
 def _sound(mesh):

@@ -14,27 +14,30 @@ import time
 from pathlib import Path, PurePosixPath
 
 from .inputs import SUFFIXES, Input, of_shard, versions
-from .model import Trouble
 from .run import cores, memory
 from .slot import Slot
 from .store import REPORT, written
+from ..requirements import RAY, check, load_module
 
 MODELS_A_TASK, TASKS_A_CORE = 100, 4  # at most; at least, so that no core waits long for the last
 WAIT_SECONDS = 1  # between two looks at what is done
 RETRIES = -1  # of a task whose node died: for ever, for each begins where the last one was
 
 
-def run(address, names, output, options, progress=lambda done, total: None):
+def find_files(names, options):
+    """The paths of a shard's files, sorted: those that are named, and of folders all below that end as models do.
+
+    Raises RequirementError without fsspec."""
+    return of_shard(_found(load_module("fsspec", "Running on Ray"), names), *options.shard)
+
+
+def run(address, paths, output, options, needs=(), progress=lambda done, total: None):
     """Does all files; {failure name or None: how many}. address: of the cluster, "auto", or "local" for one of this
-    machine that ends with the run. names: files and folders, output: a
-    folder, as fsspec writes them. options: run.Options, of which jobs does not count; memory: for each model, 0: its
-    core's share of what its node has free. Raises Trouble where Ray or fsspec are missing, OSError, what Ray raises."""
-    try:
-        import fsspec
-        import ray
-    except ImportError as error:
-        raise Trouble("package", f"--ray needs more packages: pip install partwheel[ray]. ({error})") from error
-    paths = of_shard(_found(fsspec, names), *options.shard)
+    machine that ends with the run. paths: of find_files(); output: a folder, as fsspec writes it. options: run.Options,
+    of which jobs does not count; memory: for each model, 0: its core's share of what its node has free. needs: as
+    requirements.check_command() returns them, checked on each node. Raises RequirementError where a package is missing,
+    OSError, what Ray raises."""
+    ray, fsspec = (load_module(name, "Running on Ray") for name in RAY)
     began = not ray.is_initialized()
     if began:
         ray.init(None if address == "local" else address, log_to_driver=False)
@@ -44,7 +47,7 @@ def run(address, names, output, options, progress=lambda done, total: None):
         size = max(1, min(MODELS_A_TASK, len(paths) // (TASKS_A_CORE * nodes_cores)))
         groups = [paths[start:start + size] for start in range(0, len(paths), size)]
         task = ray.remote(num_cpus=1, max_retries=RETRIES)(work)
-        waiting = {task.remote(group, output, options): len(group) for group in groups}
+        waiting = {task.remote(group, output, options, needs): len(group) for group in groups}
         total, done, counts = len(paths), 0, {}
         while waiting:
             ready, _ = ray.wait(list(waiting), timeout=WAIT_SECONDS)
@@ -76,8 +79,9 @@ def _found(fsspec, names):
 # ---- In a task, on any node
 
 
-def work(paths, output, options):
-    """Does these files; [(failure name or None, how many)]."""
+def work(paths, output, options, needs=()):
+    """Does these files; [(failure name or None, how many)]. Raises RequirementError for a node without the needs."""
+    check(needs)
     import fsspec
 
     folder = _Folder(fsspec, output, paths)

@@ -4,7 +4,7 @@
 import numpy as np
 
 from ..cut import colors
-from ..meshes import needed_trimesh
+from ..requirements import PREVIEWS, load_module
 
 FINER = 2  # drawn so many times larger, then averaged
 TOWARDS, UP = (0.5, -0.8, 0.45), (0, 0, 1)  # from where it is seen; glTF and its like are turned so that they stand
@@ -12,11 +12,11 @@ TOWARDS, UP = (0.5, -0.8, 0.45), (0, 0, 1)  # from where it is seen; glTF and it
 
 def preview(path, mesh, cut, size, y_up=False):
     """Writes a PNG of size x size pixels. mesh: a meshes.Mesh, sound in its numbers; cut: None for grey; y_up: its second
-    axis is up, not its third. Raises ImportError without embreex and Pillow, OSError."""
+    axis is up, not its third. Raises RequirementError, OSError."""
+    trimesh, _, _ = (load_module(name, "Drawing previews") for name in PREVIEWS)
     from PIL import Image
     from trimesh.ray.ray_pyembree import RayMeshIntersector
 
-    trimesh = needed_trimesh("Drawing")
     vertices = mesh.vertices[:, [0, 2, 1]] * [1, -1, 1] if y_up else mesh.vertices
     used = vertices[mesh.triangles]
     middle = (used.min(axis=(0, 1)) + used.max(axis=(0, 1))) / 2

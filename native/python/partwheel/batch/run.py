@@ -45,7 +45,7 @@ class Options(NamedTuple):
 
 
 class Counts(NamedTuple):
-    """total: files. old: their results were there. made: in this run, failures among them. failed: {name: how many}, old
+    """dropped: {what files have and no output: how many files}, see contents.KINDS. total: files. old: their results were there. made: in this run, failures among them. failed: {name: how many}, old
     ones too. same: files whose content another one has. skipped: those that changed while they were read. share: how
     much of the work is done, 0..1. seconds: since the start."""
 
@@ -57,6 +57,7 @@ class Counts(NamedTuple):
     skipped: int
     share: float
     seconds: float
+    dropped: dict
 
     @property
     def left(self):
@@ -103,7 +104,7 @@ class Run:
         self._free, self._busy = options.memory, 0
         self._keys = set()  # that this run has begun
         self._old = self._made = self._same = self._skipped = 0
-        self._failed = collections.Counter()
+        self._failed, self._dropped = collections.Counter(), collections.Counter()
         self._change = threading.Condition()
         self._stopped, self._error = threading.Event(), None
         self._slots = [slots() for _ in range(options.jobs)]
@@ -147,7 +148,7 @@ class Run:
 
     def counts(self):
         return Counts(len(self._sizes), self._old, self._made, dict(self._failed), self._same, self._skipped,
-                      self._done_work / self._work, time.monotonic() - self._began)
+                      self._done_work / self._work, time.monotonic() - self._began, dict(self._dropped))
 
     def _no_other_division(self):
         """Raises lock.Busy where the folder is being worked on in another number of shards. Asked with our own lock
@@ -256,6 +257,8 @@ class Run:
     def _count(self, source, what, report=None):
         with self._change:
             setattr(self, what, getattr(self, what) + 1)
+            if report:
+                self._dropped.update(report.get("dropped", ()))
             if report and report["error"]:
                 self._failed[report["error"]["name"]] += 1
             self._done_work += _cost(self._sizes[source.path])

@@ -4,7 +4,7 @@
 import re
 from functools import cache
 
-from ..meshes import needed_trimesh
+from ..requirements import load_module
 from . import simulators
 from .primitives import KINDS, around, kind_of
 
@@ -30,8 +30,8 @@ def write(folder, name, mesh, hulls, formats=("obj",), primitives=None):
     In all glb files a node of a hull has the extras "collider", "hull" or the kind of a primitive; "of", the model's name;
     and "size" of a primitive, along the node's own axes.
 
-    hulls: [(vertices, triangles, ...), ...]. mesh: a meshes.Mesh. Raises MeshFileError without trimesh, where glb is
-    written; OSError."""
+    hulls: [(vertices, triangles, ...), ...]. mesh: a meshes.Mesh. Raises RequirementError without trimesh, where
+    glb is written; OSError."""
     name = re.sub(r"[^\w.-]", "_", name)  # as all readers take it
     folder.mkdir(parents=True, exist_ok=True)
     numbers = [f"{number:02}" for number in range(len(hulls))]
@@ -91,7 +91,7 @@ def write_obj(path, named):
 
 def _write_glb(path, model, surface, named):
     """model: its name; surface: (vertices, triangles), or None. named: [(name, hull or Primitive), ...]."""
-    trimesh = needed_trimesh("Writing glb files")
+    trimesh = load_module("trimesh", "Writing glb files")
     scene = trimesh.Scene()
 
     def add(name, mesh, **more):

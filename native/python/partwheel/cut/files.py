@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 
-from ..meshes import needed_trimesh
+from ..requirements import load_module
 from .borders import from_root, tree
 from .colors import colors
 from .names import named
@@ -20,8 +20,9 @@ def write(folder, name, mesh, cut, formats=("glb", "ply"), word="Part", printed=
     together. stl: a file for each, PART.stl. ply: NAME.ply, the model itself in the parts' colours, the number of its
     part on each triangle. And always NAME.json: of each part its name, colour, faces, volume and what it hangs on; the
     part of each face. mesh: a meshes.Mesh. printed: {part: (vertices, triangles)} to be written as objects instead of
-    the cut's own solids, see printing. Raises MeshFileError without trimesh, OSError."""
-    trimesh = needed_trimesh("Writing parts")
+    the cut's own solids, see printing. formats may be empty: then only NAME.json is written. Raises
+    RequirementError without trimesh where there are formats, OSError."""
+    trimesh = load_module("trimesh", "Writing parts") if formats else None
     names = named(cut, mesh.vertices, mesh.triangles, mesh.faces, word)
     labels = cut.labels[mesh.faces]
     hung = tree(cut, mesh.vertices, mesh.triangles, labels)
@@ -34,9 +35,9 @@ def write(folder, name, mesh, cut, formats=("glb", "ply"), word="Part", printed=
         path.write_bytes(data if isinstance(data, bytes) else data.encode())
         written.append(path)
 
-    if printed is None:
+    if printed is None and formats:
         printed = {part: solid[:2] for part, solid in enumerate(cut.solids()) if solid is not None}
-    solids = {part: trimesh.Trimesh(*solid, process=False) for part, solid in printed.items()}
+    solids = {part: trimesh.Trimesh(*solid, process=False) for part, solid in printed.items()} if formats else {}
     for part, solid in solids.items():
         solid.visual.vertex_colors = np.tile(paint[part] * 255, (len(solid.vertices), 1)).astype(np.uint8)
     for form in formats:

@@ -9,6 +9,7 @@ import numpy as np
 from ..compatible import spread_over
 from ..library import Error
 from ..rays import RayTarget
+from ..requirements import load_module
 from .borders import from_root, tree
 from .names import named
 
@@ -68,7 +69,7 @@ def printable(cut, vertices, triangles, faces, options=Options(), word="Part", n
     """A Printable. vertices (V,3), triangles (T,3), faces (T,) the source face of each: the surface that the cut's
     hierarchy is of. word: that names begin with; named_by: names instead, of the cut that fits. Raises PrintError without
     manifold3d."""
-    manifold = _manifold3d()
+    manifold = load_module("manifold3d", "Making parts ready for a 3D printer")
     cut, notes = _fitting(cut, options), []
     names = named_by(cut) if named_by else named(cut, vertices, triangles, faces, word)
     labels = cut.labels[faces]
@@ -122,15 +123,6 @@ def thickness(vertices, triangles, samples=SAMPLES):
         if hit and normals[hit[0]] @ normals[triangle] < OPPOSITE:
             found.append(hit[1])
     return np.array(found)
-
-
-def _manifold3d():
-    try:
-        import manifold3d
-    except ImportError as error:
-        raise PrintError("Pegs and flat cuts need the Python package manifold3d, which is not installed: pip install "
-                         "partwheel[printing].") from error
-    return manifold3d
 
 
 def _body(manifold, vertices, triangles):

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a mesh file has beside its surface: partwheel reads the surface alone, so no output has the rest, and says so."""
+
+import os
+import re
+import zipfile
+from pathlib import Path
+from typing import Dict, Iterable, Tuple, Union
+
+# What can be lost, in the order in which messages list it. Normals are not among it: they follow from the surface.
+KINDS = ("texture coordinates", "textures", "materials", "colors", "names", "skeletons", "animations", "shape keys")
+
+# Format -> kind -> what the text of such a file has then. By patterns, so that no damaged file can raise an error here.
+GLTF = {
+    "texture coordinates": rb'"TEXCOORD_\d', "textures": rb'"(?:textures|images)"\s*:\s*\[\s*\{',
+    "materials": rb'"materials"\s*:\s*\[\s*\{', "colors": rb'"COLOR_\d', "names": rb'"name"\s*:\s*"[^"]',
+    "skeletons": rb'"skins"\s*:\s*\[\s*\{', "animations": rb'"animations"\s*:\s*\[\s*\{',
+    "shape keys": rb'"targets"\s*:\s*\[\s*\{',
+}
+OFF_HEADER = rb"\A(?:\s*#[^\n]*\n)*\s*"
+PATTERNS: Dict[str, Dict[str, bytes]] = {
+    ".glb": GLTF, ".gltf": GLTF,
+    ".obj": {
+        "texture coordinates": rb"(?m)^[ \t]*vt[ \t]", "materials": rb"(?m)^[ \t]*usemtl[ \t]",
+        "textures": rb"(?m)^[ \t]*map_\w+[ \t]", "colors": rb"(?m)^[ \t]*v(?:[ \t]+[-+.\deE]+){6}",
+        "names": rb"(?m)^[ \t]*[og][ \t]+\S",
+    },
+    ".ply": {
+        "texture coordinates": rb"(?m)^property .*\b(?:s|t|u|v|s0|s1|texture_u|texture_v|texcoord)\s*$",
+        "textures": rb"(?m)^comment TextureFile\b", "materials": rb"(?m)^element material\b",
+        "colors": rb"(?m)^property \w+ (?:diffuse_)?red\b",
+    },
+    ".off": {
+        "texture coordinates": OFF_HEADER + rb"(?i:ST)\w*OFF",
+        "colors": OFF_HEADER + rb"(?is:(?:ST)?C\w*OFF|OFF\b.*?\n[ \t]*(?:3(?:[ \t]+\d+){3}|4(?:[ \t]+\d+){4})[ \t]+[\d.])",
+    },
+    ".stl": {"colors": rb"(?s)\A.{0,74}COLOR="},
+    ".3mf": {
+        "texture coordinates": rb"<(?:\w+:)?tex2coord\b", "textures": rb"<(?:\w+:)?texture2d\b",
+        "materials": rb"<(?:\w+:)?basematerials\b", "colors": rb"<(?:\w+:)?colorgroup\b",
+        "names": rb'<object\b[^>]*\bname="[^"]',
+    },
+    ".dae": {
+        "texture coordinates": rb'semantic="TEXCOORD"', "textures": rb"<image\b", "materials": rb"<material\b",
+        "colors": rb'semantic="COLOR"', "names": rb'<(?:node|geometry)\b[^>]*\bname="[^"]', "skeletons": rb"<skin\b",
+        "animations": rb"<animation\b", "shape keys": rb"<morph\b",
+    },
+}
+
+
+def find_contents(path: Union[str, Path]) -> Tuple[str, ...]:
+    """What a file has beside its surface.
+
+    Parameters
+    ----------
+    path : a file that meshes.read() can read
+
+    Returns
+    -------
+    those of KINDS that it has; empty for a format that is not in PATTERNS
+
+    Raises
+    ------
+    OSError : the file can't be opened
+    """
+    path = Path(path)
+    patterns = PATTERNS.get(path.suffix.lower(), {})
+    text = _text(path) if patterns else b""
+    return tuple(kind for kind in KINDS if kind in patterns and re.search(patterns[kind], text))
+
+
+def describe_contents(kinds: Iterable[str]) -> str:
+    """A sentence that says what is not in the output; empty if there is nothing."""
+    *others, last = kinds or [""]
+    listed = f"{', '.join(others)} and {last}" if others else last
+    return f"Not in the output, though the file has them: {listed}." if last else ""
+
+
+def _text(path: Path) -> bytes:
+    """The part of a file that says what it has."""
+    suffix = path.suffix.lower()
+    if suffix == ".3mf":
+        with zipfile.ZipFile(path) as archive:
+            return b"\n".join(archive.read(name) for name in archive.namelist() if name.lower().endswith(".model"))
+    with open(path, "rb") as file:
+        if suffix == ".glb":  # a header of 12 bytes, then the chunk of JSON: its length, its type, itself
+            head = file.read(20)
+            return file.read(int.from_bytes(head[12:16], "little"))
+        if suffix == ".stl":
+            return file.read(80)
+        text = file.read()
+    if suffix == ".ply":
+        return text[:text.find(b"end_header")]
+    return text + _materials(path, text) if suffix == ".obj" else text
+
+
+def _materials(path: Path, text: bytes) -> bytes:
+    """The material files of an OBJ that are there."""
+    found = b""
+    for name in re.findall(rb"(?m)^[ \t]*mtllib[ \t]+(.+?)\s*$", text):
+        beside = path.parent / os.path.basename(name.decode("utf-8", "replace"))
+        found += b"\n" + beside.read_bytes() if beside.is_file() else b""
+    return found

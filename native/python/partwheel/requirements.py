@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Optional packages and programs: which of them a run of the command line needs, checked before it reads any model."""
+
+import importlib
+import shutil
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Iterable, Iterator, List, Tuple
+
+from .library import Error
+
+# Module -> the extra of pyproject.toml that installs it.
+EXTRAS = {"trimesh": "meshes", "networkx": "meshes", "lxml": "meshes", "collada": "meshes", "manifold3d": "printing",
+          "embreex": "batch", "PIL": "batch", "ray": "ray", "fsspec": "ray"}
+PACKAGES = {"PIL": "pillow", "collada": "pycollada"}  # module -> package, where the names differ
+READERS = {".off": (), ".3mf": ("trimesh", "networkx", "lxml"), ".dae": ("trimesh", "collada")}
+WRITERS = {"glb": ("trimesh",), "stl": ("trimesh",), "ply": ("trimesh",), "3mf": ("trimesh", "networkx", "lxml"),
+           "unreal": ("trimesh",), "godot": ("trimesh",)}  # other formats need numpy alone
+PRINTING, PREVIEWS, RAY = ("manifold3d",), ("trimesh", "embreex", "PIL"), ("ray", "fsspec")
+
+Need = Tuple[str, str]  # (what needs it, to begin a sentence with; a module's name)
+
+
+class RequirementError(Error):
+    """An optional package or program is missing; str() says what needs it and how to install it."""
+
+    name = "package"
+
+
+def load_module(name: str, use: str) -> ModuleType:
+    """Imports an optional package where it is used.
+
+    Parameters
+    ----------
+    name : the module, a key of EXTRAS
+    use : what needs it, as "Writing glb files"
+
+    Raises
+    ------
+    RequirementError : it is not installed
+    """
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        raise RequirementError(f"{_sentence(use, [name])} ({error})") from error
+
+
+def check(needs: Iterable[Need]) -> None:
+    """Makes sure that all these can be imported.
+
+    Raises
+    ------
+    RequirementError : names everything that is missing, a sentence for each use
+    """
+    missing, causes = {}, {}
+    for use, name in needs:
+        try:
+            load_module(name, use)
+        except RequirementError as error:
+            missing.setdefault(use, []).append(name)
+            causes[name] = error.__cause__
+    if missing:
+        sentences = [_sentence(use, names) for use, names in missing.items()]
+        raise RequirementError(f"{' '.join(sentences)} ({'; '.join(map(str, causes.values()))})")
+
+
+def check_command(options: Any, paths: Iterable[str]) -> List[Need]:
+    """Checks what a command of partwheel needs for the chosen options and the files it is to read.
+
+    Parameters
+    ----------
+    options : what __main__.parse() gives
+    paths : names of the files to be read
+
+    Returns
+    -------
+    what was checked, for check() on another machine
+
+    Raises
+    ------
+    RequirementError : something is missing
+    """
+    suffixes = sorted({Path(path).suffix.lower() for path in paths})
+    if options.command == "batch" and ".blend" in suffixes and not shutil.which("blender"):
+        raise RequirementError("Reading .blend files needs Blender, and there is no program blender on the PATH. Install "
+                               "it, or leave these files out.")
+    needs = [*_needs_of_reading(suffixes, options.command), *_needs_of_writing(options)]
+    check(needs)
+    return needs
+
+
+def check_ray() -> None:
+    """Checks what a run on a Ray cluster needs, whose files can't be listed without it. Raises RequirementError."""
+    check(_all("Running on Ray", RAY))
+
+
+def _needs_of_reading(suffixes: Iterable[str], command: str) -> Iterator[Need]:
+    for suffix in suffixes:
+        if suffix != ".blend" or command != "batch":
+            yield from _all(f"Reading {suffix or 'such'} files", READERS.get(suffix, ("trimesh",)))
+
+
+def _needs_of_writing(options: Any) -> Iterator[Need]:
+    for form in getattr(options, "formats", None) or ():
+        yield from _all(f"Writing {form} files", WRITERS.get(form, ()))
+    if getattr(options, "printing", False):
+        yield from _all("Making parts ready for a 3D printer", PRINTING)
+    made = getattr(options, "make", ())
+    if "objects" in made:
+        yield from _all("Writing objects.glb", WRITERS["glb"])
+    if "preview" in made:
+        yield from _all("Drawing previews", PREVIEWS)
+
+
+def _all(use: str, names: Iterable[str]) -> Iterator[Need]:
+    return ((use, name) for name in names)
+
+
+def _sentence(use: str, names: Iterable[str]) -> str:
+    packages = [PACKAGES.get(name, name) for name in names]
+    extras = sorted({EXTRAS[name] for name in names})
+    what = "packages" if len(packages) > 1 else "package"
+    verb = "are" if len(packages) > 1 else "is"
+    return (f"{use} needs the Python {what} {' and '.join(packages)}, which {verb} not installed: pip install "
+            f"\"partwheel[{','.join(extras)}]\".")

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a file has beside its surface is said, and that no output has it. Files are written by trimesh, or by hand."""
+
+import json
+
+import numpy as np
+import pytest
+import trimesh
+from partwheel import contents, meshes
+from PIL import Image
+from test_command_line import run
+
+POINTS = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], float)
+TRIANGLES = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)])
+OBJ = "".join("v {} {} {}\n".format(*point) for point in POINTS) + "{}" + "".join(
+    "f {} {} {}\n".format(*corners) for corners in TRIANGLES + 1)
+PLY = "ply\nformat ascii 1.0\n{}element vertex 4\nproperty float x\nproperty float y\nproperty float z\n{}" \
+      "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+
+
+def textured():
+    """As painted models are exchanged: a picture, where each corner is in it, and a name."""
+    material = trimesh.visual.material.PBRMaterial(name="Paint", baseColorTexture=Image.new("RGB", (2, 2)))
+    visual = trimesh.visual.TextureVisuals(uv=POINTS[:, :2], material=material)
+    return trimesh.Scene({"Body": trimesh.Trimesh(POINTS, TRIANGLES, visual=visual, process=False)})
+
+
+def plain(**more):
+    return trimesh.Trimesh(POINTS, TRIANGLES, process=False, **more)
+
+
+def obj(folder, more=""):
+    text = OBJ.format(more)
+    (folder / "model.obj").write_text(text)
+    (folder / "paint.mtl").write_text("newmtl Paint\nmap_Kd paint.png\n")
+
+
+def ply(folder, header="", properties="", values=""):
+    rows = ["{} {} {}".format(*point) + values for point in POINTS] + ["3 {} {} {}".format(*each) for each in TRIANGLES]
+    (folder / "model.ply").write_text(PLY.format(header, properties) + "\n".join(rows) + "\n")
+
+
+def off(folder, header="OFF", point="", face=""):
+    rows = ["{} {} {}".format(*each) + point for each in POINTS] + ["3 {} {} {}".format(*each) + face for each in TRIANGLES]
+    (folder / "model.off").write_text("\n".join([header, "4 4 0", *rows, ""]))
+
+
+WRITERS = {
+    "glb textured": (lambda folder: textured().export(folder / "model.glb"),
+                     {"texture coordinates", "textures", "materials", "names"}),
+    "gltf textured": (lambda folder: [(folder / name.replace("model.gltf", "model.gltf")).write_bytes(data) for name, data
+                                      in trimesh.exchange.gltf.export_gltf(textured()).items()],
+                      {"texture coordinates", "textures", "materials", "names"}),
+    "glb colors": (lambda folder: plain(vertex_colors=np.full((4, 4), 9)).export(folder / "model.glb"), {"colors", "names"}),
+    "obj plain": (obj, set()),
+    "obj mtl": (lambda folder: obj(folder, "mtllib paint.mtl\no Body\nvt 0 0\nusemtl Paint\n"),
+                {"texture coordinates", "textures", "materials", "names"}),
+    "obj without its mtl": (lambda folder: obj(folder, "mtllib none.mtl\nusemtl Paint\n"), {"materials"}),
+    "obj mtl elsewhere": (lambda folder: obj(folder, "mtllib ../../..\nmtllib .\n"), set()),
+    "obj colors": (lambda folder: obj(folder, "v 5 5 5 0.5 0.5 1e-1\n"), {"colors"}),
+    "ply plain": (ply, set()),
+    "ply colors": (lambda folder: ply(folder, "", "property uchar red\nproperty uchar green\nproperty uchar blue\n", " 1 2 3"),
+                   {"colors"}),
+    "ply textured": (lambda folder: ply(folder, "comment TextureFile a.png\n", "property float s\nproperty float t\n", " 0 1"),
+                     {"texture coordinates", "textures"}),
+    "off plain": (off, set()),
+    "off colors": (lambda folder: off(folder, "COFF", " 1 0 0 1"), {"colors"}),
+    "off face colors": (lambda folder: off(folder, face=" 255 0 0"), {"colors"}),
+    "stl plain": (lambda folder: plain().export(folder / "model.stl"), set()),
+    "3mf": (lambda folder: trimesh.Scene({"Body": plain()}).export(folder / "model.3mf"), {"names"}),
+    "dae": (lambda folder: plain().export(folder / "model.dae"), {"names", "materials"}),
+}
+
+
+@pytest.mark.parametrize("case", WRITERS)
+def test_what_a_file_has_is_found(case, tmp_path):
+    write, expected = WRITERS[case]
+    write(tmp_path)
+    mesh = meshes.read(tmp_path / f"model.{case.split()[0]}")
+    assert set(mesh.dropped) == expected and list(mesh.dropped) == [kind for kind in contents.KINDS if kind in expected]
+
+
+@pytest.mark.parametrize("suffix", contents.PATTERNS)
+def test_no_damage_raises(suffix, tmp_path):
+    """But for a 3MF, which can't be opened at all then and is refused by then."""
+    for data in (b"", b"\0", b"glTF" + b"\xff" * 40, b"ply\n", b"\xff\xfe" * 1000):
+        (tmp_path / f"model{suffix}").write_bytes(data)
+        if suffix != ".3mf":
+            assert contents.find_contents(tmp_path / f"model{suffix}") == ()
+
+
+@pytest.mark.parametrize(("command", "options"), [
+    ("parts", ["--parts", 1]), ("parts", ["--parts", 1, "--flat"]), ("convex", []), ("convex", ["--formats", "unreal"])])
+def test_commands_that_write_geometry_say_what_is_lost(command, options, tmp_path):
+    textured().export(tmp_path / "model.glb")
+    result = run(command, tmp_path / "model.glb", "-o", tmp_path / "out", *options)
+    assert result.returncode == 0, result.stderr
+    assert "Not in the output, though the file has them: texture coordinates, textures, materials and names." in result.stdout
+    result = run(command, tmp_path / "model.glb", "-o", tmp_path / "out", *options, "--json")
+    assert json.loads(result.stdout)["dropped"] == ["texture coordinates", "textures", "materials", "names"]
+
+
+def test_a_batch_says_it_of_all_files(tmp_path):
+    models = tmp_path / "models"
+    models.mkdir()
+    textured().export(models / "model.glb")
+    plain().export(models / "plain.stl")
+    for _ in range(2):  # the second time results are there
+        result = run("batch", models, "-o", tmp_path / "out", "--make", "objects", "--jobs", 1)
+        assert result.returncode == 0, result.stderr
+        assert ("Not in the output: materials of 1 files, names of 1 files, texture coordinates of 1 files, "
+                "textures of 1 files") in result.stdout
+    reports = [json.loads(path.read_text()) for path in (tmp_path / "out" / "models").rglob("model.json")]
+    assert sorted(map(len, (each["dropped"] for each in reports))) == [0, 4]
+
+
+def test_nothing_is_said_where_nothing_is_lost(tmp_path):
+    off(tmp_path)
+    assert "Not in the output" not in run("convex", tmp_path / "model.off", "-o", tmp_path / "out").stdout
