@@ -480,6 +480,45 @@ class ObjectData(SolidTest):
             part("api").unite(obj, [cube])
         self.assertEqual(len(obj.data.polygons), before)
 
+    # ---- Extremes
+
+    def test_messages_at_extremes(self):
+        """They name the extreme; nothing changes."""
+        api = part("api")
+        for name in ("dragknob", "broken"):
+            vertices, polygons = read_off("dragknob")
+            obj = self.add(vertices, polygons if name == "dragknob" else [each for i, each in enumerate(polygons) if i % 7])
+            hierarchy = api.build(obj)
+            root, before = len(hierarchy.parent) - 1, (arrays_of(obj), blocks())
+            for snap in (False, True):
+                with self.assertRaisesRegex(ValueError, "whole model: nothing would be left"):
+                    api.remove(obj, root, snap=snap)
+            with self.assertRaisesRegex(ValueError, "whole model"):
+                api.mirrored(obj, root)
+            with self.assertRaisesRegex(ValueError, "whole model"):
+                api.swap(obj, root, obj)
+            with self.assertRaisesRegex(ValueError, "whole mesh"):
+                api.bend(obj, root, numpy.eye(3))
+            self.assertEqual((arrays_of(obj), blocks()), before)
+            bpy.ops.object.mode_set(mode="EDIT")
+            with self.assertRaisesRegex(RuntimeError, "whole model: nothing would be left"):
+                bpy.ops.mesh.partwheel_remove(node=root)
+            self.assertEqual(obj.mode, "EDIT")
+            bpy.ops.object.mode_set(mode="OBJECT")
+            self.assertEqual(len(api.copy_part(obj, root).data.polygons) >= len(obj.data.polygons), True)
+            self.assertEqual([len(api.split(obj, parts=1)), len(api.write(obj, api.parts(obj, 1), {"OBJECTS"}).objects)], [1, 1])
+
+    def test_parts_without_faces_are_left_out(self):
+        vertices, polygons = read_off("dragknob")
+        obj = self.add(vertices, [each for i, each in enumerate(polygons) if i % 7])
+        hierarchy = part("api").build(obj)
+        self.assertEqual(hierarchy.summary.rung, "points")
+        count = min(len(hierarchy.tetrahedra), 2000)
+        bounds = hierarchy.cut_parts(count)
+        having = numpy.histogram(hierarchy.leaf, bounds)[0]
+        self.assertLess((having > 0).sum(), count)
+        self.assertEqual(len(part("api").split(obj, parts=count)), (having > 0).sum())
+
     # ---- Where Blender lets nothing be added
 
     def library(self, obj):

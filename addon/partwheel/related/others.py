@@ -43,6 +43,8 @@ def alike(obj, hierarchy, node, objects=()):
 def images(obj, hierarchy, node):
     """[partwheel.likeness.Image, ...], one for each plane of symmetry, the model's best first. Raises Refused for none.
     """
+    if node == len(hierarchy.parent) - 1:
+        raise Refused("The part is the whole model, which has no other side. Pick a smaller one.")
     asked = registry.entry_of(obj.data).seen, hierarchy, node
     found = _kept("images", asked, lambda: likeness.mirrored(hierarchy, *arrays.surface(obj.data)[:3], node))
     if not found:

@@ -242,6 +242,11 @@ def of_faces(mesh, hierarchy, tet_first, tet_last, faces, alone):
     return _plan(mesh, [part], len(inside), Origins(np.flatnonzero(keep)), np.empty((0, 3), np.float32), wires, numbers)
 
 
+def has_faces(hierarchy, tet_first, tet_last):
+    """Whether a slice, or several, have any."""
+    return bool(_inside(hierarchy, tet_first, tet_last).any())
+
+
 def _inside(hierarchy, tet_first, tet_last, faces=None):
     """(F,) which faces are of a slice of the tetrahedra, or of several, or with the two exchanged of the rest, or are
     those (F,) bool."""

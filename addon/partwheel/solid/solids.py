@@ -40,8 +40,8 @@ def part(obj, hierarchy, tet_first, tet_last, options=Options(), faces=None):
 
 def parts(obj, hierarchy, slices, options=Options(), faces=None):
     """New meshes, one for each slice (tet_first, tet_last), or several each as arrays (n,); with caps that match
-    exactly, where they aren't smooth. None for a slice that has no tetrahedron left, unless it is the only one.
-    faces: as above, for a single slice."""
+    exactly, where they aren't smooth. None for a slice that has no tetrahedron left, or where they can't be solids no
+    face, unless it is the only one. faces: as above, for a single slice."""
     mesh = arrays.up_to_date(obj)
     exact = hierarchy.summary.rung == "exact"
     if not exact:
@@ -52,7 +52,7 @@ def parts(obj, hierarchy, slices, options=Options(), faces=None):
     made = []
     try:
         for each, solid in zip(slices, found):
-            if exact and solid is None:
+            if solid is None and (exact or len(slices) > 1 and not fitting.has_faces(hierarchy, *each)):
                 made.append(None)
                 continue
             new, normals = _carved(mesh, hierarchy, solid, *each, options, faces, alone=True)
