@@ -40,20 +40,8 @@ string(REGEX MATCHALL "[0-9]+" found "${lines}")
 list(JOIN found "." found)
 require_version(Eigen "${found}" 3.4 "${EIGEN_INCLUDE}")
 
-# CGAL's headers, changed where its results would depend on the standard library or the system: cmake/cgal says how.
 set(steady_cgal "${PROJECT_SOURCE_DIR}/build/cgal")
-file(GLOB_RECURSE headers RELATIVE "${CGAL_INCLUDE}" "${CGAL_INCLUDE}/CGAL/*.h")
-foreach(header IN LISTS headers)
-  file(READ "${CGAL_INCLUDE}/${header}" text)
-  string(REGEX REPLACE "std::unordered_(map|set)" "boost::unordered_\\1" steady "${text}")
-  string(REGEX REPLACE "std::(nth_element|atan2|acos)" "partwheel::steady::\\1" steady "${steady}")
-  # Of triangles that close a hole equally well the one that comes first is taken, which is a matter of addresses.
-  string(REPLACE "if(m_min == -1 || w < w_min){" "if(m_min == -1 || w < w_min || (!(w_min < w) && v2 < m_min)){"
-                 steady "${steady}")
-  if(NOT steady STREQUAL text)
-    file(CONFIGURE OUTPUT "${steady_cgal}/${header}" CONTENT "#include <partwheel/steady.h>\n${steady}" @ONLY)
-  endif()
-endforeach()
+include(cmake/steady_cgal.cmake)
 
 add_library(partwheel_cgal INTERFACE)
 target_include_directories(partwheel_cgal SYSTEM INTERFACE "${steady_cgal}" "${PROJECT_SOURCE_DIR}/cmake/cgal"

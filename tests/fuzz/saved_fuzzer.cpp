@@ -298,7 +298,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const double infinity = std::numeric_limits<double>::infinity();
     EXPECT_LT(a.volume[a.node_count - 1], infinity);
     EXPECT_LT(a.area[a.node_count - 1], infinity);
-    EXPECT_TRUE(s.rung == PW_RUNG_EXACT || s.rung == PW_RUNG_REPAIRED || s.rung == PW_RUNG_POINTS);
+    EXPECT_TRUE(s.rung == PW_RUNG_EXACT || s.rung == PW_RUNG_REPAIRED || s.rung == PW_RUNG_POINTS ||
+                s.rung == PW_RUNG_COARSE);
     expect_structure(loaded.handle);
     for (size_t t = 0; t < a.tetrahedron_count; t += 1 + a.tetrahedron_count / 20) {
         const HullMesh part = hull(loaded.handle, t, t + 1), rest = hull(loaded.handle, t, a.tetrahedron_count);
