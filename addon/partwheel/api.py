@@ -9,13 +9,15 @@ window. While the add-on is enabled, whatever its repository is called, and in B
     api.select(obj, arm)
     copy = api.copy_part(obj, arm)         # the part as a closed solid, a new object
     fingers = api.similar(obj, finger)     # [(node, likeness), ...] of the parts that are alike
-    labels = api.cut(obj, parts=8)         # (F,) the part of each face, 0 to 7
-    api.write(obj, api.parts(obj), to={"OBJECTS", "VERTEX_GROUPS"})  # the whole model in parts
+    cut = api.cut(obj, parts=8)            # the whole model in parts; cut.labels: the part of each face, 0 to 7
+    api.write(obj, cut, to={"OBJECTS", "VERTEX_GROUPS"})
+    hand = api.copy_part(obj, cut[3])      # a part of the cut, where a node is wanted
     api.convex(obj, hulls=16, max_vertices=64)  # convex colliders
     api.swap(obj, arm, other)              # exchanged for the most compatible part of another object
 
 The object comes first, then the node: a number of the object's hierarchy, a partwheel.Hierarchy, or the Part that
-part() gives. Lengths, areas and matrices are in the object's own space unless it says "world", angles in radians. snap:
+part() gives, or a part of a cut as cut[3]. Everything is counted from 0. partwheel.hierarchy has a table of what the
+numbers mean and how to convert them. Lengths, areas and matrices are in the object's own space unless it says "world", angles in radians. snap:
 with the part's border moved to the creases nearby. Functions build the hierarchy if there is none; only start_build()
 does not wait for it. One build runs at a time: those that are under way already come first.
 
@@ -50,34 +52,35 @@ from .related import others
 from .related import remembered as named
 from .solid import composition, solids
 from partwheel import PartwheelError, Status
-from partwheel.cut import Cut
+from partwheel.cut import Cut, CutPart
 from partwheel.deform import MOST_ITERATIONS
 from partwheel.joint import REACH
 from partwheel.likeness import THRESHOLD
 
 Build, State = builds.Build, registry.State
+NAME = f"{partwheel.__name__}.api"  # by which scripts import this module
 
 
 # ---- Hierarchies
 
 
-def start_build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None, exactly=None):
+def start_build(obj, quality=0.0, open_surfaces=False, mode=None, cpu_limit=None, memory_limit=None, exactly=None):
     """A Build of the object's mesh as it is now; returns at once. It changes nothing until its result() is asked for.
     The one under way is found again, if it is of the same mesh and options; else it is cancelled for this one.
 
     quality: 0 adds no points inside the mesh; from 1.1 on it bounds how stretched the tetrahedra may be. open_surfaces:
-    take a sheet for a thin solid, instead of refusing it. mode: a partwheel.Mode, how parts are joined. time_limit:
+    take a sheet for a thin solid, instead of refusing it. mode: a partwheel.Mode, how parts are joined. cpu_limit:
     seconds of processor time. memory_limit: bytes, kept on Linux only. exactly: find the parts of a large mesh on all of
     its triangles, not on a coarser copy. None: as the add-on's preferences have it."""
     _mesh(obj)
-    return builds.build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode, time_limit=time_limit,
+    return builds.build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode, cpu_limit=cpu_limit,
                         memory_limit=memory_limit, exactly=exactly)
 
 
-def build(obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None, progress=None,
+def build(obj, quality=0.0, open_surfaces=False, mode=None, cpu_limit=None, memory_limit=None, progress=None,
           exactly=None):
     """Builds the hierarchy of the object's mesh, keeps it and returns it: start_build() and its result()."""
-    return start_build(obj, quality, open_surfaces, mode, time_limit, memory_limit, exactly).result(progress)
+    return start_build(obj, quality, open_surfaces, mode, cpu_limit, memory_limit, exactly).result(progress)
 
 
 def hierarchy(obj):
@@ -183,13 +186,13 @@ def similar(obj, node, threshold=THRESHOLD, among=None):
     return [(each.node, each.likeness) for each in found if each.name == where.name_full and each.likeness >= threshold]
 
 
-def mirrored(obj, node, plane=1):
+def mirrored(obj, node, plane=0):
     """The node on the other side of the model. plane: of the planes in which it is its own mirror image and the node has
-    another part on its other side, the best one first. partwheel.Error: there is none."""
+    another part on its other side, the best one first, counted from 0. partwheel.Error: there is none."""
     images = others.images(obj, *_node(obj, node))
-    if not 1 <= plane <= len(images):
-        raise ValueError(f"There are {len(images)} such planes, numbered from 1.")
-    return images[plane - 1].node
+    if not 0 <= plane < len(images):
+        raise ValueError(f"There is no plane {plane}: such planes are numbered from 0 to {len(images) - 1}.")
+    return images[plane].node
 
 
 def remember(obj, node, name, snap=False):
@@ -206,20 +209,16 @@ def remembered(obj):
     return {name: named.node(obj, built, name)[0] for name in named.names(obj.data)}
 
 
-def cut(obj, parts=None, height=None, least_concavity=None, automatic=False):
-    """(F,) the part of each face, counted from 0, when the whole is cut: give one of the four. parts: into so many,
-    the last merges undone. least_concavity: into so many, those with the least concavity in total, as for convex hulls.
-    height: at this height of the dendrogram. automatic: into as many as people would most likely take. A part inside
-    the solid has no face."""
-    built = hierarchy(obj)
-    return built.face_labels(_bounds(built, parts, height, least_concavity, automatic))
+def cut(obj, parts=None, height=None, least_concavity=None):
+    """The whole model in parts, a partwheel.cut.Cut, by one of three, or by none as people would most likely take them.
+    parts: into so many, the last merges undone. least_concavity: into so many, those with the least concavity in total,
+    as for convex hulls. height: at this height of the dendrogram. What is inside the solid, without a face, goes with the
+    part beside it.
 
-
-def parts(obj, count=None):
-    """The whole model in parts, a partwheel.cut.Cut: into so many, or as people would most likely take them. It is a
-    value: cut.split(3), cut.join(3), cut.merge(0, 2) give others. cut.labels (F,): the part of each polygon."""
+    It is a value: cut.split(3), cut.join(3), cut.merge(0, 2) give others. cut.labels (F,): the part of each polygon."""
     built = hierarchy(obj)
-    return Cut.automatic(built) if count is None else Cut.into(built, count)
+    bounds = _bounds(built, parts, height, least_concavity)
+    return Cut.of_labels(built, built.face_labels(bounds)) if parts is None else Cut.into(built, operator.index(parts))
 
 
 def kept_parts(obj):
@@ -243,7 +242,8 @@ def write(obj, cut, to=(), names=None, closed=True, origins=True, explode=0.0, s
     the object's is. explode: moved apart by so many times the distance of their middles, by drivers: the root's
     property "explode" changes it. shell: so thick, by a modifier. smooth, material: of caps, as for copy_part().
     Seams: unwrap: by Blender, angle-based, as a UV map of its own, the active one; what is rendered by others stays.
-    Returns (names, objects). partwheel.Error: the cut is of another mesh, or it can't be done; nothing has changed then.
+    Returns (names, objects, armature), the last None unless to "BONES". partwheel.Error: the cut is of another mesh, or it
+    can't be done; nothing has changed then.
     Outside Edit Mode only."""
     _mesh(obj, edited=False, changes=True)
     if isinstance(to, str) or not set(to) <= set(writing.TO):
@@ -319,14 +319,13 @@ def remove(obj, node, smooth=False, material=False, snap=False):
     composition.removed(obj, built, node, solids.Options(smooth, material), snap)
 
 
-def split(obj, parts=None, height=None, explode=0.0, smooth=False, material=False, least_concavity=None,
-          automatic=False):
+def split(obj, parts=None, height=None, explode=0.0, smooth=False, material=False, least_concavity=None):
     """[object, ...] new ones in a new collection, one for each part of a cut as cut() makes it: closed solids whose
     caps match exactly (unless smooth). Each is moved out by explode times its distance from the middle. Outside Edit
     Mode only."""
     _mesh(obj, edited=False)
     built = hierarchy(obj)
-    bounds = _bounds(built, parts, height, least_concavity, automatic)
+    bounds = _bounds(built, parts, height, least_concavity)
     return composition.split(obj, built, bounds, solids.Options(smooth, material), explode)
 
 
@@ -458,8 +457,12 @@ def _mesh(obj, edited=True, changes=False):
 
 
 def _node(obj, node):
-    """(the Hierarchy of the object, the number of one of its nodes); PartwheelError: it has no such node."""
-    built, number = hierarchy(obj), operator.index(node)
+    """(the Hierarchy of the object, the number of one of its nodes); PartwheelError: it has no such node; Refused: it is a
+    part of another hierarchy's cut."""
+    built = hierarchy(obj)
+    if isinstance(node, CutPart) and node.cut.hierarchy is not built:
+        raise Refused(f"The cut is not of {obj.name} as it is now: ask for its parts again.")
+    number = operator.index(node)
     built.faces(number)
     return built, number
 
@@ -473,19 +476,19 @@ def _place(obj, node, other, snap=False):
     return swapping.Place(obj, built, node, snap)
 
 
-def _bounds(built, parts, height, least_concavity, automatic):
+def _bounds(built, parts, height, least_concavity):
     given = [(cut, value) for cut, value in ((built.cut_parts, parts), (built.cut_height, height),
                                              (built.cut_least_concavity, least_concavity)) if value is not None]
-    if len(given) + bool(automatic) != 1:
-        raise ValueError("Say how to cut by one of the four: parts=, least_concavity=, height= or automatic=True.")
-    return built.cut_automatic() if automatic else given[0][0](given[0][1])
+    if len(given) > 1:
+        raise ValueError("Say how to cut by only one of the three: parts=, least_concavity= or height=.")
+    return given[0][0](given[0][1]) if given else built.cut_automatic()
 
 
 def register():
     """Scripts find this module in the package, whose name is the same wherever the add-on is."""
-    partwheel.api = sys.modules[__name__]
+    partwheel.api = sys.modules[NAME] = sys.modules[__name__]
 
 
 def unregister():
     if getattr(partwheel, "api", None) is sys.modules[__name__]:
-        del partwheel.api
+        del partwheel.api, sys.modules[NAME]

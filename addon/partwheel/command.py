@@ -43,7 +43,7 @@ def _build(obj, options):
 
 
 def _cut(obj, options):
-    labels = api.cut(obj, options.parts, options.height, options.least_concavity)
+    labels = api.cut(obj, options.parts, options.height, options.least_concavity).labels
     attributes = obj.data.attributes
     if options.attribute in attributes:
         attributes.remove(attributes[options.attribute])

@@ -34,7 +34,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
     memory_share: bpy.props.IntProperty(
         name="Memory", description="How much of the available memory a build may use (kept on Linux)", default=80,
         min=10, max=100, subtype="PERCENTAGE")
-    time_limit: bpy.props.IntProperty(
+    cpu_limit: bpy.props.IntProperty(
         name="Time Limit", description="Minutes of processor time after which a build is stopped; 0: two, and two more "
         "for each 60,000 triangles, far more than builds take", default=0, min=0, soft_max=60)
     python: bpy.props.StringProperty(
@@ -61,7 +61,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         trouble.draw(context, self.layout)
         column = self.layout.column()
         column.use_property_split = True
-        for name in ("parts", "exactly", "on_import", "save_with_file", "memory_share", "time_limit", "python", "wheel"):
+        for name in ("parts", "exactly", "on_import", "save_with_file", "memory_share", "cpu_limit", "python", "wheel"):
             column.prop(self, name)
         draw_overlays(column)
         key = pie_key()

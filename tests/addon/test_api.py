@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """partwheel.api, and the part that was picked last, which other operators act on."""
 
+import importlib
 import os
 import tempfile
 
@@ -108,7 +109,7 @@ class Api(MeshTest):
         self.assertTrue(asked and all(0 <= fraction <= 1 and what for fraction, what in asked))
         with self.assertRaises(KeyError):
             self.api.build(obj, progress=broken)
-        for limit, name in (({"time_limit": 1e-9}, "time limit"), ({"memory_limit": 2**20}, "memory")):
+        for limit, name in (({"cpu_limit": 1e-9}, "time limit"), ({"memory_limit": 2**20}, "memory")):
             with self.subTest(name), self.assertRaises(error) as raised:
                 self.api.build(obj, **limit)
             self.assertIn(raised.exception.name, (name, "worker"))  # a worker that can't even begin with so little
@@ -252,7 +253,7 @@ class Api(MeshTest):
         self.assertEqual(self.api.state(obj), self.api.State.FITS)
         found = self.api.part(obj, 700)
         self.assertEqual(found.node, expected.wheel(700)[0][expected.wheel(700)[1]])
-        self.assertEqual(self.api.cut(obj, parts=4).tolist(), expected.face_labels(expected.cut_parts(4)).tolist())
+        self.assertEqual(self.api.cut(obj, parts=4).labels.tolist(), expected.face_labels(expected.cut_parts(4)).tolist())
         self.assertGreater(len(self.api.copy_part(obj, found).data.polygons), len(found.faces))
         self.assertEqual(len(self.api.split(obj, parts=3)), 3)
         for change in sum(self.changing(obj, other), ()):
@@ -359,18 +360,39 @@ class Api(MeshTest):
         obj = self.add(*read_off("hand"))
         h = self.hierarchy(obj)
         for parts in (1, 2, 8):
-            labels = self.api.cut(obj, parts=parts)
+            labels = self.api.cut(obj, parts=parts).labels
             self.assertEqual((len(labels), labels.max() < parts), (2390, True))
             self.assertEqual(labels.tolist(), h.face_labels(h.cut_parts(parts)).tolist())
-            self.assertEqual(self.api.cut(obj, least_concavity=parts).tolist(),
+            self.assertEqual(self.api.cut(obj, least_concavity=parts).labels.tolist(),
                              h.face_labels(h.cut_least_concavity(parts)).tolist())
-        self.assertEqual(self.api.cut(obj, height=0.5 * h.height[-1]).tolist(),
+        self.assertEqual(self.api.cut(obj, height=0.5 * h.height[-1]).labels.tolist(),
                          h.face_labels(h.cut_height(0.5 * h.height[-1])).tolist())
-        self.assertEqual(self.api.cut(obj, automatic=True).tolist(), h.face_labels(h.cut_automatic()).tolist())
-        for arguments in ({}, {"parts": 2, "height": 0.5}, {"parts": 2, "least_concavity": 2},
-                          {"parts": 2, "automatic": True}):
+        self.assertEqual(self.api.cut(obj).labels.tolist(), h.face_labels(h.cut_automatic()).tolist())
+        for arguments in ({"parts": 2, "height": 0.5}, {"parts": 2, "least_concavity": 2}):
             with self.assertRaises(ValueError):
                 self.api.cut(obj, **arguments)
+
+    def test_a_part_of_a_cut_stands_for_its_node(self):
+        obj = self.add(*read_off("hand"))
+        cut = self.api.cut(obj, parts=5)
+        for number in range(len(cut)):
+            own = np.flatnonzero(cut.labels == number).tolist()
+            self.assertEqual(sorted(self.api.faces(obj, cut[number]).tolist()), own)
+            self.assertEqual(sorted(self.api.select(obj, cut[number]).tolist()), own)
+            copies = [self.api.copy_part(obj, node) for node in (cut[number], cut.node(number))]
+            np.testing.assert_array_equal(*(places(each) for each in copies))
+        merged = (cut.merge(one, two) for one in range(5) for two in range(one))
+        no_node = next(part for each in merged for part in each if each.node(part.number) is None)
+        with self.assertRaisesRegex(package().Error, "merged by hand"):
+            self.api.copy_part(obj, no_node)
+        other = self.add(*BOX, "other")
+        with self.assertRaisesRegex(package().Error, "not of other as it is now"):
+            self.api.copy_part(other, cut[0])
+
+    def test_the_module_can_be_imported(self):
+        import partwheel.api
+        self.assertIs(partwheel.api, self.api)
+        self.assertIs(importlib.import_module("partwheel.api"), self.api)
 
     def test_mode_paper_goes_through_the_whole_path(self):
         obj = self.add(*read_off("hand"))

@@ -35,9 +35,9 @@ class Bones(PartsCase):
             obj.location, obj.rotation_euler = (3, 1, 2), (0.3, 0.2, 1)
             bpy.context.view_layer.update()
             before = obj.matrix_world.copy()
-            names, made = part("api").write(obj, cut, {"BONES"})
+            names, made, rig = part("api").write(obj, cut, {"BONES"})
             self.assertEqual(made, [])
-            rig = obj.find_armature()
+            self.assertEqual(rig, obj.find_armature())
             self.assertEqual(set(rig.data.bones.keys()), set(names))
             self.assertEqual({group.name for group in obj.vertex_groups}, set(names))
             self.assertEqual(sum(bone.parent is None for bone in rig.data.bones), 1)
@@ -109,14 +109,15 @@ class Bones(PartsCase):
 
     def test_a_duplicate_gets_its_own(self):
         obj, cut = self.model("pig")
-        part("api").write(obj, cut, {"BONES"})
-        rig, bones = obj.find_armature(), len(cut)
+        rig, bones = part("api").write(obj, cut, {"BONES"}).armature, len(cut)
+        self.assertEqual(rig, obj.find_armature())
+        self.assertIsNone(part("api").write(obj, cut, {"FACE_SETS"}).armature)
         bpy.context.view_layer.objects.active = obj
         obj.select_set(True)
         bpy.ops.object.duplicate()
         copy = bpy.context.view_layer.objects.active
         self.assertEqual(copy.find_armature(), rig)
-        part("api").write(copy, part("api").parts(copy, 3), {"BONES"})
+        part("api").write(copy, part("api").cut(copy, 3), {"BONES"})
         self.assertEqual((obj.find_armature(), len(rig.data.bones)), (rig, bones))
         self.assertEqual((len(copy.modifiers), len(copy.find_armature().data.bones)), (1, 3))
         # Likewise where it is hidden: Blender edits no bones then.

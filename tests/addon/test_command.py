@@ -39,7 +39,7 @@ class Command(MeshTest):
             self.assertIsNotNone(part("parts.registry").hierarchy(bpy.data.objects[name]))
         for way in ("parts", "least-concavity"):
             bpy.ops.wm.open_mainfile(filepath=self.path)
-            expected = part("api").cut(bpy.data.objects["hand"], **{way.replace("-", "_"): 5}).tolist()
+            expected = part("api").cut(bpy.data.objects["hand"], **{way.replace("-", "_"): 5}).labels.tolist()
             code, printed = self.run_command("cut", self.path, "--object", "hand", f"--{way}", "5",
                                              "--attribute", "limb", "--output", self.other)
             self.assertEqual(code, 0, printed)

@@ -96,7 +96,7 @@ class Isolation(MeshTest):
         obj, before = self.edited()
         build = part("parts.builds").Job
         self.addCleanup(setattr, part("parts.builds"), "Job", build)
-        part("parts.builds").Job = lambda *surface, **options: build(*surface, **{**options, "time_limit": 0.3})
+        part("parts.builds").Job = lambda *surface, **options: build(*surface, **{**options, "cpu_limit": 0.3})
         for stage in package().Stage:
             for fault in ("loop", "stop"):
                 with self.subTest(f"{fault} {stage.name}"):

@@ -300,7 +300,7 @@ class ObjectData(SolidTest):
     def test_all_that_rna_knows_is_kept(self):
         for animated in (True, False):
             obj, hierarchy, _ = self.rich(animated=animated)
-            part("api").write(obj, part("api").parts(obj, 4))  # or it would keep the parts in the mesh meanwhile
+            part("api").write(obj, part("api").cut(obj, 4))  # or it would keep the parts in the mesh meanwhile
             found = self.made_of(obj, hierarchy)
             for how, objects in found.items():
                 for new in objects:
@@ -638,7 +638,7 @@ class ObjectData(SolidTest):
                 options["node"] = self.nodes(hierarchy)[-2]
             self.link_active(obj)
             if operator == bpy.ops.mesh.partwheel_parts:
-                part("api").write(obj, part("api").parts(obj, 3))  # kept in the mesh beforehand
+                part("api").write(obj, part("api").cut(obj, 3))  # kept in the mesh beforehand
             bpy.ops.object.mode_set(mode="EDIT")
             number, raised = 0, True
             while raised:

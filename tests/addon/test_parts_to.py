@@ -43,7 +43,7 @@ class PartsCase(SolidTest):
         counts = len(obj.data.vertices), len(obj.data.polygons)
         registry.keep(obj.data, registry.Entry(now, counts, _saved[name]), now)
         self.assertEqual(_saved[name].summary.rung, RUNGS[name])
-        return obj, part("api").parts(obj)
+        return obj, part("api").cut(obj)
 
     def each(self, names=EXACT + BROKEN):
         for name in names:
@@ -53,9 +53,10 @@ class PartsCase(SolidTest):
 class Written(PartsCase):
     def test_parts_are_the_automatic_cut_or_as_many_as_asked(self):
         for _, obj, cut in self.each():
-            automatic = part("api").cut(obj, automatic=True)
+            automatic = part("api").hierarchy(obj)
+            automatic = automatic.face_labels(automatic.cut_automatic())
             self.assertEqual(len({*zip(cut.labels.tolist(), automatic.tolist())}), len(cut))
-            self.assertEqual(len(part("api").parts(obj, 5)), 5)
+            self.assertEqual(len(part("api").cut(obj, 5)), 5)
 
     def test_is_kept_in_the_mesh_and_found_again(self):
         for name, obj, cut in self.each():
@@ -165,7 +166,7 @@ class Written(PartsCase):
     def test_objects_are_closed_and_make_the_whole(self):
         for name, obj, cut in self.each(EXACT + BROKEN + REPAIRED):
             for each in (cut, cut.merge(0, len(cut) - 1)):
-                names, made = part("api").write(obj, each, {"OBJECTS"}, origins=False)
+                names, made, _ = part("api").write(obj, each, {"OBJECTS"}, origins=False)
                 self.assertEqual([new.name for new in made], names)
                 for new in made:
                     self.assertSolid(new.data)
@@ -175,7 +176,7 @@ class Written(PartsCase):
                 if name in EXACT:
                     whole = volume64(obj, about)
                 else:  # the mesh has no volume, but all of it as one solid does
-                    one, = part("api").write(obj, part("api").parts(obj, 1), {"OBJECTS"}, origins=False).objects
+                    one, = part("api").write(obj, part("api").cut(obj, 1), {"OBJECTS"}, origins=False).objects
                     whole = volume64(one, about)
                     bpy.data.objects.remove(one)
                 total = sum(volume64(new, about) for new in made)
@@ -193,7 +194,7 @@ class Written(PartsCase):
         for name, obj, cut in self.each():
             obj.location, obj.rotation_euler, obj.scale = (3, 1, 2), (0.3, 0.2, 1), (2, 2, 2)
             bpy.context.view_layer.update()
-            names, made = part("api").write(obj, cut, {"OBJECTS"})
+            names, made, _ = part("api").write(obj, cut, {"OBJECTS"})
             collection, = {new.users_collection[0] for new in made}
             self.assertTrue(collection.name.startswith(f"{name} parts"))
             self.assertEqual(sum(new.parent is None for new in made), 1)
@@ -226,7 +227,7 @@ class Written(PartsCase):
         built = part("api").hierarchy(obj)
         centers = numpy.array([polygon.center[0] for polygon in mesh.polygons])
         labels = numpy.where(centers > 1.001, 1, numpy.where(centers < -1.001, 2, 0))
-        names, made = part("api").write(obj, Cut.of_labels(built, labels), {"OBJECTS"})
+        names, made, _ = part("api").write(obj, Cut.of_labels(built, labels), {"OBJECTS"})
         self.assertEqual(len(made), 3)
         root, = [new for new in made if not new.parent]
         self.assertEqual(root.location.length, 0)

@@ -51,7 +51,7 @@ class Print(PartsCase):
         manifold3d = self.with_manifold3d()
         for name, count in (("homer", 5), ("elephant", 6), ("cow", 4)):
             obj, _ = self.sized(name)
-            cut = part("api").parts(obj, count)
+            cut = part("api").cut(obj, count)
             objects, pegs, notes = part("api").print_parts(obj, cut, GAP, WALL)
             self.assertEqual(len(objects), count, notes)
             self.assertGreater(len(pegs), 1, notes)
@@ -85,7 +85,7 @@ class Print(PartsCase):
     def test_what_is_lost_is_the_gaps_alone(self):
         self.with_manifold3d()
         obj, _ = self.sized("homer")
-        cut = part("api").parts(obj, 5)
+        cut = part("api").cut(obj, 5)
         whole = volume(obj.data) * obj.scale[0] ** 3
         flat = sum(volume(new.data) for new in part("api").print_parts(obj, cut, None).objects) * obj.scale[0] ** 3
         self.assertLess(abs(flat - whole), 1e-5 * whole)

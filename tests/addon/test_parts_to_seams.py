@@ -82,7 +82,7 @@ class Seams(PartsCase):
             obj = bpy.context.active_object
             self.assertGreater(max(len(polygon.vertices) for polygon in obj.data.polygons), 3)
             for count in (1, 4):
-                part("api").write(obj, part("api").parts(obj, count), {"SEAMS"}, unwrap=True)
+                part("api").write(obj, part("api").cut(obj, count), {"SEAMS"}, unwrap=True)
                 euler, own = islands_by_seams(obj.data)
                 self.assertEqual({*euler}, {1}, (obj.name, count))
                 self.assertGreaterEqual(len(euler), count)

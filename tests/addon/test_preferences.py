@@ -62,7 +62,7 @@ class Preferences(MeshTest):
         self.worker(WORKS)
         self.assertIn("after 120.024 seconds of work", self.refusal())  # two, and 2 ms for each of 12 triangles
         for minutes in (1, 7):
-            self.set("time_limit", minutes)
+            self.set("cpu_limit", minutes)
             self.assertIn(f"after {60 * minutes} seconds of work", self.refusal())
 
     def test_the_python(self):

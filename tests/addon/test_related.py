@@ -187,6 +187,9 @@ class Related(ToolTest):
         self.use(6, 6, 4, 7, 3, 8)
         left, right = self.bar(0, -1), self.bar(0, 1)
         self.assertEqual((self.api.mirrored(self.obj, left), self.api.mirrored(self.obj, right)), (right, left))
+        self.assertEqual(self.api.mirrored(self.obj, left, plane=0), right)
+        with self.assertRaisesRegex(ValueError, "numbered from 0 to 0"):
+            self.api.mirrored(self.obj, left, plane=1)
         self.in_hand(left)
         self.assertEqual(bpy.ops.mesh.partwheel_mirrored(), {"FINISHED"})
         self.assertEqual(selected(self.obj), self.faces(left, right))

@@ -76,7 +76,7 @@ def test_hostile_files_fail_by_name_and_alone(boxes, tmp_path):
     folder = tmp_path / "hostile"
     folder.mkdir()
     expected = hostile(folder)
-    totals = run(boxes, folder, "-o", tmp_path / "out", "--make", "hierarchy", "--time", 60, code=1)
+    totals = run(boxes, folder, "-o", tmp_path / "out", "--make", "hierarchy", "--cpu-limit", 60, code=1)
     told = reports(tmp_path / "out")
     assert {path: told[path]["error"]["name"] for path in expected} == expected
     assert all(told[path]["error"] is None for path in map(str, boxes.iterdir()))

@@ -163,7 +163,7 @@ def test_a_python_that_runs_but_not_the_worker(pythons, shim):
 def test_a_python_that_hangs_with_the_worker(pythons, shim):
     bad = shim("bad", f'case "$*" in *ctypes*) {RUNS};; esac; {HANGS}')
     pythons(bad)
-    assert "did not begin in 0.1 seconds" in refusal(time_limit=0.1)
+    assert "did not begin in 0.1 seconds" in refusal(cpu_limit=0.1)
     assert not any(map(state, calls(bad)))
 
 

@@ -26,6 +26,7 @@ def test_it_is_installed_and_builds(tmp_path, meshes_directory):
     run(programs / "python", "-m", "pip", "install", "--disable-pip-version-check", str(wheel))
     found = run(programs / "python", "-c", "import partwheel; print(partwheel.__file__, partwheel.version())")
     assert found.startswith(str(tmp_path / "venv"))
+    assert Path(found.split()[0]).with_name("py.typed").is_file()  # type checkers read the annotations
     report = json.loads(run(programs / "partwheel", "build", meshes_directory / "armadillo.off", "--json"))
     assert report["faces"] == int((meshes_directory / "armadillo.off").read_text().split()[2])
     stl = meshes_directory / "pig.stl"

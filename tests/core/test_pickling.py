@@ -133,6 +133,7 @@ def test_a_handle_is_neither_copied_nor_pickled(kind, how):
 
 ERRORS = {
     "Error": lambda kind: kind("Something was refused."),
+    "CutError": lambda kind: kind("It is no node."),
     "LibraryError": lambda kind: kind("There is no library."),
     "PartwheelError": lambda kind: kind(Status.OPEN, "A hole.", {"surface": 0.25}),
     "MeshFileError": lambda kind: kind("No mesh."),

@@ -225,7 +225,7 @@ if LINUX and PLAIN:
     def test_an_endless_loop_is_ended(harm, clock, stage):
         harm("loop", stage)
         before = processor_time_of_children()
-        job = Job(*shapes.off("hand"), rungs=EXACT, time_limit=1)
+        job = Job(*shapes.off("hand"), rungs=EXACT, cpu_limit=1)
         with pytest.raises(WorkerError, match="after 1 seconds of work") as failed:
             job.result()
         assert failed.value.name == "time limit" and 1 <= processor_time_of_children() - before
@@ -235,7 +235,7 @@ if LINUX and PLAIN:
     @pytest.mark.parametrize("fault", ["stop", "sleep"])
     def test_what_does_nothing_is_ended(harm, clock, fault, stage):
         harm(fault, stage)
-        job = Job(*shapes.off("hand"), rungs=EXACT, time_limit=60)
+        job = Job(*shapes.off("hand"), rungs=EXACT, cpu_limit=60)
         until(lambda: faults.harmed(job.process_id))
         clock.set_on(59, job)
         assert job.poll() and state(job.process_id)
@@ -274,7 +274,7 @@ if LINUX and PLAIN:
         """))
         monkeypatch.setattr(worker, "ENTRY", entry)
         shape = shapes.cube()  # which the pipe holds, so that the job listens before the worker has read it
-        job = Job(*shape, rungs=EXACT, time_limit=60)
+        job = Job(*shape, rungs=EXACT, cpu_limit=60)
         for turn in (1, 2, 3):
             clock.set_on(50, job)
             (tmp_path / str(turn)).touch()
@@ -305,7 +305,7 @@ if LINUX and PLAIN:
         """The worker may notice or not: what it answers is loaded as a sound hierarchy of this mesh or refused."""
         harm("corrupt", stage)
         shape = shapes.off("homer")
-        job = Job(*shape, rungs=EXACT, time_limit=20)
+        job = Job(*shape, rungs=EXACT, cpu_limit=20)
         try:
             assert len(job.result().order) == shape.face_count
         except PartwheelError as error:
@@ -365,7 +365,7 @@ if LINUX and PLAIN:
 
     def test_a_rung_that_hangs_is_tried_once(harm, clock):
         harm("loop", 1, rung=4)
-        job = Job(*shapes.off("pig"), time_limit=3)  # neither closed nor to be repaired: one process gets to the last rung
+        job = Job(*shapes.off("pig"), cpu_limit=3)  # neither closed nor to be repaired: one process gets to the last rung
         with pytest.raises(WorkerError):
             job.result()
         assert [failure.name for failure in job.failures] == ["time limit"]
@@ -416,7 +416,7 @@ if LINUX and PLAIN:
         """As one that comes just before: Python has noted it, but is told of it only when it is not waiting. The job
         does not have to end for that."""
         harm("loop", 1)
-        job = Job(*shapes.off("hand"), time_limit=20)
+        job = Job(*shapes.off("hand"), cpu_limit=20)
         timer = threading.Timer(0.05, _thread.interrupt_main)
         with pytest.raises(KeyboardInterrupt):
             timer.start()

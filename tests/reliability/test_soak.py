@@ -84,7 +84,7 @@ def outcome(seed, sources):
     name, vertices, triangles = sources[seed % len(sources)]
     steps, vertices, triangles, error = mutations.mutated(seed, vertices, triangles)
     label = f"{seed} {name} {'+'.join(steps)}"
-    job = Job(vertices, triangles, time_limit=SECONDS, memory_limit=4 * 2**30)
+    job = Job(vertices, triangles, cpu_limit=SECONDS, memory_limit=4 * 2**30)
     (seconds, late), wrong = watched(job), None
     try:
         h = job.result()
@@ -126,12 +126,12 @@ def memory():
 def test_a_worker_that_hangs_is_found():
     """Where Job itself would wait for long: a worker that is stopped, and one that works for longer than it may."""
     vertices, triangles, *_ = models.read("armadillo.off")
-    job = Job(vertices, triangles, time_limit=1000)
+    job = Job(vertices, triangles, cpu_limit=1000)
     while not job.process_id:
         job.wait(0.01)
     os.kill(job.process_id, signal.SIGSTOP)
     assert "without any work" in watched(job, most_idle=1)[1]
-    job = Job(vertices, triangles, time_limit=1000)
+    job = Job(vertices, triangles, cpu_limit=1000)
     seconds, late = watched(job, most_work=0)
     assert seconds > 0 and "took" in late
     assert job.result().summary.rung == "exact"

@@ -12,10 +12,11 @@ TO = "FACE_SETS", "VERTEX_GROUPS", "COLORS", "MATERIALS", "SEAMS", "OBJECTS", "B
 
 
 class Written(NamedTuple):
-    """names: of the parts, in order; objects: those that were made."""
+    """names: of the parts, in order; objects: those that were made; armature: the object with the bones, or None."""
 
     names: list
     objects: list
+    armature: object
 
 
 def known_names(obj, cut):
@@ -40,8 +41,7 @@ def write(obj, cut, to=(), known=None, options=objects.Options(), unwrap=False):
     take_back = unwrapping.mark(obj, cut, unwrap) if "SEAMS" in to else lambda: None
     try:
         made = objects.made(obj, cut, names, options) if "OBJECTS" in to else []  # with the new UVs
-        if "BONES" in to:
-            armature.made(obj, cut, names, weights)
+        rig = armature.made(obj, cut, names, weights) if "BONES" in to else None
     except Exception:
         take_back()
         raise
@@ -52,4 +52,4 @@ def write(obj, cut, to=(), known=None, options=objects.Options(), unwrap=False):
         if layer in to:
             write_layer(obj, cut, names)
     obj.data.update()
-    return Written(names, made)
+    return Written(names, made, rig)

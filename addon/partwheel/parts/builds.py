@@ -50,7 +50,7 @@ class Build:
     mesh is not changed, nor kept from changing. To be had from build(): there is one a mesh. Ask it from the main
     thread: poll(), wait(), cancel(), result()."""
 
-    def __init__(self, obj, quality=0.0, open_surfaces=False, mode=None, time_limit=None, memory_limit=None,
+    def __init__(self, obj, quality=0.0, open_surfaces=False, mode=None, cpu_limit=None, memory_limit=None,
                  exactly=None):
         """mode: a partwheel.Mode; limits and exactly: as Job has them; None: the preferences'. open_surfaces holds for
         later builds of the mesh too."""
@@ -62,7 +62,7 @@ class Build:
         self._mode = Mode[preferences().parts] if mode is None else mode
         self._exactly = preferences().exactly if exactly is None else exactly
         self._options = {"quality": quality, "open_surfaces": open_surfaces, "exactly": exactly, "mode": mode,
-                         "time_limit": time_limit, "memory_limit": memory_limit}
+                         "cpu_limit": cpu_limit, "memory_limit": memory_limit}
         self._surface = arrays.surface(mesh)
         self._hierarchy = self._error = None
         self._cancelled = False
@@ -82,7 +82,7 @@ class Build:
             self.job = Job(*self._surface, quality=options["quality"], open_surfaces=self._open_surfaces,
                            exactly=self._exactly, mode=self._mode,
                            memory_limit=options["memory_limit"] or int(share * available_memory()),
-                           time_limit=options["time_limit"] or 60 * preferences().time_limit or None,
+                           cpu_limit=options["cpu_limit"] or 60 * preferences().cpu_limit or None,
                            python=bpy.path.abspath(preferences().python))
         except Exception as error:  # whatever it is, result() raises it
             self._error = error

@@ -1,9 +1,35 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hierarchy: a mesh's tree of nearly convex parts, built by the native library, as numpy arrays and questions."""
+"""Hierarchy: a mesh's tree of nearly convex parts, built by the native library, as numpy arrays and questions.
+
+Numbers count from 0, and -1 is none. F source faces, T tetrahedra, N nodes:
+
+    face          0..F-1    of the mesh that was built
+    tetrahedron   0..T-1    in depth-first order: nodes, clusters and parts are slices of them
+    node          0..N-1    of the tree that the wheel goes through; node i < T is tetrahedron i, node N-1 the whole
+    cluster       0..2T-2   of the binary tree of all merges: i < T is tetrahedron i, T+m what merge m joins, 2T-2 the whole
+    part          0..K-1    of a Cut
+
+Each node is a cluster; most clusters are no node. A part that was not merged by hand is a cluster, and mostly a node.
+
+    from          to             by
+    face          node           Hierarchy.leaf[face], path(face), wheel(face)
+    node          faces          Hierarchy.faces(node)
+    node          tetrahedra     range(Hierarchy.tet_first[node], Hierarchy.tet_last[node])
+    tetrahedra    node           Hierarchy.find_node(first, last)
+    node          node           Hierarchy.parent[node], children(node)
+    face          part           Cut.labels[face]
+    tetrahedron   part           Cut.tet_labels[tetrahedron]
+    part          faces          Cut.faces(part)
+    part          tetrahedra     Cut.slices(part)
+    part          clusters       Cut.parts[part]
+    part          node           Cut.node(part)
+
+What takes a node also takes cut[part], wherever that part is a node.
+"""
 
 import operator
 from ctypes import byref, c_double, c_size_t, c_void_p
-from typing import NamedTuple, Optional
+from typing import Any, Dict, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -143,7 +169,28 @@ class Hierarchy:
     seconds of the build, empty after load().
     """
 
-    def __init__(self, handle, seconds=None):
+    order: np.ndarray
+    leaf: np.ndarray
+    parent: np.ndarray
+    first: np.ndarray
+    last: np.ndarray
+    tet_first: np.ndarray
+    tet_last: np.ndarray
+    cost_class: np.ndarray
+    cost: np.ndarray
+    height: np.ndarray
+    volume: np.ndarray
+    area: np.ndarray
+    score: np.ndarray
+    vertices: np.ndarray
+    source: np.ndarray
+    tetrahedra: np.ndarray
+    merges: np.ndarray
+    summary: Summary
+    account: str
+    seconds: Dict[str, float]
+
+    def __init__(self, handle: Handle, seconds: Optional[Dict[str, float]] = None) -> None:
         self._handle = handle
         self.seconds = seconds or {}
         raw = Arrays()
@@ -222,7 +269,11 @@ class Hierarchy:
         """The hierarchy as bytes, the same on every machine."""
         return self._ask(load().pw_hierarchy_save, np.uint8).tobytes()
 
-    def __reduce__(self):
+    def __repr__(self) -> str:
+        return (f"<Hierarchy of {len(self.order)} faces: {len(self.parent)} nodes, {len(self.tetrahedra)} tetrahedra, "
+                f"{self.summary.rung}>")
+
+    def __reduce__(self) -> Tuple[Any, ...]:
         """A copy, here or in another process, is loaded from the saved form: addresses mean nothing there."""
         return type(self).load, (self.save(),), {"seconds": self.seconds}
 
@@ -241,6 +292,29 @@ class Hierarchy:
         """(n,) a node's source faces: a view of order."""
         address, count = told([c_void_p, c_size_t], load().pw_hierarchy_faces, self._handle, _number(node))
         return _view(self._handle, address, (count,), np.int32)
+
+    def children(self, node: int) -> Tuple[int, ...]:
+        """The nodes that a node was joined of.
+
+        Parameters
+        ----------
+        node : the number of a node, or what stands for one
+
+        Returns
+        -------
+        their numbers, by their place among the faces; () for a single tetrahedron
+
+        Raises
+        ------
+        PartwheelError : there is no such node
+        """
+        self._slice(node)
+        return tuple(sorted(np.flatnonzero(self.parent == _number(node)).tolist(), key=lambda each: self.tet_first[each]))
+
+    def find_node(self, tet_first: int, tet_last: int) -> Optional[int]:
+        """The node that is just tetrahedra[tet_first:tet_last], or None if these are no node."""
+        found = np.flatnonzero((self.tet_first == tet_first) & (self.tet_last == tet_last))
+        return int(found[0]) if len(found) else None
 
     def cut_height(self, height):
         """(parts + 1,) bounds of the cut at a height: part k holds tetrahedra[bounds[k]:bounds[k+1]]."""

@@ -35,7 +35,7 @@ def add_to(commands, add_build_options):
     batch.add_argument("--memory", type=size, metavar="SIZE",
                        help="for all models at a time, as 6G; one that needs more than all of it fails (default: 80 %% "
                             "of what is available; kept on Linux only)")
-    batch.add_argument("--time", type=float, metavar="SECONDS",
+    batch.add_argument("--cpu-limit", type=float, metavar="SECONDS",
                        help="of processor time for reading and for building a model (default: by its size, generous)")
     batch.add_argument("--retry", action="append", default=[], metavar="NAME",
                        help="try models again that failed by this name, as memory; all: whatever it was")
@@ -84,7 +84,7 @@ def run(options):
     except Error as error:
         return _refused(str(error), FAILED)
     limits = Options(settings(options), options.jobs, memory() if options.memory is None else options.memory,
-                     options.time, frozenset(options.retry), options.shard, options.threads or 1)
+                     options.cpu_limit, frozenset(options.retry), options.shard, options.threads or 1)
     show = _Progress()
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGTERM, _interrupt)  # as schedulers end a job
@@ -110,7 +110,7 @@ def run(options):
 
 def _run_on_ray(options):
     from . import on_ray
-    limits = Options(settings(options), 0, options.memory or 0, options.time, frozenset(options.retry), options.shard,
+    limits = Options(settings(options), 0, options.memory or 0, options.cpu_limit, frozenset(options.retry), options.shard,
                      options.threads or 1)
     signal.signal(signal.SIGTERM, _interrupt)
 

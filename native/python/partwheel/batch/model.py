@@ -31,7 +31,7 @@ def make(path, folder, settings, *, memory=0, seconds=None, threads=1):
     mesh = blend.read(path, folder) if suffix == ".blend" else meshes.read(path)
     clock.lap("read")
     build = dict(settings["build"], mode=Mode[settings["build"]["mode"].upper()])
-    job = Job(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, memory_limit=memory, time_limit=seconds,
+    job = Job(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, memory_limit=memory, cpu_limit=seconds,
               threads=threads, **build)
     try:
         hierarchy = job.result()

@@ -4,9 +4,9 @@
 from .bones import Bone, bones
 from .borders import Border, Link, borders, links, tree, weights
 from .colors import colors
-from .cut import Cut
+from .cut import Cut, CutError, CutPart
 from .names import mirror_planes, named
 from .seams import further, laid_flat, seams
 
-__all__ = ["Bone", "Border", "Cut", "Link", "bones", "borders", "colors", "further", "laid_flat", "links", "mirror_planes",
+__all__ = ["Bone", "Border", "Cut", "CutError", "CutPart", "Link", "bones", "borders", "colors", "further", "laid_flat", "links", "mirror_planes",
            "named", "seams", "tree", "weights"]

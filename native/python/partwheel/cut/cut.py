@@ -3,8 +3,11 @@
 
 import heapq
 from functools import cached_property
+from typing import Optional
 
 import numpy as np
+
+from ..library import Error
 
 
 class Tree:
@@ -57,6 +60,30 @@ class Tree:
             yield cluster
 
 
+class CutPart:
+    """A part of a Cut, which stands for its node wherever a node is wanted."""
+
+    def __init__(self, cut: "Cut", number: int) -> None:
+        self.cut, self.number = cut, number
+
+    def __repr__(self) -> str:
+        return f"<part {self.number} of {self.cut!r}>"
+
+    def __index__(self) -> int:
+        """The node's number. Raises CutError for a part that is no node."""
+        node = self.cut.node(self.number)
+        if node is None:
+            raise CutError(f"Part {self.number} is not one node of the tree, perhaps because it was merged by hand. Split it "
+                           f"(cut.split({self.number})), or take its faces: cut.faces({self.number}).")
+        return node
+
+
+class CutError(Error):
+    """What a cut can't do; str() says why."""
+
+    name = "cut"
+
+
 class Cut:
     """A hierarchy's model in parts. Each part has at least one face and each tetrahedron is in one part.
 
@@ -75,8 +102,15 @@ class Cut:
     def hierarchy(self):
         return self._tree.hierarchy
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.parts)
+
+    def __repr__(self) -> str:
+        return f"<Cut of {self.hierarchy!r} into {len(self)} parts>"
+
+    def __getitem__(self, part: int) -> CutPart:
+        """A part as what stands for its node. Negative numbers count from the end. Raises IndexError."""
+        return CutPart(self, range(len(self))[part])
 
     def __eq__(self, other):
         """The same parts, whatever their numbers."""
@@ -142,6 +176,37 @@ class Cut:
             for cluster in clusters:
                 labels[self.hierarchy.order[slice(*self._tree.run(cluster))]] = number
         return labels
+
+    @cached_property
+    def tet_labels(self) -> np.ndarray:
+        """(T,) int32: the part of each tetrahedron."""
+        labels = np.empty(len(self.hierarchy.tetrahedra), np.int32)
+        for number, clusters in enumerate(self.parts):
+            for cluster in clusters:
+                labels[slice(*self._tree.ends(cluster))] = number
+        return labels
+
+    def faces(self, part: int) -> np.ndarray:
+        """(n,) the source faces of a part, ascending. Raises IndexError for a part that there is not."""
+        return np.flatnonzero(self.labels == range(len(self))[part]).astype(np.int32)
+
+    def node(self, part: int) -> Optional[int]:
+        """The node of the hierarchy that has the same tetrahedra as a part.
+
+        Parameters
+        ----------
+        part : its number; negative ones count from the end
+
+        Returns
+        -------
+        the node's number; None for a part that is no node, as those that were merged by hand
+
+        Raises
+        ------
+        IndexError : there is no such part
+        """
+        first, last = self.slices(range(len(self))[part])
+        return self.hierarchy.find_node(int(first[0]), int(last[0])) if len(first) == 1 else None
 
     def slices(self, part):
         """((n,) first, (n,) last): the part's slices of the tetrahedra, for Hierarchy.solids()."""

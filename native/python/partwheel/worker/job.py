@@ -66,7 +66,7 @@ class Job(NonCopyable):
 
     memory_limit: bytes that the worker may use (None: 80 % of what is available now; 0: no limit). Kept on Linux only:
     macOS does not honour such limits, and on Windows none is set; there the system's own limits hold.
-    time_limit: seconds of processor time that one process may take, all its threads together, so that a machine busy
+    cpu_limit: seconds of processor time that one process may take, all its threads together, so that a machine busy
     with other things stops no build; and seconds by the clock in which it may do nothing at all (None: two minutes and
     2 ms a triangle).
     python: the path of the Python that runs the worker, if it does; "": see interpreter.candidates(). Which one does is
@@ -79,7 +79,7 @@ class Job(NonCopyable):
     """
 
     def __init__(self, vertices, triangles, faces=None, face_count=None, *, quality=0.0, rungs=0, open_surfaces=False,
-                 threads=0, mode=Mode.REGROUPED, exactly=False, exact_triangles=0, memory_limit=None, time_limit=None, python=""):
+                 threads=0, mode=Mode.REGROUPED, exactly=False, exact_triangles=0, memory_limit=None, cpu_limit=None, python=""):
         load()  # a missing library is better told here
         self._arrays, self._face_count = checked_surface(vertices, triangles, faces, face_count)
         self._options = {"quality": float(quality), "open_surfaces": int(open_surfaces), "threads": threads,
@@ -87,7 +87,7 @@ class Job(NonCopyable):
         self._rungs = rungs or sum(RUNGS)
         self._rung = Rung.EXACT  # that the worker tries, as far as it has told
         self._memory_limit = int(MEMORY_SHARE * available_memory()) if memory_limit is None else memory_limit
-        self._time_limit = time_limit or SECONDS + SECONDS_PER_TRIANGLE * len(self._arrays[1])
+        self._cpu_limit = cpu_limit or SECONDS + SECONDS_PER_TRIANGLE * len(self._arrays[1])
         self.failures = []
         self._progress = 0.0, "surface"
         # Of this worker: whether it has begun to answer; processor time, and when that last grew.
@@ -166,7 +166,7 @@ class Job(NonCopyable):
     def _look(self):
         """Ends a worker that is late. Not in a thread of its own, see _begin()."""
         watched, work, idle = self._watched, self._work, time.monotonic() - self._seen_working
-        if watched and max(work, idle) > self._time_limit:
+        if watched and max(work, idle) > self._cpu_limit:
             process, late = watched
             late.append(LATE if work > idle else IDLE)
             process.kill()
@@ -231,10 +231,10 @@ class Job(NonCopyable):
         if self._cancelled:
             raise PartwheelError(Status.CANCELLED, CANCELLED)
         if not self._answered:
-            raise (_no_worker(SILENT, seconds=f"{self._time_limit:g}") if late else
+            raise (_no_worker(SILENT, seconds=f"{self._cpu_limit:g}") if late else
                    _no_worker(GONE, how=ending(process.returncode)))
         if late:
-            raise WorkerError("time limit", late[0], HARMLESS, FASTER, seconds=f"{self._time_limit:g}")
+            raise WorkerError("time limit", late[0], HARMLESS, FASTER, seconds=f"{self._cpu_limit:g}")
         raise WorkerError("crash", BROKEN, HARMLESS, MENDED, how=ending(process.returncode))
 
     def _send(self, pipe, rungs):
