@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import venv
+from pathlib import Path
 
 import pytest
 from conftest import ROOT
