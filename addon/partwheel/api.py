@@ -303,8 +303,9 @@ class Printed(NamedTuple):
 
 
 def copy_part(obj, node, smooth=False, material=False, snap=False):
-    """A new object in the part's place: the node as a closed solid. Its polygons keep all their attributes; the caps
-    that close it are marked by the face attribute "partwheel_cap". snap: as far as the tetrahedra about the border let
+    """A new object in the part's place: the node as a closed solid, and all else as the object has it: parent, modifiers,
+    animation, custom properties. Its polygons keep all their attributes; the caps that close it are marked by the face
+    attribute "partwheel_cap". snap: as far as the tetrahedra about the border let
     it be there. partwheel.Error: it can't be closed. Outside Edit Mode only."""
     _mesh(obj, edited=False)
     built, node = _node(obj, node)
@@ -347,8 +348,9 @@ def place(obj, location, normal=(0, 0, 1), scale=1.0, angle=0.0, depth=0.0, targ
 
 
 def unite(obj, others, blend=0.0):
-    """Makes the object's mesh the union of it and the other objects, which stay, by Blender's Boolean: n-gons, layers
-    and materials kept, modifiers of the others applied. Outside Edit Mode only.
+    """Makes the object's mesh the union of it and the other objects, which stay, by Blender's Boolean: n-gons, layers,
+    materials and the object's shape keys kept; modifiers of the others applied, but for those that the object has too. Outside
+    Edit Mode only.
 
     blend: the width of a smooth transition on either side of each seam, times the seam's radius; it moves vertices
     there, and has no more of them than the solids. partwheel.Error, before anything has changed: one of them is not

@@ -195,6 +195,10 @@ def losses(obj):
     if any(each.type == "MULTIRES" and each.total_levels for each in obj.modifiers):
         found.append(rpt_("{name} is sculpted in several resolutions: the new objects have only the coarsest one. To keep the "
                           "details, apply its Multiresolution modifier first.").format(name=obj.name))
+    keys = obj.data.shape_keys and obj.data.shape_keys.animation_data
+    if keys and any(not strip.action for track in keys.nla_tracks for strip in track.strips):
+        found.append(rpt_("The shape keys of {name} have NLA strips that play no action: the new objects go without those.").format(
+            name=obj.name))
     return found + bound(obj)
 
 
