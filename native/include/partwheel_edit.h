@@ -1,6 +1,9 @@
 /* The C API for editing a mesh by its parts: borders in creases, deforming, fairing, checks of polygons, what is under the
  * mouse; convex parts; and the hierarchy as an index. The habits are those of partwheel.h.
  *
+ * Triangles are neighbors where they share indices. Weld coincident vertices first, as the Python package does
+ * (partwheel.weld), or a surface that is split at UV or normal seams falls apart there.
+ *
  * Experimental: a function here may get other parameters, or go, whenever the minor version grows, also after 1.0.
  */
 #ifndef PARTWHEEL_EDIT_H

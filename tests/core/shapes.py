@@ -77,6 +77,28 @@ def turned_inside_out(shape):
     return shape._replace(triangles=np.ascontiguousarray(shape.triangles[:, ::-1]))
 
 
+def split(shape, charts):
+    """(the shape with a vertex of its own for each chart at it, (V,) the vertex that each was): charts (T,) of triangles,
+    as glTF splits vertices where UVs or normals differ."""
+    places, triangles = np.unique(np.column_stack([shape.triangles.ravel(), np.repeat(charts, 3)]), axis=0,
+                                  return_inverse=True)
+    was = places[:, 0]
+    return shape._replace(vertices=shape.vertices[was], triangles=triangles.reshape(-1, 3).astype(np.int32)), was
+
+
+def split_by_direction(shape):
+    """split() where the axis changes that triangles face most, as box mapping has its seams."""
+    corners = shape.vertices[shape.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    axis = abs(normals).argmax(axis=1)
+    return split(shape, 2 * axis + (normals[np.arange(len(axis)), axis] > 0))
+
+
+def split_everywhere(shape):
+    """split() with every triangle separate."""
+    return split(shape, np.arange(len(shape.triangles)))
+
+
 def cube():
     return polycube([(0, 0, 0)])
 

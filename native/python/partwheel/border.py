@@ -5,17 +5,19 @@ import numpy as np
 
 from .hierarchy import surface
 from .library import Handle, NonCopyable, check, load, made
+from .weld import weld_surface
 
 
 class Creases(NonCopyable):
     """A surface whose parts' borders can be moved to creases: see pw_creases in partwheel_edit.h. It never changes.
 
     vertices (V,3); triangles (T,3) indices into them; faces (T,) the polygon of each triangle and face_count their
-    number, or both None where every triangle is one. Raises PartwheelError.
+    number, or both None where every triangle is one. Coincident vertices are welded. Raises PartwheelError.
     """
 
     def __init__(self, vertices, triangles, faces=None, face_count=None):
         *given, self.face_count = surface(vertices, triangles, faces, face_count)
+        _, given[2] = weld_surface(given[0], given[2])
         self._handle = Handle(load().pw_creases_free, made(load().pw_creases_create, *given, self.face_count))
 
     def snapped(self, inside):

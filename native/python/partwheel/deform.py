@@ -8,6 +8,7 @@ import numpy as np
 
 from .hierarchy import indices, surface
 from .library import Handle, NonCopyable, PartwheelError, Status, check, load, made, told
+from .weld import weld_surface
 
 FREE, FIXED = -1, -2  # PW_VERTEX_FREE, PW_VERTEX_FIXED
 # Deforming at once, without a mouse: the handle turns by at most so much a step.
@@ -22,14 +23,17 @@ class Deformation(NonCopyable):
     """A surface at rest, and where it is now: see pw_deformation in partwheel_edit.h for the energy and its source.
 
     vertices (V,3) at rest; triangles (T,3) indices into them; roles (V,) FREE, FIXED or the number of the handle that a
-    vertex follows, counted from 0. Not for several threads at a time. Raises PartwheelError.
+    vertex follows, counted from 0. Coincident vertices are welded: of their roles a handle's wins, then FIXED. Not for
+    several threads at a time. Raises PartwheelError.
     """
 
     def __init__(self, vertices, triangles, roles):
-        vertices, *_ = given = surface(vertices, triangles)[:4]
+        vertices, _, triangles, _ = given = list(surface(vertices, triangles)[:4])
         roles = indices(roles, "roles", (len(vertices),))
         if roles.size and (roles.min() < FIXED or roles.max() >= len(vertices)):
             raise PartwheelError(Status.ARGUMENT, "A role is neither FREE, nor FIXED, nor the number of a handle.")
+        self._old_to_new, given[2] = weld_surface(vertices, triangles)
+        roles = _welded_roles(roles, self._old_to_new)
         self._handle = Handle(load().pw_deformation_free, made(load().pw_deformation_create, *given, roles))
         self._count = len(vertices)
 
@@ -56,7 +60,7 @@ class Deformation(NonCopyable):
         """(V,3) where all vertices are now."""
         positions = np.empty((self._count, 3))
         check(load().pw_deformation_positions(self._handle, positions, self._count))
-        return positions
+        return positions[self._old_to_new]
 
     def reset(self):
         """Everything back to rest."""
@@ -88,6 +92,15 @@ class Deformation(NonCopyable):
             if step < count:
                 self.iterate(STEP_ITERATIONS)
         self.settle(stop=stop)
+
+
+def _welded_roles(roles, old_to_new):
+    """roles (V,) of welded vertices: those that are there no more stay."""
+    rank = np.where(roles == FREE, FIXED - 1, roles)
+    highest = np.full_like(roles, FIXED - 1)
+    np.maximum.at(highest, old_to_new, rank)
+    kept = old_to_new == np.arange(len(roles))
+    return np.where(kept, np.where(highest < FIXED, FREE, highest), FIXED).astype(roles.dtype)
 
 
 def rotation_angle(linear):
@@ -163,10 +176,13 @@ def vertex_normals(vertices, triangles):
 
 def surface_distances(vertices, triangles, start):
     """(V,) how far each vertex is from the nearest start along the surface, a few percent too long; infinity where no
-    way leads. start: (V,) bool, or an array of vertex indices."""
-    vertices, *_ = given = surface(vertices, triangles)[:4]
+    way leads. start: (V,) bool, or an array of vertex indices. Coincident vertices are welded."""
+    vertices, _, triangles, _ = given = list(surface(vertices, triangles)[:4])
+    old_to_new, given[2] = weld_surface(vertices, triangles)
+    chosen = np.zeros(len(vertices), bool)
+    chosen[start] = True
     mask = np.zeros(len(vertices), np.uint8)
-    mask[start] = 1
+    mask[old_to_new[chosen]] = 1
     distance = np.empty(len(vertices))
     check(load().pw_surface_distances(*given, mask, distance))
-    return distance
+    return distance[old_to_new]

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .deform import FIXED, FREE, surface_distances
+from .weld import weld_surface
 
 REACH = 2.0  # how far from its border a part bends by default, in radii of the border
 MOST = 0.5  # but on neither side more than this share of the way to the farthest point
@@ -40,8 +41,8 @@ class Joint(NamedTuple):
 
 def joint(vertices, triangles, inside):
     """The Joint of the part that the triangles inside (T,) bool make. vertices (V,3), triangles (T,3). None if the part
-    has no border: if it is the whole surface, or loose pieces of it."""
-    inside = np.asarray(inside, bool)
+    has no border: if it is the whole surface, or loose pieces of it. Coincident vertices are welded."""
+    inside, (old_to_new, triangles) = np.asarray(inside, bool), weld_surface(vertices, triangles)
     member, beyond = (np.zeros(len(vertices), bool) for _ in range(2))
     member[triangles[inside]] = True
     beyond[triangles[~inside]] = True
@@ -61,8 +62,8 @@ def joint(vertices, triangles, inside):
     middle = ((a + b) / 2)[longest]
     center = np.average(middle, axis=0, weights=weight)
     radius = np.average(np.linalg.norm(middle - center, axis=1), weights=weight)
-    return Joint(center, float(radius), int(loop.max()) + 1, surface_distances(vertices, triangles, shared),
-                 member & ~beyond)
+    return Joint(center, float(radius), int(loop.max()) + 1, surface_distances(vertices, triangles, shared)[old_to_new],
+                 (member & ~beyond)[old_to_new])
 
 
 def groups(edges):

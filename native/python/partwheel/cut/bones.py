@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..deform import surface_distances
-from .borders import Link, from_root, welded
+from ..weld import weld_surface
+from .borders import Link, from_root
 from .hinges import hinge
 
 END = 0.9  # what lies beyond this share of the way to a part's farthest point is its end
@@ -36,7 +37,7 @@ def bones(vertices, triangles, labels, tree, weights, planes=()):
     if it may."""
     vertices = np.asarray(vertices, np.float64)
     tree = _with_hinges(vertices, triangles, tree, weights)
-    triangles = welded(vertices)[triangles]
+    _, triangles = weld_surface(vertices, triangles)
     low, high = (end(vertices[triangles], axis=(0, 1)) for end in (np.min, np.max))
     least = LEAST * np.linalg.norm(high - low)
     shapes = [_Shape(vertices, triangles[labels == part]) for part in range(len(tree))]

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..deform import surface_distances
 from ..joint import MOST, groups
+from ..weld import weld_surface
 from .names import images
 
 REACH = 2.0  # radii of a border in which weights fall, on either side: joints bend best so, see docs/bones.md
@@ -31,16 +32,10 @@ class Link(NamedTuple):
     border: Border
 
 
-def welded(vertices):
-    """(V,) of each vertex the first one at the same place."""
-    _, first, place = np.unique(np.asarray(vertices) + 0.0, axis=0, return_index=True, return_inverse=True)
-    return first[place.ravel()]
-
-
 def borders(vertices, triangles, labels):
     """The Borders of a surface's parts, sorted by parts, the longest first. vertices (V,3), triangles (T,3); labels
-    (T,) the part of each triangle. Vertices at one place are one."""
-    vertices, triangles = np.asarray(vertices), welded(vertices)[triangles]
+    (T,) the part of each triangle. Coincident vertices are welded."""
+    vertices, (_, triangles) = np.asarray(vertices), weld_surface(vertices, triangles)
     edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
     sides = np.unique(np.column_stack([edges, np.repeat(labels, 3)]), axis=0)  # ends of an edge, a part at it
     sides = sides[sides[:, 0] != sides[:, 1]]
@@ -128,11 +123,10 @@ def weights(vertices, triangles, labels, count, reach=REACH):
     """[(vertices (n,), weights (n,)), ...] for each part, as groups for an armature: 1 within the part, falling
     smoothly to 0 beyond its borders, from as far on this side of each as on the other, within so many of its radii; but
     at most half way to the farthest point of either part. A vertex's weights add up to 1; those without a triangle have
-    none.
+    none. Coincident vertices are welded: each has the weights of the one.
 
     vertices (V,3), triangles (T,3), labels (T,) the part, of so many, of each triangle."""
-    same = welded(vertices)
-    places, triangles = np.asarray(vertices, np.float64), same[triangles]
+    places, (same, triangles) = np.asarray(vertices, np.float64), weld_surface(vertices, triangles)
     own = np.full(len(places), -1)
     own[triangles.ravel()] = np.repeat(labels, 3)
     # Of each border: how much of the weight the other side has, on either side: a half at the border.

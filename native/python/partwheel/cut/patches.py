@@ -5,6 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
+from ..components import components
+
 CREASE, HIDDEN = 4.0, 2.0  # how much less a cut costs along an edge at a right angle; in a hollow so much less again
 DIGITS = 9  # of costs, after the point: beyond them processors differ
 RINGS = 4  # so many of the shortest are tried, where a surface without a border is cut open first
@@ -204,19 +206,3 @@ def _farthest(distance):
 def _next(corner):
     """The next one of the same triangle."""
     return corner + np.where(corner % 3 == 2, -2, 1)
-
-
-def components(count, pairs):
-    """(count,) the number, from 0, of the group that each is in: both of a pair (n,2) are in one."""
-    lowest = np.arange(count)
-    while True:
-        ends = lowest[pairs]
-        low, high = ends.min(axis=1), ends.max(axis=1)
-        apart = low < high
-        if not apart.any():
-            return np.unique(lowest, return_inverse=True)[1].ravel()
-        pairs, low, high = pairs[apart], low[apart], high[apart]
-        order = np.argsort(-low, kind="stable")  # the lowest one is written last
-        lowest[high[order]] = low[order]
-        while ((further := lowest[lowest]) != lowest).any():
-            lowest = further

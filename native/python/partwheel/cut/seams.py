@@ -5,8 +5,10 @@ cover itself, cuts are added: into it, or through it along its tree."""
 import numpy as np
 
 from ..border import Creases
+from ..components import components
+from ..weld import is_welding, weld_surface
 from .cut import Tree
-from .patches import Patch, Sheet, components, cut_back, opened
+from .patches import Patch, Sheet, cut_back, opened
 from .stretch import Flat, measured
 
 STRETCH = 1.09  # by this factor areas of a patch may be too large or too small on average; of all patches: by 1.1
@@ -26,9 +28,11 @@ def seams(vertices, triangles, faces, face_count, cut, stretch=STRETCH):
     Seams follow the borders of the Cut, moved to the creases nearby; cuts into parts prefer creases, and hollows most. A
     part is divided along its tree where cuts into it won't do.
 
-    vertices (V,3), triangles (T,3), faces (T,) the polygon of each, face_count: the surface that the cut is of. Raises
-    PartwheelError."""
-    whole = Sheet(vertices, triangles, faces)
+    vertices (V,3), triangles (T,3), faces (T,) the polygon of each, face_count: the surface that the cut is of.
+    Coincident vertices are welded: what is cut there already is joined first, and of a seam all edges there are given.
+    Raises PartwheelError."""
+    old_to_new, welded = weld_surface(vertices, triangles)
+    whole = Sheet(vertices, welded, faces)
     creases = Creases(vertices, triangles, faces, face_count)
     tree = _Tree(cut.hierarchy, creases)
     chosen = [whole.crowded]
@@ -36,7 +40,15 @@ def seams(vertices, triangles, faces, face_count, cut, stretch=STRETCH):
     for own in whole.pieces(labels):
         chosen += _within(whole.part(own), tree, stretch)
     chosen.append(_between(whole, labels))
-    return whole.ends[np.unique(np.concatenate(chosen))]
+    return _split(whole.ends[np.unique(np.concatenate(chosen))], old_to_new, triangles)
+
+
+def _split(ends, old_to_new, triangles):
+    """The edges (n,2) of a surface that welding makes these (n,2) of."""
+    if not is_welding(old_to_new):
+        return ends
+    edges = np.unique(np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2), axis=0)
+    return edges[np.isin(np.sort(old_to_new[edges], axis=1) @ [len(old_to_new), 1], ends @ [len(old_to_new), 1])]
 
 
 def laid_flat(vertices, triangles, faces, face_count, cut, unwrap):
@@ -59,8 +71,9 @@ def further(vertices, triangles, faces, face_count, cut, ends, uv, stretch=STRET
     are divided once more along the tree. The same seams if there are none, or nothing can be divided.
 
     ends (n,2): what seams() or this gave of the same surface and cut; uv (T,3,2): of the triangles' corners, by them."""
-    whole = Sheet(vertices, triangles, faces)
-    seam = np.isin(whole.ends @ [len(whole.places), 1], np.sort(ends, axis=1) @ [len(whole.places), 1])
+    old_to_new, welded = weld_surface(vertices, triangles)
+    whole = Sheet(vertices, welded, faces)
+    seam = np.isin(whole.ends @ [len(whole.places), 1], np.sort(old_to_new[ends], axis=1) @ [len(whole.places), 1])
     tree, inside = None, ~seam[whole.edge]
     for own in whole.pieces(components(len(whole.triangles), whole.pair[inside])):
         sheet = whole.part(own)
@@ -74,7 +87,7 @@ def further(vertices, triangles, faces, face_count, cut, ends, uv, stretch=STRET
             for piece in sheet.pieces(sides):
                 for edges in _within(whole.part(own[piece]), tree, stretch):
                     seam[edges] = True
-    return whole.ends[seam]
+    return _split(whole.ends[seam], old_to_new, triangles)
 
 
 def _between(sheet, labels):

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Coincident vertices are one vertex: a closed model, the same model with its vertices split, and one with every triangle
+separate give the same results, to the last bit."""
+
+import functools
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapes
+from partwheel import Creases, Deformation, Hierarchy, surface_distances
+from partwheel.cut import Cut, bones, borders, further, mirror_planes, named, seams, tree, weights
+from partwheel.deform import FIXED, FREE
+from partwheel.joint import joint
+from partwheel.weld import weld_coincident_vertices
+from test_deform import turn
+from test_seams import islands
+
+KNIGHT = Path(os.environ.get("PARTWHEEL_ASSETS", "/work/shared/assets")) / "files" / "Knight.glb"
+SPLITS = {"by direction": shapes.split_by_direction, "everywhere": shapes.split_everywhere}
+
+
+@functools.cache
+def model():
+    return shapes.off("homer")
+
+
+@functools.cache
+def knight():
+    """(Shape of the GLB as it is split, Shape welded by trimesh)"""
+    trimesh = pytest.importorskip("trimesh")
+    if not KNIGHT.exists():
+        pytest.skip(f"{KNIGHT} is not there: set PARTWHEEL_ASSETS to the folder of the real assets.")
+    scene = trimesh.load(KNIGHT, process=False, force="scene", skip_materials=True)
+    mesh = max(scene.geometry.values(), key=lambda each: len(each.faces))
+    return shapes.Shape(np.array(mesh.vertices, float), np.array(mesh.faces, np.int32), np.arange(len(mesh.faces)),
+                        len(mesh.faces))
+
+
+@functools.cache
+def parts():
+    return Cut.automatic(Hierarchy.build(*model()))
+
+
+@pytest.fixture(params=SPLITS)
+def both(request):
+    """(Shape, Shape split, the vertex that each of its vertices was)"""
+    return model(), *SPLITS[request.param](model())
+
+
+def inside_of():
+    """(T,) bool: the smaller parts of the model, up to one, with a border."""
+    labels = parts().labels[model().faces]
+    return labels == np.bincount(labels).argsort()[-2]
+
+
+def test_split_vertices_are_welded_and_no_others(both):
+    whole, split, was = both
+    assert len(split.vertices) > 1.05 * len(whole.vertices)
+    np.testing.assert_array_equal(weld_coincident_vertices(whole.vertices, whole.triangles), np.arange(len(whole.vertices)))
+    old_to_new = weld_coincident_vertices(split.vertices, split.triangles)
+    np.testing.assert_array_equal(old_to_new, np.unique(was, return_index=True)[1][np.unique(was, return_inverse=True)[1]])
+
+
+
+def welded_points(points):
+    """The number of distinct vertices of triangles that share none, (T,3,3), after welding."""
+    points = np.array(points, float)
+    return len(np.unique(weld_coincident_vertices(points.reshape(-1, 3), np.arange(3 * len(points)).reshape(-1, 3))))
+
+
+def test_what_touches_in_a_point_or_is_closed_stays_apart():
+    a, b, c, d, e = (0, 0, 0), (1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0)
+    assert welded_points([(a, b, c), (a, d, e)]) == 6  # a point alone
+    assert welded_points([(a, b, c), (a, c, d)]) == 4  # an edge
+    assert welded_points([(a, b, c), (a, b, e), (a, b, d)]) == 5  # an edge of three
+    assert welded_points([(a, a, b), (c, d, e)]) == 6  # an edge without length
+    assert welded_points([(a, b, c), ((-0.0, 0, 0), c, d)]) == 4  # -0.0 is 0.0
+    assert welded_points([(a, b, c), (np.nextafter(a, 1), np.nextafter(c, 1), d)]) == 6  # exactly, or not
+    cubes = shapes.merged(shapes.cube(), shapes.moved(shapes.cube(), (1, 0, 0)))
+    np.testing.assert_array_equal(weld_coincident_vertices(cubes.vertices, cubes.triangles), np.arange(16))
+
+
+def test_vertices_without_triangles_and_wrong_ones_are_left_alone():
+    vertices = np.zeros((4, 3))
+    for triangles in (np.zeros((0, 3), int), np.array([[0, 1, 9]]), np.array([[0, 1, -1]])):
+        np.testing.assert_array_equal(weld_coincident_vertices(vertices, triangles), np.arange(4))
+
+
+def test_distances_go_across_splits(both):
+    whole, split, was = both
+    start = 17
+    expected = surface_distances(whole.vertices, whole.triangles, [start])
+    assert np.isfinite(expected).all()
+    np.testing.assert_array_equal(surface_distances(split.vertices, split.triangles, [np.flatnonzero(was == start)[-1]]),
+                                  expected[was])
+
+
+def test_deformation_opens_no_crack(both):
+    whole, split, was = both
+    away = surface_distances(whole.vertices, whole.triangles, [whole.vertices[:, 0].argmax()])
+    roles = np.where(away < 0.05 * away.max(), 0, np.where(away < 0.4 * away.max(), FREE, FIXED))
+
+    def deformed(shape, own):
+        deformation = Deformation(shape.vertices, shape.triangles, own)
+        deformation.move_at_once([turn((1, 2, 3), 40, whole.vertices.mean(axis=0))])
+        return deformation.positions()
+
+    expected = deformed(whole, roles)
+    assert (expected[roles == FREE] != whole.vertices[roles == FREE]).any(axis=1).mean() > 0.9
+    np.testing.assert_array_equal(deformed(split, roles[was]), expected[was])
+    # A role that only one of the coincident vertices has is all of theirs.
+    first = np.unique(was, return_index=True)[1]
+    alone = np.full(len(was), FREE)
+    alone[first] = roles
+    np.testing.assert_array_equal(deformed(split, alone), expected[was])
+
+
+def test_a_joint_is_the_same(both):
+    whole, split, was = both
+    inside = inside_of()
+    expected, found = (joint(shape.vertices, shape.triangles, inside) for shape in (whole, split))
+    np.testing.assert_allclose(found.center, expected.center, rtol=1e-12)
+    assert found.radius == pytest.approx(expected.radius, rel=1e-12) and found.loops == expected.loops
+    np.testing.assert_array_equal(found.distance, expected.distance[was])
+    np.testing.assert_array_equal(found.inner, expected.inner[was])
+    np.testing.assert_array_equal(found.roles(), expected.roles()[was])
+
+
+def test_borders_in_creases_are_the_same(both):
+    whole, split, _ = both
+    moved = 0
+    creases = [Creases(*shape) for shape in (whole, split)]
+    for part in range(len(parts())):
+        inside = parts().labels == part
+        expected, found = (each.snapped(inside) for each in creases)
+        np.testing.assert_array_equal(found, expected)
+        moved += (expected != inside).sum()
+    assert moved > 0
+
+
+def test_borders_tree_weights_bones_and_names_are_the_same(both):
+    whole, split, was = both
+    labels, cut = parts().labels[whole.faces], parts()
+    first = np.unique(was, return_index=True)[1]
+    results = []
+    for shape in (whole, split):
+        surface = shape.vertices, shape.triangles, labels
+        own = weights(*surface, len(cut))
+        hung = tree(cut, *surface)
+        planes = mirror_planes(shape.vertices, shape.triangles)
+        results.append((borders(*surface), own, hung, bones(*surface, hung, own, planes), planes,
+                        named(cut, shape.vertices, shape.triangles, shape.faces)))
+    (edges, own, hung, made, planes, names), (other, others, hanging, made_of_split, planes_of_split, names_of_split) = results
+    assert [each.parts for each in edges] == [each.parts for each in other] and len(edges) > 5
+    for one, two in zip(edges, other):
+        np.testing.assert_array_equal(np.sort(first[one.vertices]), two.vertices)
+        assert two.length == pytest.approx(one.length, rel=1e-12)
+    for (vertices, shares), (split_vertices, split_shares) in zip(own, others):
+        dense, split_dense = np.zeros(len(whole.vertices)), np.zeros(len(was))
+        dense[vertices], split_dense[split_vertices] = shares, split_shares
+        np.testing.assert_array_equal(split_dense, dense[was])
+    assert [link.parent for link in hung] == [link.parent for link in hanging]
+    for one, two in zip(made, made_of_split):
+        np.testing.assert_allclose(np.array(two[:2]), np.array(one[:2]), atol=1e-9)
+    np.testing.assert_allclose(np.array([normal for normal, _ in planes_of_split]), np.array([normal for normal, _ in planes]))
+    assert names == names_of_split
+
+
+def on_whole(ends, was):
+    return np.unique(np.sort(was[ends], axis=1), axis=0)
+
+
+def test_seams_are_the_same(both):
+    whole, split, was = both
+    expected, found = (seams(*shape, parts()) for shape in (whole, split))
+    np.testing.assert_array_equal(on_whole(found, was), np.unique(expected, axis=0))
+    assert (islands(was[split.triangles], on_whole(found, was)) == 1).all()
+    # Every edge of the split mesh that lies there is one.
+    sides = np.sort(split.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    known = {*map(tuple, expected.tolist())}
+    wanted = {side for side, at in zip(map(tuple, sides.tolist()), map(tuple, np.sort(was[sides], axis=1).tolist()))
+              if at in known}
+    assert {*map(tuple, found.tolist())} == wanted
+    # Where an unwrapping failed, here everywhere, the same parts are divided once more.
+    uv = np.random.default_rng(1).random((len(whole.triangles), 3, 2)) ** 8
+    more, more_of_split = (further(*shape, parts(), ends, uv) for shape, ends in ((whole, expected), (split, found)))
+    assert len(more) > len(expected)
+    np.testing.assert_array_equal(on_whole(more_of_split, was), np.unique(more, axis=0))
+
+
+def test_a_real_model_is_one_surface():
+    """Knight.glb comes split: after welding no edge is open that has a coincident one."""
+    split = knight()
+    old_to_new = weld_coincident_vertices(split.vertices, split.triangles)
+    assert (old_to_new != np.arange(len(old_to_new))).sum() > 0.05 * len(old_to_new)
+    np.testing.assert_array_equal(split.vertices[old_to_new], split.vertices)
+    triangles = np.unique(split.vertices, axis=0, return_inverse=True)[1].ravel()[split.triangles]  # by place alone
+
+    def open_edges(triangles):
+        sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        return (np.unique(sides[sides[:, 0] != sides[:, 1]], axis=0, return_counts=True)[1] == 1).sum()
+
+    assert open_edges(old_to_new[split.triangles]) == open_edges(triangles) < open_edges(split.triangles)
