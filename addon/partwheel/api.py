@@ -399,9 +399,8 @@ def deform(obj, node, handle, matrix, rings=0, snap=False, progress=None, time_l
     part. ValueError: there is nothing to deform, or nothing to hold it, or the handle is not inside."""
     _mesh(obj, changes=True)
     region = Region(obj, faces(obj, node, snap), rings, obj.data.use_mirror_x)
-    inside = numpy.searchsorted(region.vertices, handle)
-    known = inside < len(region.vertices)
-    if not (known.all() and (region.vertices[inside] == handle).all() and region.free[inside].all()):
+    inside = region.indices(handle)
+    if not ((inside >= 0).all() and region.free[inside].all()):
         raise ValueError("The handle has vertices that are not inside the part: on its border, beyond it, or hidden.")
     if not len(inside):
         raise ValueError("The handle has no vertices.")

@@ -7,6 +7,7 @@ import numpy as np
 from ..mesh import arrays
 from ..mesh.refusing import Refused
 from partwheel.cut import laid_flat, seams
+from partwheel.weld import is_welding, weld_coincident_vertices
 
 MOST_MAPS = 8  # UV maps that a mesh can have
 NAME, BESIDE = "UVMap", "Parts"  # of the first UV map; of ours, where there are others
@@ -27,11 +28,12 @@ def mark(obj, cut, unwrap):
         _set(mesh, seams(*surface, cut))
     else:
         loops, places = _loops(mesh, surface), None
+        old_to_new = weld_coincident_vertices(surface.vertices, surface.triangles)
 
         def by_blender(ends):
             nonlocal places
             _set(mesh, ends)
-            places = _unwrapped(obj)
+            places = _unwrapped(obj, old_to_new)
             return places.reshape(-1, 2)[loops].astype(float)
 
         laid_flat(*surface, cut, by_blender)
@@ -70,10 +72,28 @@ def _loops(mesh, surface):
     return order[np.searchsorted(keys[order], surface.faces[:, None] * np.int64(count) + surface.triangles)]
 
 
-def _unwrapped(original):
+def _weld(mesh, old_to_new):
+    """Coincident vertices become one, so that the surface hangs together there; unless a polygon would get a corner twice.
+    Polygons and loops keep their order, edges that are no more needed are left without a polygon."""
+    corners = old_to_new[arrays.read(mesh.loops, "vertex_index", np.int32)].astype(np.int32)
+    polygon = np.repeat(np.arange(len(mesh.polygons)), arrays.polygon_sizes(mesh)[1])
+    if not is_welding(old_to_new) or len(np.unique(polygon * len(old_to_new) + corners)) < len(corners):
+        return
+    before = arrays.edge_vertices(mesh)
+    ends = old_to_new[before].astype(np.int32)
+    _, first, number = np.unique(np.sort(ends, axis=1), axis=0, return_index=True, return_inverse=True)
+    edges = first[number.ravel()][arrays.read(mesh.loops, "edge_index", np.int32)].astype(np.int32)
+    arrays.write(mesh.edges, "vertices", np.where((ends[:, :1] == ends[:, 1:]), before, ends))
+    arrays.write(mesh.loops, "vertex_index", corners)
+    arrays.write(mesh.loops, "edge_index", edges)
+    mesh.update()
+
+
+def _unwrapped(original, old_to_new):
     """(2 L,) UVs of an object's mesh by its seams: Blender's operator on a copy, in a scene of its own, so that neither
-    what is selected, hidden or edited nor the modifiers of an object matter."""
+    what is selected, hidden or edited nor the modifiers of an object matter. old_to_new (V,): the welded vertices."""
     copy = bpy.data.meshes.new_from_object(original)  # mesh.copy() leaves shape keys behind
+    _weld(copy, old_to_new)
     scene, obj = bpy.data.scenes.new("Unwrap"), bpy.data.objects.new("Unwrap", copy)
     try:
         while copy.uv_layers:

@@ -95,7 +95,7 @@ class Held:
         if self.method == "JOINT":
             return Handle(int(self.region.vertices[self.region.free][0]), 0.0)
         corners = obj.data.polygons[face].vertices if face is not None else ()
-        known = [vertex for vertex in corners if vertex in self.region.vertices]
+        known = [vertex for vertex in corners if self.region.indices([vertex])[0] >= 0]
         if known:
             index = self.region.nearest_free(known[0])
         else:
@@ -249,8 +249,7 @@ class Held:
         place = region_2d_to_origin_3d(region, view, point) + distance * region_2d_to_vector_3d(region, view, point)
         local = np.array(obj.matrix_world.inverted_safe() @ place)
         corners = list(obj.data.polygons[face].vertices)
-        inside = np.searchsorted(self.region.vertices, corners)
-        return corners[np.linalg.norm(self.shown[inside] - local, axis=1).argmin()]
+        return corners[np.linalg.norm(self.shown[self.region.indices(corners)] - local, axis=1).argmin()]
 
     def draw(self, obj):
         """The handles, or what bends."""

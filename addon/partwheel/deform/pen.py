@@ -28,7 +28,7 @@ class Pen:
         bm.faces.ensure_lookup_table()
         self._verts = list(map(bm.verts.__getitem__, region.moving.tolist()))
         self._flat = list(map(bm.faces.__getitem__, region.flat_faces.tolist()))
-        self._smooth = list(map(bm.verts.__getitem__, region.vertices[region.smooth].tolist()))
+        self._smooth = list(map(bm.verts.__getitem__, region.shaded[region.smooth].tolist()))
 
     def draft(self, obj, points):
         """The region deformed to points (n,3), with the normals that are seen, for as long as the mouse moves. Blender
@@ -39,7 +39,8 @@ class Pen:
         _set_all(self._verts, "co", self.region.targets(points))
         deque(map(bmesh.types.BMFace.normal_update, self._flat), 0)
         if self._smooth:
-            _set_all(self._smooth, "normal", vertex_normals(points, self.region.triangles)[self.region.smooth])
+            normals = vertex_normals(points[self.region.of_shaded], self.region.shaded_triangles)
+            _set_all(self._smooth, "normal", normals[self.region.smooth])
         bmesh.update_edit_mesh(obj.data, loop_triangles=self.region.polygons, destructive=False)
 
     def write(self, obj, points):

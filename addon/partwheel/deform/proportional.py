@@ -3,11 +3,15 @@
 
 It is told by the call to be proportional, connected, and how far it reaches: by the part's size. It keeps the reach as
 the user's new setting when it ends, so that is put back then.
+
+Blender's tool doesn't weld coincident vertices (partwheel.weld): connected, it would tear the mesh where they are. Where
+there are any, distances are straight instead, the same for vertices at one place.
 """
 
 import bpy
 import numpy as np
 
+from partwheel.weld import is_welding, weld_coincident_vertices
 from ..mesh import arrays
 from ..parts import picks, registry
 from ..words.say import rpt_
@@ -31,19 +35,23 @@ class MESH_OT_partwheel_move(picks.NeedsPick, bpy.types.Operator):
             return {"CANCELLED"}
         global _waiting
         unregister()  # or the reach that the last tool has left would be taken for the user's
-        settings = context.tool_settings
-        users, reach = settings.proportional_size, _reach(context.edit_object)
-        if np.float32(reach) == np.float32(users):  # or that Blender has kept it would not be seen
-            reach *= 1.001
-        bpy.ops.transform.translate("INVOKE_DEFAULT", use_proportional_edit=True, use_proportional_connected=True,
-                                    proportional_size=reach)
+        settings, arguments = context.tool_settings, falloff(context.edit_object)
+        users = settings.proportional_size
+        if np.float32(arguments["proportional_size"]) == np.float32(users):  # or that Blender has kept it would not be seen
+            arguments["proportional_size"] *= 1.001
+        bpy.ops.transform.translate("INVOKE_DEFAULT", **arguments)
         _waiting = _putting_back(context.scene.name_full, users)
         bpy.app.timers.register(_waiting, first_interval=0)
         return {"FINISHED"}
 
 
+def falloff(obj):
+    """What Blender's tool is told, the size in the world's unit."""
+    split = is_welding(weld_coincident_vertices(arrays.edited_positions(obj), arrays.triangles(obj.data)[0]))
+    return {"use_proportional_edit": True, "use_proportional_connected": not split, "proportional_size": _reach(obj)}
+
+
 def _reach(obj):
-    """In the world's unit."""
     area = arrays.read(obj.data.polygons, "area", np.float32)
     part = registry.hierarchy(obj).faces(picks.picked(obj).node)
     return REACH * float(np.sqrt(area[part].sum())) * obj.matrix_world.median_scale

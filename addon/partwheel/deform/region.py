@@ -10,6 +10,7 @@ from mathutils.kdtree import KDTree
 
 from partwheel.deform import FIXED, surface_distances
 from partwheel.joint import joint
+from partwheel.weld import weld_surface
 from ..mesh import arrays
 from ..mesh.refusing import Refused
 
@@ -21,17 +22,21 @@ ACROSS = np.float32([-1, 1, 1])
 class Region:
     """The part of a mesh that these faces make, and what is around it, ready to be deformed.
 
-    vertices (n,) of the mesh: the part's and those of the faces around it; rest (n,3) where they are, triangles (t,3)
-    indices into these two. free (n,) bool: inside the part; its border and all beyond stay, and so does what is hidden.
+    Coincident vertices of the shape being edited are welded (partwheel.weld): old_to_new (V,) the vertex that each of the
+    mesh's counts as.
+
+    vertices (n,) of the welded mesh: the part's and those of the faces around it; rest (n,3) where they are, triangles
+    (t,3) indices into these two. free (n,) bool: inside the part; its border and all beyond stay, and so does what is hidden.
     rings: so many rings of faces around the part deform with it. mirror: the same happens across the x axis. center
     (3,) and size: of the part.
 
     With reach the part is one that turns at its joint (partwheel.joint): what lies within so many radii of its border,
     on either side, is free as well; limb are the region's vertices of the rest of it; center is the joint's.
 
-    moving (m,): the vertices of the mesh that may move, mirrored ones included, before (m,3) where they are. Of the
-    polygons that have such a vertex: flat_faces, those shaded flat; smooth (n,) bool, vertices of the others; polygons,
-    whether one is no triangle.
+    moving (m,): the vertices of the mesh that may move, mirrored and coincident ones included, before (m,3) where they
+    are. Of the polygons that have such a vertex: flat_faces, those shaded flat; polygons, whether one is no triangle.
+    Not welded, for shading: shaded (k,) vertices of the mesh, of shaded_triangles (t,3); smooth (k,) bool: those of
+    polygons that change and are shaded smooth; of_shaded (k,) the region's vertex that each is.
     """
 
     def __init__(self, obj, faces, rings=0, mirror=False, reach=None):
@@ -39,21 +44,22 @@ class Region:
         surface = arrays.surface(arrays.up_to_date(obj))
         mesh, points = obj.data, arrays.edited_positions(obj)
         count = len(points)
+        self.old_to_new, welded = weld_surface(points, surface.triangles)
         inside = arrays.mask(surface.face_count, faces)
         for _ in range(rings):
-            reached = arrays.mask(count, surface.triangles[inside[surface.faces]])
-            inside[surface.faces[reached[surface.triangles].any(axis=1)]] = True
+            reached = arrays.mask(count, welded[inside[surface.faces]])
+            inside[surface.faces[reached[welded].any(axis=1)]] = True
         within = inside[surface.faces]
-        member, border = (arrays.mask(count, surface.triangles[side]) for side in (within, ~within))
+        member, border = (arrays.mask(count, welded[side]) for side in (within, ~within))
         free, limb = member & ~border, np.zeros(count, bool)
-        hinge = None if reach is None else joint(points.astype(np.float64), surface.triangles, within)
+        hinge = None if reach is None else joint(points.astype(np.float64), welded, within)
         if hinge and free.any():
             roles = hinge.roles(reach)
             free, limb = roles != FIXED, roles == 0
             member = free
-        free &= ~arrays.read(mesh.vertices, "hide", bool)
-        near = member[surface.triangles].any(axis=1)
-        self.vertices, triangles = np.unique(surface.triangles[near], return_inverse=True)
+        free &= arrays.mask(count, self.old_to_new[~arrays.read(mesh.vertices, "hide", bool)])
+        near = member[welded].any(axis=1)
+        self.vertices, triangles = np.unique(welded[near], return_inverse=True)
         self.triangles = triangles.reshape(-1, 3).astype(np.int32)
         self.rest = points[self.vertices].astype(np.float64)
         self.free = free[self.vertices]
@@ -73,14 +79,19 @@ class Region:
         self.partner, self._sources, images = None, np.empty(0, int), np.empty(0, int)
         if mirror:
             self.partner, self._sources, images = self._partners(points)
-        self.moving = np.concatenate([self.vertices[self.free], images])
+        own, self._moved = self._with_coincident(np.flatnonzero(self.free), self.vertices[self.free])
+        images, self._sources = self._with_coincident(self._sources, images)
+        self.moving = np.concatenate([own, images])
         self.before = points[self.moving]
         moves = arrays.mask(count, self.moving)
         changes = arrays.mask(len(inside), surface.faces[moves[surface.triangles].any(axis=1)])
         shaded_smooth = arrays.read(mesh.polygons, "use_smooth", bool)
         self.flat_faces = np.flatnonzero(changes & ~shaded_smooth)
         smooth = surface.triangles[(changes & shaded_smooth)[surface.faces]]
-        self.smooth = arrays.mask(count, smooth)[self.vertices]
+        self.shaded, triangles = np.unique(surface.triangles[near], return_inverse=True)
+        self.shaded_triangles = triangles.reshape(-1, 3).astype(np.int32)
+        self.smooth = arrays.mask(count, smooth)[self.shaded]
+        self.of_shaded = np.searchsorted(self.vertices, self.old_to_new[self.shaded])
         self.polygons = bool((arrays.polygon_sizes(mesh)[1][changes] > 3).any())
 
     def _partners(self, points):
@@ -98,6 +109,7 @@ class Region:
             _, vertex, distance = tree.find((-x, y, z))
             if distance > limit:
                 continue
+            vertex = int(self.old_to_new[vertex])
             other = here.get(vertex, -1)
             if other >= 0 and self.free[other]:
                 partner[index] = other
@@ -106,14 +118,30 @@ class Region:
                 theirs.append(vertex)
         return partner, np.array(ours, int), np.array(theirs, int)
 
+    def _with_coincident(self, indices, vertices):
+        """(the mesh's vertices that are welded to vertices (n,), the one of indices (n,) for each)"""
+        order = np.argsort(self.old_to_new, kind="stable")
+        first, last = (np.searchsorted(self.old_to_new[order], vertices, side) for side in ("left", "right"))
+        many = last - first
+        begin = np.cumsum(many) - many
+        return order[np.arange(many.sum()) + np.repeat(first - begin, many)], np.repeat(indices, many)
+
+    def indices(self, vertices):
+        """(k,) the region's indices of vertices (k,) of the mesh; -1 of those that it doesn't have."""
+        vertices = np.asarray(vertices, np.int64)
+        known = (vertices >= 0) & (vertices < len(self.old_to_new))
+        vertices = self.old_to_new[np.where(known, vertices, 0)]
+        at = np.minimum(np.searchsorted(self.vertices, vertices), len(self.vertices) - 1)
+        return np.where(known & (self.vertices[at] == vertices), at, -1)
+
     def nearest_free(self, vertex):
         """The region's index of a vertex of the mesh; of the free one nearest to it if it is not free itself."""
-        at = np.flatnonzero(self.vertices == vertex)
-        if not len(at):
+        at = int(self.indices([vertex])[0])
+        if at < 0:
             raise Refused("That is not a point of the part.")
-        if self.free[at[0]]:
-            return int(at[0])
-        distance = np.linalg.norm(self.rest - self.rest[at[0]], axis=1)
+        if self.free[at]:
+            return at
+        distance = np.linalg.norm(self.rest - self.rest[at], axis=1)
         return int(np.where(self.free, distance, np.inf).argmin())
 
     def patch(self, index, radius):
@@ -140,4 +168,4 @@ class Region:
         if self.partner is not None:
             both = np.flatnonzero(self.partner >= 0)
             points[both] = (points[both] + points[self.partner[both]] * ACROSS) / 2
-        return np.concatenate([points[self.free], points[self._sources] * ACROSS])
+        return np.concatenate([points[self._moved], points[self._sources] * ACROSS])

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from partwheel.polygons import triangulate
+from partwheel.weld import weld_coincident_vertices
 from .kept import key
 
 # Modifiers whose mesh begins with the vertices of the one that they are given, moved or not.
@@ -152,6 +153,12 @@ def of_faces(mesh, chosen, elements="vertices", index="vertex_index"):
     """(V,) or (E,) bool: the mesh's vertices or edges that faces have; chosen (F,) bool: which."""
     corners = np.repeat(chosen, polygon_sizes(mesh)[1])
     return mask(len(getattr(mesh, elements)), read(mesh.loops, index, np.int32)[corners])
+
+
+def with_coincident(mesh, chosen):
+    """(V,) bool: the vertices chosen (V,) bool, and those that are welded with them (partwheel.weld)."""
+    old_to_new = weld_coincident_vertices(read(mesh.vertices, "co", np.float32, 3), triangles(mesh)[0])
+    return mask(len(chosen), old_to_new[chosen])[old_to_new]
 
 
 def material_indices(mesh):

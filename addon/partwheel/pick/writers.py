@@ -17,8 +17,8 @@ MASKS_LEVELS = bpy.app.version < (4, 1)
 
 
 def _part_vertices(mesh, faces):
-    """(V,) bool: the vertices of these faces."""
-    return arrays.of_faces(mesh, arrays.mask(len(mesh.polygons), faces))
+    """(V,) bool: the vertices of these faces, and those welded with them."""
+    return arrays.with_coincident(mesh, arrays.of_faces(mesh, arrays.mask(len(mesh.polygons), faces)))
 
 
 def _write_face_set(obj, faces, _node, _extend, deselect):

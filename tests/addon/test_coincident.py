@@ -1,0 +1,242 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Coincident vertices are one vertex: a hand whose vertices are split, as every GLB has them, is edited like the same hand
+in one piece, to the last bit."""
+
+import bmesh
+import bpy
+import numpy
+from common import MeshTest, part, read_off
+from partwheel.cut import Cut
+from test_deform import FINGER, edited, inner, shift, stored
+from uv_measures import islands
+
+ROWS = ("along the axes", "everywhere")
+
+
+def split(vertices, polygons, where):
+    """(vertices, polygons, the vertex that each was): one of its own for each chart at a vertex. Charts are polygons that
+    face the same axis, or single ones."""
+    points, numbers, was, made = numpy.array(vertices), {}, [], []
+    for index, polygon in enumerate(polygons):
+        a, b, c = points[list(polygon[:3])]
+        chart = index if where == "everywhere" else int(abs(numpy.cross(b - a, c - a)).argmax())
+        corners = []
+        for vertex in polygon:
+            if (vertex, chart) not in numbers:
+                numbers[vertex, chart] = len(was)
+                was.append(vertex)
+            corners.append(numbers[vertex, chart])
+        made.append(tuple(corners))
+    return [vertices[vertex] for vertex in was], made, numpy.array(was)
+
+
+class Coincident(MeshTest):
+    def both(self, where):
+        """(hand, hand split, the vertex that each of its vertices was, the faces of a finger, its tip)"""
+        whole = self.add(*read_off("hand"), "whole")
+        hierarchy = part("api").hierarchy(whole)
+        stops, _ = hierarchy.wheel(FINGER)
+        node = [stop for stop in stops if hierarchy.area[stop] <= 0.2 * hierarchy.area[-1]][-1]
+        faces = hierarchy.faces(node)
+        vertices, polygons, was = split(*read_off("hand"), where)
+        co = stored(whole.data.vertices)
+        free = inner(whole, faces.tolist())
+        rest = numpy.delete(co, free, axis=0).mean(axis=0)
+        tip = max(free, key=lambda vertex: numpy.linalg.norm(co[vertex] - rest))
+        return whole, self.add(vertices, polygons, "split"), was, faces, tip
+
+    def deform(self, obj, faces, method, rings, tip, matrix):
+        held = part("deform.held")
+        held.deform(obj, faces, method, rings, 1.0, [[held.Handle(int(tip), 0.05 * self.size, matrix)]])
+
+    def compare(self, method, rings=0, mirror=False, mode="OBJECT"):
+        for where in ROWS:
+            with self.subTest(where=where, method=method, rings=rings, mirror=mirror, mode=mode):
+                whole, obj, was, faces, tip = self.both(where)
+                before = stored(whole.data.vertices)
+                self.size = numpy.ptp(before, axis=0).max()
+                whole.data.use_mirror_x = obj.data.use_mirror_x = mirror
+                if mirror:  # the finger lies on both sides of the plane then
+                    for each, own in ((whole, numpy.arange(len(before))), (obj, was)):
+                        each.data.vertices.foreach_set("co", (before - before[faces_vertices(whole, faces)].mean(axis=0))[
+                            own].astype(numpy.float32).ravel())
+                    before = stored(whole.data.vertices)
+                matrix = shift(0.07 * self.size, 0.05 * self.size, 0)
+                matrix[:3, :3] = [[0.8, -0.6, 0], [0.6, 0.8, 0], [0, 0, 1]]
+                results = []
+                for each, handle in ((whole, tip), (obj, numpy.flatnonzero(was == tip)[-1])):
+                    bpy.context.view_layer.objects.active = each
+                    if mode == "EDIT":
+                        bpy.ops.object.mode_set(mode="EDIT")
+                    self.deform(each, faces, method, rings, handle, matrix)
+                    if mode == "EDIT":
+                        bpy.ops.object.mode_set(mode="OBJECT")
+                    results.append(stored(each.data.vertices))
+                self.assertGreater((results[0] != before).any(axis=1).sum(), 20)
+                numpy.testing.assert_array_equal(results[1], results[0][was])
+                self.setUp()
+
+    def test_a_dragged_handle_opens_no_crack(self):
+        self.compare("RIGID")
+
+    def test_rings_grow_across_splits(self):
+        self.compare("RIGID", rings=2)
+
+    def test_a_joint_bends_without_a_crack(self):
+        self.compare("JOINT", mode="EDIT")
+
+    def test_proportional_goes_across_splits(self):
+        self.compare("PROPORTIONAL", rings=1, mode="EDIT")
+
+    def test_mirrored_vertices_open_no_crack(self):
+        self.compare("RIGID", mirror=True)
+
+    def test_what_is_drawn_while_the_mouse_moves_has_no_crack_and_blenders_normals(self):
+        whole, obj, was, faces, tip = self.both(ROWS[0])
+        self.size = numpy.ptp(stored(whole.data.vertices), axis=0).max()
+        for polygon in obj.data.polygons:
+            polygon.use_smooth = True
+        self.edit(obj)
+        held, region = part("deform.held"), part("deform.region").Region(obj, faces)
+        shape = part("deform.methods").METHODS["RIGID"](region, held.patches_of(
+            region, "RIGID", [held.Handle(int(numpy.flatnonzero(was == tip)[0]), 0.05 * self.size)]))
+        shape.follow([shift(0.1 * self.size, 0, 0)])
+        part("deform.pen").Pen(obj, region).draft(obj, shape.points())
+        bm = bmesh.from_edit_mesh(obj.data)
+        places, normals = edited(obj), numpy.array([vertex.normal[:] for vertex in bm.verts])
+        first = numpy.unique(was, return_index=True)[1]
+        numpy.testing.assert_array_equal(places, places[first][was])
+        bm.normal_update()  # by angles, where the draft's are by Max's weights: a little different
+        self.assertGreater(numpy.einsum("ij,ij->i", normals, [vertex.normal[:] for vertex in bm.verts]).min(), 0.95)
+
+    def test_what_a_shape_key_holds_apart_stays_apart(self):
+        _, obj, was, faces, tip = self.both(ROWS[1])
+        self.size = numpy.ptp(stored(obj.data.vertices), axis=0).max()
+        obj.shape_key_add(name="Basis")
+        key = obj.shape_key_add(name="Open")
+        obj.active_shape_key_index = 1
+        basis = stored(obj.data.vertices)
+        # All triangles a little smaller: none shares a place with another.
+        co = basis.copy()
+        for polygon in obj.data.polygons:
+            own = list(polygon.vertices)
+            co[own] = 0.5 * basis[own] + 0.5 * basis[own].mean(axis=0)
+        key.data.foreach_set("co", co.astype(numpy.float32).ravel())
+        with self.assertRaises(part("mesh.refusing").Refused):  # each triangle is a loose piece
+            self.deform(obj, faces[:1], "RIGID", 0, int(numpy.flatnonzero(was == tip)[0]), shift(1, 0, 0))
+        obj.active_shape_key_index = 0
+        self.deform(obj, faces, "RIGID", 0, int(numpy.flatnonzero(was == tip)[0]), shift(0.1 * self.size, 0, 0))
+        after = stored(obj.data.shape_keys.key_blocks[0].data)
+        first = numpy.unique(was, return_index=True)[1]
+        numpy.testing.assert_array_equal(after, after[first][was])
+        self.assertGreater((after != basis).any(axis=1).sum(), 20)
+
+    def test_a_place_is_hidden_where_all_its_vertices_are(self):
+        for where in ROWS:
+            whole, obj, was, faces, tip = self.both(where)
+            self.size = numpy.ptp(stored(whole.data.vertices), axis=0).max()
+            hidden = [face for face in faces if numpy.linalg.norm(
+                numpy.array(whole.data.polygons[face].center) - whole.data.vertices[tip].co) > 0.15 * self.size]
+            results = []
+            for each, handle in ((whole, tip), (obj, numpy.flatnonzero(was == tip)[0])):
+                bpy.context.view_layer.objects.active = each
+                bm = self.edit(each)
+                bm.faces.ensure_lookup_table()
+                for face in hidden:
+                    bm.faces[face].hide_set(True)
+                bmesh.update_edit_mesh(each.data)
+                bpy.ops.object.mode_set(mode="OBJECT")
+                self.deform(each, faces, "RIGID", 0, handle, shift(0.05 * self.size, 0, 0))
+                results.append(stored(each.data.vertices))
+            self.assertTrue(hidden)
+            numpy.testing.assert_array_equal(results[1], results[0][was])
+            self.setUp()
+
+    def test_the_api_takes_any_of_the_coincident_vertices(self):
+        whole, obj, was, faces, tip = self.both(ROWS[0])
+        api = part("api")
+        hierarchy = api.hierarchy(obj)
+        stops, _ = hierarchy.wheel(FINGER)
+        node = [stop for stop in stops if hierarchy.area[stop] <= 0.2 * hierarchy.area[-1]][-1]
+        before = stored(obj.data.vertices)
+        region = part("deform.region").Region(obj, api.faces(obj, node))
+        chosen = region.vertices[region.free][:1]
+        coincident = numpy.flatnonzero((before == before[chosen]).all(axis=1))
+        api.deform(obj, node, coincident, shift(0.05 * numpy.ptp(before), 0, 0))
+        after = stored(obj.data.vertices)
+        self.assertGreater((after != before).any(axis=1).sum(), 20)
+        first = numpy.unique(was, return_index=True)[1]
+        numpy.testing.assert_array_equal(after, after[first][was])
+        with self.assertRaises(ValueError):
+            api.deform(obj, node, [len(before)], shift(1, 0, 0))
+
+    def test_blenders_proportional_editing_opens_no_crack(self):
+        for where in ROWS:
+            whole, obj, was, faces, _ = self.both(where)
+            self.assertTrue(self.moved(whole, faces)[1])
+            places, connected = self.moved(obj, faces)
+            self.assertFalse(connected)
+            first = numpy.unique(was, return_index=True)[1]
+            numpy.testing.assert_array_equal(places, places[first][was])
+            self.setUp()
+
+    def moved(self, obj, faces):
+        """((V,3) after Blender moved the faces with the falloff that the add-on asks for, whether that was connected)"""
+        api = part("api")
+        bpy.context.view_layer.objects.active = obj
+        self.edit(obj)
+        hierarchy = api.hierarchy(obj)
+        stops, start = hierarchy.wheel(FINGER)
+        api.select(obj, api.part(obj, FINGER, 0))
+        arguments = part("deform.proportional").falloff(obj)
+        before = edited(obj)
+        bpy.ops.transform.translate(value=(0.1 * float(numpy.ptp(before)), 0, 0), **arguments)
+        after = edited(obj)
+        self.assertGreater((after != before).any(axis=1).sum(), len(inner(obj, selected_faces(obj))) + 5)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        return after, arguments["use_proportional_connected"]
+
+    def test_masks_and_vertex_groups_have_all_vertices_of_a_place_or_none(self):
+        for where in ROWS:
+            whole, obj, was, faces, _ = self.both(where)
+            writers = part("pick.writers")
+            results = []
+            for each in (whole, obj):
+                writers.WRITERS["MASK"](each, faces, 1, False, False)
+                values = numpy.zeros(len(each.data.vertices), numpy.float32)
+                writers.mask(each.data).foreach_get("value", values)
+                writers.WRITERS["VERTEX_GROUP"](each, faces, 1, False, False)
+                grouped = numpy.array([len(vertex.groups) for vertex in each.data.vertices])
+                numpy.testing.assert_array_equal(values, grouped)
+                results.append(values)
+            self.assertGreater(results[0].sum(), 20)
+            numpy.testing.assert_array_equal(results[1], results[0][was])
+            self.setUp()
+
+    def test_seams_and_islands_are_those_of_the_model_in_one_piece(self):
+        for where in ROWS:
+            whole, obj, was, faces, _ = self.both(where)
+            cut, mark = Cut.into(part("api").hierarchy(whole), 6), part("cut.unwrapping").mark
+            corners, seams, uvs = [], [], []
+            for each in (whole, obj):
+                mark(each, cut, True)
+                corners.append(numpy.array([loop.vertex_index for loop in each.data.loops]).reshape(-1, 3))
+                ends = numpy.array([edge.vertices[:] for edge in each.data.edges if edge.use_seam])
+                seams.append(numpy.unique(numpy.sort(ends if each == whole else was[ends], axis=1), axis=0))
+                uv = numpy.zeros(2 * len(each.data.loops), numpy.float32)
+                each.data.uv_layers.active.data.foreach_get("uv", uv)
+                uvs.append(uv.reshape(-1, 3, 2).astype(float))
+            numpy.testing.assert_array_equal(seams[1], seams[0])
+            numpy.testing.assert_array_equal(was[corners[1]], corners[0])
+            numbers = [islands(corners[0], uv) for uv in uvs]
+            self.assertGreater(numbers[0].max(), 4)
+            numpy.testing.assert_array_equal(numbers[1], numbers[0])
+            self.setUp()
+
+
+def faces_vertices(obj, faces):
+    return sorted({vertex for face in faces for vertex in obj.data.polygons[face].vertices})
+
+
+def selected_faces(obj):
+    return [face.index for face in bmesh.from_edit_mesh(obj.data).faces if face.select]
