@@ -103,10 +103,10 @@ def bend(directory, name):
 def divided(vertices, triangles, limbs):
     """((T,) a number of each triangle, {joint: the number beyond it}): what lies nearer to a tip than a joint, along
     the surface, is a part."""
-    from partwheel.cut.borders import welded
     from partwheel.deform import surface_distances
+    from partwheel.weld import weld_surface
 
-    triangles = welded(vertices)[triangles]
+    _, triangles = weld_surface(vertices, triangles)
     middles = vertices[triangles].mean(axis=1)
     size = np.linalg.norm(np.ptp(vertices, axis=0))
     rings = []

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapes
-from partwheel import Creases, Deformation, Hierarchy, surface_distances
+from partwheel import Creases, Deformation, Hierarchy, likeness, surface_distances
 from partwheel.cut import Cut, bones, borders, further, mirror_planes, named, seams, tree, weights
 from partwheel.deform import FIXED, FREE
 from partwheel.joint import joint
@@ -166,6 +166,18 @@ def test_borders_tree_weights_bones_and_names_are_the_same(both):
         np.testing.assert_allclose(np.array(two[:2]), np.array(one[:2]), atol=1e-9)
     np.testing.assert_allclose(np.array([normal for normal, _ in planes_of_split]), np.array([normal for normal, _ in planes]))
     assert names == names_of_split
+
+
+def test_similar_parts_and_mirror_images_are_the_same(both):
+    whole, split, _ = both
+    hierarchy = parts().hierarchy
+    node = int(np.flatnonzero(hierarchy.score)[np.argmax(hierarchy.score[hierarchy.score > 0])])
+    (expected, images), (found, found_images) = (
+        (likeness.similar(hierarchy, likeness.measures(hierarchy, *shape[:3]), node),
+         likeness.mirrored(hierarchy, *shape[:3], node)) for shape in (whole, split))
+    assert [each for each, _ in found] == [each for each, _ in expected]
+    np.testing.assert_allclose([each for _, each in found], [each for _, each in expected], atol=1e-6)
+    assert [image.node for image in found_images] == [image.node for image in images]
 
 
 def on_whole(ends, was):
