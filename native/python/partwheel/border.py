@@ -1,11 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The border of a part, moved to the creases nearby. Native, with numpy."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Optional
+
 import numpy as np
 
 from .hierarchy import surface
 from .library import Handle, NonCopyable, check, load, made
 from .weld import weld_surface
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 
 class Creases(NonCopyable):
@@ -15,12 +22,13 @@ class Creases(NonCopyable):
     number, or both None where every triangle is one. Coincident vertices are welded. Raises PartwheelError.
     """
 
-    def __init__(self, vertices, triangles, faces=None, face_count=None):
+    def __init__(self, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
+                 face_count: Optional[int] = None) -> None:
         *given, self.face_count = surface(vertices, triangles, faces, face_count)
         _, given[2] = weld_surface(given[0], given[2])
         self._handle = Handle(load().pw_creases_free, made(load().pw_creases_create, *given, self.face_count))
 
-    def snapped(self, inside):
+    def snapped(self, inside: ArrayLike) -> np.ndarray:
         """(face_count,) bool: a part with its border in the creases nearby, at the least cost. inside (face_count,)
         bool: the part. Raises PartwheelError for one without faces."""
         inside = np.asarray(inside)
@@ -34,6 +42,7 @@ class Creases(NonCopyable):
         return result
 
 
-def snapped_border(vertices, triangles, faces, face_count, inside):
+def snapped_border(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike], face_count: Optional[int],
+                   inside: ArrayLike) -> np.ndarray:
     """Creases(...).snapped(inside), for one part of a surface."""
     return Creases(vertices, triangles, faces, face_count).snapped(inside)

@@ -27,9 +27,11 @@ Each node is a cluster; most clusters are no node. A part that was not merged by
 What takes a node also takes cut[part], wherever that part is a node.
 """
 
+from __future__ import annotations
+
 import operator
 from ctypes import byref, c_double, c_size_t, c_void_p
-from typing import Any, Dict, NamedTuple, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, List, NamedTuple, Optional, SupportsIndex, Tuple
 
 import numpy as np
 
@@ -37,6 +39,9 @@ from .library import (
     Arrays, Build, BuildOptions, Context, ConvexOptions, Handle, Mode, PartwheelError, Rung, Status, SummaryStruct, check, load,
     made, told,
 )
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, DTypeLike
 
 POLL_SECONDS = 0.1
 
@@ -82,7 +87,7 @@ class ConvexPart(NamedTuple):
     volume: float
     error: Optional[float]
 
-    def hull_volume(self):
+    def hull_volume(self) -> float:
         corners = (self.vertices - self.vertices[0])[self.triangles]
         return float(np.linalg.det(corners).sum() / 6)
 
@@ -90,14 +95,14 @@ class ConvexPart(NamedTuple):
 class _Memory:
     """Native memory for numpy's array interface: an array made of it is read-only and keeps the owner alive."""
 
-    def __init__(self, owner, address, shape, dtype):
+    def __init__(self, owner: Any, address: Optional[int], shape: Tuple[int, ...], dtype: DTypeLike) -> None:
         self.owner = owner
         self.__array_interface__ = {
             "version": 3, "data": (address, True), "shape": shape, "typestr": np.dtype(dtype).str,
         }
 
 
-def _view(owner, address, shape, dtype):
+def _view(owner: Any, address: Optional[int], shape: Tuple[int, ...], dtype: DTypeLike) -> np.ndarray:
     if 0 in shape:
         empty = np.empty(shape, dtype)
         empty.flags.writeable = False
@@ -105,14 +110,14 @@ def _view(owner, address, shape, dtype):
     return np.asarray(_Memory(owner, address, shape, dtype))
 
 
-def _coordinates(vertices):
+def _coordinates(vertices: ArrayLike) -> np.ndarray:
     vertices = np.ascontiguousarray(vertices, np.float64)
     if vertices.ndim != 2 or vertices.shape[1] != 3:
         raise ValueError(f"vertices must have the shape (V, 3), not {vertices.shape}.")
     return vertices
 
 
-def indices(values, name, shape):
+def indices(values: ArrayLike, name: str, shape: Tuple[Optional[int], ...]) -> np.ndarray:
     """Whole numbers of 32 bits, None in the shape for any size. Raises PartwheelError, ValueError or TypeError."""
     values = np.asarray(values)
     if values.size == 0:
@@ -128,7 +133,8 @@ def indices(values, name, shape):
     return np.ascontiguousarray(values, np.int32)
 
 
-def checked_surface(vertices, triangles, faces, face_count):
+def checked_surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike],
+                    face_count: Optional[int]) -> Tuple[List[np.ndarray], int]:
     """What Hierarchy.build() was given, as the library takes it: ([vertices, triangles, faces if given], face_count).
     Raises PartwheelError, ValueError or TypeError."""
     vertices = _coordinates(vertices)
@@ -137,16 +143,17 @@ def checked_surface(vertices, triangles, faces, face_count):
     if faces is not None:
         arrays.append(indices(faces, "faces", (len(triangles),)))
     if face_count is None:
-        face_count = len(triangles) if faces is None else int(arrays[2].max(initial=-1)) + 1
+        face_count = len(arrays[1]) if faces is None else int(arrays[2].max(initial=-1)) + 1
     return arrays, _number(face_count)
 
 
-def surface(vertices, triangles, faces=None, face_count=None):
+def surface(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
+            face_count: Optional[int] = None) -> Tuple[Any, ...]:
     """The same as the arguments that functions of the library have for it: the arrays, each with its length, but for
     faces with face_count."""
     arrays, face_count = checked_surface(vertices, triangles, faces, face_count)
-    vertices, triangles, faces = (*arrays, None)[:3]
-    return vertices, len(vertices), triangles, len(triangles), faces, face_count
+    given = arrays[2] if len(arrays) > 2 else None
+    return arrays[0], len(arrays[0]), arrays[1], len(arrays[1]), given, face_count
 
 
 class Hierarchy:
@@ -205,15 +212,17 @@ class Hierarchy:
         for name in Arrays.POINTERS:
             setattr(self, name, _view(self._handle, getattr(raw, name), shapes.get(name, (nodes,)),
                                       dtypes.get(name, np.int32)))
-        summary = SummaryStruct()
-        check(load().pw_hierarchy_summary(handle, byref(summary)))
-        summary = {name: getattr(summary, name) for name in Summary._fields}
+        found = SummaryStruct()
+        check(load().pw_hierarchy_summary(handle, byref(found)))
+        summary = {name: getattr(found, name) for name in Summary._fields}
         self.summary = Summary(**summary | {"rung": Rung(summary["rung"]).name.lower()})
         self.account = load().pw_hierarchy_account(handle).decode()
 
     @classmethod
-    def build(cls, vertices, triangles, faces=None, face_count=None, *, quality=0.0, rungs=0, open_surfaces=False,
-              threads=0, mode=Mode.REGROUPED, exactly=False, exact_triangles=0, progress=None):
+    def build(cls, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
+              face_count: Optional[int] = None, *, quality: float = 0.0, rungs: int = 0, open_surfaces: bool = False,
+              threads: int = 0, mode: int = Mode.REGROUPED, exactly: bool = False, exact_triangles: int = 0,
+              progress: Optional[Callable[[float, str], Optional[bool]]] = None) -> Hierarchy:
         """Builds the hierarchy of a surface: as it is, or else repaired, or else filled from points on it; that of
         a large one on a coarser copy, unless exactly.
 
@@ -239,7 +248,7 @@ class Hierarchy:
                                exact_triangles=-1 if exactly else _number(exact_triangles))
         build = Build(context, given, options)
 
-        def report():
+        def report() -> None:
             if progress is not None and progress(*context.progress()):
                 context.cancel()
 
@@ -259,13 +268,13 @@ class Hierarchy:
         return cls(Handle(load().pw_hierarchy_free, build.address.value), context.seconds())
 
     @classmethod
-    def load(cls, data):
+    def load(cls, data: bytes) -> Hierarchy:
         """A hierarchy from the bytes that save() gave. Raises PartwheelError (DATA) for any others."""
         data = np.frombuffer(data, np.uint8)
         buffer = data if data.size else np.zeros(1, np.uint8)  # no null pointer: no bytes at all are damaged data too
         return cls(Handle(load().pw_hierarchy_free, made(load().pw_hierarchy_load, buffer, data.size)))
 
-    def save(self):
+    def save(self) -> bytes:
         """The hierarchy as bytes, the same on every machine."""
         return self._ask(load().pw_hierarchy_save, np.uint8).tobytes()
 
@@ -277,23 +286,23 @@ class Hierarchy:
         """A copy, here or in another process, is loaded from the saved form: addresses mean nothing there."""
         return type(self).load, (self.save(),), {"seconds": self.seconds}
 
-    def path(self, face):
+    def path(self, face: int) -> np.ndarray:
         """(n,) the nodes that hold a source face, from its leaf up to the root."""
         return self._ask(load().pw_hierarchy_path, np.int32, _number(face))
 
-    def wheel(self, face):
+    def wheel(self, face: int) -> Tuple[np.ndarray, int]:
         """((n,) the stops of the wheel after a click on a source face, growing up to the root; the start's index). In
         mode PAPER all of the path, from the leaf."""
         start = c_size_t()
         stops = self._ask(load().pw_hierarchy_wheel, np.int32, _number(face), after=[byref(start)])
         return stops, start.value
 
-    def faces(self, node):
+    def faces(self, node: SupportsIndex) -> np.ndarray:
         """(n,) a node's source faces: a view of order."""
         address, count = told([c_void_p, c_size_t], load().pw_hierarchy_faces, self._handle, _number(node))
         return _view(self._handle, address, (count,), np.int32)
 
-    def children(self, node: int) -> Tuple[int, ...]:
+    def children(self, node: SupportsIndex) -> Tuple[int, ...]:
         """The nodes that a node was joined of.
 
         Parameters
@@ -316,36 +325,37 @@ class Hierarchy:
         found = np.flatnonzero((self.tet_first == tet_first) & (self.tet_last == tet_last))
         return int(found[0]) if len(found) else None
 
-    def cut_height(self, height):
+    def cut_height(self, height: float) -> np.ndarray:
         """(parts + 1,) bounds of the cut at a height: part k holds tetrahedra[bounds[k]:bounds[k+1]]."""
         return self._ask(load().pw_hierarchy_cut_height, np.int32, float(height))
 
-    def cut_parts(self, parts):
+    def cut_parts(self, parts: int) -> np.ndarray:
         """(parts + 1,) bounds of the cut into this many parts: the last parts - 1 merges undone."""
         return self._ask(load().pw_hierarchy_cut_parts, np.int32, _number(parts))
 
-    def cut_least_concavity(self, parts):
+    def cut_least_concavity(self, parts: int) -> np.ndarray:
         """(parts + 1,) bounds of the cut into this many parts that have the least concavity in total: what suits
         approximation by convex hulls, of mode PAPER's tree best."""
         return self._ask(load().pw_hierarchy_cut_least_concavity, np.int32, _number(parts))
 
-    def cut_automatic(self):
+    def cut_automatic(self) -> np.ndarray:
         """(parts + 1,) bounds of the cut into the parts that people would most likely take."""
         return self._ask(load().pw_hierarchy_cut_automatic, np.int32)
 
-    def face_labels(self, bounds):
+    def face_labels(self, bounds: np.ndarray) -> np.ndarray:
         """(F,) the part of each source face in a cut."""
         return (np.searchsorted(bounds, self.leaf, side="right") - 1).astype(np.int32)
 
-    def hull(self, node):
+    def hull(self, node: SupportsIndex) -> Tuple[np.ndarray, np.ndarray]:
         """A node's convex hull: (vertices (n,3), triangles (m,3)), closed, outward."""
         return self.hull_of_slice(*self._slice(node))
 
-    def hull_of_slice(self, tet_first, tet_last):
+    def hull_of_slice(self, tet_first: int, tet_last: int) -> Tuple[np.ndarray, np.ndarray]:
         """The convex hull of tetrahedra[tet_first:tet_last], for a part of a cut: (vertices, triangles)."""
         return self._mesh(load().pw_hierarchy_hull, _number(tet_first), _number(tet_last))[1:]
 
-    def convex_parts(self, hulls=None, *, error=None, max_vertices=None, context=None):
+    def convex_parts(self, hulls: Optional[int] = None, *, error: Optional[float] = None,
+                     max_vertices: Optional[int] = None, context: Optional[Context] = None) -> List[ConvexPart]:
         """[ConvexPart, ...]: convex hulls that together contain the solid and little else, the largest first.
 
         Either hulls, so many, at most 4096, fewer where more would gain nothing; or error, the largest distance from the
@@ -364,13 +374,13 @@ class Hierarchy:
                                     _view(parts, triangles, (m, 3), np.int32), volume, away if away >= 0 else None))
         return found
 
-    def solid(self, node):
+    def solid(self, node: SupportsIndex) -> Solid:
         """The closed, manifold surface around a node's tetrahedra: a Solid. Where polygons are not triangles,
         tetrahedra behind a polygon that is in two parts go with the polygon. Raises PartwheelError (EMPTY) for a node
         without faces that has no tetrahedron left then."""
         return self.solid_of_slice(*self._slice(node))
 
-    def solid_of_slice(self, tet_first, tet_last, middles=()):
+    def solid_of_slice(self, tet_first: Any, tet_last: Any, middles: ArrayLike = ()) -> Solid:
         """The same around tetrahedra[tet_first:tet_last], for a part of a cut. With the two exchanged, around the rest:
         tetrahedra[tet_first:] and tetrahedra[:tet_last]. Both may be arrays (n,), of slices that are apart: around all
         of them together. middles (m,2): edges, as their vertices, that get a vertex in their middle wherever they are
@@ -381,7 +391,7 @@ class Hierarchy:
             return self._solid_of(load().pw_hierarchy_solid_of_slices, slices, len(slices), middles, len(middles))
         return self._solid(load().pw_hierarchy_solid, tet_first, tet_last, middles, len(middles))
 
-    def solid_of_faces(self, tet_first, tet_last, inside):
+    def solid_of_faces(self, tet_first: int, tet_last: int, inside: ArrayLike) -> Solid:
         """The same for a part whose faces are others than its own: those where inside, (F,) bool, is True; also where
         the slice is the rest. See pw_hierarchy_solid_of_faces in partwheel.h."""
         inside = np.ascontiguousarray(inside, bool)
@@ -389,11 +399,11 @@ class Hierarchy:
             raise ValueError(f"inside must have the shape {self.leaf.shape}, not {inside.shape}.")
         return self._solid(load().pw_hierarchy_solid_of_faces, tet_first, tet_last, inside, len(inside))
 
-    def solids(self, slices):
+    def solids(self, slices: Iterable[Tuple[Any, Any]]) -> List[Optional[Solid]]:
         """The Solids around slices (tet_first, tet_last), or several each, that have nothing in common, None for
         one that has no tetrahedron left. A cap between two of them is the same triangle in both: where one has a
         vertex in the middle of an edge, all have."""
-        made = []
+        made: List[Optional[Solid]] = []
         for each in slices:
             try:
                 made.append(self.solid_of_slice(*each))
@@ -416,12 +426,12 @@ class Hierarchy:
         return Solid(vertices, triangles, _view(mesh, ends, (len(vertices), 2), np.int32),
                      *(_view(mesh, each, (len(triangles),), np.int32) for each in (faces, beyond)))
 
-    def rest(self, node):
+    def rest(self, node: SupportsIndex) -> Solid:
         """The Solid around all tetrahedra but a node's. Raises PartwheelError (EMPTY) where nothing is left."""
         first, last = self._slice(node)
         return self.solid_of_slice(last, first)
 
-    def _slice(self, node):
+    def _slice(self, node: SupportsIndex) -> Tuple[int, int]:
         node = _number(node)
         if node >= len(self.parent):
             raise PartwheelError(Status.ARGUMENT, f"There is no node {node}: the hierarchy has {len(self.parent)}.")
@@ -443,7 +453,7 @@ class Hierarchy:
         return result
 
 
-def _number(value):
+def _number(value: SupportsIndex) -> int:
     """A face, node, tetrahedron or part number for C: ctypes would turn -1 into a huge number without a word."""
     value = operator.index(value)
     if value < 0:

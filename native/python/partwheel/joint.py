@@ -2,12 +2,17 @@
 """The joint of a part: where it hangs on the rest of its surface. A limb that is turned there keeps its shape, but for
 what is near the joint, on either side, which bends."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple, Optional
 
 import numpy as np
 
 from .deform import FIXED, FREE, surface_distances
 from .weld import weld_surface
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 REACH = 2.0  # how far from its border a part bends by default, in radii of the border
 MOST = 0.5  # but on neither side more than this share of the way to the farthest point
@@ -24,22 +29,22 @@ class Joint(NamedTuple):
     distance: np.ndarray
     inner: np.ndarray
 
-    def depth(self):
+    def depth(self) -> float:
         """How far the part's farthest vertex is from its border."""
         return self._farthest(self.inner)
 
-    def roles(self, reach=REACH):
+    def roles(self, reach: float = REACH) -> np.ndarray:
         """(V,) for a Deformation: what is near the border, within so many of its radii, is FREE; the rest of the part is
         handle 0, and the rest of the surface FIXED."""
         ours, theirs = (min(reach * self.radius, MOST * self._farthest(side)) for side in (self.inner, ~self.inner))
         return np.where(self.inner, np.where(self.distance < ours, FREE, 0),
                         np.where(self.distance <= theirs, FREE, FIXED))
 
-    def _farthest(self, side):
+    def _farthest(self, side: np.ndarray) -> float:
         return float(self.distance[side & np.isfinite(self.distance)].max(initial=0))
 
 
-def joint(vertices, triangles, inside):
+def joint(vertices: np.ndarray, triangles: np.ndarray, inside: ArrayLike) -> Optional[Joint]:
     """The Joint of the part that the triangles inside (T,) bool make. vertices (V,3), triangles (T,3). None if the part
     has no border: if it is the whole surface, or loose pieces of it. Coincident vertices are welded."""
     inside, (old_to_new, triangles) = np.asarray(inside, bool), weld_surface(vertices, triangles)
@@ -66,7 +71,7 @@ def joint(vertices, triangles, inside):
                  (member & ~beyond)[old_to_new])
 
 
-def groups(edges):
+def groups(edges: np.ndarray) -> np.ndarray:
     """(n,) for each edge (n,2) the number, from 0, of the connected group that it is in."""
     names, ends = np.unique(edges, return_inverse=True)
     ends, lowest = ends.reshape(-1, 2), np.arange(len(names))

@@ -14,7 +14,7 @@ from pathlib import Path
 if __package__:
     from .loading import FILE_NAMES, SYSTEM, open_library
 else:  # the worker's bare Python
-    from loading import FILE_NAMES, SYSTEM, open_library
+    from loading import FILE_NAMES, SYSTEM, open_library  # type: ignore[no-redef]
 
 VERSION = "0.1.0"  # of partwheel.h, as declared here
 LIBRARY = Path(__file__).resolve().with_name(FILE_NAMES[SYSTEM])
@@ -174,7 +174,8 @@ class Error(Exception):
     """What this package refuses: the base of its own errors. str() is sentences a user can act on. name: what kind it
     is, in stable words. seconds: stage name -> seconds spent in a failed build, else empty."""
 
-    name, seconds = "error", {}
+    name = "error"
+    seconds: dict = {}
 
     def __reduce__(self):
         """As it is, for a copy or another process: constructors take other arguments than args."""

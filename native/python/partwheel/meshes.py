@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Mesh files as arrays: OFF read here, every other format through trimesh (optional), nothing merged or repaired."""
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import NamedTuple, Tuple
+from typing import Any, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
@@ -35,8 +37,23 @@ class Mesh(NamedTuple):
     dropped: Tuple[str, ...] = ()
 
 
-def read(path):
-    """The mesh in a file. Raises MeshFileError, or OSError when the file can't be opened."""
+def read(path: Union[str, Path]) -> Mesh:
+    """Reads the surface in a mesh file.
+
+    Parameters
+    ----------
+    path : an OFF file, or one of any other format that trimesh reads
+
+    Returns
+    -------
+    the Mesh; its dropped lists what else the file has
+
+    Raises
+    ------
+    MeshFileError : the file holds no mesh, or a damaged one
+    RequirementError : trimesh, which reads all formats but OFF, is not installed
+    OSError : the file can't be opened
+    """
     path = Path(path)
     with open(path, "rb"):
         pass  # trimesh takes a missing file for a format it does not know
@@ -44,7 +61,7 @@ def read(path):
     return mesh._replace(dropped=find_contents(path))
 
 
-def _read_with_trimesh(path):
+def _read_with_trimesh(path: Path) -> Mesh:
     trimesh = load_module("trimesh", f"Reading {path.suffix or 'such'} files")
     try:
         suffix = path.suffix.lower().lstrip(".")
@@ -70,7 +87,7 @@ def _read_with_trimesh(path):
                 np.arange(len(triangles), dtype=np.int32), len(triangles), welded)
 
 
-def _placed(scene, matrix, name):
+def _placed(scene: Any, matrix: np.ndarray, name: str) -> Optional[Tuple[np.ndarray, np.ndarray]]:
     """(points (n,3), triangles (m,3)) of a piece of the scene where the matrix has it, or None if it has no triangles.
     By hand: Scene.dump() would copy what the piece looks like as well, which fails without the package for pictures."""
     piece = scene.geometry[name]
@@ -84,7 +101,7 @@ def _placed(scene, matrix, name):
     return points @ matrix[:3, :3].T + matrix[:3, 3], triangles[:, ::-1] if turned else triangles
 
 
-def _of_strips(cloud):
+def _of_strips(cloud: Any) -> np.ndarray:
     """The triangles of a PLY file's element "tristrips", which trimesh reads but takes for no surface: each corner
     makes one with the two before it, every other one turned; -1 begins anew."""
     strips = cloud.metadata.get("_ply_raw", {}).get("tristrips", {}).get("data")
@@ -103,7 +120,7 @@ def _of_strips(cloud):
     return triangles[~flat]
 
 
-def _read_off(path):
+def _read_off(path: Path) -> Mesh:
     """trimesh drops OFF polygons of more than four corners and forgets which triangles were one quad; we need both."""
     text = path.read_text("utf-8", "replace")
     lines = [words for words in (line.split("#", 1)[0].split() for line in text.splitlines()) if words]

@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Polygons of any number of corners: as triangles that have an area wherever that can be; whether they are a solid."""
 
+from __future__ import annotations
+
 from ctypes import c_size_t
-from typing import NamedTuple
+from typing import TYPE_CHECKING, List, NamedTuple, Sequence
 
 import numpy as np
 
 from .library import load, told
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 
 class Faults(NamedTuple):
@@ -19,7 +24,7 @@ class Faults(NamedTuple):
     touching: int
 
 
-def polygon_faults(corners, begin, vertex_count):
+def polygon_faults(corners: ArrayLike, begin: ArrayLike, vertex_count: int) -> Faults:
     """The Faults of polygons: corners (L,) their vertices, one after the other, begin (F,) the first corner of each.
     Raises PartwheelError (INDEX)."""
     corners, begin = (np.ascontiguousarray(each, np.int32) for each in (corners, begin))
@@ -27,7 +32,7 @@ def polygon_faults(corners, begin, vertex_count):
     return Faults(*told([c_size_t] * 3, load().pw_polygon_faults, *given))
 
 
-def triangulate(points, names):
+def triangulate(points: np.ndarray, names: Sequence[int]) -> List[List[int]]:
     """Triangles, as triples of names, of a nearly flat polygon, by cutting off its best-shaped ear again and again.
     points (n,3), names (n,). Gives a fan where the polygon crosses itself and has no ear."""
     following = np.roll(points, -1, axis=0)

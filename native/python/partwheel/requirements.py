@@ -5,7 +5,7 @@ import importlib
 import shutil
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Iterable, Iterator, List, Tuple
+from typing import Any, Dict, Iterable, Iterator, List, Tuple
 
 from .library import Error
 
@@ -52,7 +52,8 @@ def check(needs: Iterable[Need]) -> None:
     ------
     RequirementError : names everything that is missing, a sentence for each use
     """
-    missing, causes = {}, {}
+    missing: Dict[str, List[str]] = {}
+    causes: Dict[str, Any] = {}
     for use, name in needs:
         try:
             load_module(name, use)

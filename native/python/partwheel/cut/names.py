@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Names for the parts of a cut: mirror images of each other get .L and .R, parts that are alike a number in order."""
 
+from __future__ import annotations
+
 import ctypes
 import hashlib
+from typing import TYPE_CHECKING, List, Optional, Tuple
 
 import numpy as np
 
@@ -10,14 +13,17 @@ from ..compatible import spread_over
 from ..hierarchy import surface
 from ..library import check, load
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
 SAMPLES = 2048  # points on the surface
 MIRRORED = 0.5  # of a part's points whose mirror images are on its counterpart
 ALIKE = 0.2  # lengths differ by at most a fifth, nearly
 # The surface that mirror_planes() was last called with, and its planes: one tuple, so threads never see half of a change.
-_last = (None, None)
+_last: Tuple[Optional[List[bytes]], np.ndarray] = (None, np.empty((0, 4)))
 
 
-def mirror_planes(vertices, triangles):
+def mirror_planes(vertices: ArrayLike, triangles: ArrayLike) -> List[Tuple[np.ndarray, float]]:
     """[(normal (3,), offset), ...] the planes in which a surface is its own mirror image, at most three, the best
     first: see pw_mirror_planes in partwheel_edit.h. vertices (V,3), triangles (T,3). Raises PartwheelError."""
     global _last

@@ -2,7 +2,7 @@
 """The parts of a cut for a 3D printer: flat cuts, with a peg and a socket across each; what is too large for the bed is
 split further; and what is to be printed is checked. By manifold3d. Lengths are millimetres."""
 
-from typing import NamedTuple
+from typing import NamedTuple, Optional
 
 import numpy as np
 
@@ -37,9 +37,9 @@ class Options(NamedTuple):
     any. wall: what stays around a socket, and how thick walls are to be. bed (3,): the printer's; None: large enough."""
 
     scale: float = 1.0
-    pegs: float = None
+    pegs: Optional[float] = None
     wall: float = 1.2
-    bed: tuple = None
+    bed: Optional[tuple] = None
 
 
 class Peg(NamedTuple):

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Dict, Tuple
 
 from .ending import ending
 from .said import Said
@@ -21,7 +22,7 @@ UNANSWERED = "did not answer in {seconds} seconds"
 UNSTARTED = "can't be started ({reason})"
 NONE = "there is none"
 
-_found = {}  # candidates -> the one that runs
+_found: Dict[Tuple[str, ...], str] = {}  # candidates -> the one that runs
 
 
 class NoInterpreter(Error):
