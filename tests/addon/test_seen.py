@@ -141,6 +141,47 @@ class Seen(MeshTest):
                 [each.name for each in obj.data.attributes], bpy.data.is_dirty, obj.data.users,
                 [(each.name, each.show_viewport) for each in obj.modifiers], bpy.context.scene.objects[:])
 
+    def test_temporary_objects_are_in_no_scene_of_the_user_s(self):
+        """What other add-ons, playback and renders go through: seen under modifiers and sculpted, united, unwrapped."""
+        scene, others, told = bpy.context.scene, [], []
+
+        def tell(_scene, depsgraph):
+            others.extend(set(scene.objects) - known)
+            told.append(depsgraph.scene.original)
+
+        subsurf, seamed, target = self.modified("SUBSURF", levels=1), self.sphere(), self.sphere()
+        subsurf.location.x, seamed.location.x = 0.5, 5
+        known = set(scene.objects)
+        bpy.app.handlers.depsgraph_update_post.append(tell)
+        self.addCleanup(bpy.app.handlers.depsgraph_update_post.remove, tell)
+        part("view.seen").seen(subsurf)
+        subsurf.modifiers.clear()
+        part("compose.union").unite(target, [subsurf], 0)
+        bpy.context.view_layer.objects.active = seamed
+        self.assertEqual(bpy.ops.mesh.partwheel_parts(to={"SEAMS"}, count=2), {"FINISHED"})
+        self.assertEqual(others, [])
+        self.assertIn(scene, told)
+        self.assertEqual(bpy.data.scenes[:], [scene])
+
+    def test_a_double_is_evaluated_as_in_the_user_s_scene(self):
+        """In its frame, and simplified as it is."""
+        obj, scene = self.modified("SUBSURF", levels=3), bpy.context.scene
+        away = obj.modifiers.new("away", "DISPLACE")
+        away.direction, away.mid_level = "X", 0
+        away.driver_add("strength").driver.expression = "frame"
+        self.tagged(obj)
+        self.addCleanup(setattr, scene.render, "use_simplify", False)
+        scene.render.use_simplify, scene.render.simplify_subdivision = True, 2
+        scene.frame_set(7, subframe=0.25)
+        self.addCleanup(scene.frame_set, 1)
+        places, _, tags = self.numbers(obj)
+        found = part("view.seen").seen(obj)
+        np.testing.assert_array_equal(found.positions, places)
+        np.testing.assert_array_equal(found.faces[tags >= 0], tags[tags >= 0])
+        with part("view.seen")._double(obj) as (double, layer):
+            mesh = double.evaluated_get(part("mesh.apart").depsgraph(layer)).to_mesh()
+            np.testing.assert_array_equal(positions(mesh), places)
+
     def test_strokes_are_seen_at_once(self):
         """Without modifiers they go into the mesh, and nothing else need know of them."""
         obj = self.sphere()

@@ -9,7 +9,7 @@ import numpy as np
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from ..mesh import arrays, pieces
+from ..mesh import apart, arrays, pieces
 from ..mesh.datablocks import all_or_nothing
 from ..solid import composition, solids
 from . import pinches, seams
@@ -228,13 +228,10 @@ def _implausible(meshes, volumes, result):
 
 
 def _boolean(base, operand, solver, within, slots):
-    """The result of Blender's modifier, on objects that are in the scene only for as long as this takes."""
-    collection = bpy.data.collections.new("partwheel union")
-    bpy.context.scene.collection.children.link(collection)
+    """The result of Blender's modifier, on objects in a scene of their own."""
     objects = [bpy.data.objects.new(mesh.name, mesh) for mesh in (base, operand)]
     try:
         for obj in objects:
-            collection.objects.link(obj)
             indices = arrays.material_indices(obj.data)
             obj.data.materials.clear()
             for material in slots:
@@ -244,14 +241,13 @@ def _boolean(base, operand, solver, within, slots):
         modifier.operation, modifier.object, modifier.solver = "UNION", objects[1], solver
         if within:
             modifier.use_self = True
-        bpy.context.view_layer.update()
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        return bpy.data.meshes.new_from_object(objects[0].evaluated_get(depsgraph), preserve_all_data_layers=True,
-                                               depsgraph=depsgraph)
+        with apart.scene_apart(*objects) as layer:
+            depsgraph = apart.depsgraph(layer)
+            return bpy.data.meshes.new_from_object(objects[0].evaluated_get(depsgraph), preserve_all_data_layers=True,
+                                                   depsgraph=depsgraph)
     finally:
         for obj in objects:
             bpy.data.objects.remove(obj)
-        bpy.data.collections.remove(collection)
 
 
 def _key_offsets(mesh, result):

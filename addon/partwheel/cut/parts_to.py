@@ -14,7 +14,7 @@ from ..mesh.refusing import Refused, can, changeable
 from ..parts import builds, picks, registry
 from ..pick.build import start, waited_for
 from ..pick.hover import highlight
-from ..pick.prepared import current, prepared
+from ..pick.prepared import at_rest, current, prepared
 from ..solid import composition, copy_part, solids
 from ..view import keys, overlay, picking
 from ..view.in_view import InView, waiting
@@ -208,6 +208,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     def _handle(self, context, event):
         if self.building:
             return self._built_on(context, event)
+        if self.shown and at_rest() and not current(kept.named(self.object_name), self.shown):  # another frame
+            self._show(context, self.state)
         if event.type in keys.SYSTEM:
             return {"PASS_THROUGH"}
         if event.type in keys.MOVES:

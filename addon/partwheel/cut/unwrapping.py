@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 
-from ..mesh import arrays
+from ..mesh import apart, arrays
 from ..mesh.refusing import Refused
 from partwheel.cut import laid_flat, seams
 from partwheel.weld import is_welding, weld_coincident_vertices
@@ -94,24 +94,22 @@ def _unwrapped(original, old_to_new):
     what is selected, hidden or edited nor the modifiers of an object matter. old_to_new (V,): the welded vertices."""
     copy = bpy.data.meshes.new_from_object(original)  # mesh.copy() leaves shape keys behind
     _weld(copy, old_to_new)
-    scene, obj = bpy.data.scenes.new("Unwrap"), bpy.data.objects.new("Unwrap", copy)
+    obj = bpy.data.objects.new("Unwrap", copy)
     try:
         while copy.uv_layers:
             copy.uv_layers.remove(copy.uv_layers[0])
         copy.uv_layers.new()
-        scene.collection.objects.link(obj)
-        layer = scene.view_layers[0]
-        layer.objects.active = obj
-        context = {"scene": scene, "view_layer": layer, "object": obj, "active_object": obj}
-        with bpy.context.temp_override(**context, edit_object=None, mode="OBJECT"):
-            bpy.ops.object.mode_set(mode="EDIT")
-        with bpy.context.temp_override(**context, edit_object=obj):
-            bpy.ops.mesh.reveal(select=False)
-            bpy.ops.mesh.select_all(action="SELECT")
-            bpy.ops.uv.unwrap(method="ANGLE_BASED")
-            bpy.ops.object.mode_set(mode="OBJECT")
+        with apart.scene_apart(obj) as layer:
+            layer.objects.active = obj
+            context = {"scene": layer.id_data, "view_layer": layer, "object": obj, "active_object": obj}
+            with bpy.context.temp_override(**context, edit_object=None, mode="OBJECT"):
+                bpy.ops.object.mode_set(mode="EDIT")
+            with bpy.context.temp_override(**context, edit_object=obj):
+                bpy.ops.mesh.reveal(select=False)
+                bpy.ops.mesh.select_all(action="SELECT")
+                bpy.ops.uv.unwrap(method="ANGLE_BASED")
+                bpy.ops.object.mode_set(mode="OBJECT")
         return arrays.read(copy.uv_layers[0].data, "uv", np.float32, 2).ravel()
     finally:
         bpy.data.objects.remove(obj)
         bpy.data.meshes.remove(copy)
-        bpy.data.scenes.remove(scene)

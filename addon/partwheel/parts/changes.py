@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender has told of changes to meshes."""
+"""What Blender has told of changes to meshes, and of what is shown of them in another frame."""
 
 import bpy
 from bpy.app.handlers import persistent
 
-from ..mesh import arrays
+from ..mesh import apart, arrays
 from ..mesh.kept import PerMesh, key
 
 # How often the mesh was changed, or what modifiers show of it, or anything told of it.
@@ -20,7 +20,12 @@ def edits(mesh):
 
 def revision(mesh):
     """The same, and another also after a change of what modifiers show of it, be it on the cage."""
-    return edits(mesh), _shown.get(key(mesh), 0)
+    return edits(mesh), shown(mesh)
+
+
+def shown(mesh):
+    """Something that is another after a change of what modifiers show of the mesh: in another frame, for instance."""
+    return _shown.get(key(mesh), 0)
 
 
 def told(mesh):
@@ -30,7 +35,7 @@ def told(mesh):
 
 @persistent
 def _edited(_scene, depsgraph):
-    if arrays.writing_back:
+    if arrays.writing_back or apart.active:
         return
     for update in depsgraph.updates:
         if isinstance(update.id, bpy.types.Mesh):
@@ -41,8 +46,26 @@ def _edited(_scene, depsgraph):
         arrays.changed()
         if isinstance(update.id, bpy.types.Mesh):
             _count(_edits, update.id.original)
-        elif of_mesh and (update.id.mode != "EDIT" or arrays.on_cage(update.id)):
-            _count(_shown, update.id.original.data)
+        elif of_mesh:
+            _count_shown(update.id)
+
+
+@persistent
+def _frame_changed(_scene, depsgraph):
+    """A new frame evaluates what is animated, and Blender calls no other handler for it. No mesh is edited by it. A render
+    has an evaluation of its own, which no 3D view shows."""
+    if depsgraph.mode == "RENDER" or apart.active:
+        return
+    for update in depsgraph.updates:
+        if update.is_updated_geometry and isinstance(update.id, bpy.types.Object) and update.id.type == "MESH":
+            arrays.changed()
+            _count_shown(update.id)
+
+
+def _count_shown(evaluated):
+    """In Edit Mode only modifiers on the cage change what is shown."""
+    if evaluated.mode != "EDIT" or arrays.on_cage(evaluated):
+        _count(_shown, evaluated.original.data)
 
 
 def _stroke(update, depsgraph):
@@ -63,4 +86,4 @@ def _undone(*_):
     _undos += 1
 
 
-HANDLERS = {"depsgraph_update_post": _edited, "undo_post": _undone, "redo_post": _undone}
+HANDLERS = {"depsgraph_update_post": _edited, "frame_change_post": _frame_changed, "undo_post": _undone, "redo_post": _undone}

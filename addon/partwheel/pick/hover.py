@@ -15,7 +15,7 @@ from ..parts import picks, registry
 from ..view import overlay, picking
 from ..view.seen import NO_FACE
 from . import borders, states
-from .prepared import advance, current, note_written_back, prepared, ready, stop
+from .prepared import advance, at_rest, current, note_written_back, prepared, ready, stop
 
 HOVERED = *registry.USABLE, registry.State.UNOPENED
 
@@ -39,6 +39,9 @@ class Hover:
 
         After an edit that takes some steps, a slice of what is needed each: what is to be seen of the mouse meanwhile
         would come late."""
+        if not at_rest():
+            self._to(None)
+            return
         edited = _edited(context)
         if advance(edited):
             self._go_on(context, point)
@@ -50,6 +53,9 @@ class Hover:
             highlight.update(context)
         if self._waits:
             self._go_on(context, point)
+        self._to(found)
+
+    def _to(self, found):
         if found is not self.what:
             self.what = found
             overlay.redraw()

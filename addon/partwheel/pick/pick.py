@@ -12,13 +12,13 @@ from math import hypot
 import bpy
 
 from ..mesh import arrays
-from ..parts import builds, picks, registry
+from ..parts import builds, changes, picks, registry
 from ..preferences import preferences
 from ..view import keys, overlay, picking
 from ..view.stepper import Stepper, ui_scale
 from . import borders, states
 from partwheel import PartwheelError
-from .prepared import advance, note_written_back, prepared
+from .prepared import advance, at_rest, note_written_back, prepared
 from ..view.seen import NO_FACE
 from .build import start, waited_for
 from ..view.in_view import InView
@@ -246,6 +246,8 @@ class PartPicker(InView):
         if self.target and registry.known(self._object(context).data) is not self.hierarchy:
             self.report({"WARNING"}, rpt_("Partwheel stopped: the parts were found anew. Pick one of them."))
             return {"CANCELLED"}
+        if self.target:
+            self._drawn_anew(self._object(context))
         if event.type in keys.SYSTEM:
             return {"PASS_THROUGH"}
         holding = isinstance(self.state, states.Picked)
@@ -322,9 +324,19 @@ class PartPicker(InView):
             parts = None if bpy.app.background else prepared(obj).parts(obj)  # reads the mesh: before it changes
             self.target.select(obj, self.faces, state.face, self.extend, self.deselect)
             if parts:
-                overlay.shown.show(self._drawing, obj, parts, state.node, state.next,
-                                   self.faces if self.snap else None)
+                self._draw(obj, parts)
         return self._say(context, state)
+
+    def _draw(self, obj, parts):
+        """What is held, as it is seen in this frame; in another one it is drawn no more."""
+        seen = self.seen = changes.shown(obj.data)
+        overlay.shown.show(self._drawing, lambda obj: changes.shown(obj.data) == seen, obj, parts, self.state.node,
+                           self.state.next, self.faces if self.snap else None)
+
+    def _drawn_anew(self, obj):
+        """In another frame, once playback has ended."""
+        if overlay.shown.on and self.seen != changes.shown(obj.data) and at_rest():
+            self._draw(obj, prepared(obj).parts(obj))
 
     def _say(self, context, state):
         share = self.hierarchy.area[state.node] / self.hierarchy.area[-1]

@@ -139,11 +139,17 @@ def ready(obj):
 def _make(name):
     """A slice of it; what a timer waits for until the next, or None."""
     obj = named(name)
-    if obj and not _whole(obj):
+    if obj and at_rest() and not _whole(obj):
         _slice(obj)
         return 0
     _soon.pop(name)
     return None
+
+
+def at_rest():
+    """Whether neither playback nor a render goes on: each frame would have all made anew, or find Blender's data changing."""
+    playing = any(window.screen.is_animation_playing for window in bpy.context.window_manager.windows)
+    return not (playing or bpy.app.is_job_running("RENDER"))
 
 
 def stop():
@@ -162,4 +168,7 @@ def current(obj, parts):
 
 
 def _stamp(obj):
-    return obj.name_full, obj.mode, changes.revision(obj.data), counts(obj.data)
+    """Each view layer of each scene is evaluated by itself, with a frame of its own."""
+    layer = bpy.context.view_layer
+    evaluation = layer.id_data.name_full, layer.name
+    return obj.name_full, obj.mode, evaluation, changes.revision(obj.data), counts(obj.data)

@@ -214,15 +214,16 @@ class Shown:
     """Draws the held part in every 3D view for as long as it is on."""
 
     def __init__(self):
-        self._handler = self._what = None
+        self._handler = self._what = self._fits = None
 
     @property
     def on(self):
         return self._handler is not None
 
-    def show(self, drawing, obj, parts, node, larger, snapped):
-        """drawing: InView._drawing of the operator that shows it."""
-        self._what = obj.name_full, parts, node, larger, snapped
+    def show(self, drawing, fits, obj, parts, node, larger, snapped):
+        """drawing: InView._drawing of the operator that shows it. fits(object): whether its parts are still where it is
+        seen, in another frame for instance."""
+        self._what, self._fits = (obj.name_full, parts, node, larger, snapped), fits
         if not self._handler:
             self._handler = bpy.types.SpaceView3D.draw_handler_add(drawing(self._draw), (), "WINDOW", "POST_VIEW")
         redraw()
@@ -231,12 +232,12 @@ class Shown:
         if self._handler:
             bpy.types.SpaceView3D.draw_handler_remove(self._handler, "WINDOW")
             redraw()
-        self._handler = self._what = None
+        self._handler = self._what = self._fits = None
 
     def _draw(self):
         context, (name, *what) = bpy.context, self._what
         obj = kept.named(name)
-        if obj and visible(context, obj):
+        if obj and visible(context, obj) and self._fits(obj):
             draw_held(context, obj, *what)
 
 

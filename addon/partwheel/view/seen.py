@@ -2,8 +2,8 @@
 """What is seen of an object: the triangles that Blender draws, with modifiers, poses and shape keys, and the face of
 the object's own mesh that each belongs to.
 
-Where modifiers make other polygons, a double of the object is evaluated for a moment, on whose faces their numbers are
-written: modifiers copy those as any other attribute. The user's own data is not touched.
+Where modifiers make other polygons, a double of the object is evaluated for a moment, in a scene of its own, on whose
+faces their numbers are written: modifiers copy those as any other attribute. The user's own data is not touched.
 """
 
 import contextlib
@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 from mathutils.bvhtree import BVHTree
 
-from ..mesh import arrays
+from ..mesh import apart, arrays
 
 NO_FACE = -1
 ORIGIN = "partwheel_origin"  # of each face of the double: its number + 1, for 0 is what faces from elsewhere get
@@ -54,15 +54,15 @@ def seen(obj):
             return _visible(obj, positions, *arrays.triangles(mesh))
         sculpted = sculpted_levels(obj)
     if sculpted:
-        with _double(obj) as double:
+        with _double(obj) as (double, layer):
             _as_sculpted(double, sculpted.name)
-            result = _evaluated(double)
-            return _visible(obj, result.positions, result.triangles, _origins(double, result))
-    result = _evaluated(obj)
+            result = _evaluated(double, apart.depsgraph(layer))
+            return _visible(obj, result.positions, result.triangles, _origins(double, layer, result))
+    result = _evaluated(obj, bpy.context.evaluated_depsgraph_get())
     faces = result.faces
     if result.topology != arrays.fingerprint(mesh).topology:
-        with _double(obj) as double:
-            faces = _origins(double, result)
+        with _double(obj) as (double, layer):
+            faces = _origins(double, layer, result)
     return _visible(obj, result.positions, result.triangles, faces)
 
 
@@ -80,9 +80,9 @@ def _visible(obj, positions, triangles, faces):
     return Seen(positions, triangles, faces)
 
 
-def _evaluated(obj):
+def _evaluated(obj, depsgraph):
     """The _Evaluated of an object as it is now."""
-    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    evaluated = obj.evaluated_get(depsgraph)
     mesh = evaluated.to_mesh()
     try:
         layer = mesh.attributes.get(ORIGIN)
@@ -96,15 +96,16 @@ def _evaluated(obj):
 
 @contextlib.contextmanager
 def _double(obj):
-    """An object in the scene that is evaluated as this one is in Object Mode, its faces numbered; gone afterwards."""
+    """(an object that is evaluated as this one is in Object Mode, its faces numbered; the view layer that it is in): gone
+    afterwards."""
     arrays.strokes_up_to_date(obj)
     mesh, double = obj.data.copy(), obj.copy()
     try:
         double.data = mesh
         numbers = mesh.attributes.new(ORIGIN, "INT", "FACE")
         numbers.data.foreach_set("value", np.arange(1, len(mesh.polygons) + 1, dtype=np.int32))
-        bpy.context.scene.collection.objects.link(double)
-        yield double
+        with apart.scene_apart(double) as layer:
+            yield double, layer
     finally:
         bpy.data.objects.remove(double)
         bpy.data.meshes.remove(mesh)
@@ -120,16 +121,16 @@ def _as_sculpted(double, name):
             modifier.show_viewport = False
 
 
-def _origins(double, result):
-    """(T,) the face that each triangle of an _Evaluated comes from, NO_FACE where that can't be told; double: of the
-    object that it was made of."""
-    numbered = _evaluated(double)
+def _origins(double, layer, result):
+    """(T,) the face that each triangle of an _Evaluated comes from, NO_FACE where that can't be told; double, layer: as of
+    _double(), of the object that it was made of."""
+    numbered = _evaluated(double, apart.depsgraph(layer))
     if numbered.topology == result.topology and numbered.origins is not None:
         return numbered.origins[result.faces]
     for modifier in double.modifiers:
         if modifier.type in REMAKING:
             modifier.show_viewport = False
-    before = _evaluated(double)
+    before = _evaluated(double, apart.depsgraph(layer))
     if before.origins is None:
         return np.full(len(result.faces), NO_FACE)
     tree = BVHTree.FromPolygons(before.positions.tolist(), before.triangles.tolist(), all_triangles=True)
