@@ -19,10 +19,8 @@ SINK = 0.05  # of its border's radius that a part is sunk in: solids that only t
 
 def caps(mesh):
     """(F,) bool: the faces that close a mesh where it was cut; None if nothing is marked so."""
-    layer = mesh.attributes.get(CAP)
-    if not layer or (layer.domain, layer.data_type) != ("FACE", "BOOLEAN"):
-        return None
-    return arrays.read(layer.data, "value", bool)
+    layer = arrays.attribute(mesh, CAP, "BOOLEAN", "FACE")
+    return arrays.read(layer.data, "value", bool) if layer else None
 
 
 def border(obj, near=None):

@@ -25,12 +25,13 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
     bl_label = "Swap with Compatible Part"
     lost = "{operator} stopped: the object is no longer the active one."
     was_edited, preview, taken = False, None, keys.OFFER.events
+    takes_away = True
 
     other: bpy.props.StringProperty(
         name="From", description="The object that the new part comes from; none: those selected, or else all others",
         options={"SKIP_SAVE"})
     other_node: bpy.props.IntProperty(
-        name="Part", description="The new part's number in that object; -1: the most compatible one",
+        name="New Part", description="The new part's number in that object; -1: the most compatible one",
         default=-1, min=-1, options={"SKIP_SAVE"})
     whole: bpy.props.BoolProperty(
         name="All of It", description="The object is a part itself, copied as a solid before", default=False,

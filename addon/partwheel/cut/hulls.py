@@ -25,7 +25,7 @@ def made(context, obj, hulls, engine="UNREAL", primitives=0.0):
     as wires and not rendered, in a new collection, or in that of the earlier ones, which are removed. RIGID_BODY: the
     object is a body whose shape they are together. primitives: the length that a box, sphere, capsule or cylinder may
     reach beyond a hull to be taken instead, as far as the engine has these; 0: hulls alone. Refused: nothing has changed."""
-    earlier = [child for child in obj.children if composition.HULL in child]
+    earlier = [child for child in obj.children if child.type == "MESH" and composition.HULL in child]
     kinds = tuple(kind for kind in convex.KINDS if kind in NAMES[engine])
     shapes = [(primitives > 0 and convex.around(*hull[:2], primitives, kinds)) or hull for hull in hulls]
     names = [NAMES[engine][convex.kind_of(shape)].format(model=obj.name, number=number)

@@ -13,8 +13,7 @@ from partwheel.cut import colors, weights
 def face_sets(obj, cut, _names):
     """One for each part, in place of all that there were."""
     mesh = obj.data
-    attribute = mesh.attributes.get(FACE_SET) or mesh.attributes.new(FACE_SET, "INT", "FACE")
-    attribute.data.foreach_set("value", cut.labels + 1)
+    arrays.needed_attribute(mesh, FACE_SET, "INT", "FACE").data.foreach_set("value", cut.labels + 1)
 
 
 def weights_of(obj, cut):

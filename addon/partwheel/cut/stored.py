@@ -13,16 +13,12 @@ from partwheel.cut import Cut, named
 ATTRIBUTE = "partwheel_part"  # of faces, whole numbers
 NAMES = "partwheel_parts"  # a property of the mesh: JSON, {number: name}
 WORD = "Part"
+LONGEST, DIGITS = 63, 10  # bytes of a name in Blender; digits of a part's number
 
 
 def keep(mesh, labels, names):
     """labels (F,) the part of each face; names: one for each part."""
-    number = mesh.attributes.get(ATTRIBUTE)
-    if number and not _is_ours(number):
-        mesh.attributes.remove(number)
-        number = None
-    number = number or mesh.attributes.new(ATTRIBUTE, "INT", "FACE")
-    number.data.foreach_set("value", labels)
+    arrays.needed_attribute(mesh, ATTRIBUTE, "INT", "FACE").data.foreach_set("value", labels)
     mesh[NAMES] = json.dumps(dict(enumerate(names)))
 
 
@@ -33,10 +29,7 @@ def found(obj, hierarchy):
     labels = _labels(mesh)
     if labels is None:
         return None
-    try:
-        known = {int(number): str(name) for number, name in json.loads(mesh.get(NAMES, "{}")).items()}
-    except (ValueError, AttributeError):  # somebody else's
-        known = {}
+    known = _known_names(mesh.get(NAMES))
     cut, names = Cut.of_labels(hierarchy, labels), {}
     for part, clusters in enumerate(cut.parts):
         values, counts = np.unique(labels[cut.labels == part], return_counts=True)
@@ -45,18 +38,27 @@ def found(obj, hierarchy):
     return cut, names
 
 
+def _known_names(kept):
+    """{number: name} of what is kept as NAMES, whatever that is: others may have written it. Names that Blender takes."""
+    try:
+        known = json.loads(kept) if isinstance(kept, str) else None
+    except (ValueError, RecursionError):
+        known = None
+    if not isinstance(known, dict):
+        return {}
+    return {int(number): name for number, name in known.items()
+            if isinstance(name, str) and name and name.isprintable() and len(name.encode()) <= LONGEST
+            and number.isdecimal() and len(number) <= DIGITS}
+
+
 def _labels(mesh):
     """(F,) or None."""
     if mesh.is_editmode:  # Blender shows no attribute's values then
         faces = bmesh.from_edit_mesh(mesh).faces
         layer = faces.layers.int.get(ATTRIBUTE)
         return None if layer is None else np.array([face[layer] for face in faces], np.int32)
-    number = mesh.attributes.get(ATTRIBUTE)
-    return arrays.read(number.data, "value", np.int32) if number and _is_ours(number) else None
-
-
-def _is_ours(attribute):
-    return (attribute.domain, attribute.data_type) == ("FACE", "INT")
+    number = arrays.attribute(mesh, ATTRIBUTE, "INT", "FACE")
+    return arrays.read(number.data, "value", np.int32) if number else None
 
 
 def names_of(obj, cut, known):

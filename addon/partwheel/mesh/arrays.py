@@ -161,17 +161,29 @@ def with_coincident(mesh, chosen):
     return mask(len(chosen), old_to_new[chosen])[old_to_new]
 
 
+def attribute(mesh, name, kind, domain):
+    """The mesh's attribute of this name, data type and domain, or None: others may have given the name to another one."""
+    found = mesh.attributes.get(name)
+    return found if found and (found.data_type, found.domain) == (kind, domain) else None
+
+
+def needed_attribute(mesh, name, kind, domain):
+    """The same, made in place of whatever has its name."""
+    found = attribute(mesh, name, kind, domain)
+    if not found and name in mesh.attributes:
+        mesh.attributes.remove(mesh.attributes[name])
+    return found or mesh.attributes.new(name, kind, domain)
+
+
 def material_indices(mesh):
     """(F,)"""
-    layer = mesh.attributes.get("material_index")
+    layer = attribute(mesh, "material_index", "INT", "FACE")
     return read(layer.data, "value", np.int32) if layer else np.zeros(len(mesh.polygons), np.int32)
 
 
 def set_material_indices(mesh, indices):
-    layer = mesh.attributes.get("material_index")
-    if layer or indices.any():
-        layer = layer or mesh.attributes.new("material_index", "INT", "FACE")
-        layer.data.foreach_set("value", indices)
+    if indices.any() or attribute(mesh, "material_index", "INT", "FACE"):
+        needed_attribute(mesh, "material_index", "INT", "FACE").data.foreach_set("value", indices)
 
 
 def triangles(mesh):

@@ -15,6 +15,7 @@ from .kept import named
 # on rules: Blender derives the coarser elements' selection from it.
 KINDS = ("VERT", "EDGE", "FACE")
 ELEMENTS = {"VERT": "vertices", "EDGE": "edges", "FACE": "polygons"}
+LOOP_INDEX = {"VERT": "vertex_index", "EDGE": "edge_index"}
 # In units of the time to select a face: to deselect one (Blender looks at all its neighbours), and to deselect all.
 OFF, ALL_OFF = 2, 6000
 
@@ -47,8 +48,7 @@ class Selection:
         if self.kind != "FACE":
             corners = arrays.polygon_sizes(mesh)[1]
             self.loop_face = np.repeat(np.arange(len(mesh.polygons)), corners)
-            index = {"VERT": "vertex_index", "EDGE": "edge_index"}[self.kind]
-            self.loop_element = arrays.read(mesh.loops, index, np.int32)
+            self.loop_element = arrays.read(mesh.loops, LOOP_INDEX[self.kind], np.int32)
         self.now = self.before[self.kind]
 
     def _edited(self, obj):
@@ -206,6 +206,15 @@ class Selections:
     def restore(self):
         for obj, each in self._objects():
             each.restore(obj)
+
+
+def is_selected(mesh, faces, kind):
+    """Whether these faces, but for hidden ones, are selected and nothing else is: as vertices, edges or faces, kind. The mesh
+    must be up to date."""
+    chosen = arrays.mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
+    if kind != "FACE":
+        chosen = arrays.of_faces(mesh, chosen, ELEMENTS[kind], LOOP_INDEX[kind])
+    return np.array_equal(arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool), chosen)
 
 
 def chosen_outside_edit_mode(mesh, faces, extend=False, deselect=False):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The part that was picked last in each mesh, and confirmed. Undo brings the one before back."""
 
+import hashlib
+from operator import attrgetter
 from typing import NamedTuple
 
 import bmesh
@@ -28,7 +30,7 @@ class Picked(NamedTuple):
 
 
 REMEMBERED = 32  # picks of a mesh that undo may come back to
-_past = PerMesh()  # [(_mark() after the pick, Picked), ...], the newest last
+_past = PerMesh()  # [((_glance(), _digest()) after the pick, Picked), ...], the newest last
 _picks = PerMesh(gone=lambda picks, gone: registry.retired(picks[gone].hierarchy) or picks.pop(gone))
 
 
@@ -42,15 +44,26 @@ def settled(obj):
     mesh = obj.data
     pick, past = _picks.get(key(mesh)), _past.setdefault(key(mesh), [])
     if pick:
-        past[:] = [each for each in past if each[1].hierarchy is pick.hierarchy][1 - REMEMBERED:] + [(_mark(mesh), pick)]
+        past[:] = [each for each in past if each[1].hierarchy is pick.hierarchy][1 - REMEMBERED:] + [
+            ((_glance(mesh), _digest(mesh)), pick)]
 
 
-def _mark(mesh):
-    """(active face, how many are selected): what tells the picks of a mesh apart."""
+def _glance(mesh):
+    """(active face, how many are selected): at once. Where it differs from that after a pick, so does the selection."""
     if mesh.is_editmode:
         active = bmesh.from_edit_mesh(mesh).faces.active
         return active.index if active else -1, mesh.total_face_sel
     return mesh.polygons.active, int(np.count_nonzero(arrays.read(mesh.polygons, "select", bool)))
+
+
+def _digest(mesh):
+    """Of which faces are selected."""
+    if mesh.is_editmode:
+        faces = bmesh.from_edit_mesh(mesh).faces
+        selected = np.fromiter(map(attrgetter("select"), faces), bool, len(faces))
+    else:
+        selected = arrays.read(mesh.polygons, "select", bool)
+    return hashlib.blake2b(np.packbits(selected), digest_size=16).digest()
 
 
 @persistent
@@ -59,11 +72,13 @@ def _undone(*_):
     for mesh in bpy.data.meshes:
         past = _past.get(key(mesh))
         if past:
-            mark = _mark(mesh)
-            pick = next((pick for before, pick in reversed(past) if before == mark), None)
+            glance = _glance(mesh)
+            alike = [(digest, pick) for (before, digest), pick in reversed(past) if before == glance]
+            now = _digest(mesh) if alike else None
+            pick = next((pick for digest, pick in alike if digest == now), None)
             if pick:
                 _picks[key(mesh)] = pick
-            elif not (mesh.is_editmode or mark[1]):
+            elif not (mesh.is_editmode or glance[1]):
                 _picks.pop(key(mesh), None)
 
 

@@ -24,7 +24,7 @@ def _part_vertices(mesh, faces):
 def _write_face_set(obj, faces, _node, _extend, deselect):
     """A set of its own; with deselect the part goes back to the first one."""
     mesh = obj.data
-    attribute = mesh.attributes.get(FACE_SET) or mesh.attributes.new(FACE_SET, "INT", "FACE")
+    attribute = arrays.needed_attribute(mesh, FACE_SET, "INT", "FACE")
     values = arrays.read(attribute.data, "value", np.int32)
     values[values == 0] = 1  # what Blender takes faces without a set for
     values[faces] = 1 if deselect else values.max(initial=1) + 1
@@ -35,7 +35,7 @@ def _write_mask(obj, faces, _node, extend, deselect):
     mesh = obj.data
     if mask(mesh) is None:
         if bpy.app.version >= (4, 1):
-            mesh.attributes.new(MASK, "FLOAT", "POINT")
+            arrays.needed_attribute(mesh, MASK, "FLOAT", "POINT")
         else:
             with pieces.edited(mesh, mesh) as bm:
                 bm.verts.layers.paint_mask.verify()
@@ -67,8 +67,10 @@ def _fill_mask(value):
 
 def mask(mesh):
     """What holds the mask's value of each vertex, or None. Not of the levels that a multires modifier has of its own."""
-    layers = mesh.attributes if bpy.app.version >= (4, 1) else mesh.vertex_paint_masks
-    layer = layers.get(MASK) if bpy.app.version >= (4, 1) else next(iter(layers), None)
+    if bpy.app.version >= (4, 1):
+        layer = arrays.attribute(mesh, MASK, "FLOAT", "POINT")
+    else:
+        layer = next(iter(mesh.vertex_paint_masks), None)
     return layer and layer.data
 
 

@@ -70,7 +70,8 @@ def node(obj, hierarchy, name):
     wanted = arrays.mask(len(hierarchy.order), faces(obj.data, name))
     found, overlap = nearest(hierarchy, wanted)
     if overlap < OVERLAP:
-        raise Refused("No part of {name} as it is now is much like the one remembered as {part}.", name=obj.name, part=name)
+        raise Refused("No part of {name} as it is now is much like the one remembered as {part}. Pick the part anew, "
+                      "forget this name, and remember the part under it again.", name=obj.name, part=name)
     if overlap == 1:
         return found, False
     snapped = borders.inside(obj, hierarchy, found)
@@ -79,7 +80,8 @@ def node(obj, hierarchy, name):
 
 def _needed(mesh, name):
     if name not in names(mesh):
-        raise Refused("No part of {name} is remembered as {part}.", name=mesh.name, part=name)
+        raise Refused("No part of {name} is remembered as {part}. Pick the part, and give it the name with Remember Part.",
+                      name=mesh.name, part=name)
 
 
 def _free(mesh, name):

@@ -6,7 +6,9 @@ import bpy
 from ..mesh import arrays
 from ..mesh.datablocks import all_or_nothing
 from ..mesh.refusing import NeedsMesh, Refused, changeable
+from ..mesh.selection import KINDS, is_selected
 from ..parts import picks, registry
+from ..pick import borders
 from ..pick.build import Beside, waited_for
 from . import composition, solids
 from partwheel import Error
@@ -64,7 +66,10 @@ class OnParts(NeedsMesh):
 
 
 class OnPart(OnParts):
-    """The same for operators that cut a part out: a node, or the one that was picked last, or else the selected one."""
+    """The same for operators that cut a part out: a node, or the one that was picked last, or else the selected one.
+    takes_away: whether its faces are gone from the mesh then, so that they must be what the user has selected."""
+
+    takes_away = False
 
     snap: bpy.props.BoolProperty(
         name="Snap Border", description="Move the border of the part to the creases nearby, as far as what is inside "
@@ -78,18 +83,30 @@ class OnPart(OnParts):
             raise Refused(picks.NO_PICK)
 
     def hierarchy(self, obj):
-        if self.node < 0 and not picks.picked(obj) and _selected(obj):
+        by_user, pick = self.node < 0, picks.picked(obj)
+        if by_user and not pick and _selected(obj):
             found = registry.needed(obj)
             self.node, overlap = nearest(found, arrays.read(obj.data.polygons, "select", bool))
             if overlap < OVERLAP:
                 raise Refused("What is selected is no part. Pick one with Select Part by Wheel, and confirm it.")
-        found, self.node = picks.chosen(obj, self.node)
+        found, node = picks.chosen(obj, self.node)
+        if by_user and self.takes_away and not _is_selected(obj, found, node, [pick.snap] if pick else [False, True]):
+            raise Refused("Only a part that is selected as a whole, and nothing else with it, can be taken away. Pick it anew "
+                          "with Select Part by Wheel, and confirm it.")
+        self.node = node
         return found
 
 
 def _selected(obj):
     """Whether faces are: where none was picked since the last edit, they say which part is meant."""
     return obj.mode == "EDIT" and obj.data.total_face_sel > 0
+
+
+def _is_selected(obj, hierarchy, node, snaps):
+    """Whether a part's faces are what is selected, with one of these borders: its own, or that in creases."""
+    modes = bpy.context.tool_settings.mesh_select_mode
+    kind = next(kind for kind, on in zip(KINDS, modes) if on)
+    return any(is_selected(obj.data, borders.faces(obj, hierarchy, node, snap), kind) for snap in snaps)
 
 
 class _Caps:
@@ -123,7 +140,7 @@ class MESH_OT_partwheel_remove(OnPart, Beside, _Caps, bpy.types.Operator):
 
     bl_idname = "mesh.partwheel_remove"
     bl_label = "Remove Part"
-    edits = True
+    edits = takes_away = True
 
     @classmethod
     def poll(cls, context):

@@ -182,10 +182,7 @@ def _cap_slot(mesh):
 
 
 def _mark(mesh, caps):
-    known = mesh.attributes.get(CAP)
-    if known and (known.domain, known.data_type) != ("FACE", "BOOLEAN"):
-        mesh.attributes.remove(known)
-        known = None
-    marks = arrays.read(known.data, "value", bool) if known else np.zeros(len(mesh.polygons), bool)
+    layer = arrays.needed_attribute(mesh, CAP, "BOOLEAN", "FACE")  # a new one is False
+    marks = arrays.read(layer.data, "value", bool)
     marks[caps] = True
-    (known or mesh.attributes.new(CAP, "BOOLEAN", "FACE")).data.foreach_set("value", marks)
+    layer.data.foreach_set("value", marks)

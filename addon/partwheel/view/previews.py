@@ -33,6 +33,9 @@ def hide(obj):
 def end(*_):
     """No preview is left, and what was hidden is seen again, selected and active if it was."""
     for obj in [obj for obj in bpy.data.objects if MARK in obj and not obj.library]:
+        if obj.type != "MESH" or not isinstance(obj[MARK], int):  # not ours
+            del obj[MARK]
+            continue
         if obj[MARK] == SHOWN:
             dispose(obj)
             continue

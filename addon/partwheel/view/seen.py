@@ -102,7 +102,7 @@ def _double(obj):
     mesh, double = obj.data.copy(), obj.copy()
     try:
         double.data = mesh
-        numbers = mesh.attributes.new(ORIGIN, "INT", "FACE")
+        numbers = arrays.needed_attribute(mesh, ORIGIN, "INT", "FACE")
         numbers.data.foreach_set("value", np.arange(1, len(mesh.polygons) + 1, dtype=np.int32))
         with apart.scene_apart(double) as layer:
             yield double, layer
