@@ -78,6 +78,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     bed: bpy.props.FloatVectorProperty(
         name="Bed (mm)", description="The printer's: parts that are larger are split further; 0: large enough",
         default=(0, 0, 0), min=0, soft_max=1000, size=3)
+    # The panel of the last operation does it again from Object Mode, where the mode before has to come back, too.
+    begun_in: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was divided", default=True)
 
     lost = "{operator} stopped: the mesh is no longer as it was, or in another mode."
@@ -113,6 +115,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     def execute(self, context):
         obj = context.active_object
+        if not self.options.is_repeat:
+            self.begun_in = obj.mode
         hierarchy = waited_for(self, context, obj)
         if not hierarchy:
             return {"CANCELLED"}
@@ -128,7 +132,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             return _first(obj, hierarchy, self.count)
         try:
             cut = Cut.of_parts(hierarchy, json.loads(self.clusters))
-        except (ValueError, TypeError) as error:
+        except (ValueError, TypeError, RecursionError) as error:
             raise Refused("These are no parts of {name}: {reason}", name=obj.name, reason=error) from error
         return cut.sized(self.count) if self.count else cut
 
@@ -147,12 +151,12 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         return found
 
     def _outside_edit_mode(self, context, obj, cut):
-        mode = obj.mode
+        mode, before = self.begun_in, obj.mode
         if not self.properties.is_property_set("to"):
             self.to = USUAL[context.mode]
-        if mode != "OBJECT":
+        if before != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
-        if mode == "EDIT":
+        if before == "EDIT":
             # Undo steps of Edit Mode hold its mesh alone: without this one, undo would leave the rest.
             bpy.ops.ed.undo_push(message="Leave Edit Mode")
         options = objects.Options(solids.Options(self.smooth, self.material), self.closed, self.origins,
@@ -184,7 +188,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     def _begin(self, context, _event):
         obj = context.active_object
-        self.object_name, self.mode = obj.name_full, context.mode
+        self.object_name, self.mode, self.begun_in = obj.name_full, context.mode, obj.mode
         if not self.properties.is_property_set("to"):
             self.to = USUAL[context.mode]
         self.scroll = keys.Scroll(keys.SCROLL_STEP)

@@ -44,7 +44,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         name="Part", description="The part's number; -1: the part that was picked last", default=-1, min=-1,
         options={"SKIP_SAVE"})
     method: bpy.props.EnumProperty(
-        name="Method",
+        name="Method", description="How the part follows the handle",
         items=[("RIGID", "As Rigid as Possible", "The part follows the handle and keeps its details"),
                ("PROPORTIONAL", "Proportional", "The part moves as a whole, less and less towards its border"),
                ("JOINT", "At the Joint", "The part keeps its shape and turns about its border; what is near that, on "

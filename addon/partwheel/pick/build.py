@@ -284,7 +284,7 @@ class MESH_OT_partwheel_find(_Build, bpy.types.Operator):
 
 
 class MESH_OT_partwheel_clear(bpy.types.Operator):
-    """Let the parts of the active mesh go, also those saved with the file. The mesh stays as it is"""
+    """Remove the parts of the active mesh, also those saved with the file. The mesh stays as it is"""
 
     bl_idname = "mesh.partwheel_clear"
     bl_label = "Clear Parts"
@@ -295,6 +295,13 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
         obj = context.active_object
         return can(cls, obj is not None and obj.type == "MESH" and registry.state(obj.data)[0] != registry.State.NONE,
                    "The active object has no parts.")
+
+    def invoke(self, context, event):
+        """Undo is Blender's and knows nothing of parts: so it asks."""
+        texts = {} if bpy.app.version < (4, 1) else {
+            "title": iface_("Clear the parts?"),
+            "message": iface_("Those saved with the file go, too. Undo does not bring them back.")}
+        return context.window_manager.invoke_confirm(self, event, **texts)
 
     def execute(self, context):
         picks.forget(context.active_object)

@@ -46,7 +46,8 @@ class MESH_OT_partwheel_gather(_InEditMode, bpy.types.Operator):
     bl_label = "Whole Parts"
     bl_options = {"INTERNAL"}
 
-    mode: bpy.props.EnumProperty(name="Mode", items=MODES, default="SET")
+    mode: bpy.props.EnumProperty(
+        name="Mode", description="What becomes of the selection before", items=MODES, default="SET")
 
     def execute(self, context):
         before = _before.pop()
@@ -93,13 +94,7 @@ def _joined(hierarchy, takes, step):
     return np.flatnonzero(inside)
 
 
-class _Gesture:
-    @classmethod
-    def poll(cls, context):
-        return context.mode == "EDIT_MESH"
-
-
-class MESH_OT_partwheel_box(_Gesture, bpy.types.Macro):
+class MESH_OT_partwheel_box(_InEditMode, bpy.types.Macro):
     """Select all parts (segments, regions) that a box touches, by as many notches as the part that was picked last"""
 
     bl_idname = "mesh.partwheel_box"
@@ -107,7 +102,7 @@ class MESH_OT_partwheel_box(_Gesture, bpy.types.Macro):
     bl_options = {"REGISTER", "UNDO"}
 
 
-class MESH_OT_partwheel_lasso(_Gesture, bpy.types.Macro):
+class MESH_OT_partwheel_lasso(_InEditMode, bpy.types.Macro):
     """Select all parts (segments, regions) that a lasso touches, by as many notches as the part that was picked last"""
 
     bl_idname = "mesh.partwheel_lasso"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Entries in menus of Edit, Object, Sculpt and the paint modes."""
+"""Entries in menus of Edit, Object, Sculpt and the paint modes. The Mesh menu has a submenu: part_menus.py."""
 
 import bpy
 
@@ -17,15 +17,11 @@ def _entries(*operators, write=None, **label):
 
 
 ENTRIES = (
-    ("VIEW3D_MT_edit_mesh", _entries("mesh.partwheel_deform", "mesh.partwheel_copy", "mesh.partwheel_remove",
-                                     "mesh.partwheel_parts", "mesh.partwheel_split", "mesh.partwheel_convex",
-                                     "mesh.partwheel_swap")),
     ("VIEW3D_MT_sculpt", _entries("mesh.partwheel_parts")),
     ("VIEW3D_MT_object", _entries("mesh.partwheel_copy", "mesh.partwheel_parts", "mesh.partwheel_split",
                                   "mesh.partwheel_convex", "mesh.partwheel_swap", "object.partwheel_place",
                                   "object.partwheel_unite")),
-    ("VIEW3D_MT_select_edit_mesh", _entries("mesh.partwheel_similar", "mesh.partwheel_mirrored", "mesh.partwheel_box",
-                                            "mesh.partwheel_select")),
+    ("VIEW3D_MT_select_edit_mesh", _entries("mesh.partwheel_box", "mesh.partwheel_select")),
     ("VIEW3D_MT_edit_mesh_select_similar", _entries("mesh.partwheel_similar", "mesh.partwheel_mirrored")),
     ("VIEW3D_MT_select_object", _entries("object.partwheel_select")),
     *((f"VIEW3D_MT_{menu}", _entries("mesh.partwheel_paint", write=write, text=text))

@@ -42,7 +42,7 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
             column.operator("mesh.partwheel_similar")
             column.operator("mesh.partwheel_mirrored")
             column.operator("mesh.partwheel_move")
-            column.operator("mesh.duplicate_move", text="Duplicate Part")
+            column.operator("mesh.duplicate_move", text="Duplicate Selection")
             column.operator("mesh.partwheel_path")
             layout.separator()
         row = layout.row()

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""All operators of the add-on, by what Blender knows of them: labels, descriptions, undo, poll messages, properties, menus."""
+
+import collections
+
+import bpy
+from common import MeshTest, part, read_off
+
+# What changes none of Blender's data, so that there is nothing to undo: parts are kept beside it.
+CHANGES_NOTHING = {"MESH_OT_partwheel_build", "MESH_OT_partwheel_find", "MESH_OT_partwheel_imported",
+                   "MESH_OT_partwheel_clear", "MESH_OT_partwheel_path"}
+# Steps of others, which make the undo step: of macros, the pick in Edit Mode that follows entering it, Blender's own Move.
+STEPS = {"MESH_OT_partwheel_gather_begin", "MESH_OT_partwheel_gather", "OBJECT_OT_partwheel_select",
+         "MESH_OT_partwheel_move"}
+
+
+def classes(kind):
+    """{name: class} of the add-on."""
+    found = {}
+    for name in dir(bpy.types):
+        cls = getattr(bpy.types, name)
+        if "partwheel" in name.lower() and isinstance(cls, type) and issubclass(cls, kind):
+            found[name] = cls
+    return found
+
+
+def operator(name):
+    space, _, rest = name.partition("_OT_")
+    return getattr(getattr(bpy.ops, space.lower()), rest)
+
+
+class Layout:
+    """A layout that writes down what is drawn in it."""
+
+    def __init__(self, drawn):
+        self.drawn = drawn
+
+    def operator(self, name, text=None, **_):
+        entry = collections.defaultdict(lambda: None)
+        options = type("Options", (), {"__setattr__": lambda _, key, value: entry.__setitem__(key, value)})()
+        self.drawn.append((name, entry))
+        return options
+
+    def menu(self, name, **_):
+        self.drawn.append((name, {}))
+
+    def menu_pie(self):
+        return self
+
+    def __getattr__(self, _name):
+        return lambda *_, **__: self
+
+
+class Operators(MeshTest):
+    def operators(self):
+        found = {**classes(bpy.types.Operator), **classes(bpy.types.Macro)}
+        self.assertGreater(len(found), 25)
+        return found
+
+    def test_labels_and_descriptions(self):
+        for name in self.operators():
+            with self.subTest(name):
+                rna = operator(name).get_rna_type()
+                self.assertTrue(rna.name.strip())
+                self.assertGreater(len(rna.description), 10)
+
+    def test_what_changes_data_can_be_undone_and_adjusted(self):
+        for name, cls in self.operators().items():
+            with self.subTest(name):
+                options = set(cls.bl_options)
+                if name in CHANGES_NOTHING | STEPS:
+                    self.assertNotIn("UNDO", options)
+                else:
+                    self.assertLessEqual({"REGISTER", "UNDO"}, options)
+
+    def test_no_two_properties_have_one_name(self):
+        """Of those that a panel shows. All have a name and a description."""
+        for name in self.operators():
+            with self.subTest(name):
+                shown = [each for each in operator(name).get_rna_type().properties
+                         if not each.is_hidden and each.identifier != "rna_type"]
+                counts = collections.Counter(each.name for each in shown)
+                self.assertEqual([name for name, count in counts.items() if count > 1], [])
+                for each in shown:
+                    if each.type != "POINTER":
+                        self.assertTrue(each.name and each.description, each.identifier)
+
+    def test_who_may_not_start_is_told_why(self):
+        """Without an object, with one that is no mesh, and with a mesh in each mode, with parts and without."""
+        def asked(where):
+            for name in self.operators():
+                call = operator(name)
+                if not call.poll():
+                    refused[name].add(where)
+                    with self.subTest(name, where=where), self.assertRaises(RuntimeError) as raised:
+                        call()
+                    message = str(raised.exception).partition("poll()")[2].strip()
+                    self.assertGreater(len(message.split()), 3, str(raised.exception))
+                    self.assertNotIn("context is incorrect", message)
+
+        refused = collections.defaultdict(set)
+        asked("nothing")
+        lamp = self.link(bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "POINT")))
+        asked("a lamp")
+        bpy.data.objects.remove(lamp)
+        obj = self.add(*read_off("cross_quad"))
+        for parts in ("without", "with"):
+            if parts == "with":
+                self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+            for mode in ("EDIT", "SCULPT", "VERTEX_PAINT", "WEIGHT_PAINT", "TEXTURE_PAINT", "OBJECT"):
+                bpy.ops.object.mode_set(mode=mode)
+                asked(f"{mode}, {parts}")
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertEqual(bpy.context.active_object, obj)
+        never = set(self.operators()) - set(refused)
+        self.assertEqual(never, set())
+
+    def test_each_menu_has_an_entry_once(self):
+        """Also those of its submenus, and of our own menus by themselves."""
+        menus = dict(part("ui.menu").ENTRIES)
+        ours = {name: cls.draw for name, cls in classes(bpy.types.Menu).items()}
+        drawn = {}
+
+        def entries(name):
+            found = []
+            for draw in ([menus[name]] if name in menus else []) + ([part("ui.part_menus")._draw] if (
+                    name in part("ui.part_menus").MENUS) else []) + ([ours[name]] if name in ours else []):
+                layout = Layout([])
+                draw(type("Menu", (), {"layout": layout})(), bpy.context)
+                found += [(each, tuple(sorted(options.items()))) for each, options in layout.drawn if each]
+            submenus = [each for each, _ in found if "_MT_" in each]
+            if name == "VIEW3D_MT_select_edit_mesh":
+                submenus.append("VIEW3D_MT_edit_mesh_select_similar")
+            return found + [entry for each in submenus for entry in entries(each)]
+
+        for name in {*menus, *part("ui.part_menus").MENUS, *ours}:
+            with self.subTest(name):
+                drawn[name] = entries(name)
+                counts = collections.Counter(drawn[name])
+                self.assertTrue(counts)
+                self.assertEqual([entry for entry, count in counts.items() if count > 1], [])
+        self.assertLessEqual(len(part("ui.menu").ENTRIES), len(menus))
+
+    def test_clear_asks_first(self):
+        """Where there is a user; a script has said what it wants."""
+        asked = []
+        manager = type("Manager", (), {"invoke_confirm": lambda self, *_, **texts: asked.append(texts) or {"RUNNING_MODAL"}})()
+        obj = self.add(*read_off("cross_quad"))
+        self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
+        context = type("Context", (), {"window_manager": manager, "active_object": obj})()
+        self.assertEqual(bpy.types.MESH_OT_partwheel_clear.invoke(None, context, None), {"RUNNING_MODAL"})
+        self.assertEqual(len(asked), 1)
+        self.assertIsNotNone(part("parts.registry").known(obj.data))
+        self.assertEqual(bpy.ops.mesh.partwheel_clear(), {"FINISHED"})
+        self.assertIsNone(part("parts.registry").known(obj.data))
