@@ -326,13 +326,11 @@ class Offers(unittest.TestCase):
     SOLIDS = ["mesh.partwheel_copy", "mesh.partwheel_remove", "mesh.partwheel_split", "mesh.partwheel_convex",
               "mesh.partwheel_swap"]
     MENUS = {
-        "VIEW3D_MT_edit_mesh": ["mesh.partwheel_deform", *SOLIDS[:2], "mesh.partwheel_parts", *SOLIDS[2:],
-                                "VIEW3D_MT_partwheel_part"],
+        "VIEW3D_MT_edit_mesh": ["VIEW3D_MT_partwheel_part"],
         "VIEW3D_MT_sculpt": ["mesh.partwheel_parts"],
         "VIEW3D_MT_object": ["mesh.partwheel_copy", "mesh.partwheel_parts", *SOLIDS[2:], "object.partwheel_place",
                              "object.partwheel_unite"],
-        "VIEW3D_MT_select_edit_mesh": ["mesh.partwheel_similar", "mesh.partwheel_mirrored", "mesh.partwheel_box",
-                                       "mesh.partwheel_select"],
+        "VIEW3D_MT_select_edit_mesh": ["mesh.partwheel_box", "mesh.partwheel_select"],
         "VIEW3D_MT_edit_mesh_context_menu": ["VIEW3D_MT_partwheel_part"],
         "VIEW3D_MT_edit_mesh_select_similar": ["mesh.partwheel_similar", "mesh.partwheel_mirrored"],
         "VIEW3D_MT_select_object": ["object.partwheel_select"],
