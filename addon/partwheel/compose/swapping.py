@@ -110,10 +110,10 @@ class Place:
         obj, source = named(self.name), named(offer.name)
         composition.update_matrices()
         if offer.node is None:
-            mesh = source.data.copy()
+            name, mesh = source.name, source.data.copy()
         else:
-            mesh = composition.part_mesh(source, _hierarchy_of(offer), offer.node, snap=self.snap)
-        new = composition.bare(source, mesh, source.name, composition.home(obj))
+            name, mesh = f"{source.name} part", composition.part_mesh(source, _hierarchy_of(offer), offer.node, snap=self.snap)
+        new = composition.bare(source, mesh, name, composition.home(obj))
         for own, slot in zip(new.material_slots, source.material_slots):
             own.link, own.material = slot.link, slot.material
         self.put(new, offer, adjustment)
