@@ -154,7 +154,8 @@ typedef struct pw_hierarchy pw_hierarchy;
  * where the winding number of the surface about it is not 0. Any other surface is repaired (where only vertices touch,
  * these are set apart; where it is rough all over, as with noise, it is smoothed until it no longer passes through
  * itself); or else tetrahedra are made of points on it, and those kept that it winds around, whose boundary is then the
- * surface used: as options->rungs allows. Every source face goes with the part of the surface used that is
+ * surface used: as options->rungs allows. Faces that are duplicates of others count once and go with them, see
+ * pw_duplicate_faces; walls inside a closed surface cut it apart into cells. Every source face goes with the part of the surface used that is
  * nearest to it: pw_summary and pw_hierarchy_account() say what was done. The caller's mesh is never changed.
  *
  * The result does not depend on the order of the vertices or triangles, nor on the corner a triangle starts with. Any
@@ -199,7 +200,7 @@ typedef struct pw_arrays {
                                 *         node at least that of its children. It never falls from child to parent; in
                                 *         PW_MODE_PAPER (cost_class, cost) grows */
     const double *volume;      /* (N,)   of the node's tetrahedra */
-    const double *area;        /* (N,)   of the node's source faces */
+    const double *area;        /* (N,)   of the node's source faces, duplicates once */
     const double *vertices;    /* (V,3)  the surface's, in a canonical order; then points that were added inside */
     const int32_t *source;     /* (V,)   the source vertex that each vertex is, unchanged; -1 for all others */
     const int32_t *tetrahedra; /* (T,4)  positively oriented: vertex 3 sees 0, 1, 2 counter-clockwise */
@@ -310,6 +311,8 @@ PW_API pw_status pw_mesh_arrays(const pw_mesh *mesh, const double **vertices, si
  * no such cut is possible: two edges run beside each other, and one of them has a vertex in its middle.
  *
  * On the rungs below the exact one this is the solid that was made from the caller's surface, and caps have no face.
+ * A wall between two cells is a triangle of the surface on both sides: on the side that the wall's face looks away from it
+ * has that face, on the other none.
  *
  * middles  middle_count x 2, or null: edges, as two vertices of the hierarchy, that get a vertex in the middle wherever
  *          they are on the surface. The solids of a cut whose caps are to match exactly are made twice: the second time

@@ -130,6 +130,17 @@ PW_API pw_status pw_vertex_normals(const double *vertices, size_t vertex_count, 
 PW_API pw_status pw_surface_distances(const double *vertices, size_t vertex_count, const int32_t *triangles,
                                       size_t triangle_count, const uint8_t *start, double *distance);
 
+/* ---- Duplicate faces ------------------------------------------------------------------------------------------ */
+
+/* Which faces pw_build counts once: those with the same outline, wherever it starts and whichever way it winds, with
+ * vertices at the same places; and flat polygons with the smaller faces that they are made of.
+ *
+ * vertices, triangles, faces, face_count   as pw_build takes them
+ * original   receives face_count source faces: of each the one that it is a duplicate of, or itself. */
+PW_API pw_status pw_duplicate_faces(const double *vertices, size_t vertex_count, const int32_t *triangles,
+                                    size_t triangle_count, const int32_t *faces, size_t face_count,
+                                    int32_t *original);
+
 /* ---- Polygons ------------------------------------------------------------------------------------------------- */
 
 /* What keeps polygons from being a closed, manifold, oriented surface; all three 0 if nothing does.

@@ -11,6 +11,7 @@
 #include "part/polygons.h"
 #include "part/rays.h"
 #include "part/solid.h"
+#include "surface/duplicates.h"
 #include "tree/carried.h"
 #include "tree/hierarchy.h"
 
@@ -152,17 +153,30 @@ private:
     Progress& progress_;
 };
 
+// Whether the surface goes along both sides of a wall, so that parts there can't be told by their place.
+bool has_walls(const TetMesh& mesh) {
+    std::vector<std::array<Point, 3>> places;
+    for (const Triangle& f : outer_facets(mesh)) {
+        std::array<Point, 3>& corners = places.emplace_back();
+        for (size_t k = 0; k < 3; ++k) corners[k] = mesh.vertices[at(f[k])];
+        std::ranges::sort(corners);
+    }
+    std::ranges::sort(places);
+    return std::ranges::adjacent_find(places) != places.end();
+}
+
 Hierarchy build(const MeshView& mesh, const LadderOptions& options, int32_t mode, Progress& progress) {
     const Solid solid = climb(mesh, options, progress);
     std::optional<TetMesh> plain;
-    if (mode != PW_MODE_PAPER && !solid.from_points) plain = plain_filling(solid, options.quality > 0, progress);
+    if (mode != PW_MODE_PAPER && !solid.surface_from_tetrahedra) plain = plain_filling(solid, options.quality > 0, progress);
     const TetMesh& mesh_of_parts = plain ? *plain : solid.mesh;
     progress.enter(PW_STAGE_CLUSTER);
     Regrouped regrouped{cluster(mesh_of_parts, progress, options.threads), {}};
     progress.enter(PW_STAGE_DENDROGRAM);
     if (mode != PW_MODE_PAPER) {
-        const std::vector<Plane> planes =
-            mirror_planes(mesh_of_parts.vertices, outer_facets(mesh_of_parts), progress);
+        std::vector<Plane> planes;
+        if (!solid.surface_from_tetrahedra || !has_walls(solid.mesh))
+            planes = mirror_planes(mesh_of_parts.vertices, outer_facets(mesh_of_parts), progress);
         regrouped = regroup(mesh_of_parts, regrouped.tree, planes, progress);
     }
     if (plain) regrouped = carried(*plain, regrouped, solid, progress, options.threads);
@@ -586,6 +600,15 @@ pw_status pw_deformation_positions(const pw_deformation* deformation, double* po
 
 pw_status pw_deformation_reset(pw_deformation* deformation) {
     return guarded({{"deformation", deformation}}, [&] { deformation->reset(); });
+}
+
+pw_status pw_duplicate_faces(const double* vertices, size_t vertex_count, const int32_t* triangles,
+                             size_t triangle_count, const int32_t* faces, size_t face_count, int32_t* original) {
+    return guarded({{"original", original}}, [&] {
+        const std::vector<int32_t> found = find_duplicates(
+            read_mesh(as_mesh(vertices, vertex_count, triangles, triangle_count, faces, face_count)));
+        std::copy(found.begin(), found.end(), original);
+    });
 }
 
 pw_status pw_vertex_normals(const double* vertices, size_t vertex_count, const int32_t* triangles,

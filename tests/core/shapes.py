@@ -69,6 +69,47 @@ def merged(*parts):
     )
 
 
+HOUSE_VOLUME = 10 * 1.6 * 1.6 * 1.5
+
+
+def house(across=7):
+    """(vertices, quads) of a closed house of ten boxes with a chimney: 42 across^2 quads, as plain lists."""
+    boxes = [(0, 0, 0), (1, 0, 0), (2, 0, 0), (3, 0, 0), (4, 0, 0), (1, 1, 0), (3, 1, 0), (3, 2, 0), (2, 0, 1), (2, 0, 2)]
+    coarse = polycube(boxes)
+    numbers, quads = {}, []
+    for face in range(coarse.face_count):
+        (a, b, c), (_, _, d) = coarse.triangles[coarse.faces == face]
+        a, b, c, d = (coarse.vertices[corner].astype(int) * across for corner in (a, b, c, d))
+        for i, j in itertools.product(range(across), repeat=2):
+            corners = [a + ((b - a) * u + (d - a) * v) // across for u, v in ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1))]
+            quads.append([numbers.setdefault(tuple(corner.tolist()), len(numbers)) for corner in corners])
+    return (np.array(list(numbers)) / across * (1.6, 1.6, 1.5)).tolist(), quads
+
+
+PRISMS_VOLUME = 12 * 1.5 * 3 ** 0.5 * 0.5 ** 2 * 1.5
+
+
+def prisms(columns=4, rows=3, radius=0.5, height=1.5):
+    """(vertices, polygons) of hexagonal prisms side by side, as plain lists: what two have in common is there once."""
+    numbers, vertices, found, known = {}, [], [], set()
+    for column, row in itertools.product(range(columns), range(rows)):
+        center = np.array([1.5 * column, 3 ** 0.5 * (row + column % 2 / 2)]) * radius
+        ring = []
+        for z in (0, height):
+            for angle in np.arange(6) * np.pi / 3:
+                place = *(center + radius * np.array([np.cos(angle), np.sin(angle)])), z
+                if (key := tuple(np.round(place, 6))) not in numbers:
+                    numbers[key] = len(vertices)
+                    vertices.append([float(x) for x in place])
+                ring.append(numbers[key])
+        sides = [(ring[k], ring[(k + 1) % 6], ring[(k + 1) % 6 + 6], ring[k + 6]) for k in range(6)]
+        for polygon in (ring[5::-1], ring[6:], *sides):
+            if frozenset(polygon) not in known:
+                known.add(frozenset(polygon))
+                found.append(list(polygon))
+    return vertices, found
+
+
 def moved(shape, offset=(0, 0, 0), scale=1.0):
     return shape._replace(vertices=shape.vertices * scale + np.array(offset, float))
 

@@ -11,9 +11,11 @@ from ..mesh import arrays, pieces
 from ..mesh.datablocks import all_or_nothing
 from ..mesh.refusing import Refused
 from ..solid import composition, fitting, solids
+from ..words.say import rpt_
 from partwheel.cut import tree
 
 
+VOLUME_TOLERANCE = 0.01  # of the whole, by which closed objects may differ from it without a message
 EXPLODE = "explode"  # the property of the root by which the others are moved apart
 # Modifiers that do the same wherever the object's origin is; of others, and of those that Blender has yet to get, it must stay.
 # Mirror does by our making.
@@ -91,6 +93,25 @@ def _mirror_about(obj, center):
     for modifier in obj.modifiers:
         if modifier.type == "MIRROR" and not modifier.mirror_object:
             modifier.mirror_object = center
+
+
+def notes(obj, cut, made, smooth):
+    """Sentences on what closed objects don't have in common with the model: duplicates, and a volume."""
+    original = fitting.originals(obj.data, cut.hierarchy)
+    if count := np.count_nonzero(original != np.arange(len(original))):
+        yield rpt_("The model has {count:,} duplicate faces. Each is in the objects once.").format(count=count)
+    whole, total = cut.hierarchy.summary.volume, sum(_volume(each.data) for each in made)
+    if not smooth and abs(total - whole) > VOLUME_TOLERANCE * whole:
+        yield rpt_("The volumes of the objects add up to {total:.4g}, but the model's is {whole:.4g}, since its surface is "
+                   "broken. Repair it, or divide it without Closed.").format(total=total, whole=whole)
+
+
+def _volume(mesh):
+    """That a closed mesh encloses."""
+    corners, _ = arrays.triangles(mesh)
+    points = arrays.read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
+    a, b, c = (points - points.mean(axis=0))[corners].transpose(1, 0, 2)
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
 def _root(hung):

@@ -178,6 +178,9 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             name=obj.name, count=len(cut), made=self._results()))
         if plan and plan.printable.notes:
             self.report({"WARNING"}, " ".join(plan.printable.notes))
+        if "OBJECTS" in self.to and self.closed and not plan:
+            for note in objects.notes(obj, cut, made, self.smooth):
+                self.report({"WARNING"}, note)
         return {"FINISHED"}
 
     def _planned(self, context, obj, cut, known):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..mesh import arrays
-from partwheel import PartwheelError, Solid, Status
+from partwheel import PartwheelError, Solid, Status, duplicate_faces
 from ..mesh.pieces import Origins, Plan
 from ..mesh.refusing import Refused
 
@@ -60,24 +60,36 @@ def exactly(mesh, hierarchy, solid, alone):
     return _turned_like_mesh(Fitted(solid, between, None, np.full(len(mesh.polygons), turned)), alone)
 
 
+def originals(mesh, hierarchy):
+    """(F,) of each polygon the one that it is a duplicate of, or itself."""
+    if hierarchy.summary.rung == "exact":
+        return np.arange(len(mesh.polygons))
+    return duplicate_faces(*arrays.surface(mesh))
+
+
 def unbroken(mesh, hierarchy, slices, options, faces, alone):
     """For each slice its Fitted, or None where the repair changed one of its polygons, or where that is of no use. If
-    alone, what the repair added is caps of it; else it is not there."""
+    alone, what the repair added is caps of it, and duplicates are there once; else what was added is not there."""
     if hierarchy.summary.rung != "repaired" or options.smooth:
         return [None] * len(slices)
     surface = arrays.surface(mesh)
     _, first, place = np.unique(surface.vertices, axis=0, return_index=True, return_inverse=True)
     alias = first[place.ravel()]
     between = np.where(hierarchy.source < 0, -1, alias[hierarchy.source])
-    triangles = alias[surface.triangles]
+    original = duplicate_faces(*surface)
+    once = original[surface.faces] == surface.faces
+    copies = np.stack([surface.faces[~once], *alias[surface.triangles[~once]].T], axis=1)
+    triangles, of = alias[surface.triangles[once]], surface.faces[once]
 
     def matched(solid):
-        return _matched(triangles, np.where((solid.beyond < 0)[:, None], _whole(between[solid.ends[solid.triangles]]), -1))
+        # The far side of a wall between two cells has no face.
+        outer = (solid.beyond < 0) & (solid.faces >= 0)
+        return _matched(triangles, np.where(outer[:, None], _whole(between[solid.ends[solid.triangles]]), -1))
 
     match, turned = matched(hierarchy.solid_of_slice(0, len(hierarchy.tetrahedra)))
-    wanted, there, against = (np.bincount(surface.faces[of], minlength=surface.face_count)
-                              for of in (slice(None), match[match >= 0], match[turned]))
-    lost = (wanted == 0) | (there != wanted) | (against % np.maximum(wanted, 1) != 0)
+    wanted, there, against = (np.bincount(of[which], minlength=surface.face_count)
+                              for which in (slice(None), match[match >= 0], match[turned]))
+    lost = ((wanted == 0) | (there != wanted) | (against % np.maximum(wanted, 1) != 0))[original]
     against = against > 0
     if not alone:  # then the mesh stays wound as it is
         lost |= against != (2 * against.sum() > len(against))
@@ -88,14 +100,38 @@ def unbroken(mesh, hierarchy, slices, options, faces, alone):
             made.append(None)
             continue
         match, _ = matched(solid)
-        own = np.where(match >= 0, surface.faces[match], -1)
+        own = np.where(match >= 0, of[match], -1)
         own[(own >= 0) & lost[own]] = -1
         added = (solid.beyond < 0) & (own < 0)
         keep = np.ones(len(own), bool) if alone else ~added
         solid = Solid(solid.vertices, solid.triangles[keep], solid.ends, own[keep],
                       np.where(added, 0, solid.beyond)[keep])
+        if not alone:
+            solid = _with_copies(solid, between, copies, original, wanted)
         made.append(_turned_like_mesh(Fitted(solid, between[solid.ends], alias, against), alone))
     return made
+
+
+def _with_copies(solid, between, copies, original, wanted):
+    """The Solid with the triangles of duplicates as well, where it has all of their originals. copies (n,4): the face and
+    the corners of each, vertices of the mesh; wanted (F,): how many triangles a face has."""
+    outer = solid.faces >= 0
+    there = np.bincount(solid.faces[outer], minlength=len(wanted)) == wanted
+    copies = copies[there[original[copies[:, 0]]]]
+    if not len(copies):
+        return solid
+    # The corners of an original, by face and vertex of the mesh.
+    corners = solid.triangles[outer].ravel()
+    count = 1 + max(int(between.max()), int(copies[:, 1:].max()))
+    known, first = np.unique(np.repeat(solid.faces[outer], 3).astype(np.int64) * count
+                             + between[solid.ends[corners, 0]], return_index=True)
+    wanted_keys = original[copies[:, :1]].astype(np.int64) * count + copies[:, 1:]
+    place = np.minimum(np.searchsorted(known, wanted_keys), len(known) - 1)
+    whole = (known[place] == wanted_keys).all(axis=1)
+    added = corners[first[place[whole]]]
+    return Solid(np.asarray(solid.vertices), np.concatenate([solid.triangles, added]).astype(np.int32), solid.ends,
+                 np.concatenate([solid.faces, copies[whole, 0]]).astype(np.int32),
+                 np.concatenate([solid.beyond, np.full(whole.sum(), -1)]).astype(np.int32))
 
 
 def _turned_like_mesh(fitted, alone):
@@ -229,9 +265,13 @@ def _corners_of(faces, corners, count):
     return np.divmod(pairs, count)
 
 
-def of_faces(mesh, hierarchy, tet_first, tet_last, faces, alone):
-    """The pieces.Plan of the slice's polygons alone, or of those that it is to have in their place."""
-    inside = np.flatnonzero(_inside(hierarchy, tet_first, tet_last, faces))
+def of_faces(mesh, hierarchy, tet_first, tet_last, faces, alone, original=None):
+    """The pieces.Plan of the slice's polygons alone, or of those that it is to have in their place. original: as
+    originals() gives it, where duplicates are to be there once."""
+    inside = _inside(hierarchy, tet_first, tet_last, faces)
+    if original is not None:
+        inside = inside & (original == np.arange(len(original)))
+    inside = np.flatnonzero(inside)
     if not len(inside):
         raise Refused("This part has no face of the mesh. Take a larger one.")
     begin, totals = arrays.polygon_sizes(mesh)

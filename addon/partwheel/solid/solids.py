@@ -5,7 +5,8 @@ On the exact rung the part is partwheel's Solid: the polygons that lie in it who
 become triangles with their attributes, and the caps close it. On the repaired rung too, where the repair has left all
 of its polygons as they are; what the repair added is a cap then. Else, and where the mesh was filled from points, it is
 the mesh's own polygons: doubles welded, wound alike, set apart where more than two meet at an edge, joined with the
-facets inside, every other border filled. Either way each edge has two faces.
+facets inside, every other border filled. Either way each edge has two faces: polygons that are duplicates are in a part
+once, and what is left of a mesh without a part keeps them.
 """
 
 from typing import NamedTuple
@@ -101,7 +102,8 @@ def _carved(mesh, hierarchy, solid, tet_first, tet_last, options, faces, alone):
     if exact:
         plan, turned = fitting.of_solid(mesh, solid, alone, facets=not options.smooth), solid.against
     else:
-        plan = fitting.of_faces(mesh, hierarchy, tet_first, tet_last, faces, alone)
+        original = fitting.originals(mesh, hierarchy) if alone else None
+        plan = fitting.of_faces(mesh, hierarchy, tet_first, tet_last, faces, alone, original)
     normals = arrays.custom_normals(mesh)
     made, loops = pieces.assembled(mesh, plan, f"{mesh.name} part", not alone), plan.loops.first
     try:
@@ -151,8 +153,8 @@ def _closed(made, loops, mesh, facets, smooth, exact, alone):
 
 
 def _mended(bm, loops, mesh, alone):
-    """Wound alike, doubles welded and polygons that are there twice once, if alone; else it is the edges that stay open, since they were before: what is
-    left of a broken mesh is as broken as before, and only the new hole is closed."""
+    """Wound alike and doubles welded, if alone; else it is the edges that stay open, since they were before: what is left
+    of a broken mesh is as broken as before, and only the new hole is closed."""
     if not alone:
         edge = arrays.read(mesh.loops, "edge_index", np.int32)
         was_open = np.bincount(edge, minlength=len(mesh.edges))[edge[loops]] == 1

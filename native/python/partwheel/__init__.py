@@ -3,6 +3,7 @@
 
 from .border import Creases, snapped_border
 from .deform import Deformation, surface_distances
+from .duplicates import duplicate_faces
 from .fair import faired
 from .hierarchy import ConvexPart, Hierarchy, Solid, Summary
 from .index import Index
@@ -11,5 +12,5 @@ from .polygons import Faults, polygon_faults
 from .rays import RayTarget
 
 __all__ = ["ConvexPart", "Creases", "Deformation", "Error", "Faults", "Hierarchy", "Index", "LibraryError", "Mode",
-           "PartwheelError", "RayTarget", "Rung", "Solid", "Stage", "Status", "Summary", "faired", "polygon_faults",
-           "snapped_border", "surface_distances", "version"]
+           "PartwheelError", "RayTarget", "Rung", "Solid", "Stage", "Status", "Summary", "duplicate_faces", "faired",
+           "polygon_faults", "snapped_border", "surface_distances", "version"]

@@ -1,7 +1,10 @@
 // The ladder from the caller's mesh to a filled solid.
 #include "fill/ladder.h"
 
+#include "fill/cells.h"
 #include "fill/points.h"
+#include "surface/attach.h"
+#include "surface/duplicates.h"
 #include "surface/prepare/coarse.h"
 #include "surface/prepare/displaced.h"
 #include "surface/prepare/repair.h"
@@ -31,32 +34,82 @@ bool may_go_on(const Error& error) {
     }
 }
 
-Solid step(const Surface& source, pw_rung rung, const LadderOptions& options, Progress& progress) {
-    if (options.trying) options.trying(rung);
-    Solid solid;
-    if (rung == PW_RUNG_EXACT) check_surface(source, progress);
-    progress.enter(PW_STAGE_REPAIR);
-    try {
-        if (rung == PW_RUNG_POINTS) return from_points(source, options.open_surfaces, options.threads, progress);
-        if (rung == PW_RUNG_EXACT) solid.surface = source;
-        if (rung == PW_RUNG_REPAIRED) {
-            std::optional<Surface> moved = displaced(source, progress);
-            solid.surface = moved ? std::move(*moved) : repair(source, progress);
+// The source, and what of it is there once.
+struct Source {
+    Surface given;
+    std::optional<Surface> distinct;  // none: all are
+    std::vector<int32_t> original;    // see Surface::original
+
+    const Surface& once() const { return distinct ? *distinct : given; }
+    Surface& once() { return distinct ? *distinct : given; }
+};
+
+// Looks for duplicates, unless that has been done.
+void make_distinct(Source& source) {
+    if (!source.original.empty()) return;
+    source.original = find_duplicates(source.given);
+    if (count_duplicates(source.original) > 0) source.distinct = without_duplicates(source.given, source.original);
+}
+
+void tell_duplicates(const Source& source, Surface& surface) {
+    if (!source.distinct) return;
+    surface.original = source.original;
+    surface.account += (surface.account.empty() ? "Repaired: " : " ") +
+                       counted_faces(count_duplicates(source.original), "is a duplicate of another, and was",
+                                     "are duplicates of others, and were") +
+                       " counted once.";
+}
+
+Solid fill_exactly(const Surface& surface, pw_rung rung, double quality, Progress& progress) {
+    progress.enter(PW_STAGE_TETRAHEDRA);
+    Solid solid{surface, tetrahedralize(surface, quality, progress)};
+    solid.surface.rung = rung;
+    return solid;
+}
+
+// The gentlest way that holds. A duplicate may be the wall of another closed shell: then these are set apart.
+Solid repaired(const Source& source, const LadderOptions& options, Progress& progress) {
+    const auto filled = [&](const Surface& surface) {
+        return fill_exactly(surface, PW_RUNG_REPAIRED, options.quality, progress);
+    };
+    std::optional<Solid> solid;
+    if (source.distinct && verdict(*source.distinct, progress) == PW_OK) {
+        solid = filled(*source.distinct);
+    } else {
+        if (const std::optional<Surface> moved = displaced(source.given, progress)) return filled(*moved);
+        solid = fill_cells(source.once(), options.quality, progress);
+        if (!solid) {
+            progress.enter(PW_STAGE_REPAIR);
+            solid = filled(repair(source.once(), progress));
         }
+    }
+    tell_duplicates(source, solid->surface);
+    return std::move(*solid);
+}
+
+Solid step(Source& source, pw_rung rung, const LadderOptions& options, Progress& progress) {
+    if (options.trying) options.trying(rung);
+    if (rung == PW_RUNG_EXACT) {
+        check_surface(source.given, progress);
+        return fill_exactly(source.given, rung, options.quality, progress);
+    }
+    progress.enter(PW_STAGE_REPAIR);
+    make_distinct(source);
+    try {
+        if (rung == PW_RUNG_REPAIRED) return repaired(source, options, progress);
+        Solid solid = from_points(source.once(), options.open_surfaces, options.threads, progress);
+        tell_duplicates(source, solid.surface);
+        return solid;
     } catch (const CGAL::Failure_exception&) {
         throw Error(PW_ERROR_SELF_INTERSECTION, "The mesh is too broken to be repaired. Remesh it and try again.");
     }
-    solid.surface.rung = rung;
-    progress.enter(PW_STAGE_TETRAHEDRA);
-    solid.mesh = tetrahedralize(solid.surface, options.quality, progress);
-    return solid;
 }
 
 // The copy of a large surface has one triangle for so many that would be used exactly, and no fewer than the least. The
 // measures that parts are joined by were fitted to models of some 25,000: with more of them parts are no better.
 constexpr size_t exact_for_each = 4, least_triangles = 100;
 
-Solid climb(const Surface& source, const LadderOptions& options, Progress& progress) {
+Solid climb(Source source, const LadderOptions& options, Progress& progress) {
     const uint32_t rungs = options.rungs == 0 ? all_rungs : options.rungs;
     for (const pw_rung rung : {PW_RUNG_EXACT, PW_RUNG_REPAIRED, PW_RUNG_POINTS}) {
         if (!(rungs & rung)) continue;
@@ -74,13 +127,15 @@ Solid climb(const Surface& source, const LadderOptions& options, Progress& progr
 
 Solid climb(const MeshView& mesh, const LadderOptions& options, Progress& progress) {
     progress.enter(PW_STAGE_SURFACE);
-    Surface source = read_mesh(mesh);
+    Source source{read_mesh(mesh), {}, {}};
     progress.advance(0.2);
-    if (source.triangles.size() <= options.exact_triangles) return climb(source, options, progress);
+    if (source.given.triangles.size() <= options.exact_triangles) return climb(std::move(source), options, progress);
+    make_distinct(source);
     const size_t target = std::max(options.exact_triangles / exact_for_each, least_triangles);
-    Coarse coarse = made_coarse(std::move(source), target, options.threads, progress);
-    Solid solid = climb(coarse.surface, options, progress);
+    Coarse coarse = made_coarse(std::move(source.once()), target, options.threads, progress);
+    Solid solid = climb(Source{coarse.surface, {}, {}}, options, progress);
     carry_over(std::move(coarse), solid.surface);
+    tell_duplicates(source, solid.surface);
     return solid;
 }
 

@@ -344,7 +344,7 @@ Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Pro
     attach(source, solid.surface, progress);
 
     solid.surface.rung = PW_RUNG_POINTS;
-    solid.from_points = true;
+    solid.surface_from_tetrahedra = true;
     solid.surface.account = std::string("Filled from points on the mesh") +
                             (thin ? ", a sheet, as a thin solid" : "") +
                             (account.text().empty() ? "" : ", after this: " + account.text()) +

@@ -58,13 +58,6 @@ namespace partwheel {
 
 namespace {
 
-// With its lowest vertex first.
-Triangle facet_from_lowest(const Tetrahedron& tet, size_t opposite) {
-    Triangle t = facet(tet, opposite);
-    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-    return t;
-}
-
 [[noreturn]] void throw_failure(int code) {
     switch (code) {
         case 1: throw Error(PW_ERROR_MEMORY, "There is not enough memory to fill this mesh. Decimate it first.");
@@ -215,42 +208,6 @@ TetMesh read(const Surface& surface, const InputOrder& order, const tetgenio& ou
     return canonical(std::move(vertices), std::move(read), progress);
 }
 
-[[noreturn]] void throw_lost() {
-    throw Error(PW_ERROR_TETRAHEDRA,
-                "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.");
-}
-
-// A facet of a tetrahedron that is a triangle of the surface.
-struct Wall {
-    int32_t triangle = -1;
-    bool behind = false;  // the tetrahedron is on the inner side
-};
-
-class Walls {
-public:
-    Walls(const Surface& surface, const TetMesh& mesh)
-        : triangles_(surface.triangles), mesh_(mesh),
-          by_lowest_(mesh.vertices.size(), [&](const auto& put) {
-              for (size_t t = 0; t < triangles_.size(); ++t)
-                  put(static_cast<size_t>(triangles_[t][0]), static_cast<int32_t>(t));
-          }) {}
-
-    Wall at(size_t tet, size_t opposite) const {
-        const Triangle f = facet_from_lowest(mesh_.tetrahedra[tet], opposite);
-        for (const int32_t t : by_lowest_.with(static_cast<size_t>(f[0]))) {
-            const Triangle& wall = triangles_[static_cast<size_t>(t)];
-            if (wall[1] == f[1] && wall[2] == f[2]) return {t, true};
-            if (wall[1] == f[2] && wall[2] == f[1]) return {t, false};
-        }
-        return {};
-    }
-
-private:
-    std::span<const Triangle> triangles_;
-    const TetMesh& mesh_;
-    Grouped<int32_t> by_lowest_;
-};
-
 // The winding number of the surface about each tetrahedron: 0 outside, one more behind each triangle.
 std::vector<int32_t> winding_numbers(const TetMesh& mesh, const std::vector<std::array<Wall, 4>>& walls,
                                      size_t& empty_regions) {
@@ -303,12 +260,7 @@ std::vector<int32_t> winding_numbers(const TetMesh& mesh, const std::vector<std:
 
 // Takes away the tetrahedra outside the solid, and finds the one behind each triangle.
 void keep_solid(const Surface& surface, TetMesh& mesh, Progress& progress) {
-    std::vector<std::array<Wall, 4>> walls(mesh.tetrahedra.size());
-    const Walls finder(surface, mesh);
-    for (size_t t = 0; t < walls.size(); ++t) {
-        if (t % looks == 0) progress.advance(0.95);
-        for (size_t k = 0; k < 4; ++k) walls[t][k] = finder.at(t, k);
-    }
+    const std::vector<std::array<Wall, 4>> walls = find_walls(surface, mesh, progress);
     const std::vector<int32_t> winding = winding_numbers(mesh, walls, mesh.cavities);
     progress.advance(0.95);
 
@@ -390,10 +342,40 @@ TetMesh canonical(std::vector<Point> vertices, std::vector<std::array<Corner, 4>
     return mesh;
 }
 
-TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress) {
-    // Now and then TetGen fails, or leaves a point that it had to add on the surface. That depends on the order of its
-    // input: another order mostly helps, at the latest the third. What comes to no end does so mostly when improving.
-    constexpr uint64_t attempts = 4;
+void throw_lost() {
+    throw Error(PW_ERROR_TETRAHEDRA,
+                "The mesher lost a part of the surface. Remesh or smooth the mesh a little and try again.");
+}
+
+std::vector<std::array<Wall, 4>> find_walls(const Surface& surface, const TetMesh& mesh, Progress& progress) {
+    const Grouped<int32_t> by_lowest(mesh.vertices.size(), [&](const auto& put) {
+        for (size_t t = 0; t < surface.triangles.size(); ++t)
+            put(at(surface.triangles[t][0]), static_cast<int32_t>(t));
+    });
+    std::vector<std::array<Wall, 4>> walls(mesh.tetrahedra.size());
+    for (size_t tet = 0; tet < walls.size(); ++tet) {
+        if (tet % looks == 0) progress.advance(0.95);
+        for (size_t k = 0; k < 4; ++k) {
+            Triangle f = facet(mesh.tetrahedra[tet], k);
+            std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
+            for (const int32_t t : by_lowest.with(at(f[0]))) {
+                const Triangle& triangle = surface.triangles[at(t)];
+                const bool behind = triangle[1] == f[1] && triangle[2] == f[2];
+                if (!behind && (triangle[1] != f[2] || triangle[2] != f[1])) continue;
+                walls[tet][k] = {t, behind};
+                break;
+            }
+        }
+    }
+    return walls;
+}
+
+namespace {
+
+// Now and then TetGen fails, or leaves a point that it had to add on the surface. That depends on the order of its input:
+// another order mostly helps, at the latest the third. What comes to no end does so mostly when improving.
+TetMesh tetrahedralize(const Surface& surface, double quality, uint64_t attempts, Progress& progress,
+                       const std::function<void(TetMesh&)>& keep) {
     bool improve = true;
     for (uint64_t attempt = 0;; ++attempt) {
         try {
@@ -402,7 +384,7 @@ TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progres
             run_tetgen(surface, order, quality, improve, out, progress);
             progress.advance(0.9);
             TetMesh mesh = read(surface, order, out, progress);
-            keep_solid(surface, mesh, progress);
+            keep(mesh);
             progress.advance(1);
             return mesh;
         } catch (const Endless&) {
@@ -413,6 +395,21 @@ TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progres
         }
         progress.advance(0);
     }
+}
+
+}  // namespace
+
+TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress) {
+    constexpr uint64_t attempts = 4;
+    return tetrahedralize(surface, quality, attempts, progress,
+                          [&](TetMesh& mesh) { keep_solid(surface, mesh, progress); });
+}
+
+TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress,
+                       const std::function<void(TetMesh&)>& keep) {
+    // Beside a wall TetGen often takes the other diagonal of a rectangle.
+    constexpr uint64_t attempts = 16;
+    return tetrahedralize(surface, quality, attempts, progress, keep);
 }
 
 std::vector<Triangle> outer_facets(const TetMesh& mesh) {

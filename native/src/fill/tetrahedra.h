@@ -4,6 +4,7 @@
 #include "surface/surface.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace partwheel {
 
@@ -27,7 +28,7 @@ std::vector<Triangle> outer_facets(const TetMesh& mesh);
 struct Solid {
     Surface surface;
     TetMesh mesh;
-    bool from_points = false;  // not filled by TetGen: the surface was made from the tetrahedra
+    bool surface_from_tetrahedra = false;  // it may touch itself, and TetGen can't be asked for another filling
 };
 
 // A corner of a tetrahedron: its vertex, and the tetrahedron beyond the facet opposite; -1: none.
@@ -41,5 +42,23 @@ TetMesh canonical(std::vector<Point> vertices, std::vector<std::array<Corner, 4>
 
 // quality: 0, or the largest ratio of circumradius to shortest edge (see pw_build_options).
 TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress);
+
+// The same of triangles that meet in common corners and edges alone, but needn't be a manifold. keep() gets all of
+// TetGen's tetrahedra, those of cavities included, and takes away what is not wanted. Where it throws
+// PW_ERROR_TETRAHEDRA, TetGen is asked again, in another order.
+TetMesh tetrahedralize(const Surface& surface, double quality, Progress& progress,
+                       const std::function<void(TetMesh&)>& keep);
+
+// A facet of a tetrahedron that is a triangle of the surface.
+struct Wall {
+    int32_t triangle = -1;
+    bool behind = false;  // the tetrahedron is on the inner side
+};
+
+// Those opposite the corners of each tetrahedron.
+std::vector<std::array<Wall, 4>> find_walls(const Surface& surface, const TetMesh& mesh, Progress& progress);
+
+// That a triangle of the surface is none of a tetrahedron.
+[[noreturn]] void throw_lost();
 
 }  // namespace partwheel

@@ -149,6 +149,16 @@ bool NearestTriangle::outside(const Point& p) const {
 
 double diagonal(const Surface& source) { return length(Box::around(source.vertices).high); }
 
+std::string with_commas(size_t n) {
+    std::string text = std::to_string(n);
+    for (size_t end = text.size(); end > 3; end -= 3) text.insert(end - 3, ",");
+    return text;
+}
+
+std::string counted_faces(size_t n, const char* one, const char* many) {
+    return with_commas(n) + (n == 1 ? " face " : " faces ") + (n == 1 ? one : many);
+}
+
 std::string percent(double share) {
     char text[32];  // printf would write a comma where the host's locale has one
     char* const end = std::to_chars(text, std::end(text), 100 * share, std::chars_format::general, 2).ptr;

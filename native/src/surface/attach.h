@@ -59,6 +59,12 @@ private:
 // Of the bounding box of a surface in working coordinates, whose lower corner is the origin.
 double diagonal(const Surface& source);
 
+// "12,345"
+std::string with_commas(size_t n);
+
+// "12,345 faces are walls"
+std::string counted_faces(size_t n, const char* one, const char* many);
+
 // "0.12 %"
 std::string percent(double share);
 

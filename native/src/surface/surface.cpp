@@ -163,8 +163,9 @@ bool surely_apart(const Surface& surface, const Triangle& t, const Triangle& u) 
     return false;
 }
 
-// The triangles that may have something in common with another but shared corners.
-std::vector<size_t> doubtful_triangles(const Surface& surface, Progress& progress) {
+// Calls meet(t, u) for triangles whose boxes meet, and that may have something in common but shared corners.
+template <class Meet>
+void for_doubtful_pairs(const Surface& surface, Progress& progress, const Meet& meet) {
     using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, size_t>;
     std::vector<Box> boxes;
     for (const Triangle& t : surface.triangles) {
@@ -175,7 +176,6 @@ std::vector<size_t> doubtful_triangles(const Surface& surface, Progress& progres
         }
         boxes.emplace_back(low.data(), high.data(), boxes.size());
     }
-    std::vector<bool> doubtful(boxes.size(), false);
     size_t pairs = 0;
     constexpr std::ptrdiff_t scanned = 2000;  // so many boxes are compared by a scan, as in CGAL's own check
     CGAL::box_self_intersection_d(
@@ -183,9 +183,14 @@ std::vector<size_t> doubtful_triangles(const Surface& surface, Progress& progres
         [&](const Box& a, const Box& b) {
             if (++pairs % 1024 == 0) progress.advance(0.5);
             if (!surely_apart(surface, surface.triangles[a.info()], surface.triangles[b.info()]))
-                doubtful[a.info()] = doubtful[b.info()] = true;
+                meet(a.info(), b.info());
         },
         scanned);
+}
+
+std::vector<size_t> doubtful_triangles(const Surface& surface, Progress& progress) {
+    std::vector<bool> doubtful(surface.triangles.size(), false);
+    for_doubtful_pairs(surface, progress, [&](size_t t, size_t u) { doubtful[t] = doubtful[u] = true; });
     std::vector<size_t> found;
     for (size_t t = 0; t < doubtful.size(); ++t)
         if (doubtful[t]) found.push_back(t);
@@ -238,6 +243,30 @@ void check_self_intersection(const Surface& surface, Progress& progress) {
     throw Error(PW_ERROR_SELF_INTERSECTION,
                 "The surface passes through or touches itself, for instance " + where +
                     ". Unite overlapping parts with a Boolean or remesh, and separate parts that touch.");
+}
+
+// Whether two triangles have anything in common but the corners and edges that they share.
+bool cross_each_other(const Surface& surface, Triangle t, Triangle u) {
+    const auto point = [&](int32_t v) {
+        const Point& p = surface.vertices[at(v)];
+        return Kernel::Point_3(p[0], p[1], p[2]);
+    };
+    // Shared corners first.
+    size_t shared = 0;
+    for (size_t i = 0; i < 3; ++i) {
+        const auto same = std::find(u.begin() + static_cast<std::ptrdiff_t>(shared), u.end(), t[i]);
+        if (same == u.end()) continue;
+        std::iter_swap(u.begin() + static_cast<std::ptrdiff_t>(shared), same);
+        std::swap(t[i], t[shared++]);
+    }
+    const Kernel::Point_3 a = point(t[0]), b = point(t[1]), c = point(t[2]);
+    const Kernel::Point_3 d = point(u[0]), e = point(u[1]), f = point(u[2]);
+    if (shared == 3) return true;
+    if (shared == 2) return CGAL::coplanar(a, b, c, f) && CGAL::coplanar_orientation(a, b, c, f) == CGAL::POSITIVE;
+    if (shared == 1)
+        return CGAL::do_intersect(Kernel::Segment_3(b, c), Kernel::Triangle_3(d, e, f)) ||
+               CGAL::do_intersect(Kernel::Segment_3(e, f), Kernel::Triangle_3(a, b, c));
+    return CGAL::do_intersect(Kernel::Triangle_3(a, b, c), Kernel::Triangle_3(d, e, f));
 }
 
 // The vertices' order along the curve: by the cell of a grid, then by x, y, z, then as they were given.
@@ -407,6 +436,14 @@ pw_status verdict(const Surface& surface, Progress& progress) {
         if (error.status() == PW_ERROR_CANCELLED) throw;
         return error.status();
     }
+}
+
+bool crosses_itself(const Surface& surface, Progress& progress) {
+    bool crosses = false;
+    for_doubtful_pairs(surface, progress, [&](size_t t, size_t u) {
+        crosses = crosses || cross_each_other(surface, surface.triangles[t], surface.triangles[u]);
+    });
+    return crosses;
 }
 
 Surface check_surface(const MeshView& mesh, Progress& progress) {

@@ -55,6 +55,8 @@ struct Surface {
     std::vector<Triangle> triangles;
     std::vector<Piece> pieces;  // of every source face at least one; pieces[t] of triangle t where the surface is exact
     size_t face_count = 0;      // the caller's
+    // Of each source face the one that it is a duplicate of, which alone has pieces, or itself. Empty: there is none.
+    std::vector<int32_t> original;
 
     // How it came from the caller's mesh: see pw_summary and pw_hierarchy_account.
     pw_rung rung = PW_RUNG_EXACT;
@@ -86,7 +88,10 @@ void check_surface(const Surface& surface, Progress& progress);
 // Its verdict: the status of that Error, or PW_OK. Throws if cancelled.
 pw_status verdict(const Surface& surface, Progress& progress);
 
-// Both in one.
+// Whether two triangles have anything in common but corners and edges that they share.
+bool crosses_itself(const Surface& surface, Progress& progress);
+
+// read_mesh() and check_surface() in one.
 Surface check_surface(const MeshView& mesh, Progress& progress);
 
 }  // namespace partwheel

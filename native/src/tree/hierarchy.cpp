@@ -17,7 +17,7 @@ namespace partwheel {
 
 namespace {
 
-// The tetrahedron behind most of each face's area, and the areas.
+// The tetrahedron behind most of each face's area, and the areas: duplicates go with their original, and have none.
 void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const int32_t> leaf_of_tet,
                   std::vector<int32_t>& leaf, std::vector<double>& face_area) {
     std::vector<Piece> pieces = surface.pieces;
@@ -41,6 +41,7 @@ void assign_faces(const Surface& surface, const TetMesh& mesh, std::span<const i
             leaf[face] = l;
         }
     }
+    for (size_t f = 0; f < surface.original.size(); ++f) leaf[f] = leaf[at(surface.original[f])];
 }
 
 // The source face that each outer facet of the tetrahedra is of, or nearest to; -1: none. Sorted by leaf, then corner.

@@ -61,7 +61,8 @@ void check_vertices(const SavedHierarchy& saved) {
         if (s >= 0) sources.push_back(s);
     }
     std::sort(sources.begin(), sources.end());
-    if (std::adjacent_find(sources.begin(), sources.end()) != sources.end())
+    // On both sides of a wall there are vertices of the same source.
+    if (saved.rung == PW_RUNG_EXACT && std::adjacent_find(sources.begin(), sources.end()) != sources.end())
         refuse_saved("two vertices have one source");
 }
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..compatible import spread_over
 from ..cut import mirror_planes
+from ..duplicates import without_duplicates
 
 POINTS, FIELD = 512, 8192  # on the part; on what lies about its mirror image
 BESIDE = 0.5  # overlap of a part's mirror image with the part itself, from which on it lies in the plane
@@ -27,6 +28,7 @@ def mirrored(hierarchy, vertices, triangles, faces, node):
     """[Image, ...] of a node, one for each plane in which the model is its own mirror image and the node has another
     part on its other side, the model's best plane first. vertices (V,3), triangles (T,3), faces (T,) the source face of
     each: the surface that the hierarchy is of. Raises PartwheelError."""
+    triangles, faces = without_duplicates(hierarchy, vertices, triangles, faces)
     corners = np.asarray(vertices, np.float64)[np.asarray(triangles)]
     double = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     inside = np.zeros(len(hierarchy.order), bool)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compatible import spread_over
+from ..duplicates import without_duplicates
 
 POINTS, FINE, COARSE = 192, 768, 4  # on a surface: to align; to measure with; of how many one is enough to choose turns
 TURNS, TRIES, STEPS = 8, 3, 8  # about the longest axis; how many of all turns are refined, and in how many steps
@@ -49,6 +50,7 @@ class Measures(NamedTuple):
 def measures(hierarchy, vertices, triangles, faces, matrix=np.eye(4)):
     """The Measures of all nodes. vertices (V,3), triangles (T,3), faces (T,) the source face of each: the surface that
     the hierarchy is of. matrix (4,4): from there to where parts are compared."""
+    triangles, faces = without_duplicates(hierarchy, vertices, triangles, faces)
     place = np.empty(len(hierarchy.order), np.int64)
     place[hierarchy.order] = np.arange(len(place))
     sequence = np.argsort(place[faces], kind="stable")

@@ -456,12 +456,6 @@ double find_pieces(const Surface& source, const Surface& coarse, std::span<const
     return farthest;
 }
 
-std::string with_commas(size_t n) {
-    std::string text = std::to_string(n);
-    for (size_t end = text.size(); end > 3; end -= 3) text.insert(end - 3, ",");
-    return text;
-}
-
 }  // namespace
 
 Coarse made_coarse(Surface source, size_t target, size_t threads, Progress& progress) {
@@ -518,7 +512,9 @@ void carry_over(Coarse&& coarse, Surface& surface) {
     std::vector<Piece> most(coarse.surface.triangles.size(), Piece{0, 0, -1});
     for (const Piece& p : surface.pieces)
         if (p.area > most[at(p.face)].area) most[at(p.face)] = p;
-    for (Piece& p : coarse.pieces) p.triangle = most[at(p.triangle)].triangle;
+    const auto original = [&](int32_t t) { return surface.original.empty() ? t : surface.original[at(t)]; };
+    for (Piece& p : coarse.pieces) p.triangle = most[at(original(p.triangle))].triangle;
+    surface.original.clear();
     surface.pieces = std::move(coarse.pieces);
     surface.face_count = coarse.face_count;
     surface.deviation = coarse.deviation + surface.deviation * diagonal(coarse.surface) / coarse.diagonal;

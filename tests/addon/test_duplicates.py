@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects of models with duplicate faces, and with walls inside: closed, no cap too many, of the model's volume."""
+
+import sys
+from pathlib import Path
+
+import bpy
+import numpy
+from common import part
+from solid_case import SolidTest, caps, volume
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "core"))
+import shapes  # noqa: E402  (found only now)
+
+QUADS = 2058
+
+
+def corners_of(mesh, matrix):
+    """Of each polygon its corners' places, rounded, in no order."""
+    places = [tuple(round(x, 4) for x in matrix @ vertex.co) for vertex in mesh.vertices]
+    return [frozenset(places[vertex] for vertex in polygon.vertices) for polygon in mesh.polygons]
+
+
+class Duplicates(SolidTest):
+    def house(self, flipped=False):
+        vertices, quads = shapes.house()
+        rng = numpy.random.default_rng(0)
+        quads = quads + [quads[i] for i in rng.permutation(QUADS)[:QUADS // 2]]
+        if flipped:
+            quads = [quad[::-1] if flip else quad for quad, flip in zip(quads, rng.random(len(quads)) < 0.3)]
+        obj = self.add(vertices, quads, "house")
+        self.assertEqual(part("api").build(obj).summary.rung, "repaired")
+        return obj
+
+    def check_objects(self, obj, cut, made, whole):
+        """Closed, together of the volume, with each of the model's polygons that lies in one part once."""
+        sources = {*corners_of(obj.data, obj.matrix_world)}
+        own = []
+        for new in made:
+            self.assertSolid(new.data)
+            marks = caps(new.data)
+            own += [each for each, cap in zip(corners_of(new.data, new.matrix_world), marks) if not cap]
+        self.assertAlmostEqual(sum(volume(new.data) for new in made), whole, 3)
+        self.assertEqual(len(own), len(sources))
+        self.assertEqual(set(own), sources)
+
+    def test_parts_as_objects_have_each_face_once(self):
+        for flipped in (False, True):
+            obj = self.house(flipped)
+            cut = part("api").cut(obj)
+            made = part("api").write(obj, cut, {"OBJECTS"}, origins=False).objects
+            self.check_objects(obj, cut, made, shapes.HOUSE_VOLUME)
+            # Caps are where parts meet, the same on both sides, and nowhere else.
+            found = [each for new in made for each, cap in zip(corners_of(new.data, new.matrix_world), caps(new.data)) if cap]
+            self.assertGreater(len(found), 0)
+            self.assertTrue(all(found.count(each) == 2 for each in found))
+
+    def test_the_operator_says_that_duplicates_are_there_once(self):
+        obj = self.house()
+        bpy.context.view_layer.objects.active = obj
+        objects = part("cut.objects")
+        cut = part("api").cut(obj)
+        made = part("api").write(obj, cut, {"OBJECTS"}).objects
+        note, = objects.notes(obj, cut, made, False)
+        self.assertIn("1,029 duplicate faces", note)
+        bpy.data.objects.remove(made.pop())
+        self.assertIn("volumes", [*objects.notes(obj, cut, made, False)][-1])
+
+    def test_what_a_part_is_removed_from_keeps_its_duplicates(self):
+        obj = self.house()
+        hierarchy = part("api").build(obj)
+        first, last = part("api").cut(obj).slices(0)
+        inside = numpy.isin(hierarchy.leaf, numpy.concatenate([numpy.arange(a, b) for a, b in zip(first, last)]))
+        node = next(node for node in hierarchy.path(int(numpy.flatnonzero(inside)[0]))
+                    if hierarchy.tet_first[node] <= first[0] and hierarchy.tet_last[node] >= last[-1])
+        faces = set(hierarchy.faces(node).tolist())
+        left = [each for face, each in enumerate(corners_of(obj.data, obj.matrix_world)) if face not in faces]
+        part("solid.solids").remove(obj, hierarchy, int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node]))
+        marks = caps(obj.data)
+        kept = [each for each, cap in zip(corners_of(obj.data, obj.matrix_world), marks) if not cap]
+        self.assertEqual(sorted(map(sorted, kept)), sorted(map(sorted, left)))
+        self.assertLess(len(set(kept)), len(kept))
+
+
+class Walls(SolidTest):
+    def test_parts_as_objects_are_closed_by_walls(self):
+        obj = self.add(*shapes.prisms(), "prisms")
+        hierarchy = part("api").build(obj)
+        self.assertAlmostEqual(hierarchy.summary.volume, shapes.PRISMS_VOLUME, 4)
+        for count in (12, 4):
+            made = part("api").write(obj, part("api").cut(obj, count), {"OBJECTS"}, origins=False).objects
+            self.assertEqual(len(made), count)
+            Duplicates.check_objects(self, obj, None, made, shapes.PRISMS_VOLUME)
+            self.assertFalse([*part("cut.objects").notes(obj, part("api").cut(obj, count), made, False)])

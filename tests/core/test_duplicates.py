@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faces that are there several times count once, and walls between cells close them: volumes are those counted by hand."""
+
+import numpy as np
+import pytest
+import shapes
+from partwheel import Hierarchy, Index, PartwheelError, duplicate_faces
+from partwheel.cut import Cut
+from solid_checks import check_solid, tetrahedra_volume, volume
+
+HALF = 1029  # of the house's quads
+
+
+def half_of(quads, seed=0):
+    return [quads[i] for i in np.random.default_rng(seed).permutation(len(quads))[:HALF]]
+
+
+def with_own_vertices(vertices, polygons, more):
+    """Polygons that have none of their vertices in common with the others."""
+    used = sorted({corner for polygon in more for corner in polygon})
+    number = {old: len(vertices) + new for new, old in enumerate(used)}
+    return (vertices + [vertices[old] for old in used],
+            polygons + [[number[corner] for corner in polygon] for polygon in more])
+
+
+def randomly_flipped(polygons, seed=1):
+    flips = np.random.default_rng(seed).random(len(polygons)) < 0.3
+    return [polygon[::-1] if flip else polygon for polygon, flip in zip(polygons, flips)]
+
+
+def two_triangles(quads):
+    """By the other diagonal than shapes.polygons() takes."""
+    return [triangle for a, b, c, d in quads for triangle in ([d, a, b], [b, c, d])]
+
+
+VERTICES, QUADS = shapes.house()
+COPIES = half_of(QUADS)
+TURNED = [quad[2:] + quad[:2] for quad in COPIES]
+CASES = {
+    "on the same vertices": (VERTICES, QUADS + COPIES),
+    "turned": (VERTICES, QUADS + TURNED),
+    "wound the other way": (VERTICES, QUADS + [quad[::-1] for quad in COPIES]),
+    "first": (VERTICES, COPIES + QUADS),
+    "on vertices of their own": with_own_vertices(VERTICES, QUADS, COPIES),
+    "on vertices of their own, wound the other way":
+        with_own_vertices(VERTICES, QUADS, [quad[::-1] for quad in COPIES]),
+    "three times": (VERTICES, QUADS + COPIES + TURNED),
+    "as two triangles": (VERTICES, QUADS + two_triangles(COPIES)),
+    "the whole shell, on vertices of its own": with_own_vertices(VERTICES, QUADS, QUADS),
+    "the whole shell, inside out": with_own_vertices(VERTICES, QUADS, [quad[::-1] for quad in QUADS]),
+    "randomly flipped": (VERTICES, randomly_flipped(QUADS + COPIES)),
+}
+
+
+def check_parts(hierarchy, cut, whole):
+    solids = [solid for solid in cut.solids() if solid]
+    for solid in solids:
+        check_solid(solid)
+    parts = sum(volume(solid.vertices, solid.triangles) for solid in solids)
+    for each in (parts, hierarchy.summary.volume, tetrahedra_volume(hierarchy)):
+        assert abs(each - whole) < 1e-6 * whole
+    return solids
+
+
+def test_the_house_is_as_large_as_it_is():
+    shape = shapes.polygons(VERTICES, QUADS)
+    assert shape.face_count == 2058
+    assert abs(volume(shape.vertices, shape.triangles) - shapes.HOUSE_VOLUME) < 1e-9
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_duplicates_count_once(name):
+    shape = shapes.polygons(*CASES[name])
+    hierarchy = Hierarchy.build(*shape)
+    original = duplicate_faces(*shape)
+    count = int((original != np.arange(len(original))).sum())
+    assert count == shape.face_count - len(QUADS)
+    assert hierarchy.summary.rung == "repaired" and hierarchy.summary.deviation == 0
+    assert f"{count:,} faces are duplicates of others, and were counted once." in hierarchy.account
+    assert (hierarchy.leaf == hierarchy.leaf[original]).all()
+    alone = Hierarchy.build(*shapes.polygons(VERTICES, QUADS))
+    assert abs(hierarchy.area[-1] - alone.area[-1]) < 1e-9 * alone.area[-1]
+    cut = Cut.automatic(hierarchy)
+    assert len(cut) > 2 and (cut.labels == cut.labels[original]).all()
+    outer = np.concatenate([solid.faces[solid.beyond < 0] for solid in check_parts(hierarchy, cut, shapes.HOUSE_VOLUME)])
+    assert sorted(np.unique(outer)) == sorted(np.unique(original))
+    again = Hierarchy.load(hierarchy.save())
+    assert again.account == hierarchy.account and (again.leaf == hierarchy.leaf).all()
+
+
+def test_what_is_there_once_is_no_duplicate():
+    for name, make in shapes.SHAPES.items():
+        if not name.endswith(".off"):
+            shape = make()
+            assert (duplicate_faces(*shape) == np.arange(shape.face_count)).all(), name
+
+
+def test_a_tetrahedron_of_a_bent_quad_and_two_triangles_is_a_solid():
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 1), (0, 1, 0)]
+    shape = shapes.polygons(corners, [[0, 1, 2, 3], [1, 0, 3], [3, 2, 1]])
+    assert (duplicate_faces(*shape) == np.arange(3)).all()
+    assert abs(Hierarchy.build(*shape).summary.volume - 1 / 6) < 1e-12
+
+
+def test_polygons_of_many_corners_are_the_sum_of_smaller_ones():
+    """A prism over a star, whose lid is there as an n-gon, as quads and triangles, and as triangles."""
+    star = shapes.star()
+    lid = [tuple(t) for t in star.triangles[star.faces == 0]]
+    more = np.array([*star.triangles, *lid], np.int32)
+    faces = np.array([*star.faces, *(star.face_count + k for k in range(len(lid)))], np.int32)
+    shape = shapes.Shape(star.vertices, more, faces, star.face_count + len(lid))
+    assert (duplicate_faces(*shape)[star.face_count:] == 0).all()
+    hierarchy = Hierarchy.build(*shape)
+    check_parts(hierarchy, Cut.automatic(hierarchy), Hierarchy.build(*star).summary.volume)
+    assert (hierarchy.leaf[star.face_count:] == hierarchy.leaf[0]).all()
+
+
+def test_duplicates_of_large_meshes_count_once():
+    """Parts are found on a coarser copy."""
+    shape = shapes.polygons(*CASES["on the same vertices"])
+    hierarchy = Hierarchy.build(*shape, exact_triangles=2000)
+    assert hierarchy.summary.rung == "coarse" and "1,029 faces are duplicates" in hierarchy.account
+    assert (hierarchy.leaf == hierarchy.leaf[duplicate_faces(*shape)]).all()
+    assert abs(hierarchy.summary.volume - shapes.HOUSE_VOLUME) < 0.05 * shapes.HOUSE_VOLUME
+
+
+def test_duplicates_count_once_from_points():
+    shape = shapes.polygons(*CASES["on the same vertices"])
+    hierarchy = Hierarchy.build(*shape, rungs=4)
+    assert (hierarchy.leaf == hierarchy.leaf[duplicate_faces(*shape)]).all()
+    assert abs(hierarchy.summary.volume - shapes.HOUSE_VOLUME) < 0.02 * shapes.HOUSE_VOLUME
+
+
+def test_bad_meshes_have_no_duplicates():
+    with pytest.raises(PartwheelError):
+        duplicate_faces(np.zeros((3, 3)), [[0, 1, 7]])
+
+
+# ---- Walls
+
+
+def as_row(count=12):
+    """Hexagonal prisms in a row, each welded to the next."""
+    return shapes.prisms(columns=count, rows=1)
+
+
+@pytest.mark.parametrize("model", [shapes.prisms(), as_row()], ids=["honeycomb", "row"])
+@pytest.mark.parametrize("parts", [1, 5, 12])
+def test_walls_close_the_cells_on_both_sides(model, parts):
+    vertices, polygons = model
+    shape = shapes.polygons(vertices, polygons)
+    hierarchy = Hierarchy.build(*shape)
+    walls = 12 * 8 - shape.face_count
+    assert hierarchy.summary.rung == "repaired" and hierarchy.summary.deviation == 0
+    assert hierarchy.summary.components == 12 and hierarchy.summary.cavities == 0
+    assert f"{walls} faces are walls inside the solid" in hierarchy.account
+    solids = check_parts(hierarchy, Cut.into(hierarchy, parts), shapes.PRISMS_VOLUME)
+    faces = np.concatenate([solid.faces for solid in solids])
+    counts = np.bincount(faces[faces >= 0], minlength=shape.face_count)
+    assert (counts == np.bincount(shape.faces)).all()  # each triangle of the mesh once
+    again = Hierarchy.load(hierarchy.save())
+    check_parts(again, Cut.into(again, parts), shapes.PRISMS_VOLUME)
+
+
+def test_each_prism_is_a_part():
+    shape = shapes.polygons(*shapes.prisms())
+    cut = Cut.into(Hierarchy.build(*shape), 12)
+    volumes = [cut.volume(part) for part in range(len(cut))]
+    assert np.allclose(volumes, shapes.PRISMS_VOLUME / 12)
+    index = Index(cut.hierarchy, cut.hierarchy.cut_parts(12))
+    assert len(set(index.holding(np.array([[0, 0, 0.5], [0.75, 0.5 * 3 ** 0.5 / 2, 0.5]])).tolist())) == 2
+
+
+@pytest.mark.parametrize("flipped", [False, True])
+def test_which_way_walls_wind_does_not_matter(flipped):
+    vertices, polygons = shapes.prisms()
+    polygons = randomly_flipped(polygons) if flipped else [polygon[::-1] for polygon in polygons]
+    hierarchy = Hierarchy.build(*shapes.polygons(vertices, polygons))
+    check_parts(hierarchy, Cut.into(hierarchy, 12), shapes.PRISMS_VOLUME)
+
+
+def test_walls_that_are_there_twice():
+    vertices, polygons = shapes.prisms()
+    shape = shapes.polygons(vertices, polygons + [polygon[::-1] for polygon in polygons[10:40]])
+    hierarchy = Hierarchy.build(*shape)
+    assert "walls inside" in hierarchy.account and "30 faces are duplicates" in hierarchy.account
+    check_parts(hierarchy, Cut.into(hierarchy, 12), shapes.PRISMS_VOLUME)
+
+
+def test_cavities_beside_walls_stay_cavities():
+    """Two boxes with one wall, one of which has a box taken out of it."""
+    two = shapes.polycube([(0, 0, 0), (1, 0, 0)])
+    numbers = {tuple(place): number for number, place in enumerate(two.vertices.tolist())}
+    wall = [numbers[1.0, y, z] for y, z in ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))]
+    wall = shapes.polygons(two.vertices, [wall])
+    hole = shapes.turned_inside_out(shapes.moved(shapes.cube(), (0.25, 0.25, 0.25), 0.5))
+    both = shapes.Shape(two.vertices, np.vstack([two.triangles, wall.triangles]), np.r_[two.faces, 10, 10], 11)
+    hierarchy = Hierarchy.build(*shapes.merged(both, hole))
+    assert hierarchy.summary.cavities == 1 and hierarchy.summary.components == 2
+    check_parts(hierarchy, Cut.into(hierarchy, 2), 2 - 0.125)
+
+
+def test_two_closed_boxes_with_a_wall_each():
+    """Unwelded: the two walls are at the same place, and each box keeps its own."""
+    shape = shapes.merged(shapes.cube(), shapes.moved(shapes.cube(), (1, 0, 0)))
+    hierarchy = Hierarchy.build(*shape)
+    cut = Cut.into(hierarchy, 2)
+    assert [sorted(np.flatnonzero(cut.labels == part)) for part in (0, 1)] in (
+        [list(range(6)), list(range(6, 12))], [list(range(6, 12)), list(range(6))])
+    volumes = [volume(solid.vertices, solid.triangles) for solid in cut.solids()]
+    assert abs(sum(volumes) - hierarchy.summary.volume) < 1e-9 and abs(sum(volumes) - 2) < 0.01
