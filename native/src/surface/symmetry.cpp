@@ -110,7 +110,7 @@ private:
             std::rotate(t.begin(), lowest, t.end());
             order.push_back({centre(t), t});
         }
-        std::ranges::sort(order, {}, [](const auto& each) -> const Point& { return each.first; });
+        std::ranges::stable_sort(order, {}, [](const auto& each) -> const Point& { return each.first; });
         for (const auto& each : order) triangles_.push_back(each.second);
     }
 
@@ -143,6 +143,7 @@ private:
             middle_ = middle_ + size * centre(t);
             whole += size;
         }
+        if (!std::isfinite(1 / whole)) return {};  // all on a line
         middle_ = 1 / whole * middle_;
         std::array<Point, 3> spread_out{};
         for (const Triangle& t : triangles_)

@@ -348,6 +348,7 @@ double squared_distance(const Point& p, const Point& a, const Point& b, const Po
         const Point way = p - q;
         return dot(way, way);
     };
+    const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 0; };  // 0: corners at one place
     const Point ab = b - a, ac = c - a, ap = p - a;
     const double d1 = dot(ab, ap), d2 = dot(ac, ap);
     if (d1 <= 0 && d2 <= 0) return from(a);
@@ -355,16 +356,16 @@ double squared_distance(const Point& p, const Point& a, const Point& b, const Po
     const double d3 = dot(ab, bp), d4 = dot(ac, bp);
     if (d3 >= 0 && d4 <= d3) return from(b);
     const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return from(a + (d1 / (d1 - d3)) * ab);
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return from(a + share(d1, d1 - d3) * ab);
     const Point cp = p - c;
     const double d5 = dot(ab, cp), d6 = dot(ac, cp);
     if (d6 >= 0 && d5 <= d6) return from(c);
     const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return from(a + (d2 / (d2 - d6)) * ac);
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return from(a + share(d2, d2 - d6) * ac);
     const double va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 >= d3 && d5 >= d6) return from(b + ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b));
+    if (va <= 0 && d4 >= d3 && d5 >= d6) return from(b + share(d4 - d3, (d4 - d3) + (d5 - d6)) * (c - b));
     const double sum = va + vb + vc;
-    return from(a + (vb / sum) * ab + (vc / sum) * ac);
+    return from(a + share(vb, sum) * ab + share(vc, sum) * ac);
 }
 
 // Steps on the coarse surface from triangle to triangle, to where a point is on it.

@@ -30,6 +30,7 @@ std::vector<int32_t> representatives(std::span<const Point> points, size_t wante
     for (size_t i = 0; i < of.size(); ++i) of[i] = static_cast<int32_t>(i);
     if (points.size() <= wanted) return of;
     const Box box = Box::around(points);
+    if (!(box.diagonal() > 0)) return of;
     Point middle{};
     for (const Point& p : points) middle = middle + 1 / static_cast<double>(points.size()) * p;
     // The sides of cells of which there are too many and too few.
