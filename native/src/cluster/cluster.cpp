@@ -2,11 +2,7 @@
 #include "cluster/cluster.h"
 
 #include "cluster/dual_graph.h"
-
-#include <boost/geometry.hpp>
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point.hpp>
-#include <boost/geometry/index/rtree.hpp>
+#include "cluster/nearest_boxes.h"
 
 #include <algorithm>
 #include <limits>
@@ -149,19 +145,12 @@ void Clustering::join_components() {
         return;
     }
 
-    namespace bg = boost::geometry;
-    using Corner = bg::model::point<double, 3, bg::cs::cartesian>;
-    using Box = bg::model::box<Corner>;
-    std::vector<std::pair<Box, int32_t>> boxes;
-    for (int32_t i = 0; i < count; ++i) {
-        const auto [low, high] = graph_.bounds(rest[at(i)]);
-        boxes.push_back({Box({low[0], low[1], low[2]}, {high[0], high[1], high[2]}), i});
-    }
-    const bg::index::rtree<std::pair<Box, int32_t>, bg::index::rstar<16>> tree(boxes);
+    std::vector<Box> boxes;
+    for (const int32_t c : rest) boxes.push_back(graph_.bounds(c));
+    const NearestBoxes tree(std::move(boxes));
     std::vector<std::pair<int32_t, int32_t>> pairs;
-    for (const auto& [box, i] : boxes)
-        for (auto q = tree.qbegin(bg::index::nearest(box, nearest_components + 1)); q != tree.qend(); ++q)
-            if (q->second != i) pairs.push_back(std::minmax(i, q->second));
+    for (int32_t i = 0; i < count; ++i)
+        for (const int32_t j : tree.nearest(at(i), nearest_components)) pairs.push_back(std::minmax(i, j));
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     for (const auto& [i, j] : pairs) join(i, j);

@@ -440,7 +440,7 @@ void surface_distances(std::span<const Point> vertices, std::span<const Triangle
         const double y = std::sqrt(std::max(dot(one, one) - x * x, 0.0));
         const double v = std::sqrt(std::max(dot(other, other) - u * u, 0.0));
         const double crossing = y + v > 0 ? (x * v + u * y) / (y + v) : -1;
-        if (crossing >= 0 && crossing <= length) add(opposite(0), opposite(1), std::hypot(x - u, y + v));
+        if (crossing >= 0 && crossing <= length) add(opposite(0), opposite(1), std::sqrt((x - u) * (x - u) + (y + v) * (y + v)));
     });
     const Grouped<Way> ways(vertices.size(), [&](const auto& put) {
         for (const auto& [from, way] : told) put(at(from), way);

@@ -161,7 +161,7 @@ double Distances::farthest(const TriangleMesh& surface, double slack, double eno
     struct Area {
         double most;  // no point of it is farther away
         std::array<Point, 3> corners;
-        bool operator<(const Area& other) const { return most < other.most; }
+        bool operator<(const Area& other) const { return std::tie(most, corners) < std::tie(other.most, other.corners); }
     };
     std::priority_queue<Area> areas;
     double least = 0, settled = 0;  // some point is as far away as the one; those not among the areas no more than the other

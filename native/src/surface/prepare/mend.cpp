@@ -156,7 +156,8 @@ void fill_holes(Mended& mended, Progress& progress) {
     for (size_t p = 0; p < parts; ++p) {
         const double area = pmp::area(own[p], mesh), added = pmp::area(patch[p], mesh);
         const double volume = std::fabs(volume_of(mesh, own[p]) + volume_of(mesh, patch[p]));
-        const bool sheet = added > sheet_area * area && volume < sheet_volume * std::pow(area + added, 1.5);
+        const double whole = area + added;
+        const bool sheet = added > sheet_area * area && volume < sheet_volume * whole * std::sqrt(whole);
         ++(sheet ? mended.sheets : mended.solids);
         (sheet ? open : closed) += area;
         if (!sheet) mended.done.holes += holes[p];
