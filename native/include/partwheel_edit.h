@@ -275,7 +275,7 @@ typedef struct pw_index pw_index;
  * threads  0: as many as help answer one call; 1 or more: at most so many.
  * index    receives the new index, to be freed with pw_index_free. It takes some 0.1 s for 50,000 tetrahedra.
  *
- * PW_ERROR_ARGUMENT: bounds that no cut of this hierarchy has. */
+ * PW_ERROR_ARGUMENT: bounds that no cut of this hierarchy has. PW_ERROR_NO_VOLUME: no part has a hull with a volume. */
 PW_API pw_status pw_index_create(const pw_hierarchy *hierarchy, const int32_t *bounds, size_t bound_count, int32_t threads,
                                  pw_index **index);
 PW_API void pw_index_free(pw_index *index);

@@ -72,10 +72,6 @@ const Forgery forgeries[] = {
      [](SavedHierarchy& s) {
          for (Point& p : s.vertices) p = 5e-324 * p;
      }},
-    {"flat", "no volume",
-     [](SavedHierarchy& s) {
-         for (Point& p : s.vertices) p[2] = 0;
-     }},
     {"a negative area", "area", [](SavedHierarchy& s) { s.face_area[0] = -1; }},
     {"a missing leaf", "missing tetrahedron", [](SavedHierarchy& s) { s.leaf[0] = 1000; }},
     {"a missing face", "missing face", [](SavedHierarchy& s) { s.outer_faces[0] = 1000; }},
@@ -108,6 +104,33 @@ TEST(Saved, TetrahedraThatShareOneFacetByThreeAreRefused) {
 }
 
 TEST(Saved, TetrahedraWithoutASurfaceAreRefused) { expect_refused(without_surface(), "no surface", ""); }
+
+// As that of a thin sheet far from the origin, whose thickness the caller's coordinates can't hold.
+TEST(Saved, AFlatOneLoadsAndAnswers) {
+    SavedHierarchy saved = single_tetrahedron();
+    for (Point& p : saved.vertices) p[2] = 0;
+    const Built loaded = try_load(saved.pack());
+    ASSERT_EQ(loaded.status, PW_OK) << loaded.message;
+    pw_index* index = nullptr;
+    ASSERT_EQ(pw_index_create(loaded.handle.get(), nullptr, 0, 1, &index), PW_OK) << pw_error_message();
+    const Point p = {0, 0, 3}, down = {0, 0, -1};
+    int32_t part = -1;
+    double distance = 0;
+    Point nearest{};
+    EXPECT_EQ(pw_index_nearest(index, p.data(), 1, &part, &distance, nearest.data()), PW_OK);
+    EXPECT_EQ(part, 0);
+    EXPECT_EQ(distance, 3);
+    EXPECT_EQ(pw_index_first_hits(index, p.data(), down.data(), 1, &part, &distance), PW_OK);
+    pw_index_free(index);
+    const int32_t bounds[] = {0, 1};
+    EXPECT_EQ(pw_index_create(loaded.handle.get(), bounds, 2, 1, &index), PW_ERROR_NO_VOLUME);
+    for (const size_t hulls : {size_t{0}, size_t{1}}) {
+        const pw_convex_options options = {sizeof(pw_convex_options), hulls, hulls == 0 ? 0.1 : 0, 0};
+        pw_convex_parts* parts = nullptr;
+        EXPECT_EQ(pw_hierarchy_convex_parts(nullptr, loaded.handle.get(), &options, &parts), PW_OK) << pw_error_message();
+        pw_convex_parts_free(parts);
+    }
+}
 
 // What no loaded hierarchy has any more, but a tree of boxes must bear.
 TEST(Saved, TreesOfNothingAnswer) {

@@ -159,6 +159,8 @@ void PartIndex::plant(const Top& top) {
 
     boxes.clear();
     for (const std::array<Point, 3>& corners : corners_) boxes.push_back(Box::around(corners));
+    if (boxes.empty())
+        throw Error(PW_ERROR_NO_VOLUME, "The hulls of these parts have no volume. Take fewer parts, or the tetrahedra.");
     surface_ = Tree(boxes, of_facets);
     const auto sort_by = [&](auto& values) {
         auto sorted = values;
