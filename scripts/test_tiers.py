@@ -20,8 +20,7 @@ SUITES = os.environ.get("PARTWHEEL_SUITES", "sid").split()
 # The oldest Blender plays all scenarios, the newest these.
 IN_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "bones", "cage", "commands", "compose_finger",
              "confirm_enter", "convex_parts", "creases", "deform", "deform_keys", "deform_more", "deform_within",
-             "duplicate", "empty_space", "finds_first", "frames", "gather", "hands", "imports", "industry",
-             "left_out",
+             "duplicate", "empty_space", "finds_first", "frames", "gather", "hands", "imports", "industry", "left_out",
              "limits", "linked", "menu", "modes", "move", "navigate", "open_mesh", "overlays", "panel",
              "panel_solids", "parts_to", "pick_and_click", "picked_objects", "quad_view", "recover", "related",
              "restore", "seen", "select_modes", "similar_across", "three_clicks", "tool", "tool_keys", "ways",
