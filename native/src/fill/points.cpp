@@ -57,6 +57,22 @@ constexpr double loose_share = 0.05;
 
 constexpr size_t points_a_look = 512, tetrahedra_a_piece = 1024, tetrahedra_a_look = 65536;
 
+// What a winding number costs: nodes visited on average. Real surfaces take up to some 3000. Triangles that all pass through
+// each other take all nodes, and asking for all tetrahedra would take a time that grows with the square of their number.
+// So a soup is not tried beyond the first, and nothing beyond the second.
+constexpr size_t most_visits_of_soup = 4096, most_visits = 65536, tetrahedra_sampled = 64;
+
+size_t mean_visits(const TetMesh& mesh, const WindingNumber& winding) {
+    const size_t count = mesh.tetrahedra.size(), stride = count / tetrahedra_sampled + 1;
+    size_t sum = 0, asked = 0;
+    for (size_t t = 0; t < count; t += stride, ++asked) {
+        Point middle{};
+        for (const int32_t v : mesh.tetrahedra[t]) middle = middle + 0.25 * mesh.vertices[at(v)];
+        sum += winding.visits(middle);
+    }
+    return sum / std::max<size_t>(asked, 1);
+}
+
 // The Delaunay tetrahedralization of points that are all different, in canonical order.
 TetMesh tetrahedralized(const std::vector<Point>& points, Progress& progress) {
     using Cells = CGAL::Triangulation_data_structure_3<CGAL::Triangulation_vertex_base_with_info_3<int32_t, CgalKernel>,
@@ -309,22 +325,25 @@ size_t cavities(const Sides& sides) {
 
 Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Progress& progress) {
     const Mended mended = mend(source, progress);
-    const auto filled = [&](const Shell& shell) {
+    // None if that would take more visits than these.
+    const auto filled = [&](const Shell& shell, size_t visits) -> std::optional<Sides> {
         if (shell.area() == 0)
             throw Error(PW_ERROR_NOT_SOLID, "The mesh has no area at all: only edges and points.");
         const size_t wanted = std::clamp(source.vertices.size(), least_points, usual_points);
         progress.enter(PW_STAGE_TETRAHEDRA);
-        return Sides(tetrahedralized(shell.points(wanted, least_spacing * diagonal(source)), progress),
-                     WindingNumber(shell.vertices, shell.triangles), threads, progress);
+        TetMesh mesh = tetrahedralized(shell.points(wanted, least_spacing * diagonal(source)), progress);
+        const WindingNumber winding(shell.vertices, shell.triangles);
+        if (mean_visits(mesh, winding) > visits) return std::nullopt;
+        return Sides(std::move(mesh), winding, threads, progress);
     };
     Account account;
     bool thin = false;
     std::optional<Sides> found;
     if (mended.sheet_share > much_open) {
         const Shell soup{source.vertices, source.triangles};
-        const double least = least_volume * std::pow(soup.area(), 1.5);
-        found = filled(soup);
-        if (found->volume() < least || found->unsure() > sure_enough) found.reset();
+        const double least = least_volume * soup.area() * std::sqrt(soup.area());
+        found = filled(soup, most_visits_of_soup);
+        if (found && (found->volume() < least || found->unsure() > sure_enough)) found.reset();
     }
     if (!found) {
         if (mended.solids == 0 && !open_surfaces)
@@ -332,7 +351,11 @@ Solid from_points(const Surface& source, bool open_surfaces, size_t threads, Pro
                         "The mesh is a sheet, not a solid: it is open, and closing it would take as much new surface as "
                         "there is. Give it a thickness (Solidify), close it, or allow open surfaces, which are then "
                         "taken as thin solids.");
-        found = filled(shell_of(mended, sheet_thickness * diagonal(source)));
+        found = filled(shell_of(mended, sheet_thickness * diagonal(source)), most_visits);
+        if (!found)
+            throw Error(PW_ERROR_SELF_INTERSECTION,
+                        "So many triangles pass through each other that the inside can't be found. Remesh the model, or "
+                        "unite its parts with a Boolean.");
         mended.done.tell(account);
         thin = mended.solids == 0;
     }

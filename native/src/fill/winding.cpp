@@ -101,6 +101,19 @@ double WindingNumber::at(const Point& p) const {
     return levels_.empty() ? 0 : at(p, levels_.size() - 1, 0) / (4 * std::numbers::pi);
 }
 
+size_t WindingNumber::visits(const Point& p) const { return levels_.empty() ? 0 : visits(p, levels_.size() - 1, 0); }
+
+size_t WindingNumber::visits(const Point& p, size_t level, size_t index) const {
+    const Node& node = levels_[level][index];
+    const Point way = node.centre - p;
+    const double reach = far * node.radius;
+    if (level == 0 || dot(way, way) > reach * reach) return 1;
+    size_t count = 1;
+    const size_t begin = index * run, end = std::min(begin + run, levels_[level - 1].size());
+    for (size_t i = begin; i < end; ++i) count += visits(p, level - 1, i);
+    return count;
+}
+
 double WindingNumber::at(const Point& p, size_t level, size_t index) const {
     const Node& node = levels_[level][index];
     const Point way = node.centre - p;

@@ -24,6 +24,9 @@ public:
     // At a point, to some hundredths. Any number of threads may ask. The same bits on every machine.
     double at(const Point& p) const;
 
+    // How many nodes at() visits: some thousands of a surface, all of them where all triangles are near each other.
+    size_t visits(const Point& p) const;
+
 private:
     // A triangle, or nodes that follow each other along a space-filling curve.
     struct Node {
@@ -31,6 +34,7 @@ private:
         double radius = 0;         // of a ball about the centre with all of it
     };
     double at(const Point& p, size_t level, size_t index) const;
+    size_t visits(const Point& p, size_t level, size_t index) const;
 
     std::span<const Point> vertices_;
     std::vector<Triangle> triangles_;        // along the curve
