@@ -21,7 +21,7 @@ from solid_case import SolidTest
 from test_modal import FakeContext, event, prepared, show, view
 from test_swap import limb
 
-OURS = {"_started", "_guarded", "invoke", "modal", "cancel"}  # the guard itself
+OURS = {"_start_modal", "_run_guarded", "invoke", "modal", "cancel"}  # the guard itself
 
 
 class Fault(Exception):
@@ -72,8 +72,8 @@ def operator(cls, options, draws):
     vars(tool).update(options)
     tool.handles, tool.reports, tool.properties = [], [], types.SimpleNamespace(is_property_set=options.__contains__)
     tool.report = lambda kind, message: tool.reports.append((kind, message))
-    drawing = tool._drawing
-    tool._drawing = lambda function: draws.append(drawing(function)) or draws[-1]
+    drawing = tool._guard_drawing
+    tool._guard_drawing = lambda function: draws.append(drawing(function)) or draws[-1]
     return tool
 
 
@@ -242,7 +242,7 @@ class Faults(SolidTest):
         tool.held.finish(context.edit_object)
         failed = []
         tool._draw = lambda: failed.append(1) or self.fail("while drawing")
-        draw = tool._drawing(tool._draw)
+        draw = tool._guard_drawing(tool._draw)
         draw(), draw()
         self.assertEqual(failed, [1])
         with contextlib.redirect_stderr(io.StringIO()) as log:

@@ -15,7 +15,7 @@ SIZE_STEP, TURN_STEP, DEPTH_STEP = 1.05, math.radians(5), 0.05
 
 class Adjusting(InView):
     """Mixed into an operator that has a scale and whether to mirror as well; _show(context), all as it is now; what
-    _confirmed(context) answers; and _changed(event, sign): whether a key that is none of those below changes something,
+    on_confirm(context) answers; and _changed(event, sign): whether a key that is none of those below changes something,
     which it then does, sign as in keys.TURNS."""
 
     angle: bpy.props.FloatProperty(
@@ -28,7 +28,7 @@ class Adjusting(InView):
     def _moved(self, context, event):
         """The mouse has."""
 
-    def _handle(self, context, event):
+    def on_event(self, context, event):
         if event.type in keys.NAVIGATE.events | keys.SYSTEM:
             return {"PASS_THROUGH"}
         if event.type == "MOUSEMOVE":
@@ -37,7 +37,7 @@ class Adjusting(InView):
             if event.type in CANCEL:
                 return {"CANCELLED"}
             if event.type in CONFIRM:
-                return self._confirmed(context)
+                return self.on_confirm(context)
             if self._adjusted(event, keys.TURNS.get(event.type, 0)):
                 self._show(context)
         return {"RUNNING_MODAL"}

@@ -20,7 +20,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
     bl_idname = "object.partwheel_place"
     bl_label = "Place Part"
     bl_options = {"REGISTER", "UNDO"}
-    lost = "{operator} stopped: the part is no longer the active object."
+    lost_message = "{operator} stopped: the part is no longer the active object."
     transform = None  # its own, before
 
     target: bpy.props.StringProperty(name="Onto", description="The object that the part is placed on")
@@ -63,17 +63,17 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
 
     # ---- With the mouse --------------------------------------------------------------------------------------------
 
-    def _begin(self, context, event):
+    def on_start(self, context, event):
         part = context.active_object
         self.part_name, self.transform = part.name_full, placement.own_transform(part)
         self.start, self.own = part.matrix_world.copy(), placement.anchor(part)
         self.target, self.scale = "", 1
-        self._before_saving(self._put_back)
-        self._tell(context, iface_("Move the mouse over a surface"), keys.PLACING)
+        self._call_before_saving(self._put_back)
+        self._show_status(context, iface_("Move the mouse over a surface"), keys.PLACING)
         self._moved(context, event)
         return {"RUNNING_MODAL"}
 
-    def _still_there(self, context):
+    def can_continue(self, context):
         part = context.active_object
         return part is not None and part.name_full == self.part_name and context.mode == "OBJECT"
 
@@ -89,16 +89,16 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
         self.fit, self.scale = not self.fit, 1
         return True
 
-    def _confirmed(self, context):
+    def on_confirm(self, context):
         if not self.target:
-            self._tell(context, iface_("There is no surface under the mouse yet"), keys.PLACING)
+            self._show_status(context, iface_("There is no surface under the mouse yet"), keys.PLACING)
             return {"RUNNING_MODAL"}
         if self.mirror:
             composition.update_matrices()
             placement.mirrored(context.active_object, kept.named(self.target)).select_set(True)
         return {"FINISHED"}
 
-    def _take_back(self, _context):
+    def on_cancel(self, _context):
         self._put_back()
 
     def _put_back(self):
@@ -122,11 +122,11 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
         except Refused as error:
             self.fit = False
             placement.put(context.active_object, self.start, self.own, target, self._pose())
-            self._tell(context, str(error), keys.PLACING)
+            self._show_status(context, str(error), keys.PLACING)
             return
         state = [iface_("Onto {name}").format(name=target.name), self._adjustments()]
         state += [iface_("fitted")] * self.fit + [iface_("with mirror copy")] * self.mirror
-        self._tell(context, ", ".join(state), keys.PLACING)
+        self._show_status(context, ", ".join(state), keys.PLACING)
 
 
 CLASSES = (OBJECT_OT_partwheel_place,)

@@ -23,7 +23,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
 
     bl_idname = "mesh.partwheel_swap"
     bl_label = "Swap with Compatible Part"
-    lost = "{operator} stopped: the object is no longer the active one."
+    lost_message = "{operator} stopped: the object is no longer the active one."
     was_edited, preview, taken = False, None, keys.OFFER.events
     takes_away = True
 
@@ -78,7 +78,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
 
     # ---- With the wheel --------------------------------------------------------------------------------------------
 
-    def _begin(self, context, _event):
+    def on_start(self, context, _event):
         obj = context.active_object
         with waiting(context):
             self.check(obj)
@@ -93,20 +93,20 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
             self.place = swapping.Place(obj, hierarchy, self.node, self.snap)
             self.offers, self.index = self.place.offers(others), 0
             self.preview = Preview(self.place)
-            self._before_saving(previews.end)
+            self._call_before_saving(previews.end)
             self._show(context)
         return {"RUNNING_MODAL"}
 
-    def _still_there(self, context):
+    def can_continue(self, context):
         active = context.view_layer.objects.active  # none while it is hidden, in some versions
         obj = kept.named(self.place.name)
         return (obj is not None and context.view_layer.objects.get(obj.name) == obj and active in (None, obj)
                 and context.mode == "OBJECT")
 
-    def _handle(self, context, event):
+    def on_event(self, context, event):
         if not self.preview.there():  # a file was saved meanwhile, or a step undone
             self._show(context)
-        return Adjusting._handle(self, context, event)
+        return Adjusting.on_event(self, context, event)
 
     def _changed(self, event, sign):
         if event.type in keys.OFFER.events:
@@ -118,9 +118,9 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
         self.preview.show(offer, self._adjustment())
         state = [iface_("{name}, part {number} of {count}, {likeness:.0%} alike").format(
             name=offer.name, number=self.index + 1, count=len(self.offers), likeness=offer.score), self._adjustments()]
-        self._tell(context, problem or ", ".join(state + [iface_("mirrored")] * self.mirror), keys.SWAPPING)
+        self._show_status(context, problem or ", ".join(state + [iface_("mirrored")] * self.mirror), keys.SWAPPING)
 
-    def _confirmed(self, context):
+    def on_confirm(self, context):
         previews.end()
         if self.was_edited:
             # Undo steps of Edit Mode hold its mesh alone.
@@ -133,7 +133,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
             return {"RUNNING_MODAL"}
         return {"FINISHED"}
 
-    def _take_back(self, context):
+    def on_cancel(self, context):
         previews.end()
         if self.was_edited and context.active_object and context.active_object.mode == "OBJECT":
             bpy.ops.object.mode_set(mode="EDIT")
@@ -151,7 +151,7 @@ class Preview:
 
     def show(self, offer, adjustment):
         if not self.there():
-            self._begin()
+            self._create()
         wanted = offer.name, offer.node
         for each, name in self.shown.items():
             bpy.data.objects[name].hide_viewport = each != wanted
@@ -160,7 +160,7 @@ class Preview:
         else:
             self.shown[wanted] = previews.show(self.place.stand_in(offer, adjustment)).name
 
-    def _begin(self):
+    def _create(self):
         obj = kept.named(self.place.name)
         mesh = self.place.rest()
         rest = obj.copy()  # with its modifiers and materials

@@ -82,7 +82,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     begun_in: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was divided", default=True)
 
-    lost = "{operator} stopped: the mesh is no longer as it was, or in another mode."
+    lost_message = "{operator} stopped: the mesh is no longer as it was, or in another mode."
     state = building = pressed = shown = None
     object_name, mode = "", ""
 
@@ -189,7 +189,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     # ---- With the mouse
 
-    def _begin(self, context, _event):
+    def on_start(self, context, _event):
         obj = context.active_object
         self.object_name, self.mode, self.begun_in = obj.name_full, context.mode, obj.mode
         if not self.properties.is_property_set("to"):
@@ -197,22 +197,22 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         self.scroll = keys.Scroll(keys.SCROLL_STEP)
         hierarchy = None if builds.being_built(obj) else registry.hierarchy(obj)
         if hierarchy:
-            return self._hold(context, obj, hierarchy)
+            return self._start_editing(context, obj, hierarchy)
         self.building = start(self, obj)
         if not self.building:
             return {"CANCELLED"}
         self.building.watch(context)
         return {"RUNNING_MODAL"}
 
-    def _hold(self, context, obj, hierarchy):
+    def _start_editing(self, context, obj, hierarchy):
         self.state = states.Cutting(_first(obj, hierarchy, self.count))
         if highlight.shows(obj):
             self.state = self.state.clicked(picks.picked(obj).face)
         self.counts = counts(obj.data)
-        self._draw_with(self._draw)
+        self._add_draw_handler(self._draw)
         return self._show(context, self.state)
 
-    def _handle(self, context, event):
+    def on_event(self, context, event):
         if self.building:
             return self._built_on(context, event)
         if self.shown and at_rest() and not current(kept.named(self.object_name), self.shown):  # another frame
@@ -242,7 +242,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         obj = kept.named(self.object_name)
         if not hierarchy or obj is None or context.area is None or context.mode != self.mode:
             return {"CANCELLED"}
-        return self._hold(context, obj, hierarchy)
+        return self._start_editing(context, obj, hierarchy)
 
     def _clicked(self, context, event, over):
         """A click takes a part for the wheel, one beside it none, and then all is made; a drag merges two."""
@@ -253,7 +253,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             return {"RUNNING_MODAL"}
         begun, self.pressed = self.pressed, None
         if begun == face == NO_FACE and self.state.part is None:
-            return self._confirmed(context)
+            return self.on_confirm(context)
         if NO_FACE in (begun, face):
             return self._show(context, self.state.clicked(None)) if begun == face else {"RUNNING_MODAL"}
         labels = self.state.cut.labels
@@ -271,7 +271,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if event.type in keys.CANCEL.events:
             return {"CANCELLED"}
         if event.type in keys.CONFIRM.events:
-            return self._confirmed(context)
+            return self.on_confirm(context)
         if event.type in keys.TURNS:
             return self._show(context, self.state.turned(keys.TURNS[event.type]))
         if event.type in keys.DIGITS:
@@ -290,10 +290,10 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         self.state = state
         values = {"count": state.typed + "_" if state.typed else len(state.cut), "made": self._results()}
         if state.part is None:
-            self._tell(context, iface_("{count} parts: {made}").format(**values), keys.DIVIDING)
+            self._show_status(context, iface_("{count} parts: {made}").format(**values), keys.DIVIDING)
         else:
             faces = np.count_nonzero(state.cut.labels == state.part)
-            self._tell(context, iface_("{count} parts, one of {faces:,} faces: {made}").format(faces=faces, **values),
+            self._show_status(context, iface_("{count} parts, one of {faces:,} faces: {made}").format(faces=faces, **values),
                        keys.ON_ONE)
         if not bpy.app.background:
             obj = kept.named(self.object_name)
@@ -317,19 +317,19 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
         overlay.draw_painted(context, obj, self.shown, ("whole", cut.parts, cut.keys, part), paint)
 
-    def _confirmed(self, context):
+    def on_confirm(self, context):
         self.clusters, self.count = json.dumps(self.state.cut.parts), len(self.state.cut)
         with waiting(context):
             return self._write(context, kept.named(self.object_name), self.state.cut)
 
-    def _still_there(self, context):
+    def can_continue(self, context):
         if self.building:
             return True
         obj = context.active_object
         return (obj is not None and obj.name_full == self.object_name and context.mode == self.mode
                 and registry.known(obj.data) is self.state.base.hierarchy and counts(obj.data) == self.counts)
 
-    def _take_back(self, context):
+    def on_cancel(self, context):
         if self.building:
             self.building.abandon(context)
 

@@ -107,22 +107,22 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
 
     # ---- With the mouse --------------------------------------------------------------------------------------------
 
-    def _begin(self, context, event):
+    def on_start(self, context, event):
         obj = context.edit_object
         with waiting(context):
             faces, picked = self._faces(obj), picks.picked(obj)
             self.held = Held(obj, faces, self.method, self.rings, self.reach, picked and picked.face)
-        self._at_end.callback(self.held.abandon)
+        self._exit_stack.callback(self.held.abandon)
         self.confirmed = self.recompute = False
         self.movement, self.base = None, None  # that is under way; the last handle's matrix when it began
-        self._tick_every(context, TICK)
-        self._draw_with(self._draw)
+        self._add_timer(context, TICK)
+        self._add_draw_handler(self._draw)
         if self.start != "NONE":
             self._begin_movement(context, event, self.start)
         self._tell_state(context)
         return {"RUNNING_MODAL"}
 
-    def _handle(self, context, event):
+    def on_event(self, context, event):
         if event.type in keys.CANCEL.events and event.value == "PRESS":
             return {"CANCELLED"}
         passed = keys.NAVIGATE.events | keys.SYSTEM
@@ -149,7 +149,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
             return self._clicked(context, event)
         self.recompute = event.type in keys.RECOMPUTE.events
         if self.recompute or event.type in keys.CONFIRM.events:
-            return self._confirmed(context)
+            return self.on_confirm(context)
         if event.type in keys.TRANSFORM.events:
             self._begin_movement(context, event, event.type)
         elif event.type in keys.HANDLE_SIZE.events:
@@ -167,7 +167,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
             return None
         vertex = self.held.vertex_under(obj, *view[1:])
         if vertex is None:
-            return self._confirmed(context)
+            return self.on_confirm(context)
         if self.method == "RIGID":
             self.held.place(obj, vertex, event.shift)
         self._begin_movement(context, event, "R" if self.method == "JOINT" else "G", dragging=True)
@@ -189,7 +189,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
             self.movement = None
             self._follow(context, event, movement)
             if self.start != "NONE":  # it was started for this movement
-                return self._confirmed(context)
+                return self.on_confirm(context)
         elif event.type in keys.TRANSFORM.events:
             self._begin_movement(context, event, event.type)
         elif event.type in keys.AXIS.events:
@@ -203,7 +203,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         """While the mouse rests."""
         if self.held.ready(context.edit_object):
             if self.confirmed:
-                return self._confirmed(context)
+                return self.on_confirm(context)
             self.held.go_on(context.edit_object)
         return None
 
@@ -247,11 +247,11 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         what = self.movement.told() if self.movement else self.held.told()
         if self.held.task:
             what = (iface_("{state}: settling") if self.confirmed else iface_("{state}: getting ready")).format(state=what)
-        self._tell(context, what, keys.MOVING if self.movement else keys.DEFORMING)
+        self._show_status(context, what, keys.MOVING if self.movement else keys.DEFORMING)
 
     # ---- The end
 
-    def _confirmed(self, context):
+    def on_confirm(self, context):
         """Ends, once the part has its shape of rest."""
         self.confirmed = True
         if not self.held.settled(context.edit_object, PATIENCE):
@@ -269,11 +269,11 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
             bpy.ops.mesh.partwheel_build("INVOKE_DEFAULT")
         return {"FINISHED"}
 
-    def _take_back(self, context):
-        if self.held and self._still_there(context):
+    def on_cancel(self, context):
+        if self.held and self.can_continue(context):
             self.held.restore(context.edit_object)
 
-    def _still_there(self, context):
+    def can_continue(self, context):
         return self.held.fits(context.edit_object)
 
 

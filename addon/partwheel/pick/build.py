@@ -65,7 +65,7 @@ class Building:
         gets the parts."""
         self.build.watcher = self
         self.timer = context.window_manager.event_timer_add(TICK, window=context.window)
-        self._tell(context, 0.0, "")
+        self._show_in_status_bar(context, 0.0, "")
 
     def step(self, context, event):
         """Looks after the build: whether it is over, or another operator goes on with it. Esc cancels it: also if the
@@ -79,7 +79,7 @@ class Building:
         progress = self.build.poll() if mine else None
         if progress:
             self._show(context, *progress)
-            self._tell(context, *progress)
+            self._show_in_status_bar(context, *progress)
             return False
         self._stop_watching(context)
         if mine:
@@ -99,7 +99,7 @@ class Building:
         self._end_progress(context)
         self.line.end(context)
 
-    def _tell(self, context, fraction, stage):
+    def _show_in_status_bar(self, context, fraction, stage):
         waits = stage and not self.build.job
         said = (iface_("Partwheel finds the parts of {name} after those of {other}") if waits
                 else iface_("Partwheel finds the parts of {name}: {fraction:.0%}"))
@@ -177,7 +177,7 @@ class Beside(InView):
     buildings = ()
 
     def invoke(self, context, event):
-        return self._started(context, event) if context.window else self.execute(context)
+        return self._start_modal(context, event) if context.window else self.execute(context)
 
     def _lacking(self, context):
         """The objects whose parts are to be found before it can go on."""
@@ -193,7 +193,7 @@ class Beside(InView):
         there = obj is not None and obj.name_full == self.object_name and self.poll(context)
         return self.execute(context) if there else {"CANCELLED"}
 
-    def _begin(self, context, _event):
+    def on_start(self, context, _event):
         self.object_name, self.buildings = context.active_object.name_full, []
         lacking = self._lacking(context)
         if not lacking:
@@ -205,10 +205,10 @@ class Beside(InView):
         self.buildings[0].watch(context)
         return {"RUNNING_MODAL"}
 
-    def _still_there(self, _context):
+    def can_continue(self, _context):
         return True  # the build itself knows
 
-    def _handle(self, context, event):
+    def on_event(self, context, event):
         """While the parts are being found all but Esc goes to Blender itself."""
         if not self.buildings[0].step(context, event):
             return {"PASS_THROUGH"}
@@ -220,7 +220,7 @@ class Beside(InView):
             return {"PASS_THROUGH"}
         return self._found(context) if done.hierarchy else {"CANCELLED"}
 
-    def _take_back(self, context):
+    def on_cancel(self, context):
         for building in self.buildings:
             building.abandon(context)
 

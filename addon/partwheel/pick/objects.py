@@ -25,12 +25,12 @@ class _InObjectMode(PartPicker):
     def poll(cls, context):
         return can(cls, context.mode == "OBJECT", "This is for Object Mode.")
 
-    def _begin(self, context, event):
+    def on_start(self, context, event):
         obj = self._target(context, event)
         if not obj:
             return {"CANCELLED"}
         self.object_name = obj.name_full
-        return PartPicker._begin(self, context, event)
+        return PartPicker.on_start(self, context, event)
 
     def _target(self, context, event):
         """The object under the mouse, or else the active one, if it can be edited; or None and a report."""
@@ -78,7 +78,7 @@ class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
 
     def _key_while_holding(self, context, event, over):
         if event.type == "TAB" and not (event.shift or event.ctrl):  # confirming does what it asks for
-            return self._confirmed(context)
+            return self.on_confirm(context)
         return PartPicker._key_while_holding(self, context, event, over)
 
     def _commit(self, context):

@@ -70,7 +70,7 @@ class PartPicker(InView):
 
     NEAR = 30  # pixels, at a resolution scale of 1, that a hand may move a mouse by while it turns the wheel
 
-    begun = 0  # how many picks have begun, with the mouse, by whichever operator
+    n_started = 0  # how many picks have begun, with the mouse, by whichever operator
     commands = ()  # keys.COMMANDS that the status bar shows while a part is held
     state, target, object_name = states.Waiting(), None, ""
     clicked, stepper, wheeling = None, None, True
@@ -95,14 +95,14 @@ class PartPicker(InView):
 
     # ---- With the mouse: from nothing to a part
 
-    def _guarded(self, context, step):
+    def _run_guarded(self, context, step):
         """Nobody else runs during a step."""
         with arrays.one_reading():
-            return InView._guarded(self, context, step)
+            return InView._run_guarded(self, context, step)
 
-    def _begin(self, context, event):
-        PartPicker.begun += 1
-        self.number = PartPicker.begun
+    def on_start(self, context, event):
+        PartPicker.n_started += 1
+        self.number = PartPicker.n_started
         self.scroll, self.drag = keys.Scroll(keys.SCROLL_STEP), None
         if self.tool:
             self._click(context, event)
@@ -113,10 +113,10 @@ class PartPicker(InView):
         context.view_layer.update()  # whatever there is to be told is told
         self.state = states.Begun(event.type, event.value, event.mouse_x, event.mouse_y)
         if not advance(objects):
-            return self._ready(context)
+            return self._start_prepared(context)
         # The window is not held up until all of them are made.
-        self._slices = self._at_end.enter_context(contextlib.ExitStack())
-        self._tick_every(context, 0, self._slices)
+        self._slices = self._exit_stack.enter_context(contextlib.ExitStack())
+        self._add_timer(context, 0, self._slices)
         return {"RUNNING_MODAL"}
 
     def _prepared_on(self, context, event):
@@ -129,10 +129,10 @@ class PartPicker(InView):
             if idle:
                 return {"RUNNING_MODAL"}
         self._slices.close()
-        answer = self._ready(context)
-        return answer if idle or answer != {"RUNNING_MODAL"} else self._handle(context, event)
+        answer = self._start_prepared(context)
+        return answer if idle or answer != {"RUNNING_MODAL"} else self.on_event(context, event)
 
-    def _ready(self, context):
+    def _start_prepared(self, context):
         """All that is needed of the meshes is there, and what was done is seen to."""
         event, self.state = self.state, states.Waiting()
         objects = self._objects(context)
@@ -194,13 +194,13 @@ class PartPicker(InView):
         picked = states.pick(self.hierarchy, face)
         if event.type == "LEFTMOUSE" and event.value == "PRESS":
             self.drag = event.mouse_y, picked.index
-        return self._hold(context, obj, picked)
+        return self._start_holding(context, obj, picked)
 
-    def _hold(self, context, obj, picked):
+    def _start_holding(self, context, obj, picked):
         self.object_name, self.target, self.shown = obj.name_full, self._aim(context, obj), None
-        self._at_end.callback(overlay.shown.hide)
+        self._exit_stack.callback(overlay.shown.hide)
         if self.stepper:
-            self._draw_with(self.stepper.draw, "POST_PIXEL")
+            self._add_draw_handler(self.stepper.draw, "POST_PIXEL")
         return self._show(context, picked)
 
     def _build(self, context, obj, face):
@@ -217,7 +217,7 @@ class PartPicker(InView):
             return {"PASS_THROUGH"}
         face, self.state = self.state.face, states.Waiting()
         self.hierarchy = self.building.hierarchy
-        if not self.hierarchy or self.number < PartPicker.begun:  # the last click counts: its part stays selected
+        if not self.hierarchy or self.number < PartPicker.n_started:  # the last click counts: its part stays selected
             return {"CANCELLED"}
         obj = self._object(context)
         if obj is None or context.area is None:
@@ -225,7 +225,7 @@ class PartPicker(InView):
                 operator=label_of(self)))
             return {"CANCELLED"}
         if face is not None:
-            return self._hold(context, obj, states.pick(self.hierarchy, face))
+            return self._start_holding(context, obj, states.pick(self.hierarchy, face))
         return self._wait(context, iface_("Click a face of the mesh"))
 
     def _object(self, context):
@@ -233,12 +233,12 @@ class PartPicker(InView):
         return next((each for each in self._objects(context) if each.name_full == self.object_name), None)
 
     def _wait(self, context, header):
-        self._tell(context, header, keys.WAITING)
+        self._show_status(context, header, keys.WAITING)
         return {"RUNNING_MODAL"}
 
     # ---- With a part, or waiting for one
 
-    def _handle(self, context, event):
+    def on_event(self, context, event):
         if isinstance(self.state, states.Begun):
             return self._prepared_on(context, event)
         if isinstance(self.state, states.Building):
@@ -295,12 +295,12 @@ class PartPicker(InView):
             self._tool_snaps(context)
             return self._show(context, self.state)
         if event.type in keys.CONFIRM.events or (event.type == "LEFTMOUSE" and over and not self.tool):
-            return self._confirmed(context)
+            return self.on_confirm(context)
         if event.type in keys.MODIFIERS or (event.type == "LEFTMOUSE" and not self.tool):
             return {"RUNNING_MODAL"}
         # Any other key means what it always means, the commands on parts among them; a click starts with the next part,
         # in the keymap of the tool.
-        return self._confirmed(context) | {"PASS_THROUGH"}
+        return self.on_confirm(context) | {"PASS_THROUGH"}
 
     def _dragged(self, context, event):
         """Up or down with the button, or a pen, still down."""
@@ -330,7 +330,7 @@ class PartPicker(InView):
     def _draw(self, obj, parts):
         """What is held, as it is seen in this frame; in another one it is drawn no more."""
         seen = self.seen = changes.shown(obj.data)
-        overlay.shown.show(self._drawing, lambda obj: changes.shown(obj.data) == seen, obj, parts, self.state.node,
+        overlay.shown.show(self._guard_drawing, lambda obj: changes.shown(obj.data) == seen, obj, parts, self.state.node,
                            self.state.next, self.faces if self.snap else None)
 
     def _drawn_anew(self, obj):
@@ -343,7 +343,7 @@ class PartPicker(InView):
         number = state.typed + "_" if state.typed else state.index + 1
         told = iface_("Part {number} of {count}, {faces:,} faces, {share} of the area").format(
             number=number, count=len(state.stops), faces=len(self.faces), share=percent(share))
-        self._tell(context, ", ".join([told] + [iface_("border in creases")] * self.snap),
+        self._show_status(context, ", ".join([told] + [iface_("border in creases")] * self.snap),
                    (keys.PICKED if not self.tool else keys.HELD if self.wheeling else keys.LEFT) + self.commands
                    + (keys.ENDS[1:] if self.tool else keys.ENDS))
         return {"RUNNING_MODAL"}
@@ -356,7 +356,7 @@ class PartPicker(InView):
 
     # ---- Ends
 
-    def _confirmed(self, context):
+    def on_confirm(self, context):
         obj = self._object(context)
         # What the panel of the last operation, and Repeat Last, do again.
         self.face_index, self.level = self.state.face, self.state.level
@@ -365,13 +365,13 @@ class PartPicker(InView):
         picks.settled(obj)
         return answer
 
-    def _take_back(self, context):
+    def on_cancel(self, context):
         if isinstance(self.state, states.Building):
             self.building.abandon(context)
-        elif self.target and self._still_there(context):
+        elif self.target and self.can_continue(context):
             self.target.restore()
 
-    def _still_there(self, context):
+    def can_continue(self, context):
         if isinstance(self.state, states.Building):
             return True
         if not self.target:

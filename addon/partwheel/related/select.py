@@ -77,7 +77,7 @@ class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
 
     # ---- With the wheel
 
-    def _begin(self, context, _event):
+    def on_start(self, context, _event):
         obj = context.edit_object
         self.object_name, self.selections = obj.name_full, None
         with waiting(context):
@@ -92,11 +92,11 @@ class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
             ends = [1.0, *(each.likeness for each in self.alike), 0.0]
             self.threshold = (ends[count] + ends[count + 1]) / 2
         self._show(context, count)
-        self._tell(context, iface_("{count} parts, alike from {threshold:.2f} on").format(
+        self._show_status(context, iface_("{count} parts, alike from {threshold:.2f} on").format(
             count=count + 1, threshold=self.threshold), keys.ALIKE)
         return {"RUNNING_MODAL"}
 
-    def _handle(self, context, event):
+    def on_event(self, context, event):
         if event.type in keys.SYSTEM or event.type in keys.MOVES:
             return {"PASS_THROUGH"}
         over = picking.under_mouse(context, event) is not None
@@ -117,11 +117,11 @@ class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
             return {"FINISHED"}
         return {"FINISHED", "PASS_THROUGH"}  # any other key means what it always means
 
-    def _take_back(self, context):
-        if self.selections and self._still_there(context):
+    def on_cancel(self, context):
+        if self.selections and self.can_continue(context):
             self.selections.restore()
 
-    def _still_there(self, context):
+    def can_continue(self, context):
         obj = context.edit_object
         return obj is not None and obj.name_full == self.object_name and self.selections.fits()
 

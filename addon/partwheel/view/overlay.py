@@ -220,12 +220,12 @@ class Shown:
     def on(self):
         return self._handler is not None
 
-    def show(self, drawing, fits, obj, parts, node, larger, snapped):
-        """drawing: InView._drawing of the operator that shows it. fits(object): whether its parts are still where it is
-        seen, in another frame for instance."""
+    def show(self, guard, fits, obj, parts, node, larger, snapped):
+        """guard: InView._guard_drawing of the operator that shows it. fits(object): whether its parts are still where it
+        is seen, in another frame for instance."""
         self._what, self._fits = (obj.name_full, parts, node, larger, snapped), fits
         if not self._handler:
-            self._handler = bpy.types.SpaceView3D.draw_handler_add(drawing(self._draw), (), "WINDOW", "POST_VIEW")
+            self._handler = bpy.types.SpaceView3D.draw_handler_add(guard(self._draw), (), "WINDOW", "POST_VIEW")
         redraw()
 
     def hide(self):

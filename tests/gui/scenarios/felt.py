@@ -86,7 +86,7 @@ def play(stage):
     yield from stage.open("elephant")
     picker, hover = stage.part("pick.pick").PartPicker, stage.part("pick.hover").Hover
     overlay = stage.part("view.overlay")
-    handle, begin, moves = Clock(picker, "_handle"), Clock(picker, "_begun"), Clock(hover, "move")
+    handle, begin, moves = Clock(picker, "on_event"), Clock(picker, "_call_on_start"), Clock(hover, "move")
     draws, hover_draws, software = (
         Clock(overlay, "draw_held"), Clock(overlay, "draw_hover"), watch_batches(overlay.Parts))
     stage.use_tool()

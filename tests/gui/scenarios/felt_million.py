@@ -23,7 +23,7 @@ def play(stage):
     mode_set = {name: seconds(lambda name=name: mode(stage, name)) for name in ("OBJECT", "EDIT")}
     picker, hover = stage.part("pick.pick").PartPicker, stage.part("pick.hover").Hover
     overlay = stage.part("view.overlay")
-    handle, begin, moves = Clock(picker, "_handle"), Clock(picker, "_begun"), Clock(hover, "move")
+    handle, begin, moves = Clock(picker, "on_event"), Clock(picker, "_call_on_start"), Clock(hover, "move")
     draws, software = Clock(overlay, "draw_held"), watch_batches(overlay.Parts)
     written = Clock(stage.part("mesh.arrays"), "up_to_date")
     clocks = handle, begin, moves, draws, software, written

@@ -39,7 +39,7 @@ class Clocks:
     def __init__(self, stage):
         picker, hover = stage.part("pick.pick").PartPicker, stage.part("pick.hover")
         overlay = stage.part("view.overlay")
-        self._clocks = {"begin": Clock(picker, "_begun"), "handle": Clock(picker, "_handle"),
+        self._clocks = {"begin": Clock(picker, "_call_on_start"), "handle": Clock(picker, "on_event"),
                         "move": Clock(hover.Hover, "move"), "make": Clock(stage.part("pick.prepared"), "_make"),
                         "draw": Clock(overlay, "draw_held"), "software": watch_batches(overlay.Parts)}
 
