@@ -44,8 +44,8 @@ def around(draw, vertices, count):
 def unlike(everything, index, other, other_index, draw, count):
     """How many answers differ: (points, rays, nearest, places)."""
     points = around(draw, everything.vertices, count)
-    held = index.holding(points)
-    differ = [int((held != everything.holding(points)).sum())]
+    held = index.locate(points)
+    differ = [int((held != everything.locate(points)).sum())]
     origins, directions = directed(draw, everything.vertices, count)
     (parts, distances), (bodies, expected) = index.first_hits(origins, directions), everything.hits(origins, directions)
     met = (parts >= 0) & (bodies >= 0)
@@ -54,7 +54,7 @@ def unlike(everything, index, other, other_index, draw, count):
     expected = np.where(held >= 0, 0, everything.distances(points))
     differ.append(int((np.abs(away - expected) > 1e-9 * expected).sum()))
     matrices = placed(draw, everything.vertices, other.vertices, count)
-    touch = index.touching(other_index, matrices)[0][:, 0] >= 0
+    touch = index.intersects(other_index, matrices)[0][:, 0] >= 0
     differ.append(int((touch != everything.touch(other, matrices)).sum()))
     return differ, (np.mean(held >= 0), np.mean(parts >= 0), np.mean(held < 0), np.mean(touch))
 
@@ -105,7 +105,7 @@ def speeds(name, hierarchy, shape, draw):
     theirs = time.process_time() - start
     yield "made, ms", 1e3 * made, f"Embree {1e3 * theirs:.1f}"
     points = around(draw, shape.vertices, SPEED)
-    ours, = alternately(SPEED, lambda: index.holding(points))
+    ours, = alternately(SPEED, lambda: index.locate(points))
     few = points[:SLOW]
     contains, = alternately(SLOW, lambda: rays.contains_points(few))
     yield "which part holds a point", ours, f"trimesh by Embree, in or out: {contains:.2f}"
@@ -116,7 +116,7 @@ def speeds(name, hierarchy, shape, draw):
     triangles = shape.triangles.astype(np.int64)
     tree = igl.AABB()
     tree.init(shape.vertices, triangles)
-    outside = points[index.holding(points) < 0]
+    outside = points[index.locate(points) < 0]
     few = outside[:SLOW]
     ours, theirs = alternately(len(outside), lambda: index.nearest(outside),
                                lambda: tree.squared_distance(shape.vertices, triangles, outside))
@@ -158,10 +158,10 @@ def touching_speeds(first, second, first_mesh, second_mesh, draw):
     size = max(np.ptp(first_mesh[0]), np.ptp(second_mesh[0]))
     near, far = collision(triangle[0] + 1e3 * size, triangle[1]), collision(*triangle)
     matrices = placed(draw, first_mesh[0], second_mesh[0], PLACES, rigid=True)
-    touch, met = first.touching(second, matrices)[0][:, 0] >= 0, theirs(matrices)
+    touch, met = first.intersects(second, matrices)[0][:, 0] >= 0, theirs(matrices)
     for name, chosen in (("apart", ~touch), ("touching", touch & met)):
         given = matrices[chosen]
-        ours, fcls, empty = alternately(len(given), lambda: first.touching(second, given), lambda: theirs(given),
+        ours, fcls, empty = alternately(len(given), lambda: first.intersects(second, given), lambda: theirs(given),
                                         lambda: calls(given))
         yield f"do two touch: {name}", ours, f"FCL {fcls - empty:.2f} + {empty:.2f} for the call"
     yield "of these places FCL answers otherwise", int((touch != met).sum()), f"of {PLACES}"

@@ -39,7 +39,7 @@ class Everything:
         outer = np.flatnonzero(count[which.ravel()] == 1)
         return cls(hierarchy.vertices, tetrahedra, np.arange(len(tetrahedra)), facets[outer], outer // 4)
 
-    def holding(self, points):
+    def locate(self, points):
         parts = np.empty(len(points), np.int32)
         _call("every_holding", self.vertices, len(self.vertices), self.tetrahedra, len(self.tetrahedra),
               np.ascontiguousarray(points), len(points), parts)
@@ -48,7 +48,7 @@ class Everything:
     def holds(self, point, part):
         mine = self.of_tetrahedra == part
         only = Everything(self.vertices, self.tetrahedra[mine], self.of_tetrahedra[mine], self.facets[:0], [])
-        return only.holding(np.array([point]))[0] >= 0
+        return only.locate(np.array([point]))[0] >= 0
 
     def hits(self, origins, directions):
         """(parts (n,), distances (n,)), -1 and infinity where there is none."""

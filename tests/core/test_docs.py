@@ -93,7 +93,7 @@ def test_the_example_of_the_index_runs():
              "directions": -np.ones_like(middles)}
     exec(compile(text, "docs/index-queries.md", "exec"), scope)
     assert (scope["distances"] <= 1e-12).all() and len(np.unique(scope["parts"])) == len(scope["bounds"]) - 1
-    assert scope["touching"].min() >= 0 and (scope["part"] >= -1).all()
+    assert scope["intersecting"].min() >= 0 and (scope["part"] >= -1).all()
 
 
 def test_what_the_examples_for_blender_call_is_in_the_api():

@@ -168,7 +168,7 @@ def test_each_prism_is_a_part():
     volumes = [cut.volume(part) for part in range(len(cut))]
     assert np.allclose(volumes, shapes.PRISMS_VOLUME / 12)
     index = Index(cut.hierarchy, cut.hierarchy.cut_parts(12))
-    assert len(set(index.holding(np.array([[0, 0, 0.5], [0.75, 0.5 * 3 ** 0.5 / 2, 0.5]])).tolist())) == 2
+    assert len(set(index.locate(np.array([[0, 0, 0.5], [0.75, 0.5 * 3 ** 0.5 / 2, 0.5]])).tolist())) == 2
 
 
 @pytest.mark.parametrize("flipped", [False, True])

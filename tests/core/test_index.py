@@ -25,8 +25,8 @@ def spots(draw, everything, count):
 def check_points_and_rays(everything, index, draw, count):
     points = spots(draw, everything, count)
     size = np.ptp(everything.vertices, axis=0).max()
-    held = index.holding(points)
-    assert np.array_equal(held, everything.holding(points))
+    held = index.locate(points)
+    assert np.array_equal(held, everything.locate(points))
 
     parts, distances, nearest = index.nearest(points)
     inside = held >= 0
@@ -77,7 +77,7 @@ def test_points_and_rays_to_the_hulls(name, parts):
 def check_touch(first, second, index, other, draw, count):
     """At random places, most of which are near each other; some turned, scaled, mirrored, sheared."""
     matrices = placed(draw, first.vertices, second.vertices, count)
-    parts, points = index.touching(other, matrices)
+    parts, points = index.intersects(other, matrices)
     expected = first.touch(second, matrices)
     assert np.array_equal(parts[:, 0] >= 0, expected) and np.array_equal(parts[:, 1] >= 0, expected)
     assert 5 < expected.sum() < count - 5
@@ -105,14 +105,14 @@ def test_touching_at_a_point_an_edge_a_face_and_inside():
     matrices[:, :3, 3] = [(1, 1, 1), (1, 1, 0.5), (1, 0.5, 0.25), (1 + 2e-16 * 2, 0, 0), (0.25, 0.25, 0.25), (-2, -2, -2), (0, 0, 0)]
     matrices[4, :3, :3] *= 0.5  # inside
     matrices[5, :3, :3] *= 5    # around
-    parts, points = index.touching(index, matrices)
+    parts, points = index.intersects(index, matrices)
     assert (parts[:, 0] >= 0).tolist() == (parts[:, 1] >= 0).tolist() == [True, True, True, False, True, True, True]
     assert points[0].tolist() == [1, 1, 1] and points[3].tolist() == [0, 0, 0]
     # In a cavity nothing touches, though the hull's index says so.
     hollow, hierarchy = built("box with a cavity")[1], built("cube")[1]
     small = np.array([[[0.5, 0, 0, 1.25], [0, 0.5, 0, 1.25], [0, 0, 0.5, 1.25]]])
-    assert Index(hollow).touching(Index(hierarchy), small)[0].tolist() == [[-1, -1]]
-    assert Index(hollow, hollow.cut_parts(1)).touching(Index(hierarchy), small)[0][0, 0] == 0
+    assert Index(hollow).intersects(Index(hierarchy), small)[0].tolist() == [[-1, -1]]
+    assert Index(hollow, hollow.cut_parts(1)).intersects(Index(hierarchy), small)[0][0, 0] == 0
 
 
 @pytest.mark.parametrize("scale, offset", [(1e-60, 0), (1e60, 0), (1.0, 1e6)])
@@ -138,8 +138,8 @@ def test_the_same_on_each_run_with_threads_and_after_saving():
     matrices = placed(draw, hierarchy.vertices, hierarchy.vertices, 600)
     answers = []
     for index in (Index(hierarchy, threads=1), Index(Hierarchy.load(hierarchy.save()), threads=3)):
-        answers.append([index.holding(points), *index.first_hits(points, directions), *index.nearest(points),
-                        *index.touching(index, matrices)])
+        answers.append([index.locate(points), *index.first_hits(points, directions), *index.nearest(points),
+                        *index.intersects(index, matrices)])
     for one, other in zip(*answers):
         assert np.array_equal(one, other)
 
@@ -151,11 +151,11 @@ def test_parts_of_a_cut_by_their_tetrahedra():
     low, high = hierarchy.vertices.min(0), hierarchy.vertices.max(0)
     middles = hierarchy.vertices[hierarchy.tetrahedra].mean(axis=1)  # of small parts, too
     points = np.concatenate([draw.uniform(low, high, (2000, 3)), middles])
-    tetrahedra = Index(hierarchy).holding(points)
+    tetrahedra = Index(hierarchy).locate(points)
     points, tetrahedra = points[tetrahedra >= 0], tetrahedra[tetrahedra >= 0]
     bounds = hierarchy.cut_automatic()
     parts = np.searchsorted(bounds, tetrahedra, "right") - 1
-    hulls = Index(hierarchy, bounds).holding(points)
+    hulls = Index(hierarchy, bounds).locate(points)
     assert (hulls <= parts).all() and (hulls >= 0).all()  # a part's hull holds what the part does
     assert len(np.unique(parts)) == len(bounds) - 1
 
@@ -164,19 +164,19 @@ def test_nothing_and_nonsense():
     _, hierarchy = built("L")
     index = Index(hierarchy)
     none = np.empty((0, 3))
-    assert len(index.holding(none)) == len(index.first_hits(none, none)[0]) == len(index.nearest(none)[0]) == 0
-    assert len(index.touching(index, np.empty((0, 4, 4)))[0]) == 0
+    assert len(index.locate(none)) == len(index.first_hits(none, none)[0]) == len(index.nearest(none)[0]) == 0
+    assert len(index.intersects(index, np.empty((0, 4, 4)))[0]) == 0
     good = np.zeros((2, 3))
     for bad in (np.nan, np.inf, 1e101):
         wrong = np.array([[0, 0, 0], [0, bad, 0]])
         matrix = np.eye(4)[None].copy()
         matrix[0, 1, 3] = bad
-        for ask in (lambda: index.holding(wrong), lambda: index.nearest(wrong), lambda: index.first_hits(wrong, good + 1),
-                    lambda: index.first_hits(good, wrong), lambda: index.touching(index, matrix)):
+        for ask in (lambda: index.locate(wrong), lambda: index.nearest(wrong), lambda: index.first_hits(wrong, good + 1),
+                    lambda: index.first_hits(good, wrong), lambda: index.intersects(index, matrix)):
             with pytest.raises(PartwheelError) as refused:
                 ask()
             assert refused.value.status == Status.NOT_FINITE and str(refused.value).endswith(".")
-    for ask in (lambda: index.first_hits(good, good), lambda: index.touching(index, np.zeros((1, 4, 4)))):
+    for ask in (lambda: index.first_hits(good, good), lambda: index.intersects(index, np.zeros((1, 4, 4)))):
         with pytest.raises(PartwheelError) as refused:
             ask()
         assert refused.value.status == Status.NOT_FINITE
@@ -186,8 +186,8 @@ def test_nothing_and_nonsense():
             Index(hierarchy, np.array(bounds))
         assert refused.value.status == Status.ARGUMENT
     with pytest.raises(ValueError):
-        index.holding(np.zeros(3))
+        index.locate(np.zeros(3))
     with pytest.raises(ValueError):
         index.first_hits(good, good[:1])
     with pytest.raises(ValueError):
-        index.touching(index, np.eye(4))
+        index.intersects(index, np.eye(4))

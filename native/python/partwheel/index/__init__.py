@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The hierarchy as an index: which part is where, for arrays of points, rays and places. Native, with numpy."""
+"""Spatial index of a hierarchy: point location, ray casting, nearest points and intersection, for arrays of queries."""
 
 from __future__ import annotations
 
@@ -15,29 +15,57 @@ if TYPE_CHECKING:
 
 
 class Index(NonCopyable):
-    """A hierarchy to be asked where things are: see pw_index in partwheel_edit.h. It never changes.
+    """Immutable spatial index of a hierarchy: see pw_index in partwheel_edit.h.
 
-    bounds (K+1,) of a cut: its parts are the convex hulls of the cut's K parts. None: exact, its parts are the
-    tetrahedra, which are the hierarchy's leaves; np.searchsorted(bounds, parts, "right") - 1 are the parts of a cut that they
-    are in. threads: of one call at most so many, 0: as many as help. Raises PartwheelError.
+    Every query takes an array with one row per query and returns arrays with one row per answer. Part ids are (n,) int32,
+    -1 for none. Each method raises PartwheelError for coordinates that are not finite, ValueError for a wrong shape.
 
-    All that is asked is an array with a row for each; so are the answers. Parts are (n,) int32, -1 for none."""
+    Parameters
+    ----------
+    hierarchy : the hierarchy to index
+    bounds : (K+1,) bounds of a cut: the index holds the convex hulls of its K parts. None: exact, the index holds the
+        tetrahedra, which are the hierarchy's leaves; np.searchsorted(bounds, parts, "right") - 1 turns its answers into
+        parts of a cut
+    threads : the most threads that one call may use; 0: chosen automatically
+
+    Raises
+    ------
+    PartwheelError : the bounds are not those of a cut
+    """
 
     def __init__(self, hierarchy: Hierarchy, bounds: Optional[ArrayLike] = None, *, threads: int = 0) -> None:
         bounds = np.empty(0, np.int32) if bounds is None else indices(bounds, "bounds", (None,))
         self._handle = Handle(load().pw_index_free, made(load().pw_index_create, hierarchy._handle, bounds, len(bounds),
                                                          threads))
 
-    def holding(self, points: ArrayLike) -> np.ndarray:
-        """(n,) the part that holds each of points (n,3), of several the lowest; -1 outside."""
+    def locate(self, points: ArrayLike) -> np.ndarray:
+        """Point location.
+
+        Parameters
+        ----------
+        points : (n, 3)
+
+        Returns
+        -------
+        (n,) int32, the part that contains each point; the lowest id if several do, -1 outside
+        """
         points = _rows(points, "points", 3)
         parts = np.empty(len(points), np.int32)
         check(load().pw_index_holding(self._handle, points, len(points), parts))
         return parts
 
     def first_hits(self, origins: ArrayLike, directions: ArrayLike) -> Tuple[np.ndarray, np.ndarray]:
-        """((n,) the part that each ray meets first, from whichever side, -1 if none; (n,) how far away, in lengths of its
-        direction). origins, directions (n,3)."""
+        """Ray casting; facets are hit from either side.
+
+        Parameters
+        ----------
+        origins, directions : (n, 3) each
+
+        Returns
+        -------
+        parts : (n,) int32, the part that each ray hits first, -1 for none
+        distances : (n,) float64, in lengths of the ray's direction
+        """
         origins, directions = _rows(origins, "origins", 3), _rows(directions, "directions", 3)
         if len(origins) != len(directions):
             raise ValueError(f"There are {len(origins)} origins and {len(directions)} directions.")
@@ -46,17 +74,36 @@ class Index(NonCopyable):
         return parts, distances
 
     def nearest(self, points: ArrayLike) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """((n,) the part that is nearest to each of points (n,3), the one that holds it inside; (n,) its distance, 0
-        inside; (n,3) its point that is nearest)."""
+        """Nearest points.
+
+        Parameters
+        ----------
+        points : (n, 3)
+
+        Returns
+        -------
+        parts : (n,) int32, the part nearest to each point, or the one that contains it
+        distances : (n,) float64, 0 inside
+        nearest : (n, 3) float64, the nearest point of that part
+        """
         points = _rows(points, "points", 3)
         parts, distances, nearest = np.empty(len(points), np.int32), np.empty(len(points)), np.empty_like(points)
         check(load().pw_index_nearest(self._handle, points, len(points), parts, distances, nearest))
         return parts, distances, nearest
 
-    def touching(self, other: Index, matrices: ArrayLike) -> Tuple[np.ndarray, np.ndarray]:
-        """Whether and where another index touches this one, at each of several places: ((n,2) a part of this one and one of the
-        other that have a point in common, -1 and -1 where none have; (n,3) that point). matrices (n,4,4) or (n,3,4): take the
-        other's coordinates to this one's; the last row of four is not looked at. Also where one is all inside the other."""
+    def intersects(self, other: Index, matrices: ArrayLike) -> Tuple[np.ndarray, np.ndarray]:
+        """Intersection with another index under several transforms; full containment counts.
+
+        Parameters
+        ----------
+        other : the other index
+        matrices : (n, 4, 4) or (n, 3, 4), from the other's coordinates to this one's; the fourth row is ignored
+
+        Returns
+        -------
+        parts : (n, 2) int32, a part of this index and a part of the other that have a point in common; -1, -1 for none
+        points : (n, 3) float64, that point
+        """
         matrices = np.asarray(matrices, np.float64)
         if matrices.ndim != 3 or matrices.shape[1:] not in ((3, 4), (4, 4)):
             raise ValueError(f"matrices must have the shape (n, 4, 4) or (n, 3, 4), not {matrices.shape}.")
@@ -67,6 +114,7 @@ class Index(NonCopyable):
 
 
 def _rows(values: ArrayLike, name: str, width: int) -> np.ndarray:
+    """The values as a contiguous (n, width) float64 array. Raises ValueError."""
     values = np.ascontiguousarray(values, np.float64)
     if values.ndim != 2 or values.shape[1] != width:
         raise ValueError(f"{name} must have the shape (n, {width}), not {values.shape}.")
