@@ -89,11 +89,9 @@ Solid repaired(const Source& source, const LadderOptions& options, Progress& pro
 
 Solid step(Source& source, pw_rung rung, const LadderOptions& options, Progress& progress) {
     if (options.trying) options.trying(rung);
-    if (rung == PW_RUNG_EXACT) {
-        check_surface(source.given, progress);
-        return fill_exactly(source.given, rung, options.quality, progress);
-    }
+    if (rung == PW_RUNG_EXACT) check_surface(source.given, progress);
     progress.enter(PW_STAGE_REPAIR);
+    if (rung == PW_RUNG_EXACT) return fill_exactly(source.given, rung, options.quality, progress);
     make_distinct(source);
     try {
         if (rung == PW_RUNG_REPAIRED) return repaired(source, options, progress);
