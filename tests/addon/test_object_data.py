@@ -298,8 +298,8 @@ class ObjectData(SolidTest):
         found = {"copy": [api.copy_part(obj, self.middle(hierarchy))],
                  "copy with caps": [api.copy_part(obj, self.middle(hierarchy), smooth=True)],
                  "split": api.split(obj, parts=4),
-                 "objects": api.write(obj, api.parts(obj, 4), {"OBJECTS"}).objects,
-                 "open": api.write(obj, api.parts(obj, 3), {"OBJECTS"}, closed=False, origins=False).objects}
+                 "objects": api.write(obj, api.cut(obj, 4), {"OBJECTS"}).objects,
+                 "open": api.write(obj, api.cut(obj, 3), {"OBJECTS"}, closed=False, origins=False).objects}
         bpy.context.view_layer.update()
         return found
 
@@ -431,8 +431,8 @@ class ObjectData(SolidTest):
             obj = max((each for each in bpy.data.objects if each.type == "MESH"), key=lambda each: len(each.data.polygons))
             self.link_active(obj)
             api = part("api")
-            api.write(obj, api.parts(obj, 5))  # keeps them in the mesh
-            made = api.write(obj, api.parts(obj, 5), {"OBJECTS"}).objects
+            api.write(obj, api.cut(obj, 5))  # keeps them in the mesh
+            made = api.write(obj, api.cut(obj, 5), {"OBJECTS"}).objects
             for new in made:
                 but = CHAINED if new.parent in made else set()
                 before, now = told(obj, but), told(new, but)
@@ -554,7 +554,7 @@ class ObjectData(SolidTest):
             self.assertEqual(obj.mode, "EDIT")
             bpy.ops.object.mode_set(mode="OBJECT")
             self.assertEqual(len(api.copy_part(obj, root).data.polygons) >= len(obj.data.polygons), True)
-            self.assertEqual([len(api.split(obj, parts=1)), len(api.write(obj, api.parts(obj, 1), {"OBJECTS"}).objects)], [1, 1])
+            self.assertEqual([len(api.split(obj, parts=1)), len(api.write(obj, api.cut(obj, 1), {"OBJECTS"}).objects)], [1, 1])
 
     def test_parts_without_faces_are_left_out(self):
         vertices, polygons = read_off("dragknob")
