@@ -45,7 +45,7 @@ from .cut import hulls as hulls_as_objects
 from .cut import objects as parts_as_objects
 from .cut import printed, stored, writing
 from .mesh import arrays, selection
-from .mesh.refusing import Refused, read_only
+from .mesh.errors import Refused, read_only_reason
 from .parts import builds, picks, registry
 from .pick import borders, states
 from .related import others
@@ -451,8 +451,8 @@ def _mesh(obj, edited=True, changes=False):
     one that can't."""
     if obj is None or obj.type != "MESH":
         raise ValueError(f"{obj.name if obj else 'None'} is not a mesh object.")
-    if changes and read_only(obj):
-        raise ValueError(read_only(obj))
+    if changes and read_only_reason(obj):
+        raise ValueError(read_only_reason(obj))
     if obj.mode == "EDIT" and not edited:
         raise ValueError(f"{obj.name} is in Edit Mode. Leave it before a script does this.")
 

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import bpy
 
-from . import trouble
+from . import library_error
 
 
 class PartwheelPreferences(bpy.types.AddonPreferences):
@@ -58,7 +58,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         "there", default=False)
 
     def draw(self, context):
-        trouble.draw(context, self.layout)
+        library_error.draw_library_error(context, self.layout)
         column = self.layout.column()
         column.use_property_split = True
         for name in ("parts", "exactly", "on_import", "save_with_file", "memory_share", "cpu_limit", "python", "wheel"):

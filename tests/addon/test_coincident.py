@@ -122,7 +122,7 @@ class Coincident(MeshTest):
             own = list(polygon.vertices)
             co[own] = 0.5 * basis[own] + 0.5 * basis[own].mean(axis=0)
         key.data.foreach_set("co", co.astype(numpy.float32).ravel())
-        with self.assertRaises(part("mesh.refusing").Refused):  # each triangle is a loose piece
+        with self.assertRaises(part("mesh.errors").Refused):  # each triangle is a loose piece
             self.deform(obj, faces[:1], "RIGID", 0, int(numpy.flatnonzero(was == tip)[0]), shift(1, 0, 0))
         obj.active_shape_key_index = 0
         self.deform(obj, faces, "RIGID", 0, int(numpy.flatnonzero(was == tip)[0]), shift(0.1 * self.size, 0, 0))

@@ -307,7 +307,7 @@ class Deform(MeshTest):
         for point in obj.data.vertices:
             point.co = (1, 2, 3)
         obj.data.update()
-        with self.assertRaises(part("mesh.refusing").Refused) as refused:
+        with self.assertRaises(part("mesh.errors").Refused) as refused:
             part("deform.region").Region(obj, [0, 2, 4])
         self.assertIn("area", str(refused.exception))
 
@@ -316,7 +316,7 @@ class Deform(MeshTest):
         count = len(vertices)
         obj = self.add(vertices + [(x + 3, y, z) for x, y, z in vertices],
                        polygons + [tuple(count + v for v in polygon) for polygon in polygons])
-        with self.assertRaises(part("mesh.refusing").Refused) as refused:
+        with self.assertRaises(part("mesh.errors").Refused) as refused:
             part("deform.region").Region(obj, list(range(len(polygons))))
         self.assertIn("loose piece", str(refused.exception))
 

@@ -205,7 +205,7 @@ class Related(ToolTest):
         self.use(6, 6, 4, 7, 3, 8)
         hand = self.add(*read_off("hand"), "hand")
         for obj, node in ((self.obj, self.bar(1, 1)), (hand, self.api.part(hand, 900))):
-            with self.assertRaisesRegex(part("mesh.refusing").Refused, f"no mirror image in {obj.name}"):
+            with self.assertRaisesRegex(part("mesh.errors").Refused, f"no mirror image in {obj.name}"):
                 self.api.mirrored(obj, node)
             bpy.context.view_layer.objects.active = obj
             self.edit(obj)
@@ -293,7 +293,7 @@ class Related(ToolTest):
         self.h = self.api.build(obj)
         found, wanted = self.faces(self.api.remembered(obj)["Bar"]), self.faces(self.bar(1, 1, 6))
         self.assertGreater(len(found & wanted), 0.7 * len(found | wanted))
-        with self.assertRaisesRegex(part("mesh.refusing").Refused, "No part of model as it is now is much like"):
+        with self.assertRaisesRegex(part("mesh.errors").Refused, "No part of model as it is now is much like"):
             few = obj.data.attributes.new("part: every other", "INT", "FACE")
             few.data.foreach_set("value", (numpy.arange(len(obj.data.polygons)) % 3 == 0).astype(numpy.int32))
             self.api.remembered(obj)

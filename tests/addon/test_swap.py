@@ -220,7 +220,7 @@ class Swap(SolidTest):
         model = self.add(both, polygons + [tuple(i + len(vertices) for i in polygon) for polygon in polygons])
         hierarchy = part("api").build(model)
         node = int(numpy.flatnonzero(hierarchy.last - hierarchy.first == len(polygons))[0])
-        with self.assertRaisesRegex(part("mesh.refusing").Refused, "no border with the rest"):
+        with self.assertRaisesRegex(part("mesh.errors").Refused, "no border with the rest"):
             part("api").compatible(model, node, model)
 
     def test_nothing_changes_where_the_union_fails(self):
@@ -228,7 +228,7 @@ class Swap(SolidTest):
         union, before = part("compose.union"), self.everything()
         ways, union.WAYS = union.WAYS, ()
         try:
-            with self.assertRaises(part("mesh.refusing").Refused):
+            with self.assertRaises(part("mesh.errors").Refused):
                 part("api").swap(model, limb(model, hierarchy, 0, 1), giver)
         finally:
             union.WAYS = ways

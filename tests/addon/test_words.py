@@ -54,7 +54,7 @@ class Words(MeshTest):
         if not self.spoken():
             return
         self.speak("de_DE")
-        with self.assertRaises(part("mesh.refusing").Refused) as refused:
+        with self.assertRaises(part("mesh.errors").Refused) as refused:
             part("parts.registry").needed(obj)
         self.assertEqual(str(refused.exception), "{name} hat keine Teile für sein Mesh, wie es jetzt ist. Erst Teile finden.")
 
@@ -97,7 +97,7 @@ class Words(MeshTest):
             self.speak(language)
             said = []
             operator = types.SimpleNamespace(poll_message_set=said.append)
-            self.assertFalse(part("mesh.refusing").can(operator, None, part("parts.picks").NO_PICK))
+            self.assertFalse(part("mesh.poll").check_poll(operator, None, part("parts.picks").NO_PICK))
             self.assertNotIn(said[0][-1], ".。")
 
     def test_sizes_are_in_the_scenes_units(self):

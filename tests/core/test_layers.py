@@ -15,8 +15,8 @@ NATIVE, PACKAGE, ADDON = ROOT / "native" / "src", ROOT / "native" / "python" / "
 LAYERS = {
     NATIVE: ["base", "surface", "surface/prepare", "fill", "cluster/hull", "cluster", "tree/mirror", "tree/snap",
              "tree/regroup", "tree", "part", "api.cpp"],
-    ADDON: ["words", "trouble.py", "preferences.py", "mesh", "view", "parts", "pick", "related", "solid", "cut", "compose", "deform", "ui",
-            "api.py", "command.py", "__init__.py"],
+    ADDON: ["words", "library_error.py", "preferences.py", "mesh", "view", "parts", "pick", "related", "solid", "cut",
+             "compose", "deform", "ui", "api.py", "command.py", "__init__.py"],
 }
 SUFFIXES = {".c", ".cpp", ".h", ".py"}
 

@@ -4,8 +4,9 @@
 import bpy
 from mathutils import Vector
 
-from ..mesh import kept
-from ..mesh.refusing import Refused, can
+from ..mesh import mesh_identity
+from ..mesh.errors import Refused
+from ..mesh.poll import check_poll
 from ..solid import composition
 from ..view import keys
 from . import placement
@@ -38,12 +39,12 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         obj = context.active_object
-        return can(cls, context.mode == "OBJECT" and obj is not None and obj.type == "MESH",
-                   "In Object Mode, make the part to be placed the active object.")
+        return check_poll(cls, context.mode == "OBJECT" and obj is not None and obj.type == "MESH",
+                          "In Object Mode, make the part to be placed the active object.")
 
     def execute(self, context):
         part = context.active_object
-        target = kept.wanted(self.target)
+        target = mesh_identity.resolve_object(self.target)
         if (self.fit or self.mirror) and (target is None or target.type != "MESH"):
             self.report({"ERROR"}, rpt_("Say which mesh object the part is placed on."))
             return {"CANCELLED"}
@@ -95,14 +96,14 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
             return {"RUNNING_MODAL"}
         if self.mirror:
             composition.update_matrices()
-            placement.mirrored(context.active_object, kept.named(self.target)).select_set(True)
+            placement.mirrored(context.active_object, mesh_identity.find_object(self.target)).select_set(True)
         return {"FINISHED"}
 
     def on_cancel(self, _context):
         self._put_back()
 
     def _put_back(self):
-        part = self.transform and kept.named(self.part_name)
+        part = self.transform and mesh_identity.find_object(self.part_name)
         if part:
             placement.put_back(part, self.transform)
 
@@ -116,7 +117,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
     def _show(self, context):
         if not self.target:
             return
-        target = kept.named(self.target)
+        target = mesh_identity.find_object(self.target)
         try:
             placement.put(context.active_object, self.start, self.own, target, self._pose())
         except Refused as error:

@@ -10,7 +10,7 @@ from ..mesh import arrays
 from ..mesh.datablocks import all_or_nothing
 from ..solid.composition import beside, update_matrices
 from partwheel import compatible
-from ..mesh.refusing import Refused
+from ..mesh.errors import Refused
 from ..solid.solids import CAP
 
 _CHANNELS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")

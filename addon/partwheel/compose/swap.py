@@ -4,13 +4,14 @@ is offered; meanwhile one sees what would be left of the object, and the part of
 
 import bpy
 
-from ..mesh import kept
+from ..mesh import mesh_identity
 from ..solid import composition
 from ..pick.build import waited_for
 from ..view import keys, previews
 from . import swapping
 from partwheel import Error
-from ..mesh.refusing import Refused, changeable
+from ..mesh.errors import Refused
+from ..mesh.poll import poll_is_editable
 from ..solid.copy_part import OnPart
 from ..view.in_view import waiting
 from ..words.say import iface_
@@ -49,7 +50,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return super().poll(context) and changeable(cls, context.active_object)
+        return super().poll(context) and poll_is_editable(cls, context.active_object)
 
     def work(self, context, obj, hierarchy):
         place = swapping.Place(obj, hierarchy, self.node, self.snap)
@@ -57,7 +58,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
 
     def _chosen(self, context, place, obj):
         """The Offer that the options name."""
-        other = kept.wanted(self.other) if self.other else None
+        other = mesh_identity.resolve_object(self.other) if self.other else None
         if self.other and (other is None or other.type != "MESH"):
             raise Refused("There is no mesh object {name}.", name=self.other)
         if other and (self.whole or self.other_node >= 0):
@@ -67,7 +68,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
     def _swap(self, place, offer):
         self.other, self.whole = offer.name, offer.node is None
         self.other_node = -1 if self.whole else offer.node
-        for sentence in composition.bound(kept.named(place.name)):
+        for sentence in composition.bound(mesh_identity.find_object(place.name)):
             self.report({"WARNING"}, sentence)
         place.swap(offer, self._adjustment(), self.blend)
         if self.build:
@@ -85,7 +86,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
             if not waited_for(self, context, obj):
                 return {"CANCELLED"}
             hierarchy = self.hierarchy(obj)
-            other = kept.wanted(self.other)
+            other = mesh_identity.resolve_object(self.other)
             others = [other] if other else swapping.sources(context, obj)
             self.was_edited = obj.mode == "EDIT"
             if self.was_edited:
@@ -99,7 +100,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
 
     def can_continue(self, context):
         active = context.view_layer.objects.active  # none while it is hidden, in some versions
-        obj = kept.named(self.place.name)
+        obj = mesh_identity.find_object(self.place.name)
         return (obj is not None and context.view_layer.objects.get(obj.name) == obj and active in (None, obj)
                 and context.mode == "OBJECT")
 
@@ -161,7 +162,7 @@ class Preview:
             self.shown[wanted] = previews.show(self.place.stand_in(offer, adjustment)).name
 
     def _create(self):
-        obj = kept.named(self.place.name)
+        obj = mesh_identity.find_object(self.place.name)
         mesh = self.place.rest()
         rest = obj.copy()  # with its modifiers and materials
         rest.data = mesh

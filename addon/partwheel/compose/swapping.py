@@ -15,8 +15,8 @@ from ..parts import registry
 from ..solid import composition
 from . import placement, union
 from partwheel import compatible
-from ..mesh.kept import named
-from ..mesh.refusing import Refused
+from ..mesh.mesh_identity import find_object
+from ..mesh.errors import Refused
 
 
 class Offer(NamedTuple):
@@ -101,13 +101,13 @@ class Place:
 
     def rest(self):
         """A new mesh: the object's without the part, closed. Raises Refused or PartwheelError."""
-        return composition.rest(named(self.name), self.hierarchy, self.node, self.snap)
+        return composition.rest(find_object(self.name), self.hierarchy, self.node, self.snap)
 
     @all_or_nothing()
     def stand_in(self, offer, adjustment=Adjustment()):
         """A new object beside this part's: the one offered, in this part's place. Its mesh alone: modifiers that act on it
         afterwards are those of this part's object."""
-        obj, source = named(self.name), named(offer.name)
+        obj, source = find_object(self.name), find_object(offer.name)
         composition.update_matrices()
         if offer.node is None:
             name, mesh = source.name, source.data.copy()
@@ -126,7 +126,7 @@ class Place:
         if known not in self._fits:
             self._fits[known] = compatible.fit(self.shape, shape, adjustment.mirror).matrix
         depth = adjustment.depth + compatible.gap(self.shape, shape, self._fits[known])
-        start = Matrix(self._fits[known]) @ named(offer.name).matrix_world
+        start = Matrix(self._fits[known]) @ find_object(offer.name).matrix_world
         new.matrix_world = placement.matrix(start, own, Vector(own.middle), -Vector(own.normal), adjustment.scale,
                                             adjustment.angle, depth)
 
@@ -136,7 +136,7 @@ class Place:
             return offer.shape
         known = offer.name, offer.node
         if known not in self._cut:
-            self._cut[known] = _shape(named(offer.name), _hierarchy_of(offer), offer.node, snap=True) or offer.shape
+            self._cut[known] = _shape(find_object(offer.name), _hierarchy_of(offer), offer.node, snap=True) or offer.shape
         return self._cut[known]
 
     @all_or_nothing()
@@ -144,7 +144,7 @@ class Place:
         """Takes the part out of the object's mesh and unites what is left with the one offered; blend: as for
         union.unite(). Raises an Error before anything has changed."""
         rest, new = self.rest(), self.stand_in(offer, adjustment)
-        solver = union.unite(named(self.name), [new], blend, rest)
+        solver = union.unite(find_object(self.name), [new], blend, rest)
         bpy.data.meshes.remove(rest)
         dispose(new)
         return solver
@@ -152,7 +152,7 @@ class Place:
 
 def _hierarchy_of(offer):
     """Of the object that the offer's node is of. Raises Refused."""
-    hierarchy = registry.hierarchy(named(offer.name))
+    hierarchy = registry.hierarchy(find_object(offer.name))
     if not hierarchy or offer.node >= len(hierarchy.parent):
         raise Refused("{name} was changed and has other parts now. Start again.", name=offer.name)
     return hierarchy

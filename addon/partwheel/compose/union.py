@@ -14,7 +14,7 @@ from ..mesh.datablocks import all_or_nothing
 from ..solid import composition, solids
 from . import pinches, seams
 from partwheel import RayTarget, polygon_faults
-from ..mesh.refusing import Refused
+from ..mesh.errors import Refused
 from ..words.say import rpt_
 
 # (solver, whether it also unites what overlaps within one mesh), in the order tried. Blenders before 4.5 have no

@@ -7,7 +7,7 @@ from ..parts import builds
 from . import union
 from partwheel import Error
 from ..mesh.datablocks import dispose
-from ..mesh.refusing import can, changeable
+from ..mesh.poll import check_poll, poll_is_editable
 from ..words.say import rpt_
 
 NO_OTHERS = "Select the parts, and then the mesh object that they are to become part of, in Object Mode."
@@ -41,8 +41,8 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
     def poll(cls, context):
         # Not that others are selected: afterwards they are gone, and Blender polls before it repeats an operator.
         target = context.active_object
-        return can(cls, context.mode == "OBJECT" and target is not None and target.type == "MESH",
-                   NO_OTHERS) and changeable(cls, target)
+        return check_poll(cls, context.mode == "OBJECT" and target is not None and target.type == "MESH",
+                          NO_OTHERS) and poll_is_editable(cls, target)
 
     @staticmethod
     def others(context):

@@ -6,7 +6,7 @@ import bpy
 from mathutils import Matrix
 
 from ..mesh.datablocks import all_or_nothing, dispose
-from ..mesh.refusing import Refused
+from ..mesh.errors import Refused
 from ..solid import composition
 from partwheel import convex
 

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays
-from ..mesh.refusing import Refused
+from ..mesh.errors import Refused
 from ..pick.writers import FACE_SET
 from partwheel.cut import colors, weights
 

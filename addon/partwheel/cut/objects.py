@@ -9,7 +9,7 @@ from mathutils import Matrix, Vector
 
 from ..mesh import arrays, pieces
 from ..mesh.datablocks import all_or_nothing
-from ..mesh.refusing import Refused
+from ..mesh.errors import Refused
 from ..solid import composition, fitting, solids
 from ..words.say import rpt_
 from partwheel.cut import tree

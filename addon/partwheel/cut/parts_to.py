@@ -7,10 +7,11 @@ import json
 import bpy
 import numpy as np
 
-from ..mesh import kept
-from ..mesh.kept import counts
+from ..mesh import mesh_identity
+from ..mesh.mesh_identity import element_counts
 from ..mesh.datablocks import all_or_nothing
-from ..mesh.refusing import Refused, can, changeable
+from ..mesh.errors import Refused
+from ..mesh.poll import check_poll, poll_is_editable
 from ..parts import builds, picks, registry
 from ..pick.build import start, waited_for
 from ..pick.hover import highlight
@@ -89,11 +90,11 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         obj = context.active_object
-        return (can(cls, context.mode in USUAL and obj is not None and obj.type == "MESH",
-                    "This is for an active mesh object, in Object, Edit or Sculpt Mode.")
-                and changeable(cls, obj)
-                and can(cls, not obj.use_dynamic_topology_sculpting,
-                        "Dynamic topology changes the faces all the time: switch it off first."))
+        return (check_poll(cls, context.mode in USUAL and obj is not None and obj.type == "MESH",
+                           "This is for an active mesh object, in Object, Edit or Sculpt Mode.")
+                and poll_is_editable(cls, obj)
+                and check_poll(cls, not obj.use_dynamic_topology_sculpting,
+                               "Dynamic topology changes the faces all the time: switch it off first."))
 
     def draw(self, _context):
         layout = self.layout
@@ -208,14 +209,14 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         self.state = states.Cutting(_first(obj, hierarchy, self.count))
         if highlight.shows(obj):
             self.state = self.state.clicked(picks.picked(obj).face)
-        self.counts = counts(obj.data)
+        self.counts = element_counts(obj.data)
         self._add_draw_handler(self._draw)
         return self._show(context, self.state)
 
     def on_event(self, context, event):
         if self.building:
             return self._built_on(context, event)
-        if self.shown and at_rest() and not current(kept.named(self.object_name), self.shown):  # another frame
+        if self.shown and at_rest() and not current(mesh_identity.find_object(self.object_name), self.shown):  # another frame
             self._show(context, self.state)
         if event.type in keys.SYSTEM:
             return {"PASS_THROUGH"}
@@ -239,7 +240,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if not self.building.step(context, event):
             return {"PASS_THROUGH"}
         hierarchy, self.building = self.building.hierarchy, None
-        obj = kept.named(self.object_name)
+        obj = mesh_identity.find_object(self.object_name)
         if not hierarchy or obj is None or context.area is None or context.mode != self.mode:
             return {"CANCELLED"}
         return self._start_editing(context, obj, hierarchy)
@@ -264,7 +265,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     def _face(self, over):
         """The face of the object that is seen there, or NO_FACE."""
         _, *pixel = over
-        _, face = picking.nearest([kept.named(self.object_name)], lambda each: prepared(each).tree(each), *pixel)
+        _, face = picking.nearest([mesh_identity.find_object(self.object_name)], lambda each: prepared(each).tree(each), *pixel)
         return NO_FACE if face is None else face
 
     def _key(self, context, event):
@@ -296,7 +297,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             self._show_status(context, iface_("{count} parts, one of {faces:,} faces: {made}").format(faces=faces, **values),
                        keys.ON_ONE)
         if not bpy.app.background:
-            obj = kept.named(self.object_name)
+            obj = mesh_identity.find_object(self.object_name)
             self.shown = prepared(obj).parts(obj)
             overlay.redraw()
         return {"RUNNING_MODAL"}
@@ -306,7 +307,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         return ", ".join(iface_(LABELS[name][0]) for name in TO if name in self.to) or iface_("Kept in the Mesh")
 
     def _draw(self):
-        context, obj = bpy.context, kept.named(self.object_name)
+        context, obj = bpy.context, mesh_identity.find_object(self.object_name)
         if not obj or not overlay.visible(context, obj) or not current(obj, self.shown):
             return
         cut, part = self.state.cut, self.state.part
@@ -320,14 +321,14 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     def on_confirm(self, context):
         self.clusters, self.count = json.dumps(self.state.cut.parts), len(self.state.cut)
         with waiting(context):
-            return self._write(context, kept.named(self.object_name), self.state.cut)
+            return self._write(context, mesh_identity.find_object(self.object_name), self.state.cut)
 
     def can_continue(self, context):
         if self.building:
             return True
         obj = context.active_object
         return (obj is not None and obj.name_full == self.object_name and context.mode == self.mode
-                and registry.known(obj.data) is self.state.base.hierarchy and counts(obj.data) == self.counts)
+                and registry.known(obj.data) is self.state.base.hierarchy and element_counts(obj.data) == self.counts)
 
     def on_cancel(self, context):
         if self.building:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..mesh import arrays
 from ..mesh.datablocks import all_or_nothing
-from ..mesh.refusing import Refused
+from ..mesh.errors import Refused
 from ..solid import composition
 from . import stored
 from partwheel.cut import printing

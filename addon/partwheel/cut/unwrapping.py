@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 
 from ..mesh import apart, arrays
-from ..mesh.refusing import Refused
+from ..mesh.errors import Refused
 from partwheel.cut import laid_flat, seams
 from partwheel.weld import is_welding, weld_coincident_vertices
 

@@ -9,8 +9,8 @@ from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_
 from mathutils import Matrix, Vector
 
 from partwheel import Error, PartwheelError
-from ..mesh.kept import counts
-from ..mesh.refusing import Refused
+from ..mesh.mesh_identity import element_counts
+from ..mesh.errors import Refused
 from ..view import overlay
 from ..view.background import Background
 from ..view.picking import FaceTree
@@ -62,7 +62,7 @@ class Held:
 
     def __init__(self, obj, faces, method, rings, reach, face):
         """face: the one that was clicked, or None."""
-        self.name, self.counts = obj.name_full, counts(obj.data)
+        self.name, self.counts = obj.name_full, element_counts(obj.data)
         self.faces, self.method, self.rings, self.reach = faces, method, rings, reach
         self.task = self._pen = None  # what goes on in the background; what puts the vertices
         self.changed = self.settling = False  # whether anything was moved; whether there is a shape of rest to go on to
@@ -83,7 +83,7 @@ class Held:
 
     def fits(self, obj):
         """Whether the object is still the one, and its mesh has the elements that it had."""
-        return obj is not None and obj.name_full == self.name and counts(obj.data) == self.counts
+        return obj is not None and obj.name_full == self.name and element_counts(obj.data) == self.counts
 
     def restore(self, obj):
         """Everything as it was in the beginning."""

@@ -9,7 +9,7 @@ from partwheel.deform import (
     FIXED, FREE, SETTLED, STEP_ANGLE, Deformation, part_of_the_way, rigid_motion, rotation_angle, surface_distances,
 )
 from partwheel.joint import groups
-from ..mesh.refusing import Refused
+from ..mesh.errors import Refused
 
 AT_ONCE, MOST_AT_ONCE = 30_000, 5  # iterations at a mouse move: so many vertices' in all; but no more than so many
 TURN = np.radians(30)  # a handle that turns by more at once, as by a typed number, goes there in steps

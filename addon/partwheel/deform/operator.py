@@ -6,8 +6,9 @@ import numpy as np
 
 from partwheel import Error
 from partwheel.joint import REACH
-from ..mesh import kept
-from ..mesh.refusing import Refused, can
+from ..mesh import mesh_identity
+from ..mesh.errors import Refused
+from ..mesh.poll import check_poll
 from ..parts import picks, registry
 from ..pick import borders
 from ..view import keys
@@ -70,8 +71,8 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         obj = context.edit_object
-        return (can(cls, context.mode == "EDIT_MESH" and obj, "Parts are deformed in Edit Mode of a mesh.")
-                and can(cls, registry.state(obj.data)[0] in registry.USABLE, picks.NO_PICK))
+        return (check_poll(cls, context.mode == "EDIT_MESH" and obj, "Parts are deformed in Edit Mode of a mesh.")
+                and check_poll(cls, registry.state(obj.data)[0] in registry.USABLE, picks.NO_PICK))
 
     def draw(self, _context):
         self.layout.prop(self, "method")
@@ -236,7 +237,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     # ---- What is seen
 
     def _draw(self):
-        obj = kept.named(self.held.name)
+        obj = mesh_identity.find_object(self.held.name)
         if obj is None:
             return
         self.held.draw(obj)

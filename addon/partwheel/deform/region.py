@@ -12,7 +12,7 @@ from partwheel.deform import FIXED, surface_distances
 from partwheel.joint import joint
 from partwheel.weld import weld_surface
 from ..mesh import arrays
-from ..mesh.refusing import Refused
+from ..mesh.errors import Refused
 
 HANDLE_SIZE = 0.25  # of a handle by default: its radius, by the square root of the part's area
 SAME_PLACE = 1e-4  # mirrored vertices are so near to each other, by the mesh's size

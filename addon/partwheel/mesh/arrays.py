@@ -12,7 +12,7 @@ import numpy as np
 
 from partwheel.polygons import triangulate
 from partwheel.weld import weld_coincident_vertices
-from .kept import key
+from .mesh_identity import mesh_key
 
 # Modifiers whose mesh begins with the vertices of the one that they are given, moved or not.
 KEEPING = {"ARRAY", "MIRROR", "MULTIRES", "SOLIDIFY", "SUBSURF",
@@ -58,16 +58,16 @@ def changed():
 
 def written_back(obj):
     """Within one_reading(): up_to_date(obj) was asked for in an earlier step, and nothing of its geometry has changed since."""
-    _reading[key(obj.data), obj.mode] = None
+    _reading[mesh_key(obj.data), obj.mode] = None
 
 
 def up_to_date(obj):
     """The object's mesh; in Edit Mode after Blender wrote the edits back into it. Same order of elements in both. Not to
     be called while Blender draws."""
-    if obj.mode == "EDIT" and not (_reading and (key(obj.data), obj.mode) in _reading):
+    if obj.mode == "EDIT" and not (_reading and (mesh_key(obj.data), obj.mode) in _reading):
         _write_back(obj.update_from_editmode)
         if _reading is not None:
-            _reading[key(obj.data), obj.mode] = None
+            _reading[mesh_key(obj.data), obj.mode] = None
     return obj.data
 
 
@@ -266,7 +266,7 @@ def present(obj):
     """The Fingerprint of the object's mesh, brought up to date."""
     mesh = up_to_date(obj)
     reading = {} if _reading is None else _reading
-    name = key(mesh), obj.mode
+    name = mesh_key(mesh), obj.mode
     reading[name] = reading.get(name) or fingerprint(mesh)
     return reading[name]
 

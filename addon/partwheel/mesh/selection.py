@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from . import arrays
-from .kept import named
+from .mesh_identity import find_object
 
 # Select mode -> what is selected in it: the mesh's elements and the loops' reference to them. The finest mode that is
 # on rules: Blender derives the coarser elements' selection from it.
@@ -174,7 +174,7 @@ class Selections:
 
     def _objects(self):
         """(object or None, its Selection) of each."""
-        return [(named(name), each) for name, each in self._each.items()]
+        return [(find_object(name), each) for name, each in self._each.items()]
 
     def any(self):
         """Whether anything is selected."""

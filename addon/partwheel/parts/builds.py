@@ -4,21 +4,21 @@
 import bpy
 
 from ..mesh import arrays
-from ..mesh.kept import PerMesh, counts, key
+from ..mesh.mesh_identity import MeshTable, element_counts, mesh_key
 from ..preferences import preferences
 from . import registry
 from .stored import unopened
-from ..mesh.refusing import Told
+from ..mesh.errors import UserError
 from ..words.say import rpt_
 from partwheel import Mode, PartwheelError, Status
 from partwheel.library import load
 from partwheel.worker import WAIT_SECONDS, Job, available_memory
 
 _builds = {}  # those that have not ended, in the order in which they were asked for, by the key of their mesh
-_sheets = PerMesh()  # how many vertices and polygons a mesh had when it was refused for being a sheet
+_sheets = MeshTable()  # how many vertices and polygons a mesh had when it was refused for being a sheet
 
 
-class Outdated(Told):
+class Outdated(UserError):
     """A build ended and its mesh is not there any more, or not as it was."""
 
 
@@ -29,7 +29,7 @@ def running():
 
 def being_built(obj):
     """Whether parts of the object's mesh as it is now are being found, or are to be."""
-    build = _builds.get(key(obj.data))
+    build = _builds.get(mesh_key(obj.data))
     return build is not None and build.serves(arrays.present(obj))
 
 
@@ -37,7 +37,7 @@ def build(obj, **options):
     """The Build of the object's mesh: the one that is under way, or else a new one. options: those of Build; without
     any whatever is under way will do. If the mesh has changed, or with other options, that is cancelled for a new one.
     """
-    former = _builds.get(key(obj.data))
+    former = _builds.get(mesh_key(obj.data))
     if former:
         if former.serves(arrays.present(obj), options):
             return former
@@ -56,7 +56,7 @@ class Build:
         later builds of the mesh too."""
         load()  # a missing library is better told here
         mesh, self._built = obj.data, arrays.present(obj)
-        self.name, self._key, self._counts = mesh.name, key(mesh), counts(mesh)
+        self.name, self._key, self._counts = mesh.name, mesh_key(mesh), element_counts(mesh)
         former = registry.entry_of(mesh)
         self._open_surfaces = open_surfaces or (former is not None and former.open_surfaces)
         self._mode = Mode[preferences().parts] if mode is None else mode
@@ -153,7 +153,7 @@ class Build:
         if now.topology != self._built.topology:
             raise Outdated("{name} was edited while its parts were being found, so they were left aside. Find them again when "
                            "the mesh is as you want it.", name=mesh.name)
-        for table in PerMesh.tables:
+        for table in MeshTable.tables:
             table.drop_gone()
         unopened.pop(self._key, None)
         _sheets.pop(self._key, None)
@@ -181,13 +181,13 @@ def drop_outdated():
 
 def _user(wanted):
     """An object with the mesh of this key, in Edit Mode if there is one such, or None."""
-    users = [obj for obj in bpy.data.objects if obj.type == "MESH" and key(obj.data) == wanted]
+    users = [obj for obj in bpy.data.objects if obj.type == "MESH" and mesh_key(obj.data) == wanted]
     return next((obj for obj in users if obj.mode == "EDIT"), users[0] if users else None)
 
 
 def refused_as_sheet(mesh):
     """Whether the last build refused the mesh for being a sheet, as far as the counts tell that it is the same."""
-    return _sheets.get(key(mesh)) == counts(mesh)
+    return _sheets.get(mesh_key(mesh)) == element_counts(mesh)
 
 
 def stop():

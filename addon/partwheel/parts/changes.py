@@ -5,17 +5,17 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..mesh import apart, arrays
-from ..mesh.kept import PerMesh, key
+from ..mesh.mesh_identity import MeshTable, mesh_key
 
 # How often the mesh was changed, or what modifiers show of it, or anything told of it.
-_edits, _shown, _told = PerMesh(), PerMesh(), PerMesh()
+_edits, _shown, _told = MeshTable(), MeshTable(), MeshTable()
 _undos = 0
 
 
 def edits(mesh):
     """Something that is another after each change of the mesh's geometry, or of what is hidden, that Blender told of.
     Selecting is none."""
-    return _edits.get(key(mesh), 0), _undos
+    return _edits.get(mesh_key(mesh), 0), _undos
 
 
 def revision(mesh):
@@ -25,12 +25,12 @@ def revision(mesh):
 
 def shown(mesh):
     """Something that is another after a change of what modifiers show of the mesh: in another frame, for instance."""
-    return _shown.get(key(mesh), 0)
+    return _shown.get(mesh_key(mesh), 0)
 
 
 def told(mesh):
     """Something that is another after whatever Blender told of the mesh, be it that something was selected in it."""
-    return _told.get(key(mesh), 0), _undos
+    return _told.get(mesh_key(mesh), 0), _undos
 
 
 @persistent
@@ -76,7 +76,7 @@ def _stroke(update, depsgraph):
 
 
 def _count(table, mesh):
-    table[key(mesh)] = table.get(key(mesh), 0) + 1
+    table[mesh_key(mesh)] = table.get(mesh_key(mesh), 0) + 1
 
 
 @persistent

@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from ..mesh.kept import key
+from ..mesh.mesh_identity import mesh_key
 from ..preferences import preferences
 from . import builds, registry, stored
 from .stored import carried, unopened
@@ -20,7 +20,7 @@ def _before_saving(*_):
         fits, entry = registry.state(mesh)
         if fits in registry.USABLE and not entry.packed:
             entry.packed = stored.pack(entry.built, entry.hierarchy)
-        packed = unopened.get(key(mesh)) if fits == registry.State.UNOPENED else entry and entry.packed
+        packed = unopened.get(mesh_key(mesh)) if fits == registry.State.UNOPENED else entry and entry.packed
         if packed:
             carried(mesh)  # Blender 4.2 to 5.0 cut bytes off at a 0 where they replace others
             mesh[stored.PROPERTY] = packed
@@ -39,7 +39,7 @@ def after_loading(*_):
     unregister()
     for mesh in bpy.data.meshes:
         if stored.PROPERTY in mesh and not mesh.library:
-            unopened[key(mesh)] = carried(mesh)
+            unopened[mesh_key(mesh)] = carried(mesh)
 
 
 HANDLERS = {"load_post": after_loading, "save_pre": _before_saving, "save_post": _after_saving,

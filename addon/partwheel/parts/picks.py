@@ -11,8 +11,9 @@ import numpy as np
 from bpy.app.handlers import persistent
 
 from ..mesh import arrays
-from ..mesh.kept import PerMesh, key
-from ..mesh.refusing import Refused, can
+from ..mesh.mesh_identity import MeshTable, mesh_key
+from ..mesh.errors import Refused
+from ..mesh.poll import check_poll
 from . import registry
 from partwheel import Hierarchy
 
@@ -30,19 +31,19 @@ class Picked(NamedTuple):
 
 
 REMEMBERED = 32  # picks of a mesh that undo may come back to
-_past = PerMesh()  # [((_glance(), _digest()) after the pick, Picked), ...], the newest last
-_picks = PerMesh(gone=lambda picks, gone: registry.retired(picks[gone].hierarchy) or picks.pop(gone))
+_past = MeshTable()  # [((_glance(), _digest()) after the pick, Picked), ...], the newest last
+_picks = MeshTable(gone=lambda picks, gone: registry.retired(picks[gone].hierarchy) or picks.pop(gone))
 
 
 def remember(obj, face, node, snap=False):
     """The user has chosen this part of the object's mesh, which has a hierarchy."""
-    _picks[key(obj.data)] = Picked(int(node), int(face), registry.known(obj.data), bool(snap))
+    _picks[mesh_key(obj.data)] = Picked(int(node), int(face), registry.known(obj.data), bool(snap))
 
 
 def settled(obj):
     """What the pick has made of the mesh's selection is there now."""
     mesh = obj.data
-    pick, past = _picks.get(key(mesh)), _past.setdefault(key(mesh), [])
+    pick, past = _picks.get(mesh_key(mesh)), _past.setdefault(mesh_key(mesh), [])
     if pick:
         past[:] = [each for each in past if each[1].hierarchy is pick.hierarchy][1 - REMEMBERED:] + [
             ((_glance(mesh), _digest(mesh)), pick)]
@@ -70,33 +71,33 @@ def _digest(mesh):
 def _undone(*_):
     """The newest pick after which the selection was as it is now; in Object Mode none where nothing is. Else it stays."""
     for mesh in bpy.data.meshes:
-        past = _past.get(key(mesh))
+        past = _past.get(mesh_key(mesh))
         if past:
             glance = _glance(mesh)
             alike = [(digest, pick) for (before, digest), pick in reversed(past) if before == glance]
             now = _digest(mesh) if alike else None
             pick = next((pick for digest, pick in alike if digest == now), None)
             if pick:
-                _picks[key(mesh)] = pick
+                _picks[mesh_key(mesh)] = pick
             elif not (mesh.is_editmode or glance[1]):
-                _picks.pop(key(mesh), None)
+                _picks.pop(mesh_key(mesh), None)
 
 
 def drop(obj):
     """No part of the object's mesh is picked any more."""
-    _picks.pop(key(obj.data), None)
+    _picks.pop(mesh_key(obj.data), None)
 
 
 def picked(obj):
     """The Picked that was chosen last in the object's mesh; None if there is none, or its hierarchy is not the mesh's
     any more."""
-    pick = _picks.get(key(obj.data))
+    pick = _picks.get(mesh_key(obj.data))
     return pick if pick and registry.hierarchy(obj) is pick.hierarchy else None
 
 
 def picked_as_told(obj):
     """The same for panels and poll(), which Blender calls often: as far as registry.state() tells."""
-    pick = _picks.get(key(obj.data))
+    pick = _picks.get(mesh_key(obj.data))
     if not pick:
         return None
     fits, entry = registry.state(obj.data)
@@ -120,13 +121,13 @@ class NeedsPick:
 
     @classmethod
     def poll(cls, context):
-        return can(cls, context.mode == "EDIT_MESH" and picked_as_told(context.edit_object), NO_PICK)
+        return check_poll(cls, context.mode == "EDIT_MESH" and picked_as_told(context.edit_object), NO_PICK)
 
 
 def forget(obj):
     """Lets the hierarchy of the object's mesh go, and with it the part."""
     registry.forget(obj.data)
-    _past.pop(key(obj.data), None)
+    _past.pop(mesh_key(obj.data), None)
     drop(obj)
 
 

@@ -10,8 +10,8 @@ from enum import Enum, auto
 
 from ..mesh import arrays
 from ..mesh.arrays import Fingerprint
-from ..mesh.kept import PerMesh, counts, key
-from ..mesh.refusing import Refused
+from ..mesh.mesh_identity import MeshTable, element_counts, mesh_key
+from ..mesh.errors import Refused
 from . import changes
 from .stored import Opening, carried, unopened, waits
 from partwheel import Hierarchy
@@ -22,7 +22,7 @@ class Entry:
     """A mesh's hierarchy."""
 
     built: Fingerprint  # what it was built for
-    counts: tuple  # of vertices and polygons then
+    element_counts: tuple  # of vertices and polygons then
     hierarchy: Hierarchy
     packed: bytes = None  # for files; made when a file is first saved
     open_surfaces: bool = False  # the user wants this mesh taken for a thin solid, should it be a sheet
@@ -46,8 +46,8 @@ class State(Enum):
 USABLE = State.FITS, State.MOVED
 RETIRED = 3
 
-_entries = PerMesh(gone=lambda entries, gone: _retire(entries.pop(gone)))
-_strangers = PerMesh()  # what changes.edits() said when a mesh was found to be no twin of those
+_entries = MeshTable(gone=lambda entries, gone: _retire(entries.pop(gone)))
+_strangers = MeshTable()  # what changes.edits() said when a mesh was found to be no twin of those
 _retired = []  # of meshes that are gone, or others by now: undo may bring them back; the newest last, so many at most
 
 
@@ -55,7 +55,7 @@ _retired = []  # of meshes that are gone, or others by now: undo may bring them 
 def hierarchy(obj):
     """The hierarchy of the object's mesh, or None if there is none for its present topology."""
     mesh = arrays.up_to_date(obj)
-    entry = _entries.get(key(mesh))
+    entry = _entries.get(mesh_key(mesh))
     opening = None if entry else Opening(mesh)
     now = arrays.present(obj)  # takes half as long as opening
     if not entry or entry.built.topology != now.topology:
@@ -84,15 +84,15 @@ def _twin(now):
 def _opened(opening, now):
     """A new entry with what came from a file, or None."""
     found = opening.result(now)
-    return found and Entry(found[0], counts(opening.mesh), found[1], opening.packed)
+    return found and Entry(found[0], element_counts(opening.mesh), found[1], opening.packed)
 
 
 def keep(mesh, entry, now):
     """From now on it is the mesh's, whose Fingerprint is now; one of another topology that was there retires."""
-    before = _entries.get(key(mesh))
+    before = _entries.get(mesh_key(mesh))
     if before and before.built.topology != entry.built.topology:
         _retire(before)
-    _entries[key(mesh)] = entry
+    _entries[mesh_key(mesh)] = entry
     entry.look(mesh, now)
 
 
@@ -108,14 +108,14 @@ def retired(hierarchy):
 
 def forget(mesh):
     """Lets the mesh's hierarchy go, also the one that came with the file."""
-    _entries.pop(key(mesh), None)
-    unopened.pop(key(mesh), None)
+    _entries.pop(mesh_key(mesh), None)
+    unopened.pop(mesh_key(mesh), None)
     carried(mesh)
 
 
 def forget_all():
     """Of every mesh."""
-    for table in (*PerMesh.tables, _retired):
+    for table in (*MeshTable.tables, _retired):
         table.clear()
 
 
@@ -124,11 +124,11 @@ def forget_all():
 
 def state(mesh):
     """(State, Entry or None). In Edit Mode as far as the counts and the last use tell; else exactly."""
-    entry = _entries.get(key(mesh)) or _brought(mesh)
+    entry = _entries.get(mesh_key(mesh)) or _brought(mesh)
     if not entry:
         return (State.UNOPENED if waits(mesh) else State.NONE), None
     if mesh.is_editmode:
-        if counts(mesh) != entry.counts:
+        if element_counts(mesh) != entry.counts:
             return State.CHANGED, entry
     elif entry.looked != changes.edits(mesh):
         entry.look(mesh, arrays.fingerprint(mesh))
@@ -143,9 +143,9 @@ def state(mesh):
 
 def _brought(mesh):
     """The Entry of a mesh that undo has brought back, or of a duplicate, which nobody has used since; or None."""
-    if mesh.is_editmode or waits(mesh) or _strangers.get(key(mesh)) == changes.edits(mesh):
+    if mesh.is_editmode or waits(mesh) or _strangers.get(mesh_key(mesh)) == changes.edits(mesh):
         return None
-    size = counts(mesh)
+    size = element_counts(mesh)
     if not any(entry.counts == size for entry in (*_entries.values(), *_retired)):
         return None
     now = arrays.fingerprint(mesh)
@@ -153,13 +153,13 @@ def _brought(mesh):
     if twin:
         keep(mesh, twin, now)
     else:
-        _strangers[key(mesh)] = changes.edits(mesh)
+        _strangers[mesh_key(mesh)] = changes.edits(mesh)
     return twin
 
 
 def entry_of(mesh):
     """The Entry that was made for the mesh, fitting or not, or None. At once."""
-    return _entries.get(key(mesh))
+    return _entries.get(mesh_key(mesh))
 
 
 def known(mesh):

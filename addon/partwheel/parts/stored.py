@@ -14,7 +14,7 @@ import numpy as np
 from partwheel import Hierarchy, PartwheelError
 from ..mesh import arrays
 from ..mesh.arrays import Fingerprint
-from ..mesh.kept import PerMesh, key
+from ..mesh.mesh_identity import MeshTable, mesh_key
 from ..view.background import Background
 
 PROPERTY = "partwheel"
@@ -25,8 +25,8 @@ HEADER = struct.Struct("<8sI16s16s")
 HASH_SIZE = 16
 SPACING = 0.01  # of the points that a hierarchy's deviation was measured at, as a share of the mesh's diagonal
 
-unopened = PerMesh()  # packed
-newer = PerMesh()  # True: those that came with it are of a version after this one, which the user hasn't been told
+unopened = MeshTable()  # packed
+newer = MeshTable()  # True: those that came with it are of a version after this one, which the user hasn't been told
 
 
 class Unsound(Exception):
@@ -96,7 +96,7 @@ def _hash(data):
 
 def waits(mesh):
     """Whether one is there."""
-    return key(mesh) in unopened or PROPERTY in mesh
+    return mesh_key(mesh) in unopened or PROPERTY in mesh
 
 
 def carried(mesh):
@@ -111,7 +111,7 @@ class Opening:
     """The hierarchy, if any, that came with the mesh, being opened while the caller does other things."""
 
     def __init__(self, mesh):
-        self.mesh, self.packed = mesh, unopened.pop(key(mesh), None) or carried(mesh)
+        self.mesh, self.packed = mesh, unopened.pop(mesh_key(mesh), None) or carried(mesh)
         self._opened = None
         self._task = None if self.packed is None else Background(self._unpack)
 
@@ -135,7 +135,7 @@ class Opening:
         except Older:
             return None  # they are found anew, as any that aren't there
         except Newer:
-            newer[key(self.mesh)] = True
+            newer[mesh_key(self.mesh)] = True
             return None
         except Unsound as reason:
             print(f"Partwheel: the parts saved with {self.mesh.name} are left aside, for {reason}.")

@@ -9,13 +9,13 @@ import time
 
 import bpy
 
-from .. import trouble
+from .. import library_error
 from ..parts import builds, picks, registry, stored
 from partwheel import Error, LibraryError, PartwheelError, Status
-from ..mesh.kept import key
+from ..mesh.mesh_identity import mesh_key
 from ..view import status
 from ..view.in_view import InView
-from ..mesh.refusing import NeedsMesh, can
+from ..mesh.poll import NeedsActiveMesh, check_poll
 from ..words.say import iface_, percent, rpt_, told
 
 # By rung. off: how far that is from the mesh, as a share of its size.
@@ -41,7 +41,7 @@ class Building:
         self.operator, self.hierarchy = operator, None
         self.began = time.perf_counter()
         self.build = builds.build(obj, **options)
-        if stored.newer.pop(key(obj.data), False):
+        if stored.newer.pop(mesh_key(obj.data), False):
             operator.report({"WARNING"}, rpt_(
                 "The parts saved with {name} are of a newer Partwheel than this one, so they are found anew. Update "
                 "Partwheel to have those of the file.").format(name=obj.data.name))
@@ -151,7 +151,7 @@ def start(operator, obj, **options):
     try:
         return Building(operator, obj, **options)
     except LibraryError as error:
-        _refuse(operator, obj, trouble.logged(error))
+        _refuse(operator, obj, library_error.log_library_error(error))
     except Error as error:
         _refuse(operator, obj, error)
     return None
@@ -242,7 +242,7 @@ def without_parts(objects):
     return [obj for mesh, obj in meshes.items() if registry.state(mesh)[0] not in registry.USABLE]
 
 
-class _Build(NeedsMesh, Finds):
+class _Build(NeedsActiveMesh, Finds):
     """What building and finding have in common."""
 
     quality: bpy.props.FloatProperty(
@@ -293,8 +293,8 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         obj = context.active_object
-        return can(cls, obj is not None and obj.type == "MESH" and registry.state(obj.data)[0] != registry.State.NONE,
-                   "The active object has no parts.")
+        return check_poll(cls, obj is not None and obj.type == "MESH" and registry.state(obj.data)[0] != registry.State.NONE,
+                          "The active object has no parts.")
 
     def invoke(self, context, event):
         """Undo is Blender's and knows nothing of parts: so it asks."""

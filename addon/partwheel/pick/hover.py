@@ -9,8 +9,8 @@ draws it in every 3D view, for as long as the tool is active and no longer. It n
 import bpy
 import numpy as np
 
-from .. import trouble
-from ..mesh import arrays, kept
+from .. import library_error
+from ..mesh import arrays, mesh_identity
 from ..parts import picks, registry
 from ..view import overlay, picking
 from ..view.seen import NO_FACE
@@ -111,7 +111,7 @@ class Hover:
         if not self.what or overlay.shown.on:
             return
         name, parts, node, snapped = self.what
-        obj = kept.named(name)
+        obj = mesh_identity.find_object(name)
         if obj and overlay.visible(context, obj) and current(obj, parts):
             overlay.draw_hover(context, obj, parts, node, snapped)
 
@@ -159,7 +159,7 @@ class Highlight:
         if not self.what:
             return
         name, parts, faces = self.what
-        obj = kept.named(name)
+        obj = mesh_identity.find_object(name)
         if context.mode == "OBJECT" and obj and len(faces) and overlay.visible(context, obj) and current(obj, parts):
             overlay.draw_faces(context, obj, parts, ("chosen", self.shown), faces)
 
@@ -189,7 +189,7 @@ class VIEW3D_GGT_partwheel_hover(bpy.types.GizmoGroup):
     @classmethod
     def poll(cls, context):
         obj = context.active_object
-        return (context.mode in OPERATORS and not trouble.of_library()
+        return (context.mode in OPERATORS and not library_error.library_error()
                 and not (context.mode == "SCULPT" and obj.use_dynamic_topology_sculpting))
 
     def setup(self, _context):

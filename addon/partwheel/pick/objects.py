@@ -5,8 +5,9 @@ what is done with it; object.partwheel_select enters Edit Mode with it at the en
 import bpy
 import numpy as np
 
-from ..mesh import arrays, kept
-from ..mesh.refusing import can, read_only
+from ..mesh import arrays, mesh_identity
+from ..mesh.errors import read_only_reason
+from ..mesh.poll import check_poll
 from ..mesh.selection import chosen_outside_edit_mode, select_outside_edit_mode
 from ..parts import picks
 from ..view import keys, picking
@@ -23,7 +24,7 @@ class _InObjectMode(PartPicker):
 
     @classmethod
     def poll(cls, context):
-        return can(cls, context.mode == "OBJECT", "This is for Object Mode.")
+        return check_poll(cls, context.mode == "OBJECT", "This is for Object Mode.")
 
     def on_start(self, context, event):
         obj = self._target(context, event)
@@ -45,14 +46,14 @@ class _InObjectMode(PartPicker):
             reason = rpt_("{name} is an instance, and this 3D view does not show its original: edit it there.").format(
                 name=obj.name)
         else:
-            reason = read_only(obj)
+            reason = read_only_reason(obj)
         if reason:
             self.report({"WARNING"}, reason)
         return None if reason else obj
 
     def _objects(self, context):
         """The one that was under the mouse at the beginning; without a mouse the active one."""
-        obj = kept.named(self.object_name) if self.object_name else context.active_object
+        obj = mesh_identity.find_object(self.object_name) if self.object_name else context.active_object
         return [obj] if context.mode == "OBJECT" and obj is not None and obj.type == "MESH" else []
 
     def _under(self, context, event):
@@ -147,7 +148,7 @@ class _Highlighted(Preview):
 
     def restore(self):
         """Also what an error in the middle of confirming has selected."""
-        (faces, active), mesh = self.before, kept.named(self.name).data
+        (faces, active), mesh = self.before, mesh_identity.find_object(self.name).data
         if not np.array_equal(np.flatnonzero(arrays.read(mesh.polygons, "select", bool)), faces):
             select_outside_edit_mode(mesh, faces, active=active)
         highlight.what = None

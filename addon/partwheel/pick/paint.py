@@ -3,7 +3,8 @@
 
 import bpy
 
-from ..mesh.refusing import Refused, can, changeable
+from ..mesh.errors import Refused
+from ..mesh.poll import check_poll, poll_is_editable
 from ..view.seen import sculpted_levels
 from ..words.say import iface_, rpt_
 from .pick import PartPicker
@@ -39,10 +40,10 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         obj = context.active_object
-        return (can(cls, context.mode in WAYS and obj is not None and obj.type == "MESH",
-                    "This is for Sculpt Mode and the paint modes of a mesh.")
-                and changeable(cls, obj)
-                and can(cls, not obj.use_dynamic_topology_sculpting, DYNAMIC))
+        return (check_poll(cls, context.mode in WAYS and obj is not None and obj.type == "MESH",
+                           "This is for Sculpt Mode and the paint modes of a mesh.")
+                and poll_is_editable(cls, obj)
+                and check_poll(cls, not obj.use_dynamic_topology_sculpting, DYNAMIC))
 
     def _apply(self, context, obj, faces, picked):
         return self._write(context, obj, faces, picked.node)

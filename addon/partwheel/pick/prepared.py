@@ -8,12 +8,12 @@ import functools
 import bpy
 
 from ..mesh import arrays
-from ..mesh.kept import PerMesh, counts, key, named
+from ..mesh.mesh_identity import MeshTable, element_counts, mesh_key, find_object
 from ..parts import changes, registry
 from ..view import overlay, picking, seen
 
-_kept = PerMesh()  # Prepared
-_written = PerMesh()  # what changes.told() said when Blender had written its edits back
+_kept = MeshTable()  # Prepared
+_written = MeshTable()  # what changes.told() said when Blender had written its edits back
 _soon = {}  # full name of an object -> the timer that makes its Prepared
 
 
@@ -71,7 +71,7 @@ def advance(objects):
     for obj in edited:
         if not _written_back(obj):
             arrays.up_to_date(obj)
-            _written[key(obj.data)] = changes.told(obj.data)
+            _written[mesh_key(obj.data)] = changes.told(obj.data)
             return True
     lacking = next((obj for obj in edited if not _whole(obj)), None)
     if lacking:
@@ -83,7 +83,7 @@ def advance(objects):
 
 def _slice(obj):
     """The next one: what is seen of the object to begin with, and then what is made of that."""
-    kept = _kept.get(key(obj.data))
+    kept = _kept.get(mesh_key(obj.data))
     if kept and kept.stamp == _stamp(obj):
         kept.advance(obj)
     else:
@@ -98,18 +98,18 @@ def note_written_back(objects):
 
 
 def _written_back(obj):
-    return _written.get(key(obj.data)) == changes.told(obj.data)
+    return _written.get(mesh_key(obj.data)) == changes.told(obj.data)
 
 
 def _whole(obj):
-    kept = _kept.get(key(obj.data))
+    kept = _kept.get(mesh_key(obj.data))
     return kept is not None and kept.stamp == _stamp(obj) and kept.whole
 
 
 @contextlib.contextmanager
 def unchanged(obj):
     """What Blender tells of the object's mesh within it is no more than a selection: what is made stays."""
-    kept = _kept.get(key(obj.data))
+    kept = _kept.get(mesh_key(obj.data))
     fits = kept and kept.stamp == _stamp(obj)
     yield
     if fits:
@@ -118,10 +118,10 @@ def unchanged(obj):
 
 def prepared(obj):
     """The Prepared of the object's mesh as it is now, as far as Blender has told of changes."""
-    stamp, kept = _stamp(obj), _kept.get(key(obj.data))
+    stamp, kept = _stamp(obj), _kept.get(mesh_key(obj.data))
     if not kept or kept.stamp != stamp:
         _kept.drop_gone()
-        kept = _kept[key(obj.data)] = Prepared(obj, stamp)
+        kept = _kept[mesh_key(obj.data)] = Prepared(obj, stamp)
     return kept
 
 
@@ -138,7 +138,7 @@ def ready(obj):
 
 def _make(name):
     """A slice of it; what a timer waits for until the next, or None."""
-    obj = named(name)
+    obj = find_object(name)
     if obj and at_rest() and not _whole(obj):
         _slice(obj)
         return 0
@@ -163,7 +163,7 @@ def stop():
 def current(obj, parts):
     """Whether these parts are of the object's mesh as it is now. Makes nothing, so it may be asked while Blender draws.
     """
-    kept = _kept.get(key(obj.data))
+    kept = _kept.get(mesh_key(obj.data))
     return kept is not None and kept._parts is parts and kept.stamp == _stamp(obj)
 
 
@@ -171,4 +171,4 @@ def _stamp(obj):
     """Each view layer of each scene is evaluated by itself, with a frame of its own."""
     layer = bpy.context.view_layer
     evaluation = layer.id_data.name_full, layer.name
-    return obj.name_full, obj.mode, evaluation, changes.revision(obj.data), counts(obj.data)
+    return obj.name_full, obj.mode, evaluation, changes.revision(obj.data), element_counts(obj.data)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The target of a pick that changes nothing before it is confirmed."""
 
-from ..mesh import kept
+from ..mesh import mesh_identity
 
 
 class Preview:
@@ -17,5 +17,5 @@ class Preview:
         """Nothing was changed."""
 
     def fits(self):
-        obj = kept.named(self.name)
+        obj = mesh_identity.find_object(self.name)
         return obj is not None and obj.mode == self.mode and len(obj.data.polygons) == self.faces

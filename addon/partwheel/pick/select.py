@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..mesh.refusing import can
+from ..mesh.poll import check_poll
 from ..mesh.selection import Selections
 from ..view import keys
 from .pick import PartPicker
@@ -19,8 +19,8 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return can(cls, context.mode == "EDIT_MESH" and context.edit_object,
-                   "Parts are selected in Edit Mode of a mesh.")
+        return check_poll(cls, context.mode == "EDIT_MESH" and context.edit_object,
+                          "Parts are selected in Edit Mode of a mesh.")
 
     def _apply(self, context, obj, faces, picked):
         self._aim(context, obj).select(obj, faces, picked.face, self.extend, self.deselect)

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays, pieces
-from ..mesh.refusing import Refused
+from ..mesh.errors import Refused
 from ..mesh.selection import select_outside_edit_mode
 from ..words.say import rpt_
 

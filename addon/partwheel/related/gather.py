@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays
-from ..mesh.refusing import can
+from ..mesh.poll import check_poll
 from ..mesh.selection import Selections
 from ..parts import picks
 from ..pick import states
@@ -24,7 +24,7 @@ MODES = [("SET", "Set", "Select these parts and nothing else"), ("ADD", "Extend"
 class _InEditMode:
     @classmethod
     def poll(cls, context):
-        return can(cls, context.mode == "EDIT_MESH" and context.edit_object, "Parts are selected in Edit Mode of a mesh.")
+        return check_poll(cls, context.mode == "EDIT_MESH" and context.edit_object, "Parts are selected in Edit Mode of a mesh.")
 
 
 class MESH_OT_partwheel_gather_begin(_InEditMode, bpy.types.Operator):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..mesh import arrays
-from ..mesh.refusing import Refused
+from ..mesh.errors import Refused
 from ..parts import registry
 from partwheel import likeness
 

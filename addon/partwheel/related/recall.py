@@ -3,7 +3,8 @@
 
 import bpy
 
-from ..mesh.refusing import Refused, can, changeable
+from ..mesh.errors import Refused
+from ..mesh.poll import check_poll, poll_is_editable
 from ..mesh.selection import Selections
 from ..parts import picks, registry
 from ..pick import borders
@@ -19,8 +20,8 @@ class _InEditMode:
 
     @classmethod
     def poll(cls, context):
-        return can(cls, context.mode == "EDIT_MESH" and context.edit_object,
-                   "Parts are remembered in Edit Mode of a mesh.") and changeable(cls, context.edit_object)
+        return check_poll(cls, context.mode == "EDIT_MESH" and context.edit_object,
+                          "Parts are remembered in Edit Mode of a mesh.") and poll_is_editable(cls, context.edit_object)
 
     def execute(self, context):
         try:
@@ -53,7 +54,7 @@ class MESH_OT_partwheel_remember(_InEditMode, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return super().poll(context) and can(cls, picks.picked_as_told(context.edit_object), picks.NO_PICK)
+        return super().poll(context) and check_poll(cls, picks.picked_as_told(context.edit_object), picks.NO_PICK)
 
     def invoke(self, context, _event):
         taken, number = remembered.names(context.edit_object.data), 1

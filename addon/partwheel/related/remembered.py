@@ -7,7 +7,7 @@ import bmesh
 import numpy as np
 
 from ..mesh import arrays
-from ..mesh.refusing import Refused
+from ..mesh.errors import Refused
 from ..pick import borders
 from partwheel.likeness import nearest
 

@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays
-from ..mesh.kept import named
-from ..mesh.refusing import Refused
+from ..mesh.mesh_identity import find_object
+from ..mesh.errors import Refused
 from ..mesh.selection import Selections
 from ..parts import picks, registry
 from ..pick import borders
@@ -71,7 +71,7 @@ class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
         own = context.edit_object
         nodes = {own: [self.pick.node]}
         for each in self.alike[:count]:
-            nodes.setdefault(named(each.name), []).append(each.node)
+            nodes.setdefault(find_object(each.name), []).append(each.node)
         faces = {obj: self._faces(obj, registry.known(obj.data), those, self.pick.snap) for obj, those in nodes.items()}
         self.selections.select_in_each(faces, self.extend, active={own: self.pick.face})
 

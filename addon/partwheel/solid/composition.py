@@ -9,7 +9,7 @@ from mathutils import Vector
 
 from ..mesh import arrays
 from ..mesh.datablocks import all_or_nothing, copy_settings, own_actions, redirect_drivers
-from ..mesh.refusing import Refused
+from ..mesh.errors import Refused
 from ..pick import borders
 from ..words.say import rpt_
 from . import solids

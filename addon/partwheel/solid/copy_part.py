@@ -5,7 +5,8 @@ import bpy
 
 from ..mesh import arrays
 from ..mesh.datablocks import all_or_nothing
-from ..mesh.refusing import NeedsMesh, Refused, changeable
+from ..mesh.errors import Refused
+from ..mesh.poll import NeedsActiveMesh, poll_is_editable
 from ..mesh.selection import KINDS, is_selected
 from ..parts import picks, registry
 from ..pick import borders
@@ -17,7 +18,7 @@ from partwheel.likeness import nearest
 OVERLAP = 0.9  # of what is selected with a part, to be taken for it
 
 
-class OnParts(NeedsMesh):
+class OnParts(NeedsActiveMesh):
     """What operators on an object with parts share: Edit Mode, errors."""
 
     bl_options = {"REGISTER", "UNDO"}
@@ -144,7 +145,7 @@ class MESH_OT_partwheel_remove(OnPart, Beside, _Caps, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return super().poll(context) and changeable(cls, context.active_object)
+        return super().poll(context) and poll_is_editable(cls, context.active_object)
 
     def losses(self, obj):
         return composition.bound(obj)

@@ -8,7 +8,7 @@ import numpy as np
 from ..mesh import arrays
 from partwheel import PartwheelError, Solid, Status, duplicate_faces
 from ..mesh.pieces import Origins, Plan
-from ..mesh.refusing import Refused
+from ..mesh.errors import Refused
 
 
 class Fitted(NamedTuple):

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..mesh import arrays, pieces
 from . import bridging, closing, fitting
-from ..mesh.refusing import Refused
+from ..mesh.errors import Refused
 
 CAP = "partwheel_cap"  # the attribute of faces that closes what was cut
 CAP_MATERIAL = "Partwheel Cap"

@@ -5,7 +5,7 @@ mesh after the other, beside Blender's own work, as mesh.partwheel_build does it
 import bpy
 from bpy.app.handlers import persistent
 
-from ..mesh.refusing import can
+from ..mesh.poll import check_poll
 from ..pick.build import Finds, start, without_parts
 from ..preferences import preferences
 
@@ -21,8 +21,8 @@ class MESH_OT_partwheel_imported(Finds, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return can(cls, context.mode == "OBJECT" and lacking(context.view_layer),
-                   "This is for selected meshes without parts, in Object Mode.")
+        return check_poll(cls, context.mode == "OBJECT" and lacking(context.view_layer),
+                          "This is for selected meshes without parts, in Object Mode.")
 
     def _lacking(self, context):
         return lacking(context.view_layer)

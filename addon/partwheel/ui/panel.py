@@ -3,7 +3,7 @@
 
 import bpy
 
-from .. import trouble
+from .. import library_error
 from ..parts import builds, picks, registry
 from ..pick.build import done
 from ..words.say import iface_, percent
@@ -33,7 +33,7 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
 
     def draw(self, context):
         layout = self.layout
-        if trouble.draw(context, layout):
+        if library_error.draw_library_error(context, layout):
             return
         if context.mode == "EDIT_MESH":
             column = layout.column()
@@ -76,12 +76,12 @@ def _describe(context, column, hierarchy):
     else:
         told = iface_("Parts of {count:,} faces").format(count=len(hierarchy.order))
         column.label(text=told, translate=False)
-    trouble.draw_lines(context, column, done(hierarchy))
+    library_error.draw_wrapped_text(context, column, done(hierarchy))
 
 
 def _say(context, column, text):
     if text:
-        trouble.draw_lines(context, column, iface_(text))
+        library_error.draw_wrapped_text(context, column, iface_(text))
 
 
 CLASSES = (VIEW3D_PT_partwheel,)

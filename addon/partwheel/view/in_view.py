@@ -7,7 +7,7 @@ import traceback
 
 import bpy
 
-from .. import trouble
+from .. import library_error
 from partwheel import Error, LibraryError
 from . import overlay
 from . import status
@@ -81,7 +81,7 @@ class InView:
                 self._end(context)
             return answer
         except LibraryError as error:
-            self.report({"ERROR"}, trouble.logged(error))
+            self.report({"ERROR"}, library_error.log_library_error(error))
         except Error as error:  # its text is for the user
             self.report({"ERROR"}, str(error))
         except Exception as error:  # any: a tool that dies in the middle leaves Blender with its keys and its changes

@@ -8,7 +8,7 @@ import bpy
 import gpu
 import numpy as np
 
-from ..mesh import arrays, kept
+from ..mesh import arrays, mesh_identity
 from ..preferences import preferences
 from . import layers
 from .layers import Layer
@@ -236,7 +236,7 @@ class Shown:
 
     def _draw(self):
         context, (name, *what) = bpy.context, self._what
-        obj = kept.named(name)
+        obj = mesh_identity.find_object(name)
         if obj and visible(context, obj) and self._fits(obj):
             draw_held(context, obj, *what)
 

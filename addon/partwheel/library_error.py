@@ -8,21 +8,21 @@ from partwheel import LibraryError
 from partwheel.library import load
 
 # Of Blender's interface font, on average, at a scale of 1; and what frames and tabs take of a region's width.
-PIXELS_A_LETTER, PIXELS_BESIDE = 7, 40
+PIXELS_PER_LETTER, MARGIN_PIXELS = 7, 40
 
 _logged = set()
 
 
-def of_library():
+def library_error():
     """Why the library can't be used and what to do, in sentences; "" while it can."""
     try:
         load()
         return ""
     except LibraryError as error:
-        return logged(error)
+        return log_library_error(error)
 
 
-def logged(error):
+def log_library_error(error):
     """The LibraryError's sentences. The loader's own words go to the log, once."""
     if str(error) not in _logged:
         _logged.add(str(error))
@@ -30,25 +30,25 @@ def logged(error):
     return str(error)
 
 
-def draw(context, layout):
+def draw_library_error(context, layout):
     """Says so in a panel or in the preferences: whether there is anything to be said."""
-    sentences = of_library()
+    sentences = library_error()
     if sentences:
         column = layout.column(align=True)
         column.alert = True
-        draw_lines(context, column, sentences, icon="ERROR")
+        draw_wrapped_text(context, column, sentences, icon="ERROR")
     return bool(sentences)
 
 
-def draw_lines(context, column, text, icon="NONE"):
+def draw_wrapped_text(context, column, text, icon="NONE"):
     """A text in lines as long as the region is wide."""
-    width = context.region.width / context.preferences.system.ui_scale - PIXELS_BESIDE
-    for line in lines(text, max(int(width / PIXELS_A_LETTER), 20)):
+    width = context.region.width / context.preferences.system.ui_scale - MARGIN_PIXELS
+    for line in wrap_text(text, max(int(width / PIXELS_PER_LETTER), 20)):
         column.label(text=line, icon=icon, translate=False)
         icon = "BLANK1" if icon != "NONE" else icon
 
 
-def lines(text, letters):
+def wrap_text(text, letters):
     """[line, ...] of at most so many letters. Those of East Asia are twice as wide, and a line may end after any."""
     widths = [2 if unicodedata.east_asian_width(letter) in "WF" else 1 for letter in text]
     if sum(widths) == len(text):

@@ -7,7 +7,7 @@ import bmesh
 import bpy
 
 
-class PerMesh(dict):
+class MeshTable(dict):
     """Something of each mesh, by key(mesh)."""
 
     tables = []  # all that there are
@@ -15,20 +15,20 @@ class PerMesh(dict):
     def __init__(self, gone=dict.pop):
         """gone(table, key): what drop_gone() does with what it finds, if it isn't to be forgotten."""
         self._gone = gone
-        PerMesh.tables.append(self)
+        MeshTable.tables.append(self)
 
     def drop_gone(self):
         """Nothing of meshes that are no more is kept."""
-        for gone in self.keys() - {key(mesh) for mesh in bpy.data.meshes}:
+        for gone in self.keys() - {mesh_key(mesh) for mesh in bpy.data.meshes}:
             self._gone(self, gone)
 
 
-def key(mesh):
+def mesh_key(mesh):
     """A mesh's identity that outlives undo. Before Blender 4.1 its full name: renaming it means building again."""
     return getattr(mesh, "session_uid", None) or mesh.name_full
 
 
-def counts(mesh):
+def element_counts(mesh):
     """(vertices, polygons), at once, also in Edit Mode: when these are others, the mesh is another one."""
     if mesh.is_editmode:
         bm = bmesh.from_edit_mesh(mesh)
@@ -36,7 +36,7 @@ def counts(mesh):
     return len(mesh.vertices), len(mesh.polygons)
 
 
-def named(name_full):
+def find_object(name_full):
     """The object that is named so, or None."""
     found = bpy.data.objects.get(name_full)  # any linked one too
     if found is None or found.name_full != name_full:
@@ -44,6 +44,6 @@ def named(name_full):
     return found
 
 
-def wanted(name):
+def resolve_object(name):
     """The one that a user or a script names, in full or, where that is none, without its library."""
-    return named(name) or bpy.data.objects.get(name)
+    return find_object(name) or bpy.data.objects.get(name)

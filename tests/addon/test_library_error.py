@@ -52,7 +52,7 @@ class NoLibrary(MeshTest):
         self.addCleanup(self.binding.load.cache_clear)
         self.binding.LIBRARY = self.path
         self.binding.load.cache_clear()
-        part("trouble")._logged.clear()
+        part("library_error")._logged.clear()
 
     def drawn(self, cls):
         layout = Layout()
