@@ -52,8 +52,8 @@ def outside(primitive, points):
     """(n,) how far points are outside of a primitive, at most 0 for those in it."""
     x = np.abs((points - primitive.center) @ primitive.axes)
     if primitive.kind == "box":
-        return (x - primitive.half).max(axis=1)
-    across, radius, half = np.linalg.norm(x[:, :2], axis=1), primitive.half[0], primitive.half[2]
+        return (x - primitive.half_extents).max(axis=1)
+    across, radius, half = np.linalg.norm(x[:, :2], axis=1), primitive.half_extents[0], primitive.half_extents[2]
     if primitive.kind == "cylinder":
         return np.maximum(across - radius, x[:, 2] - half)
     return np.hypot(across, np.maximum(x[:, 2] - (half - radius), 0)) - radius
@@ -62,7 +62,7 @@ def outside(primitive, points):
 def reach(primitive, vertices, triangles):
     """How far it goes away from a hull, by points on it."""
     igl = pytest.importorskip("igl")
-    points = rounded(primitive.kind, primitive.half, 128) @ primitive.axes.T + primitive.center
+    points = rounded(primitive.kind, primitive.half_extents, 128) @ primitive.axes.T + primitive.center
     squared = igl.point_mesh_squared_distance(points, vertices, triangles.astype(np.int64))[0]
     planes = ConvexHull(vertices).equations
     away = (points @ planes[:, :3].T + planes[:, 3]).max(axis=1) > 0
@@ -74,17 +74,17 @@ def test_each_is_found_where_it_is(number):
     kind, half = EXACT[number]
     center, axes = turned(number)
     hull = hull_of(rounded(kind, np.array(half, float)) @ axes.T + center)
-    found = convex.around(*hull, 0.02 * max(half))
+    found = convex.fit_primitive(*hull, 0.02 * max(half))
     assert found.kind == kind
     np.testing.assert_allclose(found.center, center, atol=2e-3 * max(half))
-    np.testing.assert_allclose(np.sort(found.half), np.sort(half), atol=3e-3 * max(half))
+    np.testing.assert_allclose(np.sort(found.half_extents), np.sort(half), atol=3e-3 * max(half))
     assert outside(found, hull[0]).max() < 1e-9
     assert reach(found, *hull) <= 0.02 * max(half)
     np.testing.assert_allclose(found.axes.T @ found.axes, np.eye(3), atol=1e-12)
     assert np.linalg.det(found.axes) == pytest.approx(1)
     if kind in {"capsule", "cylinder"}:
         assert abs(found.axes[:, 2] @ axes[:, 2]) > 1 - 1e-5
-    without = convex.around(*hull, 0.02 * max(half), [each for each in ("sphere", "box", "cylinder") if each != kind])
+    without = convex.fit_primitive(*hull, 0.02 * max(half), [each for each in ("sphere", "box", "cylinder") if each != kind])
     assert without is None
 
 
@@ -109,13 +109,13 @@ def test_parts_of_models(name):
     hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count)
     most = 0.04 * np.linalg.norm(np.ptp(hierarchy.vertices, axis=0))
     parts = hierarchy.convex_parts(8, max_vertices=64)
-    found = [convex.around(*part[:2], most) for part in parts]
+    found = [convex.fit_primitive(*part[:2], most) for part in parts]
     assert any(found)
     for primitive, part in zip(found, parts):
         if primitive:
             assert outside(primitive, part.vertices).max() < 1e-9 * most
             assert reach(primitive, part.vertices, part.triangles) <= most
-    assert [convex.around(*part[:2], 0) for part in parts] == [None] * len(parts)
+    assert [convex.fit_primitive(*part[:2], 0) for part in parts] == [None] * len(parts)
 
 
 def support(kind, center, axes, half):

@@ -11,7 +11,7 @@ from ..solid import composition
 from partwheel import convex
 
 # What is called how, by its kind: as the engine's importer knows it, or so that people do. Engines take no other kinds.
-NAMES = {"UNREAL": {kind: start + "_{model}_{number:02}" for kind, start in convex.UNREAL.items()},
+NAMES = {"UNREAL": {kind: start + "_{model}_{number:02}" for kind, start in convex.UNREAL_PREFIXES.items()},
          "GODOT": {"hull": "{model}_{number:02}-convcolonly"},
          "UNITY": {"hull": "{model}_collider_{number:02}", "box": "{model}_box_{number:02}",
                    "sphere": "{model}_sphere_{number:02}", "capsule": "{model}_capsule_{number:02}"},
@@ -27,7 +27,7 @@ def made(context, obj, hulls, engine="UNREAL", primitives=0.0):
     reach beyond a hull to be taken instead, as far as the engine has these; 0: hulls alone. Refused: nothing has changed."""
     earlier = [child for child in obj.children if child.type == "MESH" and composition.HULL in child]
     kinds = tuple(kind for kind in convex.KINDS if kind in NAMES[engine])
-    shapes = [(primitives > 0 and convex.around(*hull[:2], primitives, kinds)) or hull for hull in hulls]
+    shapes = [(primitives > 0 and convex.fit_primitive(*hull[:2], primitives, kinds)) or hull for hull in hulls]
     names = [NAMES[engine][convex.kind_of(shape)].format(model=obj.name, number=number)
              for number, shape in enumerate(shapes)]
     _check(obj, names, earlier, engine)

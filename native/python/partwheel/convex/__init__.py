@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Convex hulls, and primitives in their place, as engines and robot simulators read them."""
+"""Collision shapes, convex hulls or primitives, in the file formats of engines and robot simulators."""
 
-from .files import FORMATS, UNREAL, write, write_obj
-from .primitives import KINDS, Primitive, around, kind_of
+from .files import FORMATS, UNREAL_PREFIXES, write, write_obj
+from .primitives import KINDS, Primitive, fit_primitive, kind_of
 
-__all__ = ["FORMATS", "KINDS", "UNREAL", "Primitive", "around", "kind_of", "write", "write_obj"]
+__all__ = ["FORMATS", "KINDS", "UNREAL_PREFIXES", "Primitive", "fit_primitive", "kind_of", "write", "write_obj"]

@@ -1,108 +1,136 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Convex hulls as files, by the conventions of engines and simulators."""
+"""Writes convex hulls to files, by the conventions of engines and simulators."""
+
+from __future__ import annotations
 
 import re
 from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Callable, Collection, Iterable, List, Optional, Sequence, Tuple
+
+import numpy as np
 
 from ..requirements import load_module
 from . import simulators
-from .primitives import KINDS, around, kind_of
+from .primitives import KINDS, fit_primitive, kind_of
+
+if TYPE_CHECKING:
+    from ..meshes import Mesh
 
 FORMATS = "obj", "glb", "unreal", "godot", "urdf", "mjcf", "usd"
-# How the names of what collides begin.
-UNREAL = {"hull": "UCX", "box": "UBX", "sphere": "USP", "capsule": "UCP"}
+# Kind of a collision shape -> the prefix by which Unreal recognizes it.
+UNREAL_PREFIXES = {"hull": "UCX", "box": "UBX", "sphere": "USP", "capsule": "UCP"}
+
+Hull = Tuple[np.ndarray, np.ndarray]  # vertices (n, 3), triangles (m, 3)
 
 
-def write(folder, name, mesh, hulls, formats=("obj",), primitives=None):
-    """Writes hulls into a folder, made if it is not there; [path, ...] what was written.
+def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], formats: Collection[str] = ("obj",),
+          primitives: Optional[float] = None) -> List[Path]:
+    """Writes hulls into a folder.
 
-    obj: NAME_hulls.obj, an object for each, UCX_NAME_00 and so on. glb: NAME_hulls.glb, the same. unreal: NAME_unreal.glb,
-    the model NAME with the hulls UCX_NAME_00 and so on, which Unreal takes as its collision. godot: NAME_godot.glb, the model
-    with the hulls NAME_00-convcolonly and so on, of which Godot makes a body with shapes. urdf: NAME.urdf, a link that looks
-    as the model and collides as the hulls. mjcf: NAME.xml, a body of MuJoCo's, falling freely, with a mesh and a geom for
-    each hull. These two name files in NAME_hulls/. usd: NAME.usda, a body of UsdPhysics that looks as the model and collides
-    as the hulls, which are guides. All in the unit of the model, which simulators take for metres, and z for up.
+    Formats, where NAME is the model's name and 00 a hull's number:
 
-    primitives: None for hulls alone, or the length that a box, sphere, capsule or cylinder may reach beyond a hull to be
-    taken in its place, see around(): in mjcf and usd; in urdf, which has no capsules; in glb and unreal, which have no
-    cylinders, named UBX_NAME_00, USP_..., UCP_... and turned by their nodes.
+    obj     NAME_hulls.obj, one object per hull, UCX_NAME_00 and so on
+    glb     NAME_hulls.glb, the same
+    unreal  NAME_unreal.glb, the model NAME with the hulls UCX_NAME_00, which Unreal imports as its collision
+    godot   NAME_godot.glb, the model with the hulls NAME_00-convcolonly, which Godot imports as a body with shapes
+    urdf    NAME.urdf, a link whose visual is the model and whose collision are the hulls; meshes in NAME_hulls/
+    mjcf    NAME.xml, a free MuJoCo body with a mesh and a geom for each hull; meshes in NAME_hulls/
+    usd     NAME.usda, a UsdPhysics body with the model and the hulls, which are guides
 
-    In all glb files a node of a hull has the extras "collider", "hull" or the kind of a primitive; "of", the model's name;
-    and "size" of a primitive, along the node's own axes.
+    Coordinates are the model's; simulators take them as meters, with z up. In glb files each node of a hull has the extras
+    "collider" ("hull" or the kind of the primitive), "of" (the model's name) and, for primitives, "size" along the node's axes.
 
-    hulls: [(vertices, triangles, ...), ...]. mesh: a meshes.Mesh. Raises RequirementError without trimesh, where
-    glb is written; OSError."""
-    name = re.sub(r"[^\w.-]", "_", name)  # as all readers take it
+    Parameters
+    ----------
+    folder : created if it does not exist
+    name : of the model; characters other than letters, digits, ".", "-" and "_" become "_"
+    mesh : the model
+    hulls : [(vertices (n, 3), triangles (m, 3), ...), ...]
+    formats : from FORMATS
+    primitives : the max_excess of fit_primitive(), for formats that have primitives: mjcf and usd; urdf, except for capsules;
+        glb and unreal, except for cylinders, with the names UBX_NAME_00, USP_NAME_00, UCP_NAME_00. None: hulls only
+
+    Returns
+    -------
+    the paths of the files
+
+    Raises
+    ------
+    RequirementError : trimesh, which writes glb, is not installed
+    OSError : a file can't be written
+    """
+    name = re.sub(r"[^\w.-]", "_", name)
     folder.mkdir(parents=True, exist_ok=True)
     numbers = [f"{number:02}" for number in range(len(hulls))]
     surface = mesh.vertices, mesh.triangles
     hulls = [hull[:2] for hull in hulls]
-    written = []
+    paths = []
 
     @cache
-    def shapes(*kinds):
-        """What collides where there are these kinds: hulls, and Primitives."""
-        taken = [primitives is not None and around(*hull, primitives, kinds) for hull in hulls]
-        return [primitive or hull for primitive, hull in zip(taken, hulls)]
+    def shapes(*kinds: str) -> List[Any]:
+        """The collision shapes for a format that has these kinds of primitive."""
+        fits = [primitives is not None and fit_primitive(hull[0], hull[1], primitives, kinds) for hull in hulls]
+        return [primitive or hull for primitive, hull in zip(fits, hulls)]
 
-    def put(file_name, write_it, *arguments):
+    def write_file(file_name: str, writer: Callable[..., None], *arguments: Any) -> None:
         path = folder / file_name
         path.parent.mkdir(exist_ok=True)
-        write_it(path, *arguments)
-        written.append(path)
+        writer(path, *arguments)
+        paths.append(path)
 
-    unreal = [f"UCX_{name}_{number}" for number in numbers]
     if "obj" in formats:
-        put(f"{name}_hulls.obj", write_obj, [(each, *hull) for each, hull in zip(unreal, hulls)])
+        write_file(f"{name}_hulls.obj", write_obj, [(f"UCX_{name}_{number}", *hull) for number, hull in zip(numbers, hulls)])
     if {"glb", "unreal"} & set(formats):
-        found = shapes("sphere", "capsule", "box")
-        found = [(f"{UNREAL[kind_of(each)]}_{name}_{number}", each) for number, each in zip(numbers, found)]
+        named_shapes = [(f"{UNREAL_PREFIXES[kind_of(shape)]}_{name}_{number}", shape)
+                        for number, shape in zip(numbers, shapes("sphere", "capsule", "box"))]
         if "glb" in formats:
-            put(f"{name}_hulls.glb", _write_glb, name, None, found)
+            write_file(f"{name}_hulls.glb", _write_glb, name, None, named_shapes)
         if "unreal" in formats:
-            put(f"{name}_unreal.glb", _write_glb, name, surface, found)
+            write_file(f"{name}_unreal.glb", _write_glb, name, surface, named_shapes)
     if "godot" in formats:
-        named = [(f"{name}_{number}-convcolonly", hull) for number, hull in zip(numbers, hulls)]
-        put(f"{name}_godot.glb", _write_glb, name, surface, named)
+        named_hulls = [(f"{name}_{number}-convcolonly", hull) for number, hull in zip(numbers, hulls)]
+        write_file(f"{name}_godot.glb", _write_glb, name, surface, named_hulls)
     if {"urdf", "mjcf"} & set(formats):
         for number, hull in zip(numbers, hulls):
-            put(f"{name}_hulls/{number}.obj", write_obj, [(number, *hull)])
+            write_file(f"{name}_hulls/{number}.obj", write_obj, [(number, *hull)])
     files = [f"{name}_hulls/{number}.obj" for number in numbers]
     if "urdf" in formats:
-        put(f"{name}_hulls/model.obj", write_obj, [(name, *surface)])
-        put(f"{name}.urdf", simulators.write_urdf, name, f"{name}_hulls/model.obj", files, shapes("box", "sphere", "cylinder"))
+        write_file(f"{name}_hulls/model.obj", write_obj, [(name, *surface)])
+        write_file(f"{name}.urdf", simulators.write_urdf, name, f"{name}_hulls/model.obj", files,
+                   shapes("box", "sphere", "cylinder"))
     if "mjcf" in formats:
-        put(f"{name}.xml", simulators.write_mjcf, name, files, shapes(*KINDS))
+        write_file(f"{name}.xml", simulators.write_mjcf, name, files, shapes(*KINDS))
     if "usd" in formats:
-        put(f"{name}.usda", simulators.write_usd, name, surface, shapes(*KINDS))
-    return written
+        write_file(f"{name}.usda", simulators.write_usd, name, surface, shapes(*KINDS))
+    return paths
 
 
-def write_obj(path, named):
-    """named: [(name, vertices, triangles), ...], an object each."""
+def write_obj(path: Path, objects: Iterable[Tuple[Any, ...]]) -> None:
+    """Writes a Wavefront OBJ file; objects: (name, vertices (n, 3), triangles (m, 3)) each. Raises OSError."""
     first = 1
     with open(path, "w", encoding="utf-8") as file:
-        for name, vertices, triangles in named:
+        for name, vertices, triangles in objects:
             file.write(f"o {name}\n")
             file.writelines("v {!r} {!r} {!r}\n".format(*point) for point in vertices.tolist())
             file.writelines("f {} {} {}\n".format(*corners) for corners in (triangles + first).tolist())
             first += len(vertices)
 
 
-def _write_glb(path, model, surface, named):
-    """model: its name; surface: (vertices, triangles), or None. named: [(name, hull or Primitive), ...]."""
+def _write_glb(path: Path, model: str, surface: Optional[Hull], named_shapes: Iterable[Tuple[str, Any]]) -> None:
+    """Writes a glb file of shapes with their names, and of the model's surface unless it is None."""
     trimesh = load_module("trimesh", "Writing glb files")
     scene = trimesh.Scene()
 
-    def add(name, mesh, **more):
-        scene.add_geometry(trimesh.Trimesh(*mesh, process=False), node_name=name, geom_name=name, **more)
+    def add(name: str, mesh: Hull, **options: Any) -> None:
+        scene.add_geometry(trimesh.Trimesh(*mesh, process=False), node_name=name, geom_name=name, **options)
 
     if surface:
         add(model, surface)
-    for name, shape in named:
+    for name, shape in named_shapes:
         extras = {"collider": kind_of(shape), "of": model}
         if extras["collider"] == "hull":
             add(name, shape, metadata=extras)
         else:
-            add(name, shape.mesh(), transform=shape.matrix(), metadata={**extras, "size": (2 * shape.half).tolist()})
+            add(name, shape.mesh(), transform=shape.matrix(), metadata={**extras, "size": (2 * shape.half_extents).tolist()})
     path.write_bytes(scene.export(file_type="glb"))

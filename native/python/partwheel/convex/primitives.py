@@ -1,279 +1,322 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Boxes, spheres, capsules and cylinders in place of convex hulls: engines are several times faster on them.
+"""Fits boxes, spheres, capsules and cylinders around convex hulls: engines collide them several times faster than hulls.
 
-Each is fitted around its hull, which it contains. How far it reaches beyond it is exact, but for a cylinder's, which is at
-most 0.2 % of its radius too much. Capsules and cylinders are searched for from a few directions: good ones, not the best."""
+A primitive contains its hull. Its excess is the one-sided Hausdorff distance from the primitive to the hull: exact, except
+for a cylinder, where it is an upper bound, at most 0.2 % of the radius too large. The axes of capsules and cylinders are found
+by a local search from a few directions, so they are good but not optimal."""
 
 from functools import cached_property
 from itertools import combinations
-from typing import NamedTuple
+from typing import Any, Callable, Collection, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
-KINDS = "sphere", "capsule", "box", "cylinder"  # the one that engines are fastest on first
-AS_GOOD = 0.1  # of what is allowed: a kind that is so much worse than the best is taken where it is faster
-WORTH_A_SEARCH = 4  # times what is allowed: where directions begin that are improved
-STEPS = 8  # of such a search, each half as far as the one before
-MOST_SIDES = 200  # of a hull that are tried as a box's
-SIDES, RINGS = 16, 8  # of round meshes
-ON_CIRCLE = 64  # points that a cylinder's edge is bounded by
+KINDS = "sphere", "capsule", "box", "cylinder"  # fastest in engines first
+EXCESS_TOLERANCE = 0.1  # fraction of max_excess by which a faster kind may exceed more than the best one
+SEARCH_LIMIT = 4  # multiple of max_excess up to which an initial axis is improved
+SEARCH_STEPS = 8  # iterations of the axis search; each halves the step
+MAX_BOX_FACETS = 200  # largest facets that are tried as a side of the box
+MESH_SIDES, MESH_RINGS = 16, 8  # resolution of the meshes of round primitives
+CYLINDER_SAMPLES = 64  # corners of the polygon that encloses a cylinder's rim
 
 
 class Primitive(NamedTuple):
-    """kind: one of KINDS. center (3,). axes (3,3): its own x, y and z as columns, a rotation; capsules and cylinders lie
-    along z. half (3,): half its lengths along them, a capsule's with its ends."""
+    """A collision shape.
+
+    kind : one of KINDS
+    center : (3,)
+    axes : (3, 3) rotation, the local x, y and z as columns; capsules and cylinders lie along z
+    half_extents : (3,) along the axes; a capsule's include its round ends
+    """
 
     kind: str
     center: np.ndarray
     axes: np.ndarray
-    half: np.ndarray
+    half_extents: np.ndarray
 
-    def matrix(self):
-        """(4,4) its own space in the hull's."""
+    def matrix(self) -> np.ndarray:
+        """(4, 4) transform from local space to the hull's."""
         matrix = np.eye(4)
         matrix[:3, :3], matrix[:3, 3] = self.axes, self.center
         return matrix
 
-    def mesh(self):
-        """(vertices, triangles) in its own space, closed, outward, of the same bounding box."""
+    def mesh(self) -> Tuple[np.ndarray, np.ndarray]:
+        """A closed mesh in local space with the primitive's bounding box: vertices (n, 3), triangles (m, 3), outward."""
         if self.kind == "box":
-            vertices = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * self.half
+            vertices = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * self.half_extents
             sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-            return vertices, np.array([three for a, b, c, d in sides for three in ((a, b, c), (a, c, d))])
-        radius, half = self.half[0], self.half[2]
+            return vertices, np.array([triangle for a, b, c, d in sides for triangle in ((a, b, c), (a, c, d))])
+        radius, half = self.half_extents[0], self.half_extents[2]
         if self.kind == "cylinder":
             rings = [(radius, -half), (radius, half)]
         else:
-            turns = np.linspace(-np.pi / 2, np.pi / 2, RINGS + 1)[1:-1]
+            angles = np.linspace(-np.pi / 2, np.pi / 2, MESH_RINGS + 1)[1:-1]
             straight = half - radius
-            rings = [(radius * np.cos(turn), radius * np.sin(turn) + (straight if turn > 0 else -straight))
-                     for turn in turns]
+            rings = [(radius * np.cos(angle), radius * np.sin(angle) + (straight if angle > 0 else -straight))
+                     for angle in angles]
             if straight > 0:
-                rings.insert(RINGS // 2, (radius, straight))
-        around = _circle(SIDES)
-        vertices = np.vstack([(0, 0, -half), *(np.column_stack([ring * around, np.full(SIDES, z)]) for ring, z in rings),
+                rings.insert(MESH_RINGS // 2, (radius, straight))
+        circle = _circle(MESH_SIDES)
+        vertices = np.vstack([(0, 0, -half), *(np.column_stack([ring * circle, np.full(MESH_SIDES, z)]) for ring, z in rings),
                               (0, 0, half)])
-        i, j = np.arange(SIDES), np.roll(np.arange(SIDES), -1)
+        i, j = np.arange(MESH_SIDES), np.roll(np.arange(MESH_SIDES), -1)
         last = len(vertices) - 1
-        triangles = [np.column_stack([0 * i, 1 + j, 1 + i]), np.column_stack([last + 0 * i, last - SIDES + i, last - SIDES + j])]
+        triangles = [np.column_stack([0 * i, 1 + j, 1 + i]),
+                     np.column_stack([last + 0 * i, last - MESH_SIDES + i, last - MESH_SIDES + j])]
         for ring in range(len(rings) - 1):
-            low, high = 1 + ring * SIDES, 1 + (ring + 1) * SIDES
+            low, high = 1 + ring * MESH_SIDES, 1 + (ring + 1) * MESH_SIDES
             triangles += [np.column_stack([low + i, low + j, high + j]), np.column_stack([low + i, high + j, high + i])]
         return vertices, np.vstack(triangles)
 
-    def volume(self):
-        radius, half = self.half[0], self.half[2]
-        return {"box": 8 * self.half.prod(), "sphere": 4 / 3 * np.pi * radius ** 3,
+    def volume(self) -> float:
+        radius, half = self.half_extents[0], self.half_extents[2]
+        return {"box": 8 * self.half_extents.prod(), "sphere": 4 / 3 * np.pi * radius ** 3,
                 "capsule": np.pi * radius ** 2 * (2 * half - 2 / 3 * radius),
                 "cylinder": 2 * np.pi * radius ** 2 * half}[self.kind]
 
 
-def around(vertices, triangles, most, kinds=KINDS):
-    """The Primitive, one of these kinds, to be taken in place of a convex hull: one that contains it and reaches beyond
-    it by no more than most; the nearest to it, or a faster one that is hardly worse. None if there is none."""
+Fit = Tuple[float, Primitive]  # (excess, the primitive)
+
+
+def fit_primitive(vertices: np.ndarray, triangles: np.ndarray, max_excess: float,
+                  kinds: Collection[str] = KINDS) -> Optional[Primitive]:
+    """Fits a primitive that can replace a convex hull.
+
+    Parameters
+    ----------
+    vertices : (n, 3) of the hull
+    triangles : (m, 3) of the hull
+    max_excess : the largest distance from the hull that a point of the primitive may have
+    kinds : the kinds of primitive to choose from
+
+    Returns
+    -------
+    the primitive that contains the hull with the least excess, or one of a faster kind with at most
+    EXCESS_TOLERANCE * max_excess more; None if every fit exceeds max_excess
+    """
     hull = _Hull(np.asarray(vertices, float), np.asarray(triangles))
-    found = []
+    fits: List[Fit] = []
     for kind in KINDS:
         if kind in kinds:
-            found.append(_FITS[kind](hull, most))
-            if found[-1][0] <= AS_GOOD * most:
+            fits.append(_FITS[kind](hull, max_excess))
+            if fits[-1][0] <= EXCESS_TOLERANCE * max_excess:
                 break
-    good = min(min((reach for reach, _ in found), default=0) + AS_GOOD * most, most)
-    return next((made for reach, made in found if reach <= good), None)
+    limit = min(min((excess for excess, _ in fits), default=0) + EXCESS_TOLERANCE * max_excess, max_excess)
+    return next((primitive for excess, primitive in fits if excess <= limit), None)
 
 
-def kind_of(shape):
-    """Of a Primitive; "hull" of any other."""
+def kind_of(shape: Any) -> str:
+    """The kind of a Primitive; "hull" for anything else."""
     return getattr(shape, "kind", "hull")
 
 
 class _Hull:
-    """vertices (n,3), triangles (m,3) of a convex hull."""
+    """A convex hull with its facet planes.
 
-    def __init__(self, vertices, triangles):
+    vertices (n, 3); triangles (m, 3), without those of negligible area; areas (m,); normals (m, 3) unit, outward;
+    corners (m, 3, 3); offsets (m,): facet f lies in the plane normals[f] . x = offsets[f]; size: the longest extent.
+    """
+
+    def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
         self.vertices, self.size = vertices, np.ptp(vertices, axis=0).max()
         a, b, c = vertices[triangles].transpose(1, 0, 2)
         normals = np.cross(b - a, c - a)
-        doubled = np.linalg.norm(normals, axis=1)
-        kept = doubled > 1e-12 * doubled.max()  # others have no direction to speak of
-        self.triangles, self.areas, self.normals = triangles[kept], doubled[kept] / 2, normals[kept] / doubled[kept, None]
+        doubled_areas = np.linalg.norm(normals, axis=1)
+        valid = doubled_areas > 1e-12 * doubled_areas.max()  # a smaller facet's normal is rounding noise
+        self.triangles, self.areas = triangles[valid], doubled_areas[valid] / 2
+        self.normals = normals[valid] / doubled_areas[valid, None]
         self.corners = vertices[self.triangles]
         self.offsets = (self.normals * self.corners[:, 0]).sum(axis=1)
 
-    def beyond(self, points):
-        """(n,) how far points are from the hull; inside, how far from its surface, negative."""
+    def signed_distances(self, points: np.ndarray) -> np.ndarray:
+        """(n,) distances of points (n, 3) from the hull's surface, negative inside."""
         heights = points @ self.normals.T - self.offsets
-        found = heights.max(axis=1)
-        # What is nearest to a point outside is on a facet that faces it; of facets in a plane rounding may turn some away.
-        outside, facing = np.nonzero((found > 0)[:, None] & (heights > -1e-9 * self.size))
+        distances = heights.max(axis=1)
+        # The hull's nearest point to an outside point lies on a facet visible from it. The tolerance keeps facets of one
+        # plane that rounding would make invisible.
+        outside, visible = np.nonzero((distances > 0)[:, None] & (heights > -1e-9 * self.size))
         if len(outside):
-            away = _distances(points[outside], self.corners[facing], self.normals[facing])
+            to_facets = _triangle_distances(points[outside], self.corners[visible], self.normals[visible])
             first = np.flatnonzero(np.diff(outside, prepend=-1))
-            found[outside[first]] = np.minimum.reduceat(away, first)
-        return found
+            distances[outside[first]] = np.minimum.reduceat(to_facets, first)
+        return distances
 
-    def axes(self):
-        """(n,3) directions in which something long or round may lie."""
-        middle = np.average(self.corners.mean(axis=1), axis=0, weights=self.areas)
-        moments = np.einsum("t,tci,tcj->ij", self.areas, self.corners - middle, self.corners - middle)
+    def axes(self) -> np.ndarray:
+        """(n, 3) initial axes for capsules and cylinders: the principal axes of the surface, and the box's."""
+        centroid = np.average(self.corners.mean(axis=1), axis=0, weights=self.areas)
+        moments = np.einsum("t,tci,tcj->ij", self.areas, self.corners - centroid, self.corners - centroid)
         return np.vstack([np.linalg.eigh(moments)[1].T, self.box.T])
 
     @cached_property
-    def box(self):
-        """(3,3) the axes, as columns, of the smallest box of those that have a side in a facet."""
-        return min(map(self._box_on, self._directions()), key=lambda found: found[0])[1]
+    def box(self) -> np.ndarray:
+        """(3, 3) axes, as columns, of the smallest bounding box among those with a side in a facet's plane."""
+        return min(map(self._box_on, self._box_normals()), key=lambda box: box[0])[1]
 
-    def _directions(self):
-        """[(3,), ...] across the largest facets, none twice."""
-        kept = []
-        for normal in self.normals[np.argsort(-self.areas, kind="stable")[:MOST_SIDES]]:
-            if not kept or np.abs(np.array(kept) @ normal).max() < 1 - 1e-9:
-                kept.append(normal)
-        return kept
+    def _box_normals(self) -> List[np.ndarray]:
+        """[(3,), ...] normals of the largest facets, up to sign, without duplicates."""
+        normals: List[np.ndarray] = []
+        for normal in self.normals[np.argsort(-self.areas, kind="stable")[:MAX_BOX_FACETS]]:
+            if not normals or np.abs(np.array(normals) @ normal).max() < 1 - 1e-9:
+                normals.append(normal)
+        return normals
 
-    def _box_on(self, normal):
-        """(volume, axes): the smallest with a side across the normal. Another side is along an edge of the outline."""
-        flat = np.column_stack(_across(normal))
-        facing = self.triangles[self.normals @ normal > 0]
-        edges, counts = np.unique(np.sort(np.vstack([facing[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1), axis=0,
+    def _box_on(self, normal: np.ndarray) -> Tuple[float, np.ndarray]:
+        """(volume, axes (3, 3)) of the smallest bounding box with a side across the normal. A second side contains an edge
+        of the silhouette: the minimum-area rectangle around a convex polygon has a side along an edge of it."""
+        plane = np.column_stack(_orthonormal_pair(normal))
+        visible = self.triangles[self.normals @ normal > 0]
+        edges, counts = np.unique(np.sort(np.vstack([visible[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1), axis=0,
                                   return_counts=True)
-        sides = np.diff(self.vertices[edges[counts == 1]], axis=1)[:, 0] @ flat
+        sides = np.diff(self.vertices[edges[counts == 1]], axis=1)[:, 0] @ plane
         lengths = np.linalg.norm(sides, axis=1)
         sides = sides[lengths > 1e-9 * lengths.max()] / lengths[lengths > 1e-9 * lengths.max(), None]
-        seen = self.vertices @ flat
-        areas = np.ptp(seen @ sides.T, axis=0) * np.ptp(seen @ (sides @ [[0, 1], [-1, 0]]).T, axis=0)
+        projected = self.vertices @ plane
+        areas = np.ptp(projected @ sides.T, axis=0) * np.ptp(projected @ (sides @ [[0, 1], [-1, 0]]).T, axis=0)
         best = int(areas.argmin())
-        first = flat @ sides[best]
-        return areas[best] * np.ptp(self.vertices @ normal), np.column_stack([first, np.cross(normal, first), normal])
+        side = plane @ sides[best]
+        return areas[best] * np.ptp(self.vertices @ normal), np.column_stack([side, np.cross(normal, side), normal])
 
 
-# ---- Each answers (how far it reaches beyond the hull, the Primitive)
+# ---- Fits of each kind: (hull, max_excess) -> (excess, Primitive)
 
 
-def _sphere(hull, _most):
-    center, radius = _ball(hull.vertices)
-    return radius + hull.beyond(center[None])[0], Primitive("sphere", center, np.eye(3), np.full(3, radius))
+def _fit_sphere(hull: _Hull, _max_excess: float) -> Fit:
+    center, radius = _smallest_ball(hull.vertices)
+    return radius + hull.signed_distances(center[None])[0], Primitive("sphere", center, np.eye(3), np.full(3, radius))
 
 
-def _box(hull, _most):
+def _fit_box(hull: _Hull, _max_excess: float) -> Fit:
     axes = hull.box
-    own = hull.vertices @ axes
-    low, high = own.min(axis=0), own.max(axis=0)
-    made = Primitive("box", axes @ (low + high) / 2, axes, (high - low) / 2)
-    corners = made.mesh()[0] @ axes.T + made.center
-    return max(hull.beyond(corners).max(), 0.0), made
+    local = hull.vertices @ axes
+    low, high = local.min(axis=0), local.max(axis=0)
+    box = Primitive("box", axes @ (low + high) / 2, axes, (high - low) / 2)
+    corners = box.mesh()[0] @ axes.T + box.center
+    return max(hull.signed_distances(corners).max(), 0.0), box
 
 
-def _capsule(hull, most):
-    return _searched(hull, most, _capsule_along)
+def _fit_capsule(hull: _Hull, max_excess: float) -> Fit:
+    return _search_axis(hull, max_excess, _capsule_along)
 
 
-def _cylinder(hull, most):
-    return _searched(hull, most, _cylinder_along)
+def _fit_cylinder(hull: _Hull, max_excess: float) -> Fit:
+    return _search_axis(hull, max_excess, _cylinder_along)
 
 
-_FITS = {"sphere": _sphere, "capsule": _capsule, "box": _box, "cylinder": _cylinder}
+_FITS = {"sphere": _fit_sphere, "capsule": _fit_capsule, "box": _fit_box, "cylinder": _fit_cylinder}
 
 
-def _searched(hull, most, along):
-    """The best from some directions, and if that is promising, from others nearer and nearer about it."""
-    best = min((along(hull, axis) for axis in hull.axes()), key=lambda found: found[0])
+def _search_axis(hull: _Hull, max_excess: float, fit_along: Callable[[_Hull, np.ndarray], Fit]) -> Fit:
+    """The best fit over the initial axes; if its excess is at most SEARCH_LIMIT * max_excess, improved by a pattern search
+    that tilts the axis in four directions and halves the step."""
+    best = min((fit_along(hull, axis) for axis in hull.axes()), key=lambda fit: fit[0])
     step = 0.2
-    for _ in range(STEPS if best[0] <= WORTH_A_SEARCH * most else 0):
+    for _ in range(SEARCH_STEPS if best[0] <= SEARCH_LIMIT * max_excess else 0):
         axis = best[1].axes[:, 2]
-        x, y = _across(axis)
-        for way in (x, y, -x, -y):
-            turned = axis + step * way
-            best = min(best, along(hull, turned / np.linalg.norm(turned)), key=lambda found: found[0])
+        x, y = _orthonormal_pair(axis)
+        for direction in (x, y, -x, -y):
+            tilted = axis + step * direction
+            best = min(best, fit_along(hull, tilted / np.linalg.norm(tilted)), key=lambda fit: fit[0])
         step /= 2
     return best
 
 
-def _capsule_along(hull, axis):
-    axes, middle, radius, heights, away = _about(hull, axis)
-    short = np.sqrt(np.maximum(radius ** 2 - away ** 2, 0))  # how far its round end reaches beyond its middle there
-    low, high = (heights + short).min(), (heights - short).max()
+def _capsule_along(hull: _Hull, axis: np.ndarray) -> Fit:
+    axes, center2, radius, heights, distances = _enclosing_tube(hull, axis)
+    cap = np.sqrt(np.maximum(radius ** 2 - distances ** 2, 0))  # height of the round end above its center at each vertex
+    low, high = (heights + cap).min(), (heights - cap).max()
     if low > high:
         low = high = (low + high) / 2
-    center = axes @ np.array([*middle, (low + high) / 2])
+    center = axes @ np.array([*center2, (low + high) / 2])
     ends = center + np.outer([-1, 1], (high - low) / 2 * axis)
     half = np.array([radius, radius, radius + (high - low) / 2])
-    return radius + hull.beyond(ends).max(), Primitive("capsule", center, axes, half)
+    return radius + hull.signed_distances(ends).max(), Primitive("capsule", center, axes, half)
 
 
-def _cylinder_along(hull, axis):
-    axes, middle, radius, heights, _ = _about(hull, axis)
+def _cylinder_along(hull: _Hull, axis: np.ndarray) -> Fit:
+    axes, center2, radius, heights, _ = _enclosing_tube(hull, axis)
     low, high = heights.min(), heights.max()
-    edge = middle + radius / np.cos(np.pi / ON_CIRCLE) * _circle(ON_CIRCLE)
-    points = np.vstack([np.column_stack([edge, np.full(ON_CIRCLE, z)]) for z in (low, high)]) @ axes.T
-    made = Primitive("cylinder", axes @ np.array([*middle, (low + high) / 2]), axes,
-                     np.array([radius, radius, (high - low) / 2]))
-    return max(hull.beyond(points).max(), 0.0), made
+    rim = center2 + radius / np.cos(np.pi / CYLINDER_SAMPLES) * _circle(CYLINDER_SAMPLES)
+    points = np.vstack([np.column_stack([rim, np.full(CYLINDER_SAMPLES, z)]) for z in (low, high)]) @ axes.T
+    cylinder = Primitive("cylinder", axes @ np.array([*center2, (low + high) / 2]), axes,
+                         np.array([radius, radius, (high - low) / 2]))
+    return max(hull.signed_distances(points).max(), 0.0), cylinder
 
 
-def _about(hull, axis):
-    """(axes, where the smallest circle about all as seen along the axis has its middle, its radius, heights (n,), how far
-    away from the middle (n,))"""
-    axes = np.column_stack([*_across(axis), axis])
-    own = hull.vertices @ axes
-    middle, radius = _ball(own[:, :2])
-    return axes, middle, radius, own[:, 2], np.linalg.norm(own[:, :2] - middle, axis=1)
+def _enclosing_tube(hull: _Hull, axis: np.ndarray) -> Tuple[np.ndarray, np.ndarray, float, np.ndarray, np.ndarray]:
+    """The smallest infinite cylinder along an axis that contains the hull.
+
+    Returns
+    -------
+    axes : (3, 3) a frame as columns, the axis last
+    center2 : (2,) the axis of the cylinder in that frame's x and y
+    radius : float
+    heights : (n,) of the vertices along the axis
+    distances : (n,) of the vertices from the axis
+    """
+    axes = np.column_stack([*_orthonormal_pair(axis), axis])
+    local = hull.vertices @ axes
+    center2, radius = _smallest_ball(local[:, :2])
+    return axes, center2, radius, local[:, 2], np.linalg.norm(local[:, :2] - center2, axis=1)
 
 
 # ---- Geometry
 
 
-def _across(axis):
-    """Two directions that make a right-handed frame with it."""
+def _orthonormal_pair(axis: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """Unit vectors x, y that make (x, y, axis) a right-handed orthonormal frame; axis (3,) is a unit vector."""
     x = np.cross(np.eye(3)[np.abs(axis).argmin()], axis)
     x /= np.linalg.norm(x)
     return x, np.cross(axis, x)
 
 
-def _circle(count):
-    turns = 2 * np.pi * np.arange(count) / count
-    return np.column_stack([np.cos(turns), np.sin(turns)])
+def _circle(count: int) -> np.ndarray:
+    """(count, 2) equally spaced points of the unit circle."""
+    angles = 2 * np.pi * np.arange(count) / count
+    return np.column_stack([np.cos(angles), np.sin(angles)])
 
 
-def _ball(points):
-    """(center, radius) of the smallest ball, or circle, about points (n,d). The farthest point joins those that it
-    stands on, of which the smallest ball is tried out, as long as one is outside: it grows each time."""
-    held = points[:1]
-    center, radius = held[0], 0.0
+def _smallest_ball(points: np.ndarray) -> Tuple[np.ndarray, float]:
+    """(center, radius) of the smallest enclosing ball of points (n, d), d 2 or 3.
+
+    Active-set method: while a point is outside, the farthest one joins the support set, and the smallest ball of that set
+    is found among the circumscribed balls of its subsets. The radius grows each time, so the method terminates."""
+    support = points[:1]
+    center, radius = support[0], 0.0
     while True:
-        away = np.linalg.norm(points - center, axis=1)
-        far = int(away.argmax())
-        if away[far] <= radius * (1 + 1e-12):
+        distances = np.linalg.norm(points - center, axis=1)
+        farthest = int(distances.argmax())
+        if distances[farthest] <= radius * (1 + 1e-12):
             return center, radius
-        held = np.vstack([held, points[far]])
+        support = np.vstack([support, points[farthest]])
         best = None
         for count in range(2, points.shape[1] + 2):
-            for chosen in combinations(range(len(held) - 1), count - 1):
-                on = held[[*chosen, -1]]
-                middle = _equally_far(on)
-                most = np.linalg.norm(held - middle, axis=1).max()
-                if best is None or most < best[1]:
-                    best = middle, most, on
-        if best[1] <= radius:  # no more than rounding
-            return center, away[far]
-        center, radius, held = best
+            for chosen in combinations(range(len(support) - 1), count - 1):
+                subset = support[[*chosen, -1]]
+                candidate = _circumcenter(subset)
+                needed = np.linalg.norm(support - candidate, axis=1).max()
+                if best is None or needed < best[1]:
+                    best = candidate, needed, subset
+        assert best is not None
+        if best[1] <= radius:  # the radius grows only by rounding error
+            return center, distances[farthest]
+        center, radius, support = best
 
 
-def _equally_far(points):
-    """The point between these that is as far from each."""
+def _circumcenter(points: np.ndarray) -> np.ndarray:
+    """The point of the affine hull of points (n, d) that has the same distance to all of them."""
     sides = points[1:] - points[0]
     products = sides @ sides.T
     return points[0] + np.linalg.lstsq(2 * products, np.diag(products), rcond=None)[0] @ sides
 
 
-def _distances(points, corners, normals):
-    """(n,) from points (n,3) to triangles (n,3,3), one each."""
-    found = np.full(len(points), np.inf)
+def _triangle_distances(points: np.ndarray, corners: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """(n,) distances of points (n, 3) from triangles (n, 3, 3) with unit normals (n, 3), pairwise."""
+    distances = np.full(len(points), np.inf)
     inside = np.ones(len(points), bool)
     for k in range(3):
         start, side = corners[:, k], corners[:, (k + 1) % 3] - corners[:, k]
-        away = points - start
-        share = np.clip((away * side).sum(axis=1) / (side * side).sum(axis=1), 0, 1)
-        found = np.minimum(found, np.linalg.norm(away - share[:, None] * side, axis=1))
-        inside &= (np.cross(side, away) * normals).sum(axis=1) >= 0
-    return np.where(inside, ((points - corners[:, 0]) * normals).sum(axis=1), found)
+        offset = points - start
+        fraction = np.clip((offset * side).sum(axis=1) / (side * side).sum(axis=1), 0, 1)
+        distances = np.minimum(distances, np.linalg.norm(offset - fraction[:, None] * side, axis=1))
+        inside &= (np.cross(side, offset) * normals).sum(axis=1) >= 0
+    return np.where(inside, ((points - corners[:, 0]) * normals).sum(axis=1), distances)

@@ -1,43 +1,45 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A body that collides as convex hulls and primitives, in the languages of robot simulators: URDF, MuJoCo's, USD."""
+"""Rigid bodies with collision shapes for robot simulators: URDF, MuJoCo's MJCF, USD.
+
+A shape is (vertices (n, 3), triangles (m, 3)) of a hull, or a Primitive."""
 
 import re
+from pathlib import Path
+from typing import Any, Iterable, List, Sequence, Tuple
 from xml.etree import ElementTree
 
 import numpy as np
 
-from .primitives import kind_of
-
-# shapes: what collides, each (vertices, triangles) of a hull or a Primitive.
+from .primitives import Primitive, kind_of
 
 
-def write_urdf(path, name, model, files, shapes):
-    """model, files: of the surface and of the hulls, as seen from the path."""
+def write_urdf(path: Path, name: str, model: str, files: Sequence[str], shapes: Sequence[Any]) -> None:
+    """Writes a robot of one link. model, files: the meshes of the surface and of each hull, relative to the path."""
     robot = ElementTree.Element("robot", name=name)
     link = ElementTree.SubElement(robot, "link", name=name)
 
-    def add(role, name):
+    def add(role: str, name: str) -> ElementTree.Element:
         return ElementTree.SubElement(link, role, name=name)
 
-    def mesh(shape, file):
-        ElementTree.SubElement(ElementTree.SubElement(shape, "geometry"), "mesh", filename=file)
+    def add_mesh(element: ElementTree.Element, file: str) -> None:
+        ElementTree.SubElement(ElementTree.SubElement(element, "geometry"), "mesh", filename=file)
 
-    mesh(add("visual", "model"), model)
+    add_mesh(add("visual", "model"), model)
     for number, (file, shape) in enumerate(zip(files, shapes)):
         element = add("collision", f"{number:02}")
         if kind_of(shape) == "hull":
-            mesh(element, file)
+            add_mesh(element, file)
             continue
         ElementTree.SubElement(element, "origin", xyz=_text(shape.center), rpy=_text(_roll_pitch_yaw(shape.axes)))
-        radius, length = _text(shape.half[:1]), _text(2 * shape.half[2:])
-        sizes = {"box": {"size": _text(2 * shape.half)}, "sphere": {"radius": radius},
+        radius, length = _text(shape.half_extents[:1]), _text(2 * shape.half_extents[2:])
+        sizes = {"box": {"size": _text(2 * shape.half_extents)}, "sphere": {"radius": radius},
                  "cylinder": {"radius": radius, "length": length}}
         ElementTree.SubElement(ElementTree.SubElement(element, "geometry"), shape.kind, sizes[shape.kind])
     _write_xml(path, robot)
 
 
-def write_mjcf(path, name, files, shapes):
-    """files: of the hulls, as seen from the path."""
+def write_mjcf(path: Path, name: str, files: Sequence[str], shapes: Sequence[Any]) -> None:
+    """Writes a free body. files: the meshes of the hulls, relative to the path."""
     root = ElementTree.Element("mujoco", model=name)
     asset, world = ElementTree.SubElement(root, "asset"), ElementTree.SubElement(root, "worldbody")
     body = ElementTree.SubElement(world, "body", name=name)
@@ -47,26 +49,26 @@ def write_mjcf(path, name, files, shapes):
             ElementTree.SubElement(asset, "mesh", name=f"hull_{number:02}", file=file, inertia="convex")
             ElementTree.SubElement(body, "geom", type="mesh", mesh=f"hull_{number:02}")
             continue
-        radius, _, half = shape.half
-        sizes = {"box": shape.half, "sphere": [radius], "capsule": [radius, half - radius], "cylinder": [radius, half]}
+        radius, _, half = shape.half_extents
+        sizes = {"box": shape.half_extents, "sphere": [radius], "capsule": [radius, half - radius], "cylinder": [radius, half]}
         ElementTree.SubElement(body, "geom", type=shape.kind, size=_text(sizes[shape.kind]), pos=_text(shape.center),
                                xyaxes=_text(shape.axes[:, :2].T.ravel()))
     _write_xml(path, root)
 
 
-def _text(numbers):
+def _text(numbers: Iterable[float]) -> str:
     return " ".join(f"{number:.9g}" for number in numbers)
 
 
-def _roll_pitch_yaw(axes):
-    """Turns about the fixed x, y and z, one after the other."""
-    level = np.hypot(axes[0, 0], axes[1, 0])
-    if level < 1e-9:  # yaw and roll are the same turn
-        return np.arctan2(-axes[1, 2], axes[1, 1]), np.arctan2(-axes[2, 0], level), 0
-    return np.arctan2(axes[2, 1], axes[2, 2]), np.arctan2(-axes[2, 0], level), np.arctan2(axes[1, 0], axes[0, 0])
+def _roll_pitch_yaw(axes: np.ndarray) -> Tuple[float, float, float]:
+    """Angles in radians about the fixed x, y and z axes, in this order, of a rotation matrix (3, 3)."""
+    cos_pitch = np.hypot(axes[0, 0], axes[1, 0])
+    if cos_pitch < 1e-9:  # gimbal lock: roll and yaw turn about the same axis
+        return np.arctan2(-axes[1, 2], axes[1, 1]), np.arctan2(-axes[2, 0], cos_pitch), 0
+    return np.arctan2(axes[2, 1], axes[2, 2]), np.arctan2(-axes[2, 0], cos_pitch), np.arctan2(axes[1, 0], axes[0, 0])
 
 
-def _write_xml(path, root):
+def _write_xml(path: Path, root: ElementTree.Element) -> None:
     ElementTree.indent(root)
     ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
 
@@ -92,51 +94,51 @@ USD_SHAPE = """    def {kind} "{name}"{schemas}
     }}"""
 
 
-def write_usd(path, name, surface, shapes):
-    """surface: (vertices, triangles) of the model."""
-    found = [_usd_shape("Mesh", "model", [], _usd_mesh(*surface))]
+def write_usd(path: Path, name: str, surface: Tuple[np.ndarray, np.ndarray], shapes: Sequence[Any]) -> None:
+    """Writes a body whose visible mesh is the surface, (vertices, triangles), and whose shapes are guides."""
+    prims = [_usd_prim("Mesh", "model", [], _usd_mesh(*surface))]
     for number, shape in enumerate(shapes):
         kind = kind_of(shape)
-        title, collides = f"{kind}_{number:02}", ['uniform token purpose = "guide"']
+        title, lines = f"{kind}_{number:02}", ['uniform token purpose = "guide"']
         if kind == "hull":
-            collides += ['uniform token physics:approximation = "convexHull"', *_usd_mesh(*shape)]
-            found.append(_usd_shape("Mesh", title, ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"], collides))
+            lines += ['uniform token physics:approximation = "convexHull"', *_usd_mesh(*shape)]
+            prims.append(_usd_prim("Mesh", title, ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"], lines))
         else:
-            collides += _usd_primitive(shape)
-            found.append(_usd_shape({"box": "Cube"}.get(kind, kind.title()), title, ["PhysicsCollisionAPI"], collides))
-    name = re.sub(r"^(?=\d)|\W", "_", name, flags=re.ASCII)  # what USD takes for a name
-    path.write_text(USD.format(name=name, shapes="\n\n".join(found)), encoding="utf-8")
+            lines += _usd_primitive(shape)
+            prims.append(_usd_prim({"box": "Cube"}.get(kind, kind.title()), title, ["PhysicsCollisionAPI"], lines))
+    name = re.sub(r"^(?=\d)|\W", "_", name, flags=re.ASCII)  # a valid USD identifier
+    path.write_text(USD.format(name=name, shapes="\n\n".join(prims)), encoding="utf-8")
 
 
-def _usd_shape(kind, name, schemas, lines):
-    applied = ", ".join(f'"{each}"' for each in schemas)
-    schemas = f" (\n        prepend apiSchemas = [{applied}]\n    )" if schemas else ""
-    return USD_SHAPE.format(kind=kind, name=name, schemas=schemas, lines="\n        ".join(lines))
+def _usd_prim(kind: str, name: str, schemas: Sequence[str], lines: Sequence[str]) -> str:
+    quoted = ", ".join(f'"{schema}"' for schema in schemas)
+    applied = f" (\n        prepend apiSchemas = [{quoted}]\n    )" if schemas else ""
+    return USD_SHAPE.format(kind=kind, name=name, schemas=applied, lines="\n        ".join(lines))
 
 
-def _usd_mesh(vertices, triangles):
-    """Lines."""
+def _usd_mesh(vertices: np.ndarray, triangles: np.ndarray) -> List[str]:
+    """The attributes of a mesh, one per line."""
     return [f"float3[] extent = [{_points([vertices.min(axis=0), vertices.max(axis=0)])}]",
             "int[] faceVertexCounts = [{}]".format(", ".join(["3"] * len(triangles))),
             "int[] faceVertexIndices = [{}]".format(", ".join(map(str, triangles.ravel().tolist()))),
             f"point3f[] points = [{_points(vertices)}]", 'uniform token subdivisionScheme = "none"']
 
 
-def _usd_primitive(shape):
-    """Lines. Of a box the matrix has the size as well."""
-    radius, _, half = shape.half
+def _usd_primitive(shape: Primitive) -> List[str]:
+    """The attributes of a primitive, one per line. A box is a cube of size 2, scaled by its matrix."""
+    radius, _, half = shape.half_extents
     matrix = shape.matrix()
-    round_along_z = ['uniform token axis = "Z"', f"double radius = {radius:.9g}"]
+    along_z = ['uniform token axis = "Z"', f"double radius = {radius:.9g}"]
     if shape.kind == "box":
-        matrix[:3, :3] *= shape.half
+        matrix[:3, :3] *= shape.half_extents
         lines = ["double size = 2", f"float3[] extent = [{_points([-np.ones(3), np.ones(3)])}]"]
     else:
-        lines = {"sphere": round_along_z[1:], "capsule": [*round_along_z, f"double height = {2 * (half - radius):.9g}"],
-                 "cylinder": [*round_along_z, f"double height = {2 * half:.9g}"]}[shape.kind]
-        lines.append(f"float3[] extent = [{_points([-shape.half, shape.half])}]")
+        lines = {"sphere": along_z[1:], "capsule": [*along_z, f"double height = {2 * (half - radius):.9g}"],
+                 "cylinder": [*along_z, f"double height = {2 * half:.9g}"]}[shape.kind]
+        lines.append(f"float3[] extent = [{_points([-shape.half_extents, shape.half_extents])}]")
     rows = ", ".join("({})".format(", ".join(f"{value:.9g}" for value in row)) for row in matrix.T)
     return [*lines, f"matrix4d xformOp:transform = ( {rows} )", 'uniform token[] xformOpOrder = ["xformOp:transform"]']
 
 
-def _points(points):
+def _points(points: Iterable[np.ndarray]) -> str:
     return ", ".join("({:.9g}, {:.9g}, {:.9g})".format(*point) for point in points)
