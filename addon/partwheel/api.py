@@ -53,7 +53,7 @@ from .related import remembered as named
 from .solid import composition, solids
 from partwheel import PartwheelError, Status
 from partwheel.cut import Cut, CutPart
-from partwheel.deform import MOST_ITERATIONS
+from partwheel.deform import MAX_ITERATIONS
 from partwheel.joint import REACH
 from partwheel.likeness import THRESHOLD
 
@@ -437,7 +437,7 @@ class _Watch:
     def is_set(self):
         if self.seconds is not None and time.monotonic() - self.began > self.seconds:
             self.reason = f"The deformation was not done in {self.seconds:g} seconds."
-        elif self.progress and self.progress(min(self.asked / MOST_ITERATIONS, 1.0), "deform"):
+        elif self.progress and self.progress(min(self.asked / MAX_ITERATIONS, 1.0), "deform"):
             self.reason = "The deformation was cancelled."
         self.asked += 1
         return self.reason is not None

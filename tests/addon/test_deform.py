@@ -128,7 +128,7 @@ class Deform(MeshTest):
         roles[free] = deform.FREE
         roles[tip] = 0
         expected = deform.Deformation(rest, triangles, roles)
-        expected.move_at_once([shift(0, 0.1, 0.05)])
+        expected.move_in_steps([shift(0, 0.1, 0.05)])
         part("api").deform(obj, node, [tip], shift(0, 0.1, 0.05))
         numpy.testing.assert_allclose(edited(obj), expected.positions(), atol=2e-5)
 
@@ -415,11 +415,11 @@ class Deform(MeshTest):
         turn = numpy.eye(4)
         turn[:3, :3] = [[1, 0, 0], [0, -1, 0], [0, 0, -1]]
         turn[:3, 3] = region.center - turn[:3, :3] @ region.center
-        turn = deform.part_of_the_way(turn, 120 / 180)
+        turn = deform.interpolate_transform(turn, 120 / 180)
         far, slowly = (part("deform.methods").AtJoint(region) for _ in range(2))
         far.follow([turn])
         for step in range(1, 31):
-            slowly.follow([deform.part_of_the_way(turn, step / 30)])
+            slowly.follow([deform.interpolate_transform(turn, step / 30)])
         for shape in (far, slowly):
             shape.settle()
         size = numpy.ptp(region.rest[region.limb], axis=0).max()
@@ -443,7 +443,7 @@ class Deform(MeshTest):
         faces = faces + list(range(len(polygons) - 18, len(polygons) - 6))
         region = part("deform.region").Region(obj, faces)
         shape = part("deform.methods").AsRigidAsPossible(region, [region.patch(region.nearest_free(tip), 4 * size)])
-        turn = package("deform").part_of_the_way(numpy.diag([1.0, -1, -1, 1]), 40 / 180)
+        turn = package("deform").interpolate_transform(numpy.diag([1.0, -1, -1, 1]), 40 / 180)
         turn[:3, 3] = middle - turn[:3, :3] @ middle
         shape.jump([turn])
         part("deform.pen").Pen(obj, region).write(obj, shape.points())

@@ -81,8 +81,8 @@ class Frames(MeshTest):
         prepared = part("pick.prepared").prepared(self.obj)
         np.testing.assert_allclose(prepared._seen.positions, shown, atol=1e-5, err_msg=what)
         target, middle = prepared.tree(self.obj)._target, (shown.min(axis=0) + shown.max(axis=0)) / 2
-        self.assertIsNotNone(target.first(middle + [0, 0, 10 * self.far], [0, 0, -1]), what)
-        self.assertIsNone(target.first(middle + [self.far, 0, 10 * self.far], [0, 0, -1]), what)
+        self.assertIsNotNone(target.first_hit(middle + [0, 0, 10 * self.far], [0, 0, -1]), what)
+        self.assertIsNone(target.first_hit(middle + [self.far, 0, 10 * self.far], [0, 0, -1]), what)
         if part("parts.registry").hierarchy(self.obj):
             self.assertTrue(part("pick.prepared").current(self.obj, prepared.parts(self.obj)))
 

@@ -89,7 +89,7 @@ class RandomEvents(ToolTest):
         stops = {face: self.h.wheel(face) for _, face in self.spots}
         creases, every = package().Creases(*part("mesh.arrays").surface(self.obj.data)), np.arange(2390)
         sets = {node: self.h.faces(node) for path, _ in stops.values() for node in path.tolist()}
-        snapped = {node: np.flatnonzero(creases.snapped(np.isin(every, faces))) for node, faces in sets.items()}
+        snapped = {node: np.flatnonzero(creases.snap(np.isin(every, faces))) for node, faces in sets.items()}
         self.model = Model(lambda face: (*([frozenset(each[node].tolist()) for node in stops[face][0].tolist()]
                                            for each in (sets, snapped)), stops[face][1]))
         self.name, self.random = self.obj.name, random.Random(2008)

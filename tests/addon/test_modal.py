@@ -386,7 +386,7 @@ class Modal(ToolTest):
         creases = package().Creases(*part("mesh.arrays").surface(self.obj.data))
 
         def snapped(level):
-            return set(np.flatnonzero(creases.snapped(np.isin(np.arange(2390), self.h.faces(stops[start + level])))))
+            return set(np.flatnonzero(creases.snap(np.isin(np.arange(2390), self.h.faces(stops[start + level])))))
 
         self.assertTrue(any(snapped(level) != set(self.h.faces(stops[start + level]).tolist()) for level in range(3)))
         self.send("E", point, shift=True, ctrl=True)

@@ -36,13 +36,13 @@ class Place(SolidTest):
         for normal in ((0, 0, 1), (0, 0, -1), (1, 1, 0)):
             self.place(copy, location=(1, 2, 3), normal=normal, scale=1, depth=-placement.SINK)
             after = placement.border(copy)
-            self.near(after.middle, (1, 2, 3))
+            self.near(after.center, (1, 2, 3))
             self.near(after.normal, -Vector(normal).normalized())
             self.assertAlmostEqual(after.radius / before.radius, 1, places=4)
         self.place(copy, location=(1, 2, 3), normal=(0, 0, 1), scale=3, angle=1.0, depth=0.5)
         after = placement.border(copy)
         self.assertAlmostEqual(after.radius / before.radius, 3, places=3)
-        self.near(after.middle, (1, 2, 3 - 3 * before.radius * (0.5 + placement.SINK)))
+        self.near(after.center, (1, 2, 3 - 3 * before.radius * (0.5 + placement.SINK)))
 
     def test_matrices_are_made_up_to_date_first(self):
         """Blender 5 has none when it repeats an operator after undo; scripts that moved an object have old ones."""
@@ -105,11 +105,11 @@ class Place(SolidTest):
         where = placement.border(copy)
         copy.matrix_world = Matrix.Translation((5, 6, 7)) @ Matrix.Rotation(2, 4, (1, 0, 1)) @ Matrix.Scale(0.3, 4)
         bpy.context.view_layer.update()
-        self.place(copy, target=obj.name, location=where.middle, normal=(0, 0, 1), fit=True)
+        self.place(copy, target=obj.name, location=where.center, normal=(0, 0, 1), fit=True)
         fitted = placement.border(copy)
         self.assertAlmostEqual(fitted.radius / where.radius, 1, places=3)
         self.near(fitted.normal, where.normal, 3)
-        self.assertLess(Vector(fitted.middle - where.middle).length, 1.1 * placement.SINK * where.radius)
+        self.assertLess(Vector(fitted.center - where.center).length, 1.1 * placement.SINK * where.radius)
         self.ready(obj, copy)
         self.assertEqual(bpy.ops.object.partwheel_unite(), {"FINISHED"})
         self.assertSolid(obj.data)
@@ -148,7 +148,7 @@ class Place(SolidTest):
         self.assertSolid(obj.data)
         self.assertAlmostEqual((volume(copy.data) + volume(obj.data)) / whole, 1, places=4)
         rest, size = volume(obj.data), volume(copy.data)
-        where = part("compose.placement").border(copy).middle
+        where = part("compose.placement").border(copy).center
         self.assertIsNone(api.place(copy, where, target=obj, fit=True))
         api.unite(obj, [copy])
         self.assertSolid(obj.data)
@@ -175,6 +175,6 @@ class Place(SolidTest):
         before = set(bpy.data.objects)
         self.place(copy, target=linked.name_full, location=(7, 0, 0), normal=(1, 0, 0), mirror=True)
         (mirrored,) = set(bpy.data.objects) - before
-        (x, y, z), image = (part("compose.placement").border(each).middle for each in (copy, mirrored))
+        (x, y, z), image = (part("compose.placement").border(each).center for each in (copy, mirrored))
         self.near((x, y, z), (7, 0, 0), places=1)
         self.near(image, (2 * 3 - x, y, z))

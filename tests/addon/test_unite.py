@@ -14,7 +14,7 @@ import bpy
 import numpy
 from common import only_in, part, read_off
 from mathutils import Matrix, Quaternion, Vector
-from partwheel.joint import groups
+from partwheel.joint import edge_components
 from solid_case import SolidTest, arrays, volume
 
 COUNT = int(os.environ.get("PARTWHEEL_UNITES") or 20)
@@ -67,7 +67,7 @@ class Unite(SolidTest):
                 made.append(part("solid.solids").part(obj, hierarchy, int(hierarchy.tet_first[node]),
                                                 int(hierarchy.tet_last[node])))
             made.append(obj.data)
-        return [mesh for mesh in made if len({*groups(part("mesh.arrays").edge_vertices(mesh)).tolist()}) == 1]
+        return [mesh for mesh in made if len({*edge_components(part("mesh.arrays").edge_vertices(mesh)).tolist()}) == 1]
 
     @only_in("oldest", "newest")
     def test_random_placements(self):

@@ -7,7 +7,7 @@ import os
 import numpy as np
 import pytest
 import shapes
-from partwheel import Hierarchy, PartwheelError, Status, snapped_border
+from partwheel import Hierarchy, PartwheelError, Status, snap_border
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
@@ -53,7 +53,7 @@ def test_parts_of_a_real_mesh(name):
             part[hierarchy.faces(stop)] = True
             if part.all():
                 continue
-            snapped = snapped_border(*shape, part)
+            snapped = snap_border(*shape, part)
             assert snapped.any() and not snapped.all()
             given, now = (costs[each[edges[:, 0]] != each[edges[:, 1]]].sum() for each in (part, snapped))
             assert now <= given * (1 + 1e-5)
@@ -74,7 +74,7 @@ if "libasan" not in os.environ.get("LD_PRELOAD", ""):  # memory is kept there
         height = vertices[triangles].mean(axis=1) - middle
         for axis, offset in itertools.product(range(3), (-0.1, 0, 0.2)):
             part = height[:, axis] > offset * np.ptp(vertices[:, axis])
-            snapped = snapped_border(vertices, triangles, None, None, part)
+            snapped = snap_border(vertices, triangles, None, None, part)
             assert (snapped != part).any()
 
 
@@ -91,12 +91,12 @@ def halved(vertices, triangles):
 def test_refusals():
     shape = shapes.cube()
     with pytest.raises(PartwheelError) as refusal:
-        snapped_border(*shape, np.zeros(shape.face_count, bool))
+        snap_border(*shape, np.zeros(shape.face_count, bool))
     assert refusal.value.status == Status.EMPTY
     with pytest.raises(ValueError, match="shape"):
-        snapped_border(*shape, np.ones(shape.face_count + 1, bool))
+        snap_border(*shape, np.ones(shape.face_count + 1, bool))
     with pytest.raises(TypeError, match="bool"):
-        snapped_border(*shape, np.arange(shape.face_count))
+        snap_border(*shape, np.arange(shape.face_count))
     part = np.arange(shape.face_count) < 1
-    assert (snapped_border(*shape, part) == part).all()
+    assert (snap_border(*shape, part) == part).all()
     assert part.sum() == 1

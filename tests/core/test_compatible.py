@@ -20,9 +20,9 @@ def similarity(seed):
 def shapes(hierarchy, matrix=np.eye(4)):
     """{node: Shape} of all parts that would be offered."""
     size = np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)) / 2 * np.cbrt(abs(np.linalg.det(matrix[:3, :3])))
-    made = {node: compatible.shape(hierarchy, node, hierarchy.vertices, matrix, size)
-            for node in compatible.parts_offered(hierarchy)}
-    return {node: shape for node, shape in made.items() if shape and shape.usable}
+    made = {node: compatible.part_shape(hierarchy, node, hierarchy.vertices, matrix, size)
+            for node in compatible.candidate_nodes(hierarchy)}
+    return {node: shape for node, shape in made.items() if shape and shape.is_usable}
 
 
 def middle(hierarchy, node):
@@ -35,7 +35,7 @@ def middle(hierarchy, node):
 def limb(hierarchy, place, share):
     """The part offered with about this share of the area whose middle is nearest to a place."""
     of_all = hierarchy.area / hierarchy.area[-1]
-    return min((node for node in compatible.parts_offered(hierarchy) if 0.7 * share < of_all[node] < 1.4 * share),
+    return min((node for node in compatible.candidate_nodes(hierarchy) if 0.7 * share < of_all[node] < 1.4 * share),
                key=lambda node: np.linalg.norm(middle(hierarchy, node) - place))
 
 
@@ -55,12 +55,12 @@ def test_borders_of_a_prism():
     scale = np.cbrt(np.linalg.det(matrix[:3, :3]))
     for reflect in (1, -1):
         flip = np.diag([reflect, 1.0, 1, 1])
-        found = compatible.borders(vertices, np.array(top + bottom), matrix @ flip)
+        found = compatible.cap_loops(vertices, np.array(top + bottom), matrix @ flip)
         assert len(found) == 2
         area = 5 / 2 * np.sin(2 * np.pi / 5)
         for border, size, z, height in zip(found, (1, 0.5), (-1, 1), (0, 3)):
             assert border.radius == pytest.approx(scale * size * np.sqrt(area / np.pi))
-            assert border.middle == pytest.approx(matrix[:3, :3] @ [0, 0, height] + matrix[:3, 3])
+            assert border.center == pytest.approx(matrix[:3, :3] @ [0, 0, height] + matrix[:3, 3])
             assert border.normal == pytest.approx(matrix[:3, :3] @ [0, 0, z] / scale)
 
 
@@ -71,19 +71,19 @@ def test_borders_are_those_of_their_rims():
     found = []
     for middle in ((0, 0, 0), (0.5, 0.2, -1)):
         vertices = np.vstack([rim, [middle]])
-        found += compatible.borders(vertices, np.array([(i, (i + 1) % 12, 12) for i in range(12)]), np.eye(4))
+        found += compatible.cap_loops(vertices, np.array([(i, (i + 1) % 12, 12) for i in range(12)]), np.eye(4))
     flat, creased = found
     assert creased.radius == pytest.approx(flat.radius)
     assert creased.normal == pytest.approx(flat.normal)
-    assert creased.middle[:2] == pytest.approx(flat.middle[:2])
-    assert -1 < creased.middle[2] < 0
+    assert creased.center[:2] == pytest.approx(flat.center[:2])
+    assert -1 < creased.center[2] < 0
 
 
 def test_a_part_is_its_own_first_under_any_motion():
     hierarchy, matrix = Hierarchy.build(*off("hand")[:2]), similarity(0)
     own, moved = shapes(hierarchy), shapes(hierarchy, matrix)
     for node in list(own)[::len(own) // 3]:
-        best = compatible.ranked(own[node], list(moved.items()))[0]
+        best = compatible.rank_parts(own[node], list(moved.items()))[0]
         assert best.key == node and best.score > 0.99
         assert best.matrix @ matrix == pytest.approx(np.eye(4), abs=1e-6)
 
@@ -99,10 +99,10 @@ def test_motion_is_found_from_other_triangles():
     hierarchy, matrix = Hierarchy.build(vertices, triangles), similarity(7)
     size = np.linalg.norm(np.ptp(vertices, axis=0)) / 2
     tried = 0
-    for node in compatible.parts_offered(hierarchy)[::12]:
+    for node in compatible.candidate_nodes(hierarchy)[::12]:
         solid = hierarchy.solid(node)
-        shape = compatible.shape(hierarchy, node, hierarchy.vertices, np.eye(4), size)
-        if not shape.usable or len(shape.borders) > 1 or (solid.ends[:, 0] != solid.ends[:, 1]).any():
+        shape = compatible.part_shape(hierarchy, node, hierarchy.vertices, np.eye(4), size)
+        if not shape.is_usable or len(shape.loops) > 1 or (solid.ends[:, 0] != solid.ends[:, 1]).any():
             continue
         # Its faces in the finer mesh, and its own caps.
         faces = hierarchy.faces(node)
@@ -112,9 +112,9 @@ def test_motion_is_found_from_other_triangles():
         if (caps < 0).any():
             continue
         both = np.vstack([fine[own], caps])
-        other = compatible.Shape(finer, both, np.arange(len(both)) >= len(own), matrix, size)
+        other = compatible.PartShape(finer, both, np.arange(len(both)) >= len(own), matrix, size)
         found = compatible.fit(shape, other)
-        away = compatible.moved(shape.points, found.matrix @ matrix) - shape.points
+        away = compatible.transform_points(shape.points, found.matrix @ matrix) - shape.points
         assert np.linalg.norm(away, axis=1).max() < 0.02 * np.sqrt(shape.area)
         tried += 1
     assert tried >= 3
@@ -153,7 +153,7 @@ def test_gap_between_bent_borders():
         triangles = np.vstack(caps + side)
         return vertices, triangles, np.arange(len(triangles)) < sum(map(len, caps))
 
-    flat, bulging = (compatible.Shape(*disk(depth, 4), np.eye(4), 4) for depth in (0.0, 0.3))
+    flat, bulging = (compatible.PartShape(*disk(depth, 4), np.eye(4), 4) for depth in (0.0, 0.3))
     assert compatible.gap(flat, flat, np.eye(4)) == pytest.approx(0, abs=1e-9)
     assert compatible.gap(flat, bulging, np.eye(4)) == pytest.approx(0, abs=0.02)  # it goes in by itself
     # But for the 5 % of the area that lie deepest.
@@ -167,9 +167,9 @@ def test_limbs_are_offered_for_limbs(homer):
     place = shapes(homer)[arm]
     for hierarchy in (homer, Hierarchy.build(*off("armadillo")[:2])):
         parts = [(node, shape) for node, shape in shapes(hierarchy).items()
-                 if hierarchy is not homer or compatible.overlap(homer, node, arm) == 0]
-        found = compatible.ranked(place, parts, lambda one, other: compatible.overlap(hierarchy, one, other)
-                                  >= compatible.SAME)
+                 if hierarchy is not homer or compatible.node_overlap(homer, node, arm) == 0]
+        found = compatible.rank_parts(place, parts, lambda one, other: compatible.node_overlap(hierarchy, one, other)
+                                  >= compatible.MIN_OVERLAP)
         assert not 0.42 < middle(hierarchy, found[0].key)[0] < 0.58
         if hierarchy is homer:
             others = [middle(homer, match.key) for match in found[:3]]

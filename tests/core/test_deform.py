@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import shapes
 from partwheel import Hierarchy, PartwheelError, Status
-from partwheel.deform import FIXED, FREE, Deformation, part_of_the_way, rigid_motion, surface_distances
+from partwheel.deform import FIXED, FREE, Deformation, interpolate_transform, rigid_motion, surface_distances
 from partwheel.deform import vertex_normals
 from scipy.spatial import ConvexHull
 
@@ -149,7 +149,7 @@ def test_a_body_that_nothing_holds_moves_rigidly():
     roles[:40] = 0
     matrix = turn((1, 2, 3), 150, (0.1, 0.2, 0.3))
     deformation = Deformation(vertices, triangles, roles)
-    deformation.move_at_once([matrix])
+    deformation.move_in_steps([matrix])
     np.testing.assert_allclose(deformation.positions(), moved(matrix, vertices), atol=1e-6 * np.ptp(vertices))
 
 
@@ -159,7 +159,7 @@ def test_a_limb_turned_by_90_degrees():
     z = vertices[:, 2]
     roles = np.where(z < 1, FIXED, np.where(z > 9, 0, FREE))
     deformation = Deformation(vertices, triangles, roles)
-    deformation.move_at_once([turn((1, 0, 0), 90, (0, 0, 5))])
+    deformation.move_in_steps([turn((1, 0, 0), 90, (0, 0, 5))])
     edges = edges_of(triangles)
     away = (np.abs(z[edges] - 5) > 2.5).all(axis=1)
     change = lengths(deformation.positions(), edges) / lengths(vertices, edges) - 1
@@ -189,7 +189,7 @@ def test_a_real_limb_turned_by_90_degrees(name):
     roles = np.where(along > length, FIXED, np.where(along < length / 2 - JOINT * radius, 0, FREE))
     axis = np.cross(vertices[tip] - vertices[np.abs(along - length) < 0.05 * length].mean(axis=0), (0.3, 0.5, 0.8))
     deformation = Deformation(vertices, triangles, roles)
-    deformation.move_at_once([turn(axis, 90, joint)])
+    deformation.move_in_steps([turn(axis, 90, joint)])
     edges = edges_of(triangles)
     away = (np.abs(along[edges] - length / 2) > JOINT * radius).all(axis=1) & (roles[edges] == FREE).any(axis=1)
     change = np.abs(lengths(deformation.positions(), edges) / lengths(vertices, edges) - 1)
@@ -208,10 +208,10 @@ def test_little_by_little_or_at_once(name):
     matrix[:3, 3] += 0.1 * np.ptp(vertices, axis=0)
     dragged, jumped = Deformation(vertices, triangles, roles), Deformation(vertices, triangles, roles)
     for step in range(1, 41):
-        dragged.move(0, part_of_the_way(matrix, step / 40))
+        dragged.move(0, interpolate_transform(matrix, step / 40))
         dragged.iterate(1)
     dragged.settle()
-    jumped.move_at_once([matrix])
+    jumped.move_in_steps([matrix])
     way = np.linalg.norm(moved(matrix, vertices[roles == 0]) - vertices[roles == 0], axis=1).max()
     assert np.linalg.norm(dragged.positions() - jumped.positions(), axis=1).max() < 0.01 * way
 
@@ -224,7 +224,7 @@ def test_no_face_turns_over_at_45_degrees(name):
     deformation = Deformation(vertices, triangles, roles)
     joint = vertices[roles == FREE].mean(axis=0)
     direction = np.array(LIMBS[name][0], float)
-    deformation.move_at_once([turn(np.cross(direction, (0.3, 0.5, 0.8)), 45, joint)])
+    deformation.move_in_steps([turn(np.cross(direction, (0.3, 0.5, 0.8)), 45, joint)])
     before, after = (normals(points, triangles) for points in (vertices, deformation.positions()))
     side = np.sort(np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]))
     order = np.lexsort(side.T[::-1])
@@ -254,7 +254,7 @@ def test_several_handles_and_components():
     up, aside, far = np.eye(4), np.eye(4), turn((1, 0, 0), 40)
     up[2, 3], aside[0, 3] = 1, 2
     deformation = Deformation(vertices, triangles, roles)
-    deformation.move_at_once([up, aside, far])
+    deformation.move_in_steps([up, aside, far])
     now = deformation.positions()
     for handle, matrix in enumerate((up, aside, far)):
         np.testing.assert_allclose(now[roles == handle], moved(matrix, vertices[roles == handle]), atol=1e-12)
@@ -271,7 +271,7 @@ def test_asked_to_end():
     start = deformation.positions()
     stop.set()
     assert deformation.settle(stop=stop) == 0
-    deformation.move_at_once([turn((1, 0, 0), 90)], stop)
+    deformation.move_in_steps([turn((1, 0, 0), 90)], stop)
     np.testing.assert_array_equal(deformation.positions(), start)
 
 
@@ -280,7 +280,7 @@ def test_same_bits_twice():
     results = []
     for _ in range(2):
         deformation = Deformation(vertices, triangles, roles)
-        deformation.move_at_once([turn((1, 0, 0), 45)])
+        deformation.move_in_steps([turn((1, 0, 0), 45)])
         results.append(deformation.positions())
     np.testing.assert_array_equal(*results)
 
@@ -298,7 +298,7 @@ def test_faces_without_area():
     triangles = np.vstack([triangles, [[middle + 70] * 3]])
     deformation = Deformation(vertices, triangles, roles)
     matrix = turn((1, 0, 0), 30)
-    deformation.move_at_once([matrix])
+    deformation.move_in_steps([matrix])
     now = deformation.positions()
     assert np.isfinite(now).all()
     assert np.linalg.norm(now[middle] - now[middle + 1]) < 1e-3
@@ -309,7 +309,7 @@ def test_the_unit_and_the_place_do_not_matter():
     vertices, triangles, roles = limb("hand")
     matrix = turn((1, 0, 0), 30)
     one = Deformation(vertices, triangles, roles)
-    one.move_at_once([matrix])
+    one.move_in_steps([matrix])
     scale, offset = 1e-3, np.array([40.0, 50.0, 60.0])
     there, back = np.eye(4), np.eye(4)
     there[:3, :3] *= scale
@@ -317,7 +317,7 @@ def test_the_unit_and_the_place_do_not_matter():
     back[:3, :3] /= scale
     back[:3, 3] = -offset / scale
     other = Deformation(moved(there, vertices), triangles, roles)
-    other.move_at_once([there @ matrix @ back])
+    other.move_in_steps([there @ matrix @ back])
     np.testing.assert_allclose(moved(back, other.positions()), one.positions(), atol=1e-4 * np.ptp(vertices))
 
 
@@ -332,16 +332,16 @@ def test_rigid_motion():
 
 
 @pytest.mark.parametrize("share", [0, 0.25, 0.5, 1])
-def test_part_of_the_way(share):
-    np.testing.assert_allclose(part_of_the_way(turn((1, 2, 3), 100, (4, 5, 6)), share),
+def test_interpolated_transforms(share):
+    np.testing.assert_allclose(interpolate_transform(turn((1, 2, 3), 100, (4, 5, 6)), share),
                                turn((1, 2, 3), 100 * share, (4, 5, 6)), atol=1e-9)
     shift = np.eye(4)
     shift[:3, 3] = 1, 2, 3
     expected = np.eye(4)
     expected[:3, 3] = np.array([1, 2, 3]) * share
-    np.testing.assert_allclose(part_of_the_way(shift, share), expected, atol=1e-12)
+    np.testing.assert_allclose(interpolate_transform(shift, share), expected, atol=1e-12)
     scale = np.diag([2.0, 2, 2, 1])
-    np.testing.assert_allclose(part_of_the_way(scale, share), np.diag([1 + share] * 3 + [1]), atol=1e-12)
+    np.testing.assert_allclose(interpolate_transform(scale, share), np.diag([1 + share] * 3 + [1]), atol=1e-12)
 
 
 def refused(status, *arguments):
@@ -486,7 +486,7 @@ def test_a_part_of_the_hierarchy():
     matrix = np.eye(4)
     matrix[:3, 3] = 0.1 * np.ptp(shape.vertices)
     deformation = Deformation(shape.vertices, shape.triangles, roles)
-    deformation.move_at_once([matrix])
+    deformation.move_in_steps([matrix])
     now = deformation.positions()
     np.testing.assert_allclose(now[roles == FIXED], shape.vertices[roles == FIXED], atol=1e-15 * np.ptp(shape.vertices))
     np.testing.assert_allclose(now[tip], moved(matrix, shape.vertices[tip]))

@@ -4,7 +4,7 @@
 import manifold3d
 import numpy as np
 import pytest
-from partwheel import PartwheelError, faired
+from partwheel import PartwheelError, fair_vertices
 from partwheel.hierarchy import Solid
 from solid_checks import crossings
 
@@ -48,7 +48,7 @@ def test_is_the_least_sum_of_squares():
     vertices[:, 2] = rng.normal(0, 0.5, len(vertices))
     edges = edges_of(triangles)
     free = np.hypot(*(vertices[:, :2] - 7).T) < 4.5
-    found = faired(vertices, edges, free)
+    found = fair_vertices(vertices, edges, free)
     assert np.abs(found - by_dense_algebra(vertices, edges, free)).max() < 1e-8
     assert np.array_equal(found[~free], vertices[~free])
 
@@ -58,23 +58,23 @@ def test_a_bump_on_a_plane_is_gone():
     free = np.hypot(*(vertices[:, :2] - 7).T) < 4.5
     bumpy = vertices.copy()
     bumpy[free, 2] = 1
-    assert np.abs(faired(bumpy, edges_of(triangles), free)[:, 2]).max() < 1e-9
+    assert np.abs(fair_vertices(bumpy, edges_of(triangles), free)[:, 2]).max() < 1e-9
 
 
 def test_neither_unit_nor_place_matter():
     vertices, triangles = grid()
     vertices[:, 2] = np.sin(vertices[:, 0])
     edges, free = edges_of(triangles), np.hypot(*(vertices[:, :2] - 7).T) < 4.5
-    found = faired(vertices, edges, free)
-    assert np.abs(faired(vertices * 1000 + 50, edges, free) - found * 1000 - 50).max() < 1e-6
+    found = fair_vertices(vertices, edges, free)
+    assert np.abs(fair_vertices(vertices * 1000 + 50, edges, free) - found * 1000 - 50).max() < 1e-6
 
 
 def test_what_nothing_holds_stays():
     vertices, triangles = grid()
     vertices[:, 2] = np.sin(vertices[:, 0])
     everywhere = np.ones(len(vertices), bool)
-    assert np.array_equal(faired(vertices, edges_of(triangles), everywhere), vertices)
-    assert np.array_equal(faired(vertices, edges_of(triangles), ~everywhere), vertices)
+    assert np.array_equal(fair_vertices(vertices, edges_of(triangles), everywhere), vertices)
+    assert np.array_equal(fair_vertices(vertices, edges_of(triangles), ~everywhere), vertices)
 
 
 @pytest.mark.parametrize("distance", [0.8, 1.2, 1.6])
@@ -89,7 +89,7 @@ def test_across_the_seam_of_a_union(distance):
     middle = vertices[seam].mean(axis=0)
     radius = np.linalg.norm(vertices[seam] - middle, axis=1).mean()
     near = np.linalg.norm(vertices[:, None] - vertices[seam], axis=2).min(axis=1) < 0.3 * radius
-    found = faired(vertices, edges_of(triangles), near)
+    found = fair_vertices(vertices, edges_of(triangles), near)
     # Slivers aside, that is; none of them turns over, or the surface would cross itself.
     assert sharpest(found, triangles, 1e-4) < 0.5 * sharpest(vertices, triangles, 1e-4)
     ends = np.repeat(np.arange(len(found))[:, None], 2, axis=1)
@@ -114,9 +114,9 @@ def test_errors():
     vertices, triangles = grid()
     edges, free = edges_of(triangles), np.zeros(len(vertices), bool)
     with pytest.raises(PartwheelError, match="edge"):
-        faired(vertices, edges + len(vertices), free)
+        fair_vertices(vertices, edges + len(vertices), free)
     vertices[0, 0] = np.nan
     with pytest.raises(PartwheelError, match="finite"):
-        faired(vertices, edges, free)
+        fair_vertices(vertices, edges, free)
     with pytest.raises(ValueError, match="free"):
-        faired(vertices, edges, free[1:])
+        fair_vertices(vertices, edges, free[1:])

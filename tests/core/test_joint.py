@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import shapes
 from partwheel.deform import FIXED, FREE, Deformation, surface_distances
-from partwheel.joint import REACH, joint
+from partwheel.joint import REACH, find_joint
 from test_deform import cylinder, edges_of, lengths, normals, turn
 
 # A limb is what lies within half of a way along the surface from its tip: (model, the direction in which it ends, that
@@ -46,7 +46,7 @@ def turned(vertices, triangles, found, degrees):
     roles = found.roles()
     axis = np.cross(vertices[roles == 0].mean(axis=0) - found.center, (0.3, 0.5, 0.8))
     deformation = Deformation(vertices, triangles, roles)
-    deformation.move_at_once([turn(axis, degrees, found.center)])
+    deformation.move_in_steps([turn(axis, degrees, found.center)])
     return deformation.positions()
 
 
@@ -59,7 +59,7 @@ def test_a_limb_keeps_its_lengths(name, direction, share):
     at_joint = np.abs(along - length / 2) < 0.05 * length
     middle = vertices[at_joint].mean(axis=0)
     radius = np.linalg.norm(vertices[at_joint] - middle, axis=1).mean()
-    found = joint(vertices, triangles, (along[triangles] < length / 2).any(axis=1))
+    found = find_joint(vertices, triangles, (along[triangles] < length / 2).any(axis=1))
     assert np.linalg.norm(found.center - middle) < radius
     assert 0.7 < found.radius / radius < 1.3
     edges = edges_of(triangles)
@@ -79,15 +79,15 @@ def test_a_limb_keeps_its_lengths(name, direction, share):
 def test_where_the_joint_of_a_tube_is():
     vertices, triangles = cylinder()
     middle = vertices[triangles].mean(axis=1)[:, 2]
-    found = joint(vertices, triangles, middle > 6)
+    found = find_joint(vertices, triangles, middle > 6)
     np.testing.assert_allclose(found.center, (0, 0, 6), atol=1e-9)
-    assert found.loops == 1
+    assert found.loop_count == 1
     assert found.radius == pytest.approx(1, rel=0.02)
     assert found.depth() == pytest.approx(4, rel=0.01)
     z, roles = vertices[:, 2], found.roles()
     assert (roles[z > 6 + REACH + 0.2] == 0).all() and (z[roles == 0] > 6 + REACH - 0.2).all()
     assert (roles[z < 6 - REACH - 0.2] == FIXED).all() and (z[roles == FIXED] < 6 - REACH + 0.2).all()
-    roles = joint(vertices, triangles, middle > 9).roles(5)  # a stump keeps half of itself, the other side is deep
+    roles = find_joint(vertices, triangles, middle > 9).roles(5)  # a stump keeps half of itself, the other side is deep
     assert (z[roles == 0].min(), z[roles == FREE].min()) == pytest.approx((9.5, 4.5), abs=0.2)
 
 
@@ -95,13 +95,13 @@ def test_several_borders_and_none():
     vertices, triangles = cylinder()
     vertices = vertices * np.where(vertices[:, 2:] > 5, [2, 2, 1], 1)
     middle = vertices[triangles].mean(axis=1)[:, 2]
-    found = joint(vertices, triangles, (middle > 3) & (middle < 7))
-    assert found.loops == 2
+    found = find_joint(vertices, triangles, (middle > 3) & (middle < 7))
+    assert found.loop_count == 2
     np.testing.assert_allclose(found.center, (0, 0, 7), atol=1e-9)  # the longer one
     assert found.radius == pytest.approx(2, rel=0.02)
-    assert joint(vertices, triangles, np.ones(len(triangles), bool)) is None
+    assert find_joint(vertices, triangles, np.ones(len(triangles), bool)) is None
     twice = np.vstack([triangles, triangles + len(vertices)])
-    assert joint(np.vstack([vertices, vertices + 9]), twice, np.arange(len(twice)) < len(triangles)) is None
+    assert find_joint(np.vstack([vertices, vertices + 9]), twice, np.arange(len(twice)) < len(triangles)) is None
 
 
 @pytest.mark.skipif(not PSB.is_dir() or not str(PSB.name), reason="PARTWHEEL_PSB names no directory with off and seg")
@@ -121,8 +121,8 @@ def test_limbs_that_people_marked(first, last):
         edges = edges_of(triangles)
         rest = lengths(vertices, edges)
         for label in np.unique(labels):
-            found = joint(vertices, triangles, labels == label)
-            if found is None or found.loops > 1 or not 2 * AWAY * found.radius < found.depth():
+            found = find_joint(vertices, triangles, labels == label)
+            if found is None or found.loop_count > 1 or not 2 * AWAY * found.radius < found.depth():
                 continue
             tried += 1
             away = (found.distance[edges] > AWAY * found.radius).all(axis=1) & (rest > 1e-9 * rest.max())

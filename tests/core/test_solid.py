@@ -255,7 +255,7 @@ def test_of_snapped_parts(name, otherwise):
     for face in range(0, shape.face_count, shape.face_count // 4):
         for stop in hierarchy.wheel(face)[0][:-1].tolist():
             part = np.isin(np.arange(shape.face_count), hierarchy.faces(stop))
-            snapped = creases.snapped(part)
+            snapped = creases.snap(part)
             first, last = int(hierarchy.tet_first[stop]), int(hierarchy.tet_last[stop])
             solids = [hierarchy.solid_of_faces(*each, snapped) for each in ((first, last), (last, first))]
             for solid, before in zip(solids, (hierarchy.solid(stop), hierarchy.rest(stop))):
@@ -281,7 +281,7 @@ def test_caps_of_snapped_parts_are_the_same_wherever_the_model_stands():
         moved = vertices + shift, shape.triangles, shape.faces, shape.face_count
         hierarchy, creases = Hierarchy.build(*moved), Creases(*moved)
         bounds = hierarchy.cut_parts(6)
-        snapped = [creases.snapped(hierarchy.face_labels(bounds) == part) for part in range(6)]
+        snapped = [creases.snap(hierarchy.face_labels(bounds) == part) for part in range(6)]
         made.append([hierarchy.solid_of_faces(*each) for each in zip(bounds, bounds[1:], snapped)])
     for here, there in zip(*made):
         assert np.array_equal(here.triangles, there.triangles) and np.array_equal(here.beyond, there.beyond)

@@ -12,7 +12,7 @@ import shapes
 from partwheel import Creases, Deformation, Hierarchy, likeness, surface_distances
 from partwheel.cut import Cut, bones, borders, further, mirror_planes, named, seams, tree, weights
 from partwheel.deform import FIXED, FREE
-from partwheel.joint import joint
+from partwheel.joint import find_joint
 from partwheel.weld import weld_coincident_vertices
 from test_deform import turn
 from test_seams import islands
@@ -104,7 +104,7 @@ def test_deformation_opens_no_crack(both):
 
     def deformed(shape, own):
         deformation = Deformation(shape.vertices, shape.triangles, own)
-        deformation.move_at_once([turn((1, 2, 3), 40, whole.vertices.mean(axis=0))])
+        deformation.move_in_steps([turn((1, 2, 3), 40, whole.vertices.mean(axis=0))])
         return deformation.positions()
 
     expected = deformed(whole, roles)
@@ -120,9 +120,9 @@ def test_deformation_opens_no_crack(both):
 def test_a_joint_is_the_same(both):
     whole, split, was = both
     inside = inside_of()
-    expected, found = (joint(shape.vertices, shape.triangles, inside) for shape in (whole, split))
+    expected, found = (find_joint(shape.vertices, shape.triangles, inside) for shape in (whole, split))
     np.testing.assert_allclose(found.center, expected.center, rtol=1e-12)
-    assert found.radius == pytest.approx(expected.radius, rel=1e-12) and found.loops == expected.loops
+    assert found.radius == pytest.approx(expected.radius, rel=1e-12) and found.loop_count == expected.loop_count
     np.testing.assert_array_equal(found.distance, expected.distance[was])
     np.testing.assert_array_equal(found.inner, expected.inner[was])
     np.testing.assert_array_equal(found.roles(), expected.roles()[was])
@@ -134,7 +134,7 @@ def test_borders_in_creases_are_the_same(both):
     creases = [Creases(*shape) for shape in (whole, split)]
     for part in range(len(parts())):
         inside = parts().labels == part
-        expected, found = (each.snapped(inside) for each in creases)
+        expected, found = (each.snap(inside) for each in creases)
         np.testing.assert_array_equal(found, expected)
         moved += (expected != inside).sum()
     assert moved > 0

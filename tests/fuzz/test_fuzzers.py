@@ -43,7 +43,7 @@ REACHED = {
                                     "Hierarchy::cut_automatic(", "PartIndex::first(", "PartIndex::touching("], [])
        for kind in seeds.SAVED},
     **{("surface", kind): ("normals distances faults fair snapped deformed",
-                           ["faired(", "minimum_cut(", "Deformation::iterate("], [])
+                           ["fair_vertices(", "minimum_cut(", "Deformation::iterate("], [])
        for kind in ("triangles", "polygons")},
 }
 

@@ -94,7 +94,7 @@ def place_over(stage, part, target, fit=False, mirror=False):
     before = places(target), target.matrix_world.copy()
     activate(stage, part)
     yield from choose(stage, "VIEW3D_MT_object", 1)
-    x, y, _ = seen(stage, target).spot(*pixel(stage, where.middle))
+    x, y, _ = seen(stage, target).spot(*pixel(stage, where.center))
     stage.mouse.move(x - 3, y)
     stage.mouse.move(x, y)
     yield from stage.until("the part follows the mouse", lambda: part.matrix_world != start)
@@ -114,7 +114,7 @@ def place_over(stage, part, target, fit=False, mirror=False):
         yield from stage.settle()
         fitted = module("compose.placement").border(part)
         stage.check(abs(fitted.radius / where.radius - 1) < 0.01, "it has the border's size")
-        stage.check(numpy.linalg.norm(fitted.middle - where.middle) < 0.1 * where.radius, "it is at the border")
+        stage.check(numpy.linalg.norm(fitted.center - where.center) < 0.1 * where.radius, "it is at the border")
     if mirror:
         stage.mouse.key("M")
     yield from stage.settle()

@@ -24,17 +24,17 @@ def caps(mesh):
 
 
 def border(obj, near=None):
-    """Where a part was cut off, or where one was removed, in the world: the compatible.Border that is the largest group
+    """Where a part was cut off, or where one was removed, in the world: the compatible.CapLoop that is the largest group
     of the object's caps that touch, or the nearest to a point; None if its mesh has no caps."""
     marks = caps(obj.data)
     if marks is None or not marks.any():
         return None
     triangles, polygons = arrays.triangles(obj.data)
     places = arrays.read(obj.data.vertices, "co", np.float32, 3).astype(float)
-    found = compatible.borders(places, triangles[marks[polygons]], np.array(obj.matrix_world))
+    found = compatible.cap_loops(places, triangles[marks[polygons]], np.array(obj.matrix_world))
     if not found:
         return None
-    return found[0] if near is None else min(found, key=lambda each: (Vector(each.middle) - near).length)
+    return found[0] if near is None else min(found, key=lambda each: (Vector(each.center) - near).length)
 
 
 def anchor(obj):
@@ -47,7 +47,7 @@ def anchor(obj):
     lowest = max(corner.dot(down) for corner in corners)
     middle = sum(corners, Vector()) / 8
     radius = max((corner - middle).length for corner in corners) / 2
-    return compatible.Border(middle + down * (lowest - middle.dot(down)), down, radius)
+    return compatible.CapLoop(middle + down * (lowest - middle.dot(down)), down, radius)
 
 
 def matrix(start, own, location, normal, scale=1.0, angle=0.0, depth=0.0):
@@ -58,7 +58,7 @@ def matrix(start, own, location, normal, scale=1.0, angle=0.0, depth=0.0):
     turn = Quaternion(normal, angle) @ Vector(own.normal).rotation_difference(-normal)
     sunk = location - normal * ((SINK + depth) * own.radius * scale)
     return (Matrix.Translation(sunk) @ turn.to_matrix().to_4x4() @ Matrix.Scale(scale, 4)
-            @ Matrix.Translation(-Vector(own.middle)) @ start)
+            @ Matrix.Translation(-Vector(own.center)) @ start)
 
 
 class Pose(NamedTuple):
@@ -79,7 +79,7 @@ def put(part, start, own, target, pose):
         found = border(target, location)
         if not found:
             raise Refused("{name} has no border to fit: no part was removed from it.", name=target.name)
-        location, normal = Vector(found.middle), Vector(found.normal)
+        location, normal = Vector(found.center), Vector(found.normal)
         scale *= found.radius / own.radius
     part.matrix_world = matrix(start, own, location, normal, scale, pose.angle, pose.depth)
 

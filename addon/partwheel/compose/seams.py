@@ -7,8 +7,8 @@ Which solid a face came from is written into a face attribute before the Boolean
 import numpy as np
 
 from ..mesh import arrays
-from partwheel import faired, surface_distances
-from partwheel.joint import groups
+from partwheel import fair_vertices, surface_distances
+from partwheel.joint import edge_components
 
 SIDE = "partwheel_side"  # while a union is made: the number of the solid that each face came from
 
@@ -34,7 +34,7 @@ def blend(mesh, width):
         return False
     normals = arrays.custom_normals(mesh)
     vertices = arrays.read(mesh.vertices, "co", np.float32, 3)
-    places = faired(vertices, arrays.edge_vertices(mesh), free)
+    places = fair_vertices(vertices, arrays.edge_vertices(mesh), free)
     arrays.write(mesh.vertices, "co", np.where(free[:, None], places, vertices).astype(np.float32))
     if normals is not None:
         normals[free[arrays.read(mesh.loops, "vertex_index", np.int32)]] = 0
@@ -82,5 +82,5 @@ def _seams(mesh, of_corner):
     np.minimum.at(low, edge, of_corner)
     np.maximum.at(high, edge, of_corner)
     edges = edges[low < high]
-    group = groups(edges)
+    group = edge_components(edges)
     return [np.unique(edges[group == each]) for each in np.unique(group)]

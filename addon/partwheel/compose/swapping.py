@@ -21,12 +21,12 @@ from ..mesh.errors import Refused
 
 class Offer(NamedTuple):
     """A part that can stand in. name: its object's, in full; node: of that one's hierarchy, or None for the object as
-    it is, one that was cut out as a part before; score: from 1, the same shape, down to 0; shape: a compatible.Shape."""
+    it is, one that was cut out as a part before; score: from 1, the same shape, down to 0; shape: the PartShape."""
 
     name: str
     node: int
     score: float
-    shape: compatible.Shape
+    shape: compatible.PartShape
 
 
 class Adjustment(NamedTuple):
@@ -70,9 +70,9 @@ class Place:
             hierarchy, parts = parts
             if other.name_full == self.name:
                 parts = [each for each in parts if each[0] is not None
-                         and compatible.overlap(hierarchy, each[0], self.node) == 0]
+                         and compatible.node_overlap(hierarchy, each[0], self.node) == 0]
             shapes = dict(parts)
-            for match in compatible.ranked(self.shape, parts, lambda one, two: _same(hierarchy, one, two)):
+            for match in compatible.rank_parts(self.shape, parts, lambda one, two: _same(hierarchy, one, two)):
                 found.append(Offer(other.name_full, match.key, match.score, shapes[match.key]))
                 if not self.snap:
                     self._fits[other.name_full, match.key, False] = match.matrix
@@ -94,7 +94,7 @@ class Place:
             raise Refused("{name} has no part {number}.", name=other.name, number=node)
         if not shape:
             raise Refused("That part of {name} has no border that could be fitted to this one's.", name=other.name)
-        match = compatible.ranked(self.shape, [(node, shape)])[0]
+        match = compatible.rank_parts(self.shape, [(node, shape)])[0]
         if not self.snap:
             self._fits[other.name_full, node, False] = match.matrix
         return Offer(other.name_full, node, match.score, shape)
@@ -127,7 +127,7 @@ class Place:
             self._fits[known] = compatible.fit(self.shape, shape, adjustment.mirror).matrix
         depth = adjustment.depth + compatible.gap(self.shape, shape, self._fits[known])
         start = Matrix(self._fits[known]) @ find_object(offer.name).matrix_world
-        new.matrix_world = placement.matrix(start, own, Vector(own.middle), -Vector(own.normal), adjustment.scale,
+        new.matrix_world = placement.matrix(start, own, Vector(own.center), -Vector(own.normal), adjustment.scale,
                                             adjustment.angle, depth)
 
     def _shape_of(self, offer):
@@ -167,7 +167,7 @@ def sources(context, obj):
 
 def _same(hierarchy, one, other):
     """Whether two nodes are so nearly one part that it is enough to offer one. None: the object as it is."""
-    return None not in (one, other) and compatible.overlap(hierarchy, one, other) >= compatible.SAME
+    return None not in (one, other) and compatible.node_overlap(hierarchy, one, other) >= compatible.MIN_OVERLAP
 
 
 def _parts(obj):
@@ -176,7 +176,7 @@ def _parts(obj):
     if not hierarchy and not whole:
         return None
     parts = [(None, whole)] if whole else []
-    return hierarchy, parts + (_shapes(obj, hierarchy, compatible.parts_offered(hierarchy)) if hierarchy else [])
+    return hierarchy, parts + (_shapes(obj, hierarchy, compatible.candidate_nodes(hierarchy)) if hierarchy else [])
 
 
 def _shapes(obj, hierarchy, nodes, snap=False):
@@ -187,14 +187,14 @@ def _shapes(obj, hierarchy, nodes, snap=False):
     positions[known] = arrays.read(arrays.up_to_date(obj).vertices, "co", np.float32, 3)[hierarchy.source[known]]
     matrix = np.array(obj.matrix_world)
     size = _size(positions, matrix)
-    shapes = [(node, compatible.shape(hierarchy, node, positions, matrix, size,
+    shapes = [(node, compatible.part_shape(hierarchy, node, positions, matrix, size,
                                       composition.moved_faces(obj, hierarchy, node, snap))) for node in nodes]
     return [(node, shape) for node, shape in shapes if shape]
 
 
 def _shape(obj, hierarchy, node, snap=False):
     """The Shape of one node, or None if it can't be compared."""
-    return next((shape for _, shape in _shapes(obj, hierarchy, [node], snap) if shape.usable), None)
+    return next((shape for _, shape in _shapes(obj, hierarchy, [node], snap) if shape.is_usable), None)
 
 
 def _whole(obj):
@@ -205,8 +205,8 @@ def _whole(obj):
         return None
     triangles, polygons = arrays.triangles(mesh)
     positions, matrix = arrays.read(mesh.vertices, "co", np.float32, 3).astype(float), np.array(obj.matrix_world)
-    shape = compatible.Shape(positions, triangles, caps[polygons], matrix, _size(positions, matrix))
-    return shape if shape.usable else None
+    shape = compatible.PartShape(positions, triangles, caps[polygons], matrix, _size(positions, matrix))
+    return shape if shape.is_usable else None
 
 
 def _size(positions, matrix):

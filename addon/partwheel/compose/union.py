@@ -82,13 +82,14 @@ def problem(mesh):
         return rpt_("it has no faces")
     begin, _ = arrays.polygon_sizes(mesh)
     faults = polygon_faults(arrays.read(mesh.loops, "vertex_index", np.int32), begin, len(mesh.vertices))
-    open_edges = faults.open or abs(len(mesh.edges) - len(mesh.loops) // 2)  # or edges that no face has
+    open_edges = faults.open_edges or abs(len(mesh.edges) - len(mesh.loops) // 2)  # or edges that no face has
     if open_edges:
         return rpt_("{count} edges have not just two faces").format(count=open_edges)
-    if faults.against:
-        return rpt_("at {count} edges the faces wind against each other").format(count=faults.against)
-    if faults.touching:
-        return rpt_("{count} vertices are loose or join parts that only touch there").format(count=faults.touching)
+    if faults.inconsistent_edges:
+        return rpt_("at {count} edges the faces wind against each other").format(count=faults.inconsistent_edges)
+    if faults.non_manifold_vertices:
+        return rpt_("{count} vertices are loose or join parts that only touch there").format(
+            count=faults.non_manifold_vertices)
     return None
 
 
@@ -195,10 +196,10 @@ def _left_out(one, other, result):
 
 
 def _crossings(target, place):
-    count, hit = 0, target.first(place, RAY)
+    count, hit = 0, target.first_hit(place, RAY)
     while hit:
         count += 1
-        hit = target.first(place, RAY, hit[1] * (1 + 1e-6))
+        hit = target.first_hit(place, RAY, hit[1] * (1 + 1e-6))
     return count
 
 

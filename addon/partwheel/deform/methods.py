@@ -6,9 +6,9 @@ from functools import cached_property
 import numpy as np
 
 from partwheel.deform import (
-    FIXED, FREE, SETTLED, STEP_ANGLE, Deformation, part_of_the_way, rigid_motion, rotation_angle, surface_distances,
+    FIXED, FREE, ENERGY_TOLERANCE, STEP_ANGLE, Deformation, interpolate_transform, rigid_motion, rotation_angle, surface_distances,
 )
-from partwheel.joint import groups
+from partwheel.joint import edge_components
 from ..mesh.errors import Refused
 
 AT_ONCE, MOST_AT_ONCE = 30_000, 5  # iterations at a mouse move: so many vertices' in all; but no more than so many
@@ -55,7 +55,7 @@ class AsRigidAsPossible:
         within = triangles[loose[triangles[:, 0]]]
         if not len(within):
             return []
-        group = groups(within[:, [[0, 1], [1, 2]]].reshape(-1, 2))[::2]
+        group = edge_components(within[:, [[0, 1], [1, 2]]].reshape(-1, 2))[::2]
         ends = np.flatnonzero(~loose & (roles != FIXED))
         pieces = []
         for number in range(group.max() + 1):
@@ -77,7 +77,7 @@ class AsRigidAsPossible:
         count = 1 if turn < TURN else int(np.ceil(turn / STEP_ANGLE))
         for at in range(1, count + 1):
             between = matrices if at == count else [
-                matrix if step is None else part_of_the_way(step, at / count) @ before
+                matrix if step is None else interpolate_transform(step, at / count) @ before
                 for before, step, matrix in zip(self._at, steps, matrices)]
             for handle, matrix in enumerate(self._all(between)):
                 self.deformation.move(handle, matrix)
@@ -88,7 +88,7 @@ class AsRigidAsPossible:
         """A little further towards the shape of rest. Whether there is more to do."""
         self.deformation.iterate(self._at_once)
         before, self._energy = self._energy, self.deformation.energy()
-        return before - self._energy > SETTLED * self._at_once * before
+        return before - self._energy > ENERGY_TOLERANCE * self._at_once * before
 
     def settle(self, stop=None):
         """All the way to the shape of rest, unless the threading.Event stop is set meanwhile."""
@@ -99,7 +99,7 @@ class AsRigidAsPossible:
         if all((matrix == np.eye(4)).all() for matrix in matrices):
             self.deformation.reset()  # no rounding either
         else:
-            self.deformation.move_at_once(self._all(matrices), stop)
+            self.deformation.move_in_steps(self._all(matrices), stop)
         self._pieces  # found while nobody waits
         self._energy, self._at = np.inf, matrices
 
@@ -140,7 +140,7 @@ class Proportional:
         self._rest = self._now = region.rest
 
     def follow(self, matrices):
-        ways = np.array([part_of_the_way(np.asarray(matrices[0], float), way / WAYS) for way in range(WAYS + 1)])
+        ways = np.array([interpolate_transform(np.asarray(matrices[0], float), way / WAYS) for way in range(WAYS + 1)])
         below = np.minimum((self.weight * WAYS).astype(int), WAYS - 1)
         rest = (self.weight * WAYS - below)[:, None, None]
         matrix = (1 - rest) * ways[below] + rest * ways[below + 1]

@@ -9,7 +9,7 @@ import numpy as np
 from mathutils.kdtree import KDTree
 
 from partwheel.deform import FIXED, surface_distances
-from partwheel.joint import joint
+from partwheel.joint import find_joint
 from partwheel.weld import weld_surface
 from ..mesh import arrays
 from ..mesh.errors import Refused
@@ -52,7 +52,7 @@ class Region:
         within = inside[surface.faces]
         member, border = (arrays.mask(count, welded[side]) for side in (within, ~within))
         free, limb = member & ~border, np.zeros(count, bool)
-        hinge = None if reach is None else joint(points.astype(np.float64), welded, within)
+        hinge = None if reach is None else find_joint(points.astype(np.float64), welded, within)
         if hinge and free.any():
             roles = hinge.roles(reach)
             free, limb = roles != FIXED, roles == 0

@@ -19,7 +19,7 @@ def faces(obj, hierarchy, node, snap):
 def inside(obj, hierarchy, node):
     """(F,) bool: the faces of a node with its border in creases. The hierarchy is what registry.hierarchy(obj) said."""
     part = arrays.mask(len(hierarchy.order), hierarchy.faces(node))
-    return _creases(obj).snapped(part) if part.any() else part
+    return _creases(obj).snap(part) if part.any() else part
 
 
 def _creases(obj):

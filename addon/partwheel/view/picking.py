@@ -32,13 +32,13 @@ class FaceTree:
         to_local = matrix.inverted_safe()
         eye = region_2d_to_origin_3d(region, view, point)
         origin, towards = to_local @ eye, to_local.to_3x3() @ region_2d_to_vector_3d(region, view, point)
-        hit = self._target.first(origin, towards)
+        hit = self._target.first_hit(origin, towards)
         while hit:
             triangle, distance = hit
             place = matrix @ (origin + distance * towards)
             if not clipped(view, place):
                 return int(self._faces[triangle]), (place - eye).length
-            hit = self._target.first(origin, towards, distance * (1 + STEP))
+            hit = self._target.first_hit(origin, towards, distance * (1 + STEP))
         return None
 
 

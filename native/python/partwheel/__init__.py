@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The native library for Python: numpy arrays in, a Hierarchy out. Nothing here knows Blender."""
 
-from .border import Creases, snapped_border
+from .border import Creases, snap_border
 from .deform import Deformation, surface_distances
 from .duplicates import duplicate_faces
-from .fair import faired
+from .fair import fair_vertices
 from .hierarchy import ConvexPart, Hierarchy, Solid, Summary
 from .index import Index
 from .library import Error, LibraryError, Mode, PartwheelError, Rung, Stage, Status, version
@@ -12,5 +12,5 @@ from .polygons import Faults, polygon_faults
 from .rays import RayTarget
 
 __all__ = ["ConvexPart", "Creases", "Deformation", "Error", "Faults", "Hierarchy", "Index", "LibraryError", "Mode",
-           "PartwheelError", "RayTarget", "Rung", "Solid", "Stage", "Status", "Summary", "duplicate_faces", "faired",
-           "polygon_faults", "snapped_border", "surface_distances", "version"]
+           "PartwheelError", "RayTarget", "Rung", "Solid", "Stage", "Status", "Summary", "duplicate_faces",
+           "fair_vertices", "polygon_faults", "snap_border", "surface_distances", "version"]

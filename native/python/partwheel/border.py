@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The border of a part, moved to the creases nearby. Native, with numpy."""
+"""Border snapping: moves the border of a part into the creases nearby. Native, with numpy."""
 
 from __future__ import annotations
 
@@ -16,21 +16,43 @@ if TYPE_CHECKING:
 
 
 class Creases(NonCopyable):
-    """A surface whose parts' borders can be moved to creases: see pw_creases in partwheel_edit.h. It never changes.
+    """The creases of a surface, to snap the borders of any number of its parts: see pw_creases in partwheel_edit.h.
+    Immutable.
 
-    vertices (V,3); triangles (T,3) indices into them; faces (T,) the polygon of each triangle and face_count their
-    number, or both None where every triangle is one. Coincident vertices are welded. Raises PartwheelError.
+    Parameters
+    ----------
+    vertices : (V, 3) float
+    triangles : (T, 3) int, indices into vertices. Coincident vertices are welded
+    faces : (T,) int, the polygon of each triangle; None if each triangle is a polygon
+    face_count : F, the number of polygons; None for the highest in faces plus 1
+
+    Raises
+    ------
+    PartwheelError : the surface is invalid
     """
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
                  face_count: Optional[int] = None) -> None:
-        *given, self.face_count = surface(vertices, triangles, faces, face_count)
-        _, given[2] = weld_surface(given[0], given[2])
-        self._handle = Handle(load().pw_creases_free, made(load().pw_creases_create, *given, self.face_count))
+        *arguments, self.face_count = surface(vertices, triangles, faces, face_count)
+        _, arguments[2] = weld_surface(arguments[0], arguments[2])
+        self._handle = Handle(load().pw_creases_free, made(load().pw_creases_create, *arguments, self.face_count))
 
-    def snapped(self, inside: ArrayLike) -> np.ndarray:
-        """(face_count,) bool: a part with its border in the creases nearby, at the least cost. inside (face_count,)
-        bool: the part. Raises PartwheelError for one without faces."""
+    def snap(self, inside: ArrayLike) -> np.ndarray:
+        """Move the border of a part into the creases nearby, by a minimum cut.
+
+        Parameters
+        ----------
+        inside : (F,) bool, the faces of the part
+
+        Returns
+        -------
+        (F,) bool, the faces of the part after border snapping
+
+        Raises
+        ------
+        PartwheelError : the part has no face
+        TypeError, ValueError : inside has another dtype or shape
+        """
         inside = np.asarray(inside)
         if inside.dtype != bool:
             raise TypeError(f"inside must be bool, not {inside.dtype}.")
@@ -42,7 +64,7 @@ class Creases(NonCopyable):
         return result
 
 
-def snapped_border(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike], face_count: Optional[int],
-                   inside: ArrayLike) -> np.ndarray:
-    """Creases(...).snapped(inside), for one part of a surface."""
-    return Creases(vertices, triangles, faces, face_count).snapped(inside)
+def snap_border(vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike], face_count: Optional[int],
+                inside: ArrayLike) -> np.ndarray:
+    """Creases(vertices, triangles, faces, face_count).snap(inside), for one part of a surface."""
+    return Creases(vertices, triangles, faces, face_count).snap(inside)

@@ -1,379 +1,462 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parts that can take each other's place: how alike two are, and where one goes to stand in for the other. By numpy.
+"""Interchangeable parts: how similar two parts are, and the similarity transform that puts one in the place of the other.
+With numpy.
 
-Kreavoy, Julius, Sheffer: Model composition from interchangeable components (2007) exchange parts of models that
-correspond. Here the part to be replaced is known, and others are compared with it by what matters at the seam and
-beyond: the borders where they were cut off, and the shape as seen from there, in the border's own size. One is brought
-to the other's place by its border (middle, normal, radius), turned about the normal until it fits best (the principal
-axes say which turns to try), and refined by the iterative closest point method, point to plane (Chen, Medioni 1992),
-trimmed (Chetverikov et al. 2002), with the border held.
+Kreavoy, Julius, Sheffer (Model composition from interchangeable components, 2007) exchange parts between models that
+correspond. Here the part to replace is given, and candidates are compared with it in the frame and size of its border:
+cap loops and the shape seen from there. fit() aligns the borders (center, normal, radius), tries rotations about the
+normal (some from the principal axes), and refines the best by trimmed point-to-plane ICP (Chen, Medioni 1992;
+Chetverikov et al. 2002) with constraints that keep the borders together.
 """
 
+from __future__ import annotations
+
 import copy
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, Callable, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
-from .deform import crossing, rotation_by
-from .joint import groups
+from .deform import cross_matrix, rotation_from_vector
+from .joint import edge_components
 
-SAMPLES, COARSE = 800, 4  # points on the part that stays, and of how many one is looked at on the one that moves
-CAP_SAMPLES = 300
-KEPT = 0.7  # of the pairs of closest points, the nearest: the parts need not be alike everywhere
-STEPS = 12  # of refinement at most
-TURNS = 16  # about the normal that are tried
-TILT = np.cos(np.radians(30))  # the borders' normals stay this near to each other
-ALIKE = 0.3  # of the border's radius: surfaces that are farther apart after refining are not fitted to each other
-BENEATH = 0.15  # of the radius: points of two caps this near to each other across the normal are compared
-DEEPEST = 0.5  # radii that a part is sunk in at most to close gaps
-CLOSED = 0.05  # of the area of caps that touch, what is seen along their normal: those with less enclose a hollow
-SMALL_BORDER = 0.25  # of the largest one's radius: those below don't count
-LEAST_SHARE, LARGEST_SHARE = 0.004, 0.7  # of the whole's area that a part offered has
-CUT = 200  # parts, into which the whole is cut to find what the wheel stops at
-ALIGNED = 16  # of the parts that are most alike by measure are fitted
+if TYPE_CHECKING:
+    from .hierarchy import Hierarchy
+
+# Sampling
+SURFACE_SAMPLES = 800  # points on the surface of a part
+CAP_SAMPLES = 300  # points on its caps
+COARSE_STEP = 4  # ICP uses every 4th point of the moving part
+# Alignment; lengths in radii of the border
+MAX_ICP_ITERATIONS = 12
+TRIMMED_FRACTION = 0.7  # of the closest pairs that ICP uses: the parts may differ elsewhere
+ROTATION_COUNT = 16  # rotations about the normal to try
+MIN_NORMAL_COSINE = np.cos(np.radians(30))  # between the borders' normals after ICP
+MAX_RMS_DISTANCE = 0.3  # between the surfaces after ICP: above it the alignment of the borders alone is used
+# Caps and their loops
+MAX_CAP_OFFSET = 0.15  # points of two caps this close, perpendicular to the normal, in radii, are compared
+MAX_SINK_DEPTH = 0.5  # radii that a part may be moved in to close gaps
+MIN_PROJECTED_FRACTION = 0.05  # area of a loop's caps along their normal / area: below it they enclose a cavity
+MIN_RADIUS_FRACTION = 0.25  # loops smaller than this fraction of the largest radius don't count
+# Candidates
+MIN_AREA_FRACTION, MAX_AREA_FRACTION = 0.004, 0.7  # of the whole model's area
+CUT_PART_COUNT = 200  # parts of the cut whose wheel stops are the candidates
+MAX_FITS = 16  # candidates that are aligned, those with the most similar features
 SCORE_DIGITS = 9
-SAME = 0.6  # overlap from which two nodes of one hierarchy are offered as one part
+MIN_OVERLAP = 0.6  # two nodes of one hierarchy that overlap more count as one candidate
 
 
-class Border(NamedTuple):
-    """Where a part was cut off: caps that touch. normal (3,) out of the solid; middle (3,) and radius, of a disk of the
-    same area, as seen along the normal: the rim's, however the caps between are creased (but for the middle's
-    height)."""
+class CapLoop(NamedTuple):
+    """A loop of a part's border: a connected group of caps. All three describe the boundary of the caps alone, however
+    the caps are creased, except the center's component along the normal.
 
-    middle: np.ndarray
+    center : (3,) of the caps projected along the normal
+    normal : (3,) unit, out of the solid
+    radius : of the disk with the same projected area
+    """
+
+    center: np.ndarray
     normal: np.ndarray
     radius: float
 
 
 class Fit(NamedTuple):
-    """matrix (4,4): a similarity, from where a part is to another's place. distance: between the two surfaces then, the
-    mean over both, relative to the size of the one that is replaced."""
+    """How a part fits in the place of another.
+
+    matrix : (4, 4) similarity transform from the part to the place
+    distance : mean distance between the two surfaces after that, both ways, relative to the size of the replaced part
+    """
 
     matrix: np.ndarray
     distance: float
 
 
 class Match(NamedTuple):
-    """key: of the part, as it was given. score: 1 for the same shape down to 0. matrix: as in Fit."""
+    """A candidate for the place of another part.
 
-    key: object
+    key : of the candidate, as in rank_parts()
+    score : 1 for the same shape, down to 0
+    matrix : (4, 4), see Fit
+    """
+
+    key: Any
     score: float
     matrix: np.ndarray
 
 
-def borders(vertices, triangles, matrix):
-    """The Borders of caps, the largest first. vertices (n,3); triangles (T,3) of the caps, wound outwards; matrix (4,4)
-    from there to where the borders are wanted. They are told apart by place: where caps only touch, a part may have two
-    vertices and the rest one, or the other way round."""
+def cap_loops(vertices: np.ndarray, triangles: np.ndarray, matrix: np.ndarray) -> List[CapLoop]:
+    """The loops of a part's border, largest first. Triangles are grouped by positions, not by indices: where caps only
+    touch, a part may have two vertices and the rest one, or vice versa.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float
+    triangles : (T, 3) int, the caps, wound outward
+    matrix : (4, 4) from the vertices to the space of the loops
+    """
     if not len(triangles):
         return []
-    own = vertices[triangles]
-    corners = moved(own, matrix)
+    local = vertices[triangles]
+    corners = transform_points(local, matrix)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
-    areas, middles = np.linalg.norm(normals, axis=1), corners.mean(axis=1)
-    found = []
+    areas, centers = np.linalg.norm(normals, axis=1), corners.mean(axis=1)
+    loops = []
     if np.linalg.det(matrix[:3, :3]) < 0:
         normals = -normals
-    for group in _groups(own):
-        area, normal = areas[group].sum(), normals[group].sum(axis=0)
+    for component in _triangle_components(local):
+        area, normal = areas[component].sum(), normals[component].sum(axis=0)
         length = np.linalg.norm(normal)
-        if length > CLOSED * area:
-            seen = normals[group] @ normal / length  # their sum is the same for all caps with this rim
-            found.append(Border(seen @ middles[group] / length, normal / length, float(np.sqrt(length / np.pi))))
-    return sorted(found, key=lambda each: -each.radius)
+        if length > MIN_PROJECTED_FRACTION * area:
+            projected = normals[component] @ normal / length  # their sum depends only on the boundary of the caps
+            loops.append(CapLoop(projected @ centers[component] / length, normal / length, float(np.sqrt(length / np.pi))))
+    return sorted(loops, key=lambda loop: -loop.radius)
 
 
-def _groups(corners):
-    """Indices of triangles (T,3,3) in groups that share corners."""
+def _triangle_components(corners: np.ndarray) -> List[np.ndarray]:
+    """Indices of the triangles (T, 3, 3) of each connected component; triangles are connected by corner positions."""
     _, triangles = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
     triangles = triangles.reshape(-1, 3)
-    of = groups(triangles[:, [[0, 1], [1, 2]]].reshape(-1, 2))[::2]
-    return [np.flatnonzero(of == group) for group in range(of.max() + 1)]
+    component = edge_components(triangles[:, [[0, 1], [1, 2]]].reshape(-1, 2))[::2]
+    return [np.flatnonzero(component == number) for number in range(component.max() + 1)]
 
 
-def moved(points, matrix):
-    """Points (...,3) under a matrix (4,4)."""
+def transform_points(points: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """Points (..., 3) transformed by an affine matrix (4, 4)."""
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-class Shape:
-    """A part's closed surface as it is compared with others."""
+class PartShape:
+    """The closed surface of a part, sampled for comparison with other parts.
 
-    def __init__(self, vertices, triangles, caps, matrix, size):
-        """vertices (n,3), triangles (m,3) wound outwards, caps (m,) bool: which close it where it was cut; matrix (4,4)
-        from there to where parts are compared; size there of the whole that it is a part of, say half the diagonal of
-        its bounding box."""
-        self.borders = borders(vertices, triangles[caps], matrix)
-        if not self.borders:
+    Parameters
+    ----------
+    vertices : (n, 3) float
+    triangles : (m, 3) int, wound outward
+    caps : (m,) bool, the triangles that close the part where it was cut
+    matrix : (4, 4) from the vertices to the space where parts are compared
+    size : of the whole model in that space, for example half the diagonal of its bounding box
+    """
+
+    def __init__(self, vertices: np.ndarray, triangles: np.ndarray, caps: np.ndarray, matrix: np.ndarray,
+                 size: float) -> None:
+        self.loops = cap_loops(vertices, triangles[caps], matrix)
+        if not self.loops:
             return
-        self.main = self.borders[0]
-        self.borders = [each for each in self.borders if each.radius >= SMALL_BORDER * self.main.radius]
-        corners = moved(vertices, matrix)[triangles] - self.main.middle
+        self.main = self.loops[0]
+        self.loops = [loop for loop in self.loops if loop.radius >= MIN_RADIUS_FRACTION * self.main.radius]
+        corners = transform_points(vertices, matrix)[triangles] - self.main.center
         self.volume = abs(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
-        cut = corners[caps]
-        self.cap_points = spread_over(cut, np.linalg.norm(
-            np.cross(cut[:, 1] - cut[:, 0], cut[:, 2] - cut[:, 0]), axis=1), CAP_SAMPLES)[0] + self.main.middle
+        cap_corners = corners[caps]
+        self.cap_points = sample_triangles(cap_corners, np.linalg.norm(
+            np.cross(cap_corners[:, 1] - cap_corners[:, 0], cap_corners[:, 2] - cap_corners[:, 0]), axis=1),
+            CAP_SAMPLES)[0] + self.main.center
         outer = corners[~caps]
         normals = np.cross(outer[:, 1] - outer[:, 0], outer[:, 2] - outer[:, 0])
         if np.linalg.det(matrix[:3, :3]) < 0:
             normals = -normals
-        lengths = np.linalg.norm(normals, axis=1)
-        self.area = lengths.sum() / 2
+        doubled_areas = np.linalg.norm(normals, axis=1)
+        self.area = doubled_areas.sum() / 2
         if self.area > 0:
-            self.points, chosen = spread_over(outer, lengths, SAMPLES)
-            self.points += self.main.middle
-            self.normals = normals[chosen] / lengths[chosen, None]
-        self.share = self.main.radius / size
-        self._features = None
+            self.points, sampled = sample_triangles(outer, doubled_areas, SURFACE_SAMPLES)
+            self.points += self.main.center
+            self.normals = normals[sampled] / doubled_areas[sampled, None]
+        self.relative_radius = self.main.radius / size
+        self._features: Optional[np.ndarray] = None
 
     @property
-    def usable(self):
-        """Whether it has a border and a surface and can be compared."""
-        return bool(self.borders) and self.area > 0
+    def is_usable(self) -> bool:
+        """Whether the part has a border and a surface, which comparisons need."""
+        return bool(self.loops) and self.area > 0
 
-    def reflection(self):
-        """(4,4) across a plane through the border's middle, along its normal."""
-        across, middle = _frame(self)[0], self.main.middle
+    def reflection(self) -> np.ndarray:
+        """The (4, 4) reflection across a plane through the border's center that contains its normal."""
+        across, center = _border_frame(self)[0], self.main.center
         flip = np.eye(4)
         flip[:3, :3] -= 2 * np.outer(across, across)
-        flip[:3, 3] = middle - flip[:3, :3] @ middle
+        flip[:3, 3] = center - flip[:3, :3] @ center
         return flip
 
-    def reflected(self, flip):
-        """The Shape under a reflection (4,4)."""
-        turn, image = flip[:3, :3], copy.copy(self)
-        image.points, image.cap_points = moved(self.points, flip), moved(self.cap_points, flip)
-        image.normals = self.normals @ turn.T
-        image.borders = [each._replace(middle=moved(each.middle, flip), normal=turn @ each.normal)
-                         for each in self.borders]
-        image.main = image.borders[0]
+    def reflect(self, flip: np.ndarray) -> PartShape:
+        """A copy, transformed by a reflection (4, 4)."""
+        linear, image = flip[:3, :3], copy.copy(self)
+        image.points, image.cap_points = transform_points(self.points, flip), transform_points(self.cap_points, flip)
+        image.normals = self.normals @ linear.T
+        image.loops = [loop._replace(center=transform_points(loop.center, flip), normal=linear @ loop.normal)
+                       for loop in self.loops]
+        image.main = image.loops[0]
         return image
 
-    def features(self):
-        """(n,) weighted numbers that are the same for similar shapes (moved, turned, scaled): their distance says how
-        unlike two parts are. Lengths are in radii of the border, as logarithms."""
+    def features(self) -> np.ndarray:
+        """(n,) weighted features, invariant to similarity transforms; their Euclidean distance measures how much two
+        shapes differ. Logarithms of lengths are in radii of the border."""
         if self._features is None:
             radius = self.main.radius
-            points = (self.points - self.main.middle) / radius
-            height, middle = points @ self.main.normal, points.mean(axis=0)
+            points = (self.points - self.main.center) / radius
+            height, center = points @ self.main.normal, points.mean(axis=0)
             across = points - height[:, None] * self.main.normal
-            axes = np.sqrt(np.maximum(np.linalg.eigvalsh(np.cov(points.T)), 1e-9))
+            extents = np.sqrt(np.maximum(np.linalg.eigvalsh(np.cov(points.T)), 1e-9))
             lateral = np.sqrt(np.maximum(np.linalg.eigvalsh(np.cov(across.T))[1:], 1e-9))
-            towards = middle @ self.main.normal
-            aside = np.linalg.norm(middle - towards * self.main.normal)
-            # How thick it is near the border, half way, and near the far end; the same for a part that is nearly flat.
-            along = (height.max() - height) / max(np.ptp(height), 0.1)
-            thick = [np.average(np.linalg.norm(across - np.average(across, axis=0, weights=weight), axis=1),
+            axial_offset = center @ self.main.normal
+            lateral_offset = np.linalg.norm(center - axial_offset * self.main.normal)
+            # Radius near the border, halfway, and near the far end; all the same for a part that is nearly flat.
+            depth = (height.max() - height) / max(np.ptp(height), 0.1)
+            radii = [np.average(np.linalg.norm(across - np.average(across, axis=0, weights=weight), axis=1),
                                 weights=weight)
-                     for weight in 1e-3 + np.maximum([1 - 2 * along, 1 - abs(2 * along - 1), 2 * along - 1], 0)]
+                     for weight in 1e-3 + np.maximum([1 - 2 * depth, 1 - abs(2 * depth - 1), 2 * depth - 1], 0)]
             self._features = np.concatenate([
                 [np.log(self.volume / radius ** 3) / 3, np.log(self.area / radius ** 2) / 2],
-                np.log(axes), np.log(lateral), [np.log(max(height.std(), 1e-9))],
-                [np.arcsinh(towards), np.arcsinh(aside)], 0.5 * np.log(np.maximum(thick, 1e-9)),
-                [0.3 * np.log(self.share), 0.7 * (len(self.borders) - 1)]])
+                np.log(extents), np.log(lateral), [np.log(max(height.std(), 1e-9))],
+                [np.arcsinh(axial_offset), np.arcsinh(lateral_offset)], 0.5 * np.log(np.maximum(radii, 1e-9)),
+                [0.3 * np.log(self.relative_radius), 0.7 * (len(self.loops) - 1)]])
         return self._features
 
 
-def spread_over(corners, weights, count):
-    """((count,3) points evenly on triangles (T,3,3), (count,) which triangle each is on): always the same ones."""
+def sample_triangles(corners: np.ndarray, weights: np.ndarray, count: int) -> Tuple[np.ndarray, np.ndarray]:
+    """Evenly distributed points on triangles, from a low-discrepancy sequence; the same ones at every call.
+
+    Parameters
+    ----------
+    corners : (T, 3, 3) float
+    weights : (T,) expected share of the points, say areas
+    count : n, the number of points
+
+    Returns
+    -------
+    (points (n, 3), triangle of each point (n,))
+    """
     total = np.cumsum(weights)
     number = np.arange(count)
-    chosen = np.minimum(np.searchsorted(total, (number + 0.5) / count * total[-1]), len(corners) - 1)
-    # Of low discrepancy, by the powers of the plastic number; folded into the triangle.
+    sampled = np.minimum(np.searchsorted(total, (number + 0.5) / count * total[-1]), len(corners) - 1)
+    # The R2 sequence, by powers of the plastic number (Roberts 2018), folded into the triangle.
     u, v = (0.5 + number * 0.7548776662466927) % 1, (0.5 + number * 0.5698402909980532) % 1
-    beyond = u + v > 1
-    u, v = np.where(beyond, 1 - u, u), np.where(beyond, 1 - v, v)
-    a, b, c = corners[chosen].transpose(1, 0, 2)
-    return a + u[:, None] * (b - a) + v[:, None] * (c - a), chosen
+    is_outside = u + v > 1
+    u, v = np.where(is_outside, 1 - u, u), np.where(is_outside, 1 - v, v)
+    a, b, c = corners[sampled].transpose(1, 0, 2)
+    return a + u[:, None] * (b - a) + v[:, None] * (c - a), sampled
 
 
-def unlikeness(one, other):
-    """How far the features of two Shapes are from each other; 0 for the same shape."""
+def feature_distance(one: PartShape, other: PartShape) -> float:
+    """Euclidean distance between the features of two parts; 0 for the same shape."""
     return float(np.linalg.norm(one.features() - other.features()))
 
 
-# ---- One part to the other's place
+# ---- Fitting one part
 
 
-def fit(place, part, mirror=False):
-    """The Fit that brings the Shape part to the Shape place: border onto border, of its size. mirror: the part's mirror
-    image; the matrix then reflects."""
+def fit(place: PartShape, part: PartShape, mirror: bool = False) -> Fit:
+    """Fit a part in the place of another.
+
+    Parameters
+    ----------
+    place : the part to replace
+    part : the part to fit
+    mirror : fit the mirror image of the part; the matrix then contains a reflection
+    """
     if mirror:
         flip = part.reflection()
-        found = fit(place, part.reflected(flip))
-        return found._replace(matrix=found.matrix @ flip)
+        mirrored_fit = fit(place, part.reflect(flip))
+        return mirrored_fit._replace(matrix=mirrored_fit.matrix @ flip)
     scale = place.main.radius / part.main.radius
-    frame, own = _frame(place), _frame(part)
-    moving = ((part.points - part.main.middle) * scale) @ own.T  # in the border's frame, z along the normal
-    staying = (place.points - place.main.middle) @ frame.T
-    tries = []
-    for angle in _turns(moving, staying, frame, own):
-        turn = _about_z(angle)
-        tries.append((_apart(moving[::2 * COARSE] @ turn.T, staying[::3]), angle))
-    tries.sort()
-    found = []
-    for _, angle in tries[:2]:
-        turn = frame.T @ _about_z(angle) @ own
-        found.append(_refined(place, part, scale, turn))
-        if found[-1].distance < 1e-6:
+    place_frame, part_frame = _border_frame(place), _border_frame(part)
+    moving = ((part.points - part.main.center) * scale) @ part_frame.T  # in the border's frame, z along the normal
+    target = (place.points - place.main.center) @ place_frame.T
+    candidates = []
+    for angle in _candidate_angles(moving, target, place_frame, part_frame):
+        rotation = _rotation_about_z(angle)
+        candidates.append((_mean_distance(moving[::2 * COARSE_STEP] @ rotation.T, target[::3]), angle))
+    candidates.sort()
+    fits: List[Fit] = []
+    for _, angle in candidates[:2]:
+        rotation = place_frame.T @ _rotation_about_z(angle) @ part_frame
+        fits.append(_refine(place, part, scale, rotation))
+        if fits[-1].distance < 1e-6:
             break
-    return min(found, key=lambda each: each.distance)
+    return min(fits, key=lambda each: each.distance)
 
 
-def gap(place, part, matrix):
-    """How far the Shape part under a similarity (4,4) is to go along the border's normal until its caps leave no gap
-    to what the Shape place was cut off from, in radii of the border. Caps that are flat, or alike, need 0."""
-    frame, own = _frame(place), place.main
-    theirs, ours = (((points - own.middle) / own.radius) @ frame.T
-                    for points in (moved(part.cap_points, matrix), place.cap_points))
-    apart = _distances(ours[:, :2], theirs[:, :2])
-    nearest = apart.argmin(axis=1)
-    beneath = apart[np.arange(len(ours)), nearest] < BENEATH ** 2
-    if not beneath.any():
+def gap(place: PartShape, part: PartShape, matrix: np.ndarray) -> float:
+    """How far a fitted part must move along the border's normal until its caps leave no gap to the rest of the model.
+
+    Parameters
+    ----------
+    place : the part to replace
+    part : the fitted part
+    matrix : (4, 4), of its Fit
+
+    Returns
+    -------
+    distance in radii of the border, 0 to MAX_SINK_DEPTH; 0 for caps that are flat or the same
+    """
+    frame, main = _border_frame(place), place.main
+    part_caps, place_caps = (((points - main.center) / main.radius) @ frame.T
+                             for points in (transform_points(part.cap_points, matrix), place.cap_points))
+    squared = _squared_distances(place_caps[:, :2], part_caps[:, :2])
+    nearest = squared.argmin(axis=1)
+    is_near = squared[np.arange(len(place_caps)), nearest] < MAX_CAP_OFFSET ** 2
+    if not is_near.any():
         return 0.0
-    return float(np.clip(np.quantile((ours[:, 2] - theirs[nearest, 2])[beneath], 0.95), 0, DEEPEST))
+    return float(np.clip(np.quantile((place_caps[:, 2] - part_caps[nearest, 2])[is_near], 0.95), 0, MAX_SINK_DEPTH))
 
 
-def _frame(shape):
-    """(3,3) rows: two directions across the border's normal, and the normal."""
+def _border_frame(shape: PartShape) -> np.ndarray:
+    """Orthonormal rows (3, 3): two directions perpendicular to the border's normal, and the normal."""
     normal = shape.main.normal
     across = np.cross(normal, np.eye(3)[np.argmin(abs(normal))])
     across /= np.linalg.norm(across)
     return np.array([across, np.cross(normal, across), normal])
 
 
-def _about_z(angle):
+def _rotation_about_z(angle: float) -> np.ndarray:
     sine, cosine = np.sin(angle), np.cos(angle)
     return np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1.0]])
 
 
-def _turns(moving, staying, frame, own):
-    """Angles about the normal to try: that bring the longer principal axes across the normal together, either way, and
-    the middles to the same side; that leave the part as upright as it was; and all round."""
-    def axis(points):
+def _candidate_angles(moving: np.ndarray, target: np.ndarray, place_frame: np.ndarray,
+                      part_frame: np.ndarray) -> List[float]:
+    """Angles about the normal to try: two that align the major axes perpendicular to the normal, one that aligns the
+    centroids, the one with the smallest rotation in space, and ROTATION_COUNT - 1 at equal steps from that."""
+    def major_axis(points: np.ndarray) -> np.ndarray:
         return np.linalg.eigh(np.cov(points[:, :2].T))[1][:, 1]
 
-    def angle(direction):
+    def angle(direction: np.ndarray) -> float:
         return np.arctan2(direction[1], direction[0])
 
-    by_axes = angle(axis(staying)) - angle(axis(moving))
-    by_middles = angle(staying.mean(axis=0)) - angle(moving.mean(axis=0))
-    upright = frame @ own.T  # what turns least is the rotation about z that is nearest to this
-    upright = np.arctan2(upright[1, 0] - upright[0, 1], upright[0, 0] + upright[1, 1])
-    return [by_axes, by_axes + np.pi, by_middles, upright, *(upright + np.arange(1, TURNS) * (2 * np.pi / TURNS))]
+    by_axes = angle(major_axis(target)) - angle(major_axis(moving))
+    by_centroids = angle(target.mean(axis=0)) - angle(moving.mean(axis=0))
+    change = place_frame @ part_frame.T  # the smallest rotation: the rotation about z that is nearest to this
+    smallest = np.arctan2(change[1, 0] - change[0, 1], change[0, 0] + change[1, 1])
+    return [by_axes, by_axes + np.pi, by_centroids, smallest,
+            *(smallest + np.arange(1, ROTATION_COUNT) * (2 * np.pi / ROTATION_COUNT))]
 
 
-def _distances(moving, staying):
-    """(n,m) squared; by one product of matrices. By rounding some may be a little below 0."""
+def _squared_distances(moving: np.ndarray, target: np.ndarray) -> np.ndarray:
+    """(n, m) squared distances as one matrix product, in single precision: rounding may leave some slightly negative."""
     left = np.column_stack([-2 * moving, (moving ** 2).sum(axis=1), np.ones(len(moving))])
-    right = np.column_stack([staying, np.ones(len(staying)), (staying ** 2).sum(axis=1)])
+    right = np.column_stack([target, np.ones(len(target)), (target ** 2).sum(axis=1)])
     return left.astype(np.float32) @ right.astype(np.float32).T
 
 
-def _apart(moving, staying):
-    """Mean distance of each point to the other surface's nearest, from both sides."""
-    squared = _distances(moving, staying)
+def _mean_distance(moving: np.ndarray, target: np.ndarray) -> float:
+    """Mean distance from each point to the nearest one of the other set, averaged over both directions."""
+    squared = _squared_distances(moving, target)
     return sum(np.sqrt(np.maximum(squared.min(axis=axis), 0)).mean() for axis in (0, 1)) / 2
 
 
-def _refined(place, part, scale, turn):
-    """The Fit after refining; as it is where the shapes differ too much, or would tilt too far. turn (3,3): from the
-    part's directions to the place's."""
+def _refine(place: PartShape, part: PartShape, scale: float, rotation: np.ndarray) -> Fit:
+    """The Fit after ICP from a rotation (3, 3); before ICP if the shapes differ too much, or ICP tilts the part too far."""
     radius, size = place.main.radius, np.sqrt(place.area)
-    staying = (place.points - place.main.middle) / radius
-    start = ((part.points - part.main.middle)[::COARSE] * (scale / radius)) @ turn.T
-    ends = np.array([(each.middle - part.main.middle) * (scale / radius) for each in part.borders]) @ turn.T
-    matrix, lever = np.eye(4), (start ** 2).sum(axis=1).mean()
-    normal = turn @ part.main.normal
+    target = (place.points - place.main.center) / radius
+    start = ((part.points - part.main.center)[::COARSE_STEP] * (scale / radius)) @ rotation.T
+    centers = np.array([(loop.center - part.main.center) * (scale / radius) for loop in part.loops]) @ rotation.T
+    matrix, mean_squared_radius = np.eye(4), (start ** 2).sum(axis=1).mean()
+    normal = rotation @ part.main.normal
     points = start
-    last = np.inf
-    for _ in range(STEPS):
-        squared = _distances(points, staying)
+    last_error = np.inf
+    for _ in range(MAX_ICP_ITERATIONS):
+        squared = _squared_distances(points, target)
         nearest = squared.argmin(axis=1)
         least = np.maximum(squared[np.arange(len(points)), nearest], 0)
-        kept = least <= np.partition(least, int(KEPT * (len(least) - 1)))[int(KEPT * (len(least) - 1))]
-        error = least[kept].mean()
-        if error > last * 0.999:
+        used = least <= np.partition(least, int(TRIMMED_FRACTION * (len(least) - 1)))[
+            int(TRIMMED_FRACTION * (len(least) - 1))]
+        error = least[used].mean()
+        if error > last_error * 0.999:
             break
-        last = error
-        step = _step(points[kept], staying[nearest[kept]], place.normals[nearest[kept]],
-                     _held(place, matrix, ends, normal, lever))
+        last_error = error
+        step = _icp_step(points[used], target[nearest[used]], place.normals[nearest[used]],
+                         _border_constraints(place, matrix, centers, normal, mean_squared_radius))
         matrix = step @ matrix
-        points = moved(start, matrix)
-    tilted = (matrix[:3, :3] @ normal) @ place.main.normal < TILT or np.linalg.norm(matrix[:3, 3]) > 0.5
-    if tilted or np.sqrt(last) > ALIKE * max(1.0, np.sqrt(lever) / 3):
+        points = transform_points(start, matrix)
+    is_tilted = ((matrix[:3, :3] @ normal) @ place.main.normal < MIN_NORMAL_COSINE
+                 or np.linalg.norm(matrix[:3, 3]) > 0.5)
+    if is_tilted or np.sqrt(last_error) > MAX_RMS_DISTANCE * max(1.0, np.sqrt(mean_squared_radius) / 3):
         matrix = np.eye(4)
-    turn = matrix[:3, :3] @ turn
-    whole = np.eye(4)
-    whole[:3, :3] = scale * turn
-    whole[:3, 3] = place.main.middle + radius * matrix[:3, 3] - scale * turn @ part.main.middle
-    points = (moved(part.points, whole) - place.main.middle) / radius
-    return Fit(whole, float(_apart(points, staying) * radius / size))
+    rotation = matrix[:3, :3] @ rotation
+    result = np.eye(4)
+    result[:3, :3] = scale * rotation
+    result[:3, 3] = place.main.center + radius * matrix[:3, 3] - scale * rotation @ part.main.center
+    points = (transform_points(part.points, result) - place.main.center) / radius
+    return Fit(result, float(_mean_distance(points, target) * radius / size))
 
 
-def _held(place, matrix, ends, normal, lever):
-    """What keeps borders together, as (points, their targets, weight) and (normal, its target, weight)."""
-    targets = np.array([(each.middle - place.main.middle) / place.main.radius for each in place.borders])
-    ends = moved(ends, matrix)
-    nearest = np.linalg.norm(ends[:, None] - targets, axis=2).argmin(axis=1)
+Constraint = Tuple[np.ndarray, np.ndarray, float]  # points or directions (..., 3), their targets (..., 3), weight
+
+
+def _border_constraints(place: PartShape, matrix: np.ndarray, centers: np.ndarray, normal: np.ndarray,
+                        normal_weight: float) -> Tuple[Constraint, Constraint]:
+    """Constraints that keep the borders together: centers of loops, and the normal of the main loop."""
+    targets = np.array([(loop.center - place.main.center) / place.main.radius for loop in place.loops])
+    centers = transform_points(centers, matrix)
+    nearest = np.linalg.norm(centers[:, None] - targets, axis=2).argmin(axis=1)
     nearest[0] = 0
-    near = np.linalg.norm(ends - targets[nearest], axis=1) < 1
-    near[0] = True
-    return (ends[near], targets[nearest[near]], 4.0), (matrix[:3, :3] @ normal, place.main.normal, lever)
+    is_near = np.linalg.norm(centers - targets[nearest], axis=1) < 1
+    is_near[0] = True
+    return (centers[is_near], targets[nearest[is_near]], 4.0), (matrix[:3, :3] @ normal, place.main.normal, normal_weight)
 
 
-def _step(points, onto, normals, held):
-    """(4,4) the small rigid motion that brings points nearest to the planes through onto, with what is held, by least
-    squares on rotations taken for small."""
-    (ends, targets, end_weight), (normal, wanted, normal_weight) = held
-    share = 1 / np.sqrt(len(points))
-    rows = [np.hstack([np.cross(points, normals), normals]) * share]
-    sides = [np.einsum("ij,ij->i", normals, onto - points) * share]
-    for end, target in zip(ends, targets):
-        rows.append(np.sqrt(end_weight) * np.hstack([-crossing(end), np.eye(3)]))
-        sides.append(np.sqrt(end_weight) * (target - end))
-    rows.append(np.sqrt(normal_weight) * np.hstack([-crossing(normal), np.zeros((3, 3))]))
-    sides.append(np.sqrt(normal_weight) * (wanted - normal))
-    solution = np.linalg.lstsq(np.vstack(rows), np.concatenate(sides), rcond=None)[0]
+def _icp_step(points: np.ndarray, targets: np.ndarray, normals: np.ndarray,
+              constraints: Tuple[Constraint, Constraint]) -> np.ndarray:
+    """The rigid motion (4, 4) that minimizes point-to-plane distances and constraints: linear least squares for a small
+    rotation vector and a translation."""
+    (centers, center_targets, center_weight), (normal, normal_target, normal_weight) = constraints
+    point_weight = 1 / np.sqrt(len(points))
+    rows = [np.hstack([np.cross(points, normals), normals]) * point_weight]
+    right_sides = [np.einsum("ij,ij->i", normals, targets - points) * point_weight]
+    for center, target in zip(centers, center_targets):
+        rows.append(np.sqrt(center_weight) * np.hstack([-cross_matrix(center), np.eye(3)]))
+        right_sides.append(np.sqrt(center_weight) * (target - center))
+    rows.append(np.sqrt(normal_weight) * np.hstack([-cross_matrix(normal), np.zeros((3, 3))]))
+    right_sides.append(np.sqrt(normal_weight) * (normal_target - normal))
+    solution = np.linalg.lstsq(np.vstack(rows), np.concatenate(right_sides), rcond=None)[0]
     motion = np.eye(4)
-    motion[:3, :3] = rotation_by(solution[:3])
+    motion[:3, :3] = rotation_from_vector(solution[:3])
     motion[:3, 3] = solution[3:]
     return motion
 
 
-# ---- Among many
+# ---- Choosing among many parts
 
 
-def ranked(place, parts, same=lambda one, other: False):
-    """Matches, the most compatible first. place: a Shape; parts: (key, Shape) pairs, of which only the most alike by
-    measure are fitted and returned; same(key, key): whether two are nearly one part, of which the better is enough."""
-    near = sorted(((unlikeness(place, shape), number) for number, (_, shape) in enumerate(parts) if shape.usable))
-    found = []
-    for unlike, number in near:
+def rank_parts(place: PartShape, parts: Sequence[Tuple[Any, PartShape]],
+               is_same: Callable[[Any, Any], bool] = lambda one, other: False) -> List[Match]:
+    """Rank candidates for the place of a part.
+
+    Parameters
+    ----------
+    place : the part to replace
+    parts : (key, PartShape) of each candidate
+    is_same : whether two keys are nearly the same part, of which one match is enough
+
+    Returns
+    -------
+    at most MAX_FITS matches, those with the most similar features, best score first
+    """
+    by_distance = sorted(((feature_distance(place, shape), number) for number, (_, shape) in enumerate(parts)
+                          if shape.is_usable))
+    matches: List[Match] = []
+    for distance, number in by_distance:
         key, shape = parts[number]
-        if any(same(match.key, key) for match in found):
+        if any(is_same(match.key, key) for match in matches):
             continue
-        fitted = fit(place, shape)
-        # Products of matrices differ in their last bits with where these lie in memory: that is no part of a score.
-        score = round(float(np.exp(-(0.5 * unlike + 4 * fitted.distance))), SCORE_DIGITS)
-        found.append(Match(key, score, fitted.matrix))
-        if len(found) == ALIGNED:
+        best_fit = fit(place, shape)
+        # The last bits of matrix products depend on memory alignment; rounding keeps scores independent of it.
+        score = round(float(np.exp(-(0.5 * distance + 4 * best_fit.distance))), SCORE_DIGITS)
+        matches.append(Match(key, score, best_fit.matrix))
+        if len(matches) == MAX_FITS:
             break
-    return sorted(found, key=lambda each: -each.score)
+    return sorted(matches, key=lambda match: -match.score)
 
 
-def parts_offered(hierarchy):
-    """Nodes that are worth offering: where the wheel stops, neither specks nor nearly the whole."""
-    bounds = hierarchy.cut_parts(min(CUT, len(hierarchy.tetrahedra)))
+def candidate_nodes(hierarchy: Hierarchy) -> List[int]:
+    """The wheel stops that are neither tiny nor nearly the whole model, ascending."""
+    bounds = hierarchy.cut_parts(min(CUT_PART_COUNT, len(hierarchy.tetrahedra)))
     labels = hierarchy.face_labels(bounds)
-    examples = np.unique(labels, return_index=True)[1].tolist()
-    stops = {stop for face in examples for stop in hierarchy.wheel(face)[0].tolist()}
-    share = hierarchy.area / hierarchy.area[-1]
-    return sorted(stop for stop in stops if LEAST_SHARE <= share[stop] <= LARGEST_SHARE)
+    first_faces = np.unique(labels, return_index=True)[1].tolist()
+    stops = {stop for face in first_faces for stop in hierarchy.wheel(face)[0].tolist()}
+    fraction = hierarchy.area / hierarchy.area[-1]
+    return sorted(stop for stop in stops if MIN_AREA_FRACTION <= fraction[stop] <= MAX_AREA_FRACTION)
 
 
-def overlap(hierarchy, one, other):
-    """Of two nodes: the area they have in common by that which they have together."""
+def node_overlap(hierarchy: Hierarchy, one: int, other: int) -> float:
+    """Intersection over union of the areas of two nodes."""
     if hierarchy.tet_first[one] > hierarchy.tet_first[other] or hierarchy.tet_last[one] < hierarchy.tet_last[other]:
         one, other = other, one
     if hierarchy.tet_first[one] > hierarchy.tet_first[other] or hierarchy.tet_last[one] < hierarchy.tet_last[other]:
@@ -381,12 +464,23 @@ def overlap(hierarchy, one, other):
     return float(hierarchy.area[other] / hierarchy.area[one])
 
 
-def shape(hierarchy, node, positions, matrix, size, faces=None):
-    """The Shape of a node, or None if it has nothing left where polygons are cut. positions (V,3) of the hierarchy's
-    vertices; matrix (4,4) from there to where parts are compared; size: as in Shape. faces (F,) bool: those that it has
-    in place of its own, see solid_of_faces()."""
+def part_shape(hierarchy: Hierarchy, node: int, positions: np.ndarray, matrix: np.ndarray, size: float,
+               faces: Optional[np.ndarray] = None) -> Optional[PartShape]:
+    """The PartShape of a node.
+
+    Parameters
+    ----------
+    positions : (V, 3) of the hierarchy's vertices
+    matrix : (4, 4) from the positions to the space where parts are compared
+    size : see PartShape
+    faces : (F,) bool, source faces to use instead of the node's own, see Hierarchy.solid_of_faces()
+
+    Returns
+    -------
+    None if cut polygons leave nothing of the node
+    """
     ends = int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])
     solid = hierarchy.solids([ends])[0] if faces is None else hierarchy.solid_of_faces(*ends, faces)
     if solid is None:
         return None
-    return Shape(positions[solid.ends].mean(axis=1), solid.triangles, solid.beyond >= 0, matrix, size)
+    return PartShape(positions[solid.ends].mean(axis=1), solid.triangles, solid.beyond >= 0, matrix, size)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A band of a surface made as smooth as its surroundings let it be. Native, with numpy."""
+"""Fairing: makes a band of a surface as smooth as its surroundings allow. Native, with numpy."""
 
 from __future__ import annotations
 
@@ -13,9 +13,25 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-def faired(vertices: ArrayLike, edges: ArrayLike, free: ArrayLike) -> np.ndarray:
-    """(V,3) the vertices, of which the free ones lie as smoothly as the others let them, see pw_faired in partwheel_edit.h.
-    vertices (V,3), edges (E,2) vertex indices, free (V,) bool. Raises PartwheelError."""
+def fair_vertices(vertices: ArrayLike, edges: ArrayLike, free: ArrayLike) -> np.ndarray:
+    """Move the free vertices to where the surface is smoothest; the other vertices stay. See pw_faired in
+    partwheel_edit.h for the energy.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float
+    edges : (E, 2) int, indices into vertices
+    free : (V,) bool
+
+    Returns
+    -------
+    (V, 3) float64, all vertices
+
+    Raises
+    ------
+    PartwheelError : an edge has a vertex that does not exist, or a coordinate is not finite
+    ValueError : an array has another shape
+    """
     vertices, edges = np.ascontiguousarray(vertices, np.float64), np.ascontiguousarray(edges, np.int32)
     free = np.ascontiguousarray(free, bool)
     if vertices.shape[1:] != (3,) or edges.shape[1:] != (2,) or free.shape != vertices.shape[:1]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Polygons of any number of corners: as triangles that have an area wherever that can be; whether they are a solid."""
+"""Polygons with any number of corners: triangulation, and whether they form a closed, manifold, oriented surface."""
 
 from __future__ import annotations
 
@@ -15,42 +15,65 @@ if TYPE_CHECKING:
 
 
 class Faults(NamedTuple):
-    """What keeps polygons from being a closed, manifold, oriented surface. open: edges that have not just two polygons;
-    against: edges whose two wind against each other; touching: vertices without a polygon, or with several fans of them
-    (not counted where there are others)."""
+    """What keeps polygons from being a closed, manifold, oriented surface; all 0 for such a surface.
 
-    open: int
-    against: int
-    touching: int
+    open_edges : edges that don't have exactly two polygons
+    inconsistent_edges : edges that both of their polygons traverse in the same direction
+    non_manifold_vertices : vertices without a polygon, or with several fans of polygons; counted only if both edge
+        counts are 0
+    """
+
+    open_edges: int
+    inconsistent_edges: int
+    non_manifold_vertices: int
 
 
 def polygon_faults(corners: ArrayLike, begin: ArrayLike, vertex_count: int) -> Faults:
-    """The Faults of polygons: corners (L,) their vertices, one after the other, begin (F,) the first corner of each.
-    Raises PartwheelError (INDEX)."""
-    corners, begin = (np.ascontiguousarray(each, np.int32) for each in (corners, begin))
-    given = corners, len(corners), begin, len(begin), vertex_count
-    return Faults(*told([c_size_t] * 3, load().pw_polygon_faults, *given))
+    """Count what keeps polygons from being a closed, manifold, oriented surface.
+
+    Parameters
+    ----------
+    corners : (L,) int, the vertices of all polygons, one polygon after the other
+    begin : (F,) int, the index into corners of each polygon's first corner
+    vertex_count : number of vertices
+
+    Raises
+    ------
+    PartwheelError : an index is out of range (Status.INDEX)
+    """
+    corners, begin = (np.ascontiguousarray(values, np.int32) for values in (corners, begin))
+    arguments = corners, len(corners), begin, len(begin), vertex_count
+    return Faults(*told([c_size_t] * 3, load().pw_polygon_faults, *arguments))
 
 
 def triangulate(points: np.ndarray, names: Sequence[int]) -> List[List[int]]:
-    """Triangles, as triples of names, of a nearly flat polygon, by cutting off its best-shaped ear again and again.
-    points (n,3), names (n,). Gives a fan where the polygon crosses itself and has no ear."""
-    following = np.roll(points, -1, axis=0)
-    normal = np.cross(points, following).sum(axis=0)  # Newell: also right for concave polygons
+    """Triangulate a nearly flat polygon by ear clipping, best-shaped ear first. O(n^3).
+
+    Parameters
+    ----------
+    points : (n, 3) float, the corners in order
+    names : (n,) the indices that the triangles refer to the corners by
+
+    Returns
+    -------
+    n - 2 triples of names. A polygon that crosses itself and has no ear gives a fan
+    """
+    next_points = np.roll(points, -1, axis=0)
+    normal = np.cross(points, next_points).sum(axis=0)  # Newell: also right for concave polygons
     ring, triangles = list(range(len(names))), []
     while len(ring) > 3:
-        best, best_shape = 1, 0.0
+        best, best_quality = 1, 0.0
         for i in range(len(ring)):
             a, b, c = (points[ring[(i + k) % len(ring)]] for k in (-1, 0, 1))
             sides = np.array([b - a, c - b, a - c])
             doubled_area = np.cross(sides[0], sides[1]) @ normal
-            shape = doubled_area / (sides * sides).sum()
-            if shape <= best_shape:
+            quality = doubled_area / (sides * sides).sum()
+            if quality <= best_quality:
                 continue
-            others = points[[ring[(i + k) % len(ring)] for k in range(2, len(ring) - 1)]]
-            inside = [np.cross(side, others - start) @ normal >= 0 for side, start in zip(sides, (a, b, c))]
+            rest = points[[ring[(i + k) % len(ring)] for k in range(2, len(ring) - 1)]]
+            inside = [np.cross(side, rest - start) @ normal >= 0 for side, start in zip(sides, (a, b, c))]
             if not np.logical_and.reduce(inside).any():
-                best, best_shape = i, shape
+                best, best_quality = i, quality
         triangles.append([names[ring[(best + k) % len(ring)]] for k in (-1, 0, 1)])
         del ring[best]
     if len(ring) == 3:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The first triangle of a surface that a ray meets. Native, with numpy."""
+"""Ray casting: the first triangle of a surface that a ray hits. Native, with numpy."""
 
 from __future__ import annotations
 
@@ -14,20 +14,40 @@ if TYPE_CHECKING:
 
 
 class RayTarget(NonCopyable):
-    """A surface that rays can be sent at: see pw_ray_target in partwheel_edit.h. It never changes.
+    """A surface to cast rays at, with a bounding volume hierarchy: see pw_ray_target in partwheel_edit.h. Immutable.
 
-    vertices (V,3); triangles (T,3) indices into them. Raises PartwheelError.
+    Parameters
+    ----------
+    vertices : (V, 3) float
+    triangles : (T, 3) int, indices into vertices
+
+    Raises
+    ------
+    PartwheelError : the surface is invalid
     """
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike) -> None:
-        given = surface(vertices, triangles)[:4]
-        self._handle = Handle(load().pw_ray_target_free, made(load().pw_ray_target_create, *given))
+        arguments = surface(vertices, triangles)[:4]
+        self._handle = Handle(load().pw_ray_target_free, made(load().pw_ray_target_create, *arguments))
 
-    def first(self, origin: Sequence[float], direction: Sequence[float],
-              beyond: float = 0.0) -> Optional[Tuple[int, float]]:
-        """(triangle, distance) of the first hit farther than beyond, or None. origin, direction (3,); distances are in
-        lengths of the direction. Raises PartwheelError for a ray that has none."""
-        origin, direction = ((c_double * 3)(*each) for each in (origin, direction))
-        ray = origin, direction, beyond
+    def first_hit(self, origin: Sequence[float], direction: Sequence[float],
+                  min_distance: float = 0.0) -> Optional[Tuple[int, float]]:
+        """The nearest hit that is farther than min_distance.
+
+        Parameters
+        ----------
+        origin, direction : (3,)
+        min_distance : in lengths of the direction
+
+        Returns
+        -------
+        (triangle, distance), the distance in lengths of the direction; None if the ray hits nothing
+
+        Raises
+        ------
+        PartwheelError : the direction is zero or not finite
+        """
+        origin, direction = ((c_double * 3)(*vector) for vector in (origin, direction))
+        ray = origin, direction, min_distance
         triangle, distance = told([c_int32, c_double], load().pw_ray_target_first, self._handle, *ray)
         return None if triangle < 0 else (triangle, distance)

@@ -12,7 +12,7 @@ def play(stage):
     def snapped(faces):
         inside = numpy.zeros(len(stage.wheels.triangles), bool)
         inside[list(faces)] = True
-        return frozenset(numpy.flatnonzero(creases.snapped(inside)).tolist())
+        return frozenset(numpy.flatnonzero(creases.snap(inside)).tolist())
 
     stage.use_tool()
     tool = bpy.context.workspace.tools.from_space_view3d_mode("EDIT_MESH")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..deform import surface_distances
-from ..joint import MOST, groups
+from ..joint import MAX_REACH_FRACTION, edge_components
 from ..weld import weld_surface
 from .names import images
 
@@ -44,7 +44,7 @@ def borders(vertices, triangles, labels):
     found = []
     for pair in np.unique(pairs, axis=0):
         own = edges[(pairs == pair).all(axis=1)]
-        loop = groups(own)
+        loop = edge_components(own)
         found += [_border(vertices, pair, own[loop == number]) for number in range(loop.max() + 1)]
     return sorted(found, key=lambda border: (border.parts, -border.length))
 
@@ -136,7 +136,7 @@ def weights(vertices, triangles, labels, count, reach=REACH):
         start[border.vertices] = True
         distance = surface_distances(places, triangles, start)
         depths = [distance[(own == part) & np.isfinite(distance)].max(initial=0) for part in border.parts]
-        far = min(reach * border.radius, MOST * min(depths))
+        far = min(reach * border.radius, MAX_REACH_FRACTION * min(depths))
         near = np.flatnonzero(distance <= far)
         way = distance[near] / far if far > 0 else np.zeros(len(near))
         beyond.append((border.parts, near, 0.5 - way * way * (1.5 - way)))

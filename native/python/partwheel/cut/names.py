@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, List, Optional, Tuple
 
 import numpy as np
 
-from ..compatible import spread_over
+from ..compatible import sample_triangles
 from ..hierarchy import surface
 from ..library import check, load
 
@@ -72,7 +72,7 @@ def images(vertices, triangles, labels):
     corners = np.asarray(vertices, np.float64)[triangles]
     areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     size = np.bincount(labels, areas)
-    points, chosen = spread_over(corners, areas, SAMPLES)
+    points, chosen = sample_triangles(corners, areas, SAMPLES)
     labels = labels[chosen]
     best, most = ({}, np.zeros(3)), 0.0
     for normal, offset in mirror_planes(vertices, triangles):

@@ -6,7 +6,7 @@ from typing import NamedTuple, Optional
 
 import numpy as np
 
-from ..compatible import spread_over
+from ..compatible import sample_triangles
 from ..library import Error
 from ..rays import RayTarget
 from ..requirements import load_module
@@ -117,9 +117,9 @@ def thickness(vertices, triangles, samples=SAMPLES):
     areas = np.linalg.norm(across, axis=1)
     normals = across / np.maximum(areas, 1e-300)[:, None]
     target, found = RayTarget(vertices, triangles), []
-    for point, triangle in zip(*spread_over(corners, areas, samples)):
+    for point, triangle in zip(*sample_triangles(corners, areas, samples)):
         away = -normals[triangle]
-        hit = target.first(point, away, 1e-6 * np.sqrt(areas.sum()))
+        hit = target.first_hit(point, away, 1e-6 * np.sqrt(areas.sum()))
         if hit and normals[hit[0]] @ normals[triangle] < OPPOSITE:
             found.append(hit[1])
     return np.array(found)

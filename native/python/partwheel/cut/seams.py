@@ -185,7 +185,7 @@ class _Tree:
             return None
         inside = np.zeros(len(self.place), bool)
         inside[sheet.faces[found]] = True
-        snapped = self.creases.snapped(inside)[sheet.faces]
+        snapped = self.creases.snap(inside)[sheet.faces]
         if LEAST <= share[snapped].sum() <= 1 - LEAST:
             found = snapped
         return without_scraps(sheet, found.astype(int))
@@ -199,7 +199,7 @@ def in_creases(sheet, creases, labels):
     area = np.bincount(sheet.faces, sheet.areas, len(labels))
     for part in np.argsort(np.bincount(labels, area), kind="stable").tolist():
         inside = labels == part
-        snapped = creases.snapped(inside) if inside.any() else inside
+        snapped = creases.snap(inside) if inside.any() else inside
         if not snapped.any():
             continue
         labels[snapped] = part

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compatible import spread_over
+from ..compatible import sample_triangles
 from ..cut import mirror_planes
 from ..duplicates import without_duplicates
 
@@ -36,7 +36,7 @@ def mirrored(hierarchy, vertices, triangles, faces, node):
     own = inside[faces]
     if not own.any():
         return []
-    points = spread_over(corners[own], double[own], POINTS)[0]
+    points = sample_triangles(corners[own], double[own], POINTS)[0]
     area = np.cumsum(np.concatenate([[0], np.bincount(faces, double, len(inside))[hierarchy.order]]))
     area = area[hierarchy.last] - area[hierarchy.first]
     found = []
@@ -62,7 +62,7 @@ def _faces_at(points, corners, weights, faces):
     if not about.any():
         about[:] = True
     corners, faces = corners[about], faces[about]
-    spread, chosen = spread_over(corners, weights[about], FIELD)
+    spread, chosen = sample_triangles(corners, weights[about], FIELD)
     field, of = np.vstack([spread, corners.mean(axis=1)]), np.concatenate([faces[chosen], faces])
     field, points = field - low, points - low
     lengths = (field ** 2).sum(axis=1)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compatible import spread_over
+from ..compatible import sample_triangles
 from ..duplicates import without_duplicates
 
 POINTS, FINE, COARSE = 192, 768, 4  # on a surface: to align; to measure with; of how many one is enough to choose turns
@@ -78,7 +78,7 @@ def measures(hierarchy, vertices, triangles, faces, matrix=np.eye(4)):
     volume = np.cbrt(np.maximum(hierarchy.volume * abs(np.linalg.det(turn)), 0))
     floor = NARROW * root
     lengths = np.log(np.column_stack([root, *(np.maximum(each, floor) for each in (volume, *extents.T, border))]))
-    return Measures(lengths, middle, first, last, corners, spread_over(corners, areas, WHOLE)[0], np.sqrt(areas.sum()))
+    return Measures(lengths, middle, first, last, corners, sample_triangles(corners, areas, WHOLE)[0], np.sqrt(areas.sum()))
 
 
 def similar(hierarchy, measured, node, among=None):
@@ -128,8 +128,8 @@ class Surface:
     def __init__(self, measured, node):
         corners = measured.corners[measured.first[node]:measured.last[node]]
         double = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-        self.fine = spread_over(corners, double, FINE)[0]
-        self.points = spread_over(corners, double, POINTS)[0]
+        self.fine = sample_triangles(corners, double, FINE)[0]
+        self.points = sample_triangles(corners, double, POINTS)[0]
         middle = self.fine.mean(axis=0)
         self.fine -= middle
         self.points -= middle
