@@ -22,7 +22,7 @@ class Entry:
     """A mesh's hierarchy."""
 
     built: Fingerprint  # what it was built for
-    element_counts: tuple  # of vertices and polygons then
+    counts: tuple  # of vertices and polygons then
     hierarchy: Hierarchy
     packed: bytes = None  # for files; made when a file is first saved
     open_surfaces: bool = False  # the user wants this mesh taken for a thin solid, should it be a sheet
