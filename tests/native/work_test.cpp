@@ -305,6 +305,24 @@ TEST(Work, EveryStageLooksForACancellation) {
     at_poll = {};
 }
 
+// ---- Growth
+
+// Two cubes that cross, and many that are apart: only the two are compared.
+TEST(Work, PartsThatAreApartAreNotCompared) {
+    TriMesh mesh = together("crossing", cube(), moved(cube(), {0.5, 0.5, 0.5}));
+    const auto shells = static_cast<size_t>(sized(400, 100));
+    for (size_t i = 0; i < shells; ++i)
+        mesh = together("crossing and apart", mesh, moved(tetrahedron(), {10.0 + 5.0 * static_cast<double>(i % 20), 5.0 * static_cast<double>(i / 20), 0}));
+    Progress progress;
+    progress.begin();
+    size_t looks = 0;
+    at_poll = [&](pw_stage stage) { looks += stage == PW_STAGE_REPAIR; };
+    const Solid solid = climb(mesh.view(), {0, PW_RUNG_REPAIRED, false, {}}, progress);
+    at_poll = {};
+    EXPECT_EQ(solid.surface.rung, PW_RUNG_REPAIRED);
+    EXPECT_LT(looks, 50 * shells);
+}
+
 // ---- Mistakes
 
 TEST(Work, OnlyAssertionsOfCgalLeadToTheNextRung) {

@@ -12,10 +12,15 @@
 #include <CGAL/Polygon_mesh_processing/repair_degeneracies.h>
 #include <CGAL/Polygon_mesh_processing/repair_self_intersections.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Box_intersection_d/Box_with_info_d.h>
+#include <CGAL/box_intersection_d.h>
+
+#include <boost/iterator/function_output_iterator.hpp>
 
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -93,19 +98,56 @@ private:
 // A part's crossings with itself: faces taken out, and the holes filled.
 bool uncross(CgalMesh& mesh, Progress& progress) {
     if (!pmp::does_self_intersect(mesh)) return false;
+    // So many pairs are of more than most_crossed faces: then they need not all be found.
+    constexpr size_t most_pairs = most_crossed * most_crossed / 2;
+    size_t pairs = 0;
+    pmp::self_intersections<CGAL::Sequential_tag>(mesh, boost::make_function_output_iterator([&](const auto&) { ++pairs; }),
+                                                  CGAL::parameters::maximum_number(most_pairs + 1));
+    if (pairs > most_pairs) throw_tangled();
     pmp::remove_degenerate_faces(mesh);
     pmp::experimental::remove_self_intersections(
         mesh, CGAL::parameters::preserve_genus(false).visitor(CrossingWatcher(mesh, progress)));
     return true;
 }
 
+// Parts whose boxes meet, found once; a part that was united with another has a larger box, and is a neighbor of all.
+class PartNeighbors {
+public:
+    explicit PartNeighbors(const std::vector<CGAL::Bbox_3>& boxes) : lower_(boxes.size()) {
+        using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, size_t>;
+        std::vector<Box> all;
+        for (const CGAL::Bbox_3& box : boxes) all.emplace_back(box, all.size());
+        size_t pairs = 0;
+        CGAL::box_self_intersection_d(all.begin(), all.end(), [&](const Box& a, const Box& b) {
+            if (++pairs > most_faces_united) throw_tangled();  // as comparing their faces would
+            lower_[std::max(a.info(), b.info())].push_back(std::min(a.info(), b.info()));
+        });
+        for (std::vector<size_t>& each : lower_) std::ranges::sort(each);
+    }
+
+    void has_grown(size_t part) { grown_.insert(part); }
+
+    // The first from j on, and below i, whose box may meet that of i; or i.
+    size_t next(size_t i, size_t j) const {
+        if (j >= i || grown_.contains(i)) return std::min(i, j);
+        const auto met = std::ranges::lower_bound(lower_[i], j);
+        const auto grown = grown_.lower_bound(j);
+        return std::min({i, met == lower_[i].end() ? i : *met, grown == grown_.end() ? i : *grown});
+    }
+
+private:
+    std::vector<std::vector<size_t>> lower_;  // of each part, those before it
+    std::set<size_t> grown_;
+};
+
 // The union of the parts that cross each other. Parts that don't are left alone, also where one holds another.
 size_t unite(std::vector<CgalMesh>& parts, Progress& progress) {
     size_t united = 0, compared = 0;
     std::vector<CGAL::Bbox_3> boxes;
     for (const CgalMesh& part : parts) boxes.push_back(pmp::bbox(part));
+    PartNeighbors neighbors(boxes);
     for (size_t i = 0; i < parts.size(); ++i)
-        for (size_t j = 0; j < i; ++j) {
+        for (size_t j = neighbors.next(i, 0); j < i; j = neighbors.next(i, j + 1)) {
             progress.advance(0.2 + 0.4 * static_cast<double>(i) / static_cast<double>(parts.size()));
             if (parts[j].is_empty() || !CGAL::do_overlap(boxes[i], boxes[j])) continue;
             compared += parts[i].number_of_faces() + parts[j].number_of_faces();
@@ -118,6 +160,7 @@ size_t unite(std::vector<CgalMesh>& parts, Progress& progress) {
             parts[i] = std::move(both);
             parts[j].clear();
             boxes[i] = boxes[i] + boxes[j];
+            neighbors.has_grown(i);
             ++united;
             j = static_cast<size_t>(-1);  // the union may cross parts that i did not
         }
