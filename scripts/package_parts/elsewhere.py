@@ -15,7 +15,7 @@ import venv
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "native/python/partwheel"))
-from loading import here  # noqa: E402
+from loading import current_platform  # noqa: E402
 
 from platforms import TAGS  # noqa: E402
 
@@ -24,7 +24,7 @@ BLENDER = "4.5"
 
 
 def main(ship):
-    platform = here()
+    platform = current_platform()
     (wheel,) = ship.glob(f"partwheel-*-py3-none-{TAGS[platform]}.whl")
     (extension,) = ship.glob(f"partwheel-*-{platform}.zip")
     print(f"{platform}: {wheel.name}, {extension.name}", flush=True)

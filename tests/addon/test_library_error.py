@@ -65,7 +65,7 @@ class NoLibrary(MeshTest):
     def test_the_preferences_say_why(self):
         said = self.preferences()
         self.assertIn("Partwheel's native library is damaged", said)
-        self.assertIn("Install the Partwheel that is made for", said)
+        self.assertIn("Install Partwheel for", said)
 
     def test_they_say_nothing_when_it_is_there(self):
         self.binding.LIBRARY = self.installed

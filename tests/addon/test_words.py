@@ -61,7 +61,7 @@ class Words(MeshTest):
     def test_errors_with_numbers(self):
         """A limit that a build has met: each sentence is looked up before its numbers are in it."""
         job, told = package("worker.job"), part("words.say").told
-        error = job.WorkerError("memory", job.FULL, job.LIMIT, job.HARMLESS, job.LESS, size=8)
+        error = job.WorkerError("memory", job.OUT_OF_MEMORY, job.MEMORY_LIMIT, job.MESH_UNCHANGED, job.HINT_LESS_MEMORY, size=8)
         self.assertIn("It may use 8.0 GiB.", str(error))
         self.assertEqual(told(error), str(error))
         for language in self.spoken():
@@ -72,15 +72,15 @@ class Words(MeshTest):
 
     def test_errors_of_a_worker_that_crashed(self):
         """How it ended is in the sentence, and in the same language."""
-        job, told, ending = package("worker.job"), part("words.say").told, package("worker.ending").ending
+        job, told, describe_exit = package("worker.job"), part("words.say").told, package("worker.exit_status").describe_exit
         interpreter = package("worker.interpreter")
-        none = interpreter.NoInterpreter({"/a/{python}": ending(3), "/b": ending(-9)}).said
+        none = interpreter.NoInterpreter({"/a/{python}": describe_exit(3), "/b": describe_exit(-9)}).text
         refused = package().PartwheelError(package().Status.EMPTY, "The mesh has no faces. Choose a mesh object that has some.")
         for error, kept, parts in (
-                (job.WorkerError("crash", job.BROKEN, job.HARMLESS, job.MENDED, how=ending(-11)), ["SIGSEGV"], ["crashed", "before"]),
-                (job.WorkerError("worker", job.NO_PYTHON, job.WHICH, reason=none), ["/a/{python}", "3", "/b"],
+                (job.WorkerError("crash", job.WORKER_DIED, job.MESH_UNCHANGED, job.HINT_REPAIR, how=describe_exit(-11)), ["SIGSEGV"], ["crashed", "before"]),
+                (job.WorkerError("worker", job.NO_PYTHON, job.HINT_PYTHON, reason=none), ["/a/{python}", "3", "/b"],
                  ["without an answer", "want of memory", "There is"]),
-                (job.WorkerError("crash", job.DAMAGED_BY, reason=refused), [], ["damaged", "no faces"])):
+                (job.WorkerError("crash", job.DAMAGED_ANSWER_REASON, reason=refused), [], ["damaged", "no faces"])):
             self.speak("en_US" if self.spoken() else "DEFAULT")
             self.assertEqual(told(error), str(error))
             for word in kept + parts:

@@ -16,7 +16,7 @@ import shapes
 from conftest import PACKAGES, ROOT
 from partwheel import Hierarchy, PartwheelError, Status
 from partwheel.worker import interpreter
-from partwheel.worker.ending import ending
+from partwheel.worker.exit_status import describe_exit
 from partwheel.worker import Job, WorkerError
 from test_worker import state, until
 
@@ -51,7 +51,7 @@ def calls(path):
 @pytest.fixture
 def pythons(monkeypatch, tmp_path):
     """pythons(executable, brought=None): this is all that is found from now on."""
-    monkeypatch.setattr(interpreter, "_found", {})
+    monkeypatch.setattr(interpreter, "_working", {})
 
     def found(executable, brought=None):
         prefix = tmp_path / "prefix"
@@ -113,7 +113,7 @@ def test_shims_that_fail_are_asked_once(pythons, shim):
 
 
 def test_a_shim_that_hangs_is_left_behind(pythons, shim, monkeypatch):
-    monkeypatch.setattr(interpreter, "PATIENCE", 0)
+    monkeypatch.setattr(interpreter, "NEXT_PROBE_SECONDS", 0)
     hangs = shim("hangs", HANGS)
     pythons(REAL)
     job = Job(*shapes.cube(), **UNLIMITED, python=hangs)
@@ -145,8 +145,8 @@ def test_no_python_at_all(pythons, shim, monkeypatch):
     fails, hangs = shim("fails", FAILS), shim("hangs", HANGS)
     pythons(fails)
     assert f"{fails} ended without an answer (exit code 127)" in refusal()
-    monkeypatch.setattr(interpreter, "PATIENCE", 0)
-    monkeypatch.setattr(interpreter, "LIMIT", 0)
+    monkeypatch.setattr(interpreter, "NEXT_PROBE_SECONDS", 0)
+    monkeypatch.setattr(interpreter, "TIMEOUT_SECONDS", 0)
     pythons(hangs)
     assert f"{hangs} did not answer" in refusal(python=fails)
 
@@ -193,8 +193,8 @@ def test_a_hostile_path(shim, does):
 @pytest.mark.parametrize(("code", "words"), [
     (3221225477, "crashed (access violation, 0xC0000005)"), (0xC00000FD, "stack overflow"),
     (0xC0000374, "heap corruption"), (0xC0000409, "abort"), (0xC0000135, "a library is missing"),
-    (0xC000013A, "ended from outside"), (0xC0001234, "crashed (NTSTATUS, 0xC0001234)"),
+    (0xC000013A, "was interrupted"), (0xC0001234, "crashed (NTSTATUS, 0xC0001234)"),
     (3, "ended without an answer (exit code 3)"), (-11, "crashed (SIGSEGV)"), (-9, "was killed (SIGKILL"),
 ])
 def test_how_a_process_ended(code, words):
-    assert words in str(ending(code))
+    assert words in str(describe_exit(code))

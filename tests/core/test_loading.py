@@ -13,7 +13,7 @@ import pytest
 from conftest import PACKAGES
 from partwheel import library, loading
 
-THIS = loading.here()
+THIS = loading.current_platform()
 OTHER = next(name for name in ("linux-x64", "linux-arm64") if name != THIS)
 
 
@@ -43,13 +43,13 @@ def refusal(path, monkeypatch):
 def test_every_platform_is_told_from_the_library(platform, tmp_path):
     path = tmp_path / "library"
     path.write_bytes(head_of(platform))
-    assert loading.made_for(path) == platform
+    assert loading.library_platform(path) == platform
     path.write_bytes(head_of(platform)[:6])
-    assert loading.made_for(path) is None
+    assert loading.library_platform(path) is None
 
 
 def test_this_one_is_of_this_platform():
-    assert loading.made_for(library.load()._name) == THIS
+    assert loading.library_platform(library.load()._name) == THIS
 
 
 @pytest.mark.parametrize("name", loading.FILE_NAMES.values())
@@ -59,8 +59,8 @@ def test_of_another_platform(name, tmp_path, monkeypatch):
     platform = OTHER if name == library.LIBRARY.name else others[name]
     (tmp_path / name).write_bytes(head_of(platform))
     said = refusal(tmp_path / library.LIBRARY.name, monkeypatch)
-    assert f"This is Partwheel for {loading.in_words(platform)}" in said
-    assert f"it runs on {loading.in_words(THIS)}" in said and f"({THIS})" in said
+    assert f"This is Partwheel for {loading.display_name(platform)}" in said
+    assert f"it runs on {loading.display_name(THIS)}" in said and f"({THIS})" in said
 
 
 def test_missing(tmp_path, monkeypatch):
@@ -92,10 +92,10 @@ def test_damaged(tmp_path, monkeypatch):
 ])
 def test_what_the_loaders_say_is_told_in_words(system, words, code, said, tmp_path, monkeypatch):
     monkeypatch.setattr(loading, "SYSTEM", system)
-    monkeypatch.setattr(loading, "here", lambda: f"{system}-x64")
+    monkeypatch.setattr(loading, "current_platform", lambda: f"{system}-x64")
     path = tmp_path / loading.FILE_NAMES[system]
     path.write_bytes(head_of(f"{system}-x64"))
-    assert said in loading.why(path, words, code)
+    assert said in loading.explain_error(path, words, code)
 
 
 def test_a_loaded_copy_lets_the_file_go(tmp_path, monkeypatch):
@@ -107,12 +107,12 @@ def test_a_loaded_copy_lets_the_file_go(tmp_path, monkeypatch):
     earlier = tmp_path / "partwheel" / f"0123-{installed.name}"
     earlier.parent.mkdir()
     earlier.write_bytes(b"of an earlier version")
-    copy = loading.replaceable(installed)
+    copy = loading.temporary_copy(installed)
     assert copy.read_bytes() == installed.read_bytes() and not earlier.exists()
     made = copy.stat().st_mtime_ns
-    assert loading.replaceable(installed) == copy and copy.stat().st_mtime_ns == made
+    assert loading.temporary_copy(installed) == copy and copy.stat().st_mtime_ns == made
     copy.write_bytes(b"planted")
-    assert loading.replaceable(installed).read_bytes() == installed.read_bytes()
+    assert loading.temporary_copy(installed).read_bytes() == installed.read_bytes()
     assert [each.name for each in copy.parent.iterdir()] == [copy.name]
 
 
@@ -120,7 +120,7 @@ def test_where_no_copy_can_be_made_the_file_itself_is_loaded(tmp_path, monkeypat
     (tmp_path / "file").write_bytes(b"")
     monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path / "file"))
     installed = Path(library.load()._name)
-    assert loading.replaceable(installed) == installed
+    assert loading.temporary_copy(installed) == installed
 
 
 @pytest.mark.parametrize("blocked", [("copy",), ("copy", "installed")])
@@ -131,7 +131,7 @@ def test_where_a_copy_may_not_be_loaded_the_file_itself_is(blocked, tmp_path, mo
     installed.write_bytes(head_of("windows-x64"))
     monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
     monkeypatch.setattr(loading, "SYSTEM", "windows")
-    monkeypatch.setattr(loading, "here", lambda: "windows-x64")
+    monkeypatch.setattr(loading, "current_platform", lambda: "windows-x64")
     tried = []
 
     def load(path):

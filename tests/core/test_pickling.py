@@ -140,13 +140,13 @@ ERRORS = {
     "PrintError": lambda kind: kind("Too thin."),
     "Busy": lambda kind: kind("Another run is here."),
     "RequirementError": lambda kind: kind("A package is missing."),
-    "WorkerError": lambda kind: kind("worker", worker.job.NO_START, worker.job.HARMLESS, reason=OSError(2, "No such file")),
-    "NoInterpreter": lambda kind: kind({"/bin/false": worker.ending.ending(1), "/bin/cat": worker.ending.ending(-9)}),
+    "WorkerError": lambda kind: kind("worker", worker.job.START_FAILED, worker.job.MESH_UNCHANGED, reason=OSError(2, "No such file")),
+    "NoInterpreter": lambda kind: kind({"/bin/false": worker.exit_status.describe_exit(1), "/bin/cat": worker.exit_status.describe_exit(-9)}),
 }
 
 
 def plain(value):
-    """An attribute as something that can be compared: exceptions and Saids are equal only to themselves."""
+    """An attribute as something that can be compared: exceptions and TranslatableTexts are equal only to themselves."""
     if isinstance(value, dict):
         return {name: plain(each) for name, each in value.items()}
     return (type(value), str(value)) if isinstance(value, Exception) or hasattr(value, "sentences") else value
@@ -166,5 +166,5 @@ def test_errors_keep_all_they_say(kind, how):
 
 
 def test_no_interpreter_says_what_became_of_each():
-    said = str(interpreter.NoInterpreter({"/bin/false": worker.ending.ending(1)}))
+    said = str(interpreter.NoInterpreter({"/bin/false": worker.exit_status.describe_exit(1)}))
     assert said == "/bin/false ended without an answer (exit code 1)"

@@ -59,7 +59,7 @@ def test_a_search_bears_that_another_thread_forgets(monkeypatch):
             return known
 
     search = interpreter.Search()
-    monkeypatch.setattr(interpreter, "_found", ForgottenMeanwhile({interpreter.candidates(): sys.executable}))
+    monkeypatch.setattr(interpreter, "_working", ForgottenMeanwhile({interpreter.candidates(): sys.executable}))
     try:
         assert search.poll() in (None, sys.executable)
     finally:

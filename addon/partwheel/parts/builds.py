@@ -130,7 +130,7 @@ class Build:
             raise
         self._leave()
         if self._cancelled:
-            raise PartwheelError(Status.CANCELLED, rpt_("The build was cancelled."))
+            raise PartwheelError(Status.CANCELLED, rpt_("The build was canceled."))
         if self._error:
             raise self._error
         if not self._hierarchy:

@@ -356,7 +356,7 @@ WORDS = {
         "{name} 的网格是库重写，Blender 不会编辑：请先设为本地（物体 > 关系 > 设为本地）。",
     "This is for an active mesh object, in Edit Mode or Object Mode.":
         "需要处于编辑模式或物体模式的活动网格物体。",
-    "The build was cancelled.":
+    "The build was canceled.":
         "查找已取消。",
     "The mesh {name} is gone, so its parts were left aside.":
         "网格 {name} 已不存在，因此放弃其部件。",
@@ -911,7 +911,7 @@ WORDS = {
         "表面以无法修复的方式自相交。请重构网格，或用布尔运算合并其各部分。",
     "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.":
         "无法填充网格：填充过程不会结束。请重构网格或稍作平滑后重试。",
-    "Nothing else was harmed; the mesh is as it was.":
+    "The mesh was not changed.":
         "其他一切完好；网格保持原样。",
     "The build was not done after {seconds} seconds of work and was stopped.":
         "查找运行 {seconds} 秒后仍未完成，已被停止。",
@@ -989,7 +989,7 @@ WORDS = {
         "工作进程给出的结果已损坏。",
     "The worker process gave a damaged answer: {reason}":
         "工作进程给出的结果已损坏：{reason}",
-    "The worker process gave the answer to another mesh.":
+    "The worker process returned the parts of another mesh.":
         "工作进程给出的是另一个网格的结果。",
     "There is no Python to run the worker process: {reason}.":
         "没有可运行工作进程的 Python：{reason}。",
@@ -999,13 +999,13 @@ WORDS = {
         "工作进程在 {seconds} 秒内没有开始工作。",
     "The worker process {how} before it began.":
         "工作进程在开始之前{how}。",
-    "If it stays so, say which Python 3 is to run it: Python in the add-on's preferences, or the argument python.":
+    "If this happens again, choose a Python 3 to run it: Python in the add-on's preferences, or the argument python.":
         "如果仍然如此，请指定用哪个 Python 3 运行它：插件偏好设置中的 Python，或参数 python。",
-    "was killed (SIGKILL, perhaps for want of memory)":
+    "was killed (SIGKILL, possibly because memory ran out)":
         "被强行终止（SIGKILL，可能是内存不足）",
     "crashed ({reason})":
         "崩溃了（{reason}）",
-    "was ended from outside (Ctrl-C)":
+    "was interrupted (Ctrl-C)":
         "被外部结束（Ctrl C）",
     "ended without an answer (exit code {code})":
         "没有给出结果就结束了（退出代码 {code}）",

@@ -356,7 +356,7 @@ WORDS = {
         "Das Mesh von {name} ist eine Bibliotheksüberschreibung, die Blender nicht bearbeitet: erst lokal machen (Objekt > Beziehungen > Lokal machen).",
     "This is for an active mesh object, in Edit Mode or Object Mode.":
         "Dies ist für ein aktives Mesh-Objekt, im Bearbeitungs- oder Objektmodus.",
-    "The build was cancelled.":
+    "The build was canceled.":
         "Die Suche nach Teilen wurde abgebrochen.",
     "The mesh {name} is gone, so its parts were left aside.":
         "Das Mesh {name} ist nicht mehr da, seine Teile wurden verworfen.",
@@ -911,7 +911,7 @@ WORDS = {
         "Die Oberfläche durchdringt sich so, dass sie nicht repariert werden kann. Remesh anwenden oder ihre Teile mit einem Boolean vereinigen.",
     "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.":
         "Das Mesh kann nicht gefüllt werden: Das Füllen kommt zu keinem Ende. Remesh anwenden oder ein wenig glätten und erneut versuchen.",
-    "Nothing else was harmed; the mesh is as it was.":
+    "The mesh was not changed.":
         "Sonst ist nichts zu Schaden gekommen; das Mesh ist, wie es war.",
     "The build was not done after {seconds} seconds of work and was stopped.":
         "Die Suche war nach {seconds} Sekunden Arbeit nicht fertig und wurde beendet.",
@@ -989,7 +989,7 @@ WORDS = {
         "Die Antwort des Arbeitsprozesses war beschädigt.",
     "The worker process gave a damaged answer: {reason}":
         "Die Antwort des Arbeitsprozesses war beschädigt: {reason}",
-    "The worker process gave the answer to another mesh.":
+    "The worker process returned the parts of another mesh.":
         "Der Arbeitsprozess gab die Antwort zu einem anderen Mesh.",
     "There is no Python to run the worker process: {reason}.":
         "Es gibt kein Python für den Arbeitsprozess: {reason}.",
@@ -999,13 +999,13 @@ WORDS = {
         "Der Arbeitsprozess hat in {seconds} Sekunden nicht begonnen.",
     "The worker process {how} before it began.":
         "Der Arbeitsprozess {how}, bevor er begann.",
-    "If it stays so, say which Python 3 is to run it: Python in the add-on's preferences, or the argument python.":
+    "If this happens again, choose a Python 3 to run it: Python in the add-on's preferences, or the argument python.":
         "Wenn es so bleibt, angeben, welches Python 3 ihn ausführen soll: Python in den Einstellungen des Add-ons oder das Argument python.",
-    "was killed (SIGKILL, perhaps for want of memory)":
+    "was killed (SIGKILL, possibly because memory ran out)":
         "wurde abgebrochen (SIGKILL, vielleicht aus Mangel an Speicher)",
     "crashed ({reason})":
         "ist abgestürzt ({reason})",
-    "was ended from outside (Ctrl-C)":
+    "was interrupted (Ctrl-C)":
         "wurde von außen beendet (Strg C)",
     "ended without an answer (exit code {code})":
         "endete ohne Antwort (Exit-Code {code})",

@@ -356,7 +356,7 @@ WORDS = {
         "{name} のメッシュは Blender が編集しないライブラリオーバーライドです。先にローカル化してください (オブジェクト > 関係 > ローカル化)。",
     "This is for an active mesh object, in Edit Mode or Object Mode.":
         "編集モードまたはオブジェクトモードのアクティブなメッシュオブジェクトが必要です。",
-    "The build was cancelled.":
+    "The build was canceled.":
         "検出をキャンセルしました。",
     "The mesh {name} is gone, so its parts were left aside.":
         "メッシュ {name} がなくなったため、パーツを破棄しました。",
@@ -911,7 +911,7 @@ WORDS = {
         "表面が修復できない形で自己交差しています。リメッシュするか、ブーリアンで各部分を合体してください。",
     "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.":
         "処理が終わらず、メッシュを処理できません。リメッシュするか、少しスムーズにしてもう一度試してください。",
-    "Nothing else was harmed; the mesh is as it was.":
+    "The mesh was not changed.":
         "ほかには何も損なわれておらず、メッシュは元のままです。",
     "The build was not done after {seconds} seconds of work and was stopped.":
         "検索は {seconds} 秒働いても終わらず、止められました。",
@@ -989,7 +989,7 @@ WORDS = {
         "作業プロセスの答えが壊れていました。",
     "The worker process gave a damaged answer: {reason}":
         "作業プロセスの答えが壊れていました: {reason}",
-    "The worker process gave the answer to another mesh.":
+    "The worker process returned the parts of another mesh.":
         "作業プロセスは別のメッシュの答えを返しました。",
     "There is no Python to run the worker process: {reason}.":
         "作業プロセスを動かす Python がありません: {reason}。",
@@ -999,13 +999,13 @@ WORDS = {
         "作業プロセスは {seconds} 秒以内に始まりませんでした。",
     "The worker process {how} before it began.":
         "作業プロセスは始まる前に{how}。",
-    "If it stays so, say which Python 3 is to run it: Python in the add-on's preferences, or the argument python.":
+    "If this happens again, choose a Python 3 to run it: Python in the add-on's preferences, or the argument python.":
         "直らない場合は、実行する Python 3 を指定してください: アドオンのプリファレンスの「Python」、または引数 python。",
-    "was killed (SIGKILL, perhaps for want of memory)":
+    "was killed (SIGKILL, possibly because memory ran out)":
         "強制終了されました (SIGKILL、おそらくメモリ不足)",
     "crashed ({reason})":
         "クラッシュしました ({reason})",
-    "was ended from outside (Ctrl-C)":
+    "was interrupted (Ctrl-C)":
         "外から終了されました (Ctrl C)",
     "ended without an answer (exit code {code})":
         "答えを返さずに終了しました (終了コード {code})",

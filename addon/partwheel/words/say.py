@@ -19,7 +19,7 @@ def label_of(operator):
 
 
 def told(error):
-    """What an error of the package says, or part of one (partwheel.worker.said)."""
+    """What an error of the package says, or part of one (partwheel.worker.translatable)."""
     if sentences := getattr(error, "sentences", ()):
         values = {name: told(value) if isinstance(value, Exception) or hasattr(value, "sentences") else value
                   for name, value in error.values.items()}

@@ -356,7 +356,7 @@ WORDS = {
         "La malla de {name} es una redefinición de biblioteca, que Blender no edita: hacerla local antes (Objeto > Relaciones > Hacer local).",
     "This is for an active mesh object, in Edit Mode or Object Mode.":
         "Esto es para un objeto de malla activo, en modo Edición o modo Objeto.",
-    "The build was cancelled.":
+    "The build was canceled.":
         "Se canceló la búsqueda de partes.",
     "The mesh {name} is gone, so its parts were left aside.":
         "La malla {name} ya no está, así que sus partes se descartaron.",
@@ -911,7 +911,7 @@ WORDS = {
         "La superficie se atraviesa a sí misma de un modo que no se puede reparar. Rehacer la malla o unir sus partes con una operación booleana.",
     "The mesh can't be filled: the mesher comes to no end. Remesh or smooth it a little and try again.":
         "La malla no se puede llenar: el proceso no termina. Rehacerla o suavizarla un poco e intentarlo de nuevo.",
-    "Nothing else was harmed; the mesh is as it was.":
+    "The mesh was not changed.":
         "Nada más sufrió daños; la malla está como estaba.",
     "The build was not done after {seconds} seconds of work and was stopped.":
         "La búsqueda no había terminado tras {seconds} segundos de trabajo y se detuvo.",
@@ -989,7 +989,7 @@ WORDS = {
         "El proceso de trabajo dio una respuesta dañada.",
     "The worker process gave a damaged answer: {reason}":
         "El proceso de trabajo dio una respuesta dañada: {reason}",
-    "The worker process gave the answer to another mesh.":
+    "The worker process returned the parts of another mesh.":
         "El proceso de trabajo dio la respuesta de otra malla.",
     "There is no Python to run the worker process: {reason}.":
         "No hay ningún Python para el proceso de trabajo: {reason}.",
@@ -999,13 +999,13 @@ WORDS = {
         "El proceso de trabajo no empezó en {seconds} segundos.",
     "The worker process {how} before it began.":
         "El proceso de trabajo {how} antes de empezar.",
-    "If it stays so, say which Python 3 is to run it: Python in the add-on's preferences, or the argument python.":
+    "If this happens again, choose a Python 3 to run it: Python in the add-on's preferences, or the argument python.":
         "Si sigue así, indicar qué Python 3 debe ejecutarlo: Python en las preferencias del complemento o el argumento python.",
-    "was killed (SIGKILL, perhaps for want of memory)":
+    "was killed (SIGKILL, possibly because memory ran out)":
         "fue eliminado (SIGKILL, quizá por falta de memoria)",
     "crashed ({reason})":
         "falló ({reason})",
-    "was ended from outside (Ctrl-C)":
+    "was interrupted (Ctrl-C)":
         "fue terminado desde fuera (Ctrl C)",
     "ended without an answer (exit code {code})":
         "terminó sin respuesta (código de salida {code})",

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..contents import KINDS
 from ..meshes import Mesh, MeshFileError
-from ..worker.ending import ending
+from ..worker.exit_status import describe_exit
 
 # What Blender runs: this package has nothing of Blender. Each array is a file; the last one tells that all are whole.
 SCRIPT = """
@@ -84,7 +84,7 @@ def read(path, folder):
                                                    for name in ("vertices", "triangles", "faces", "dropped"))
         except (OSError, ValueError) as error:
             said = result.stdout.decode("utf-8", "replace").strip().splitlines()[-1:] or ["nothing"]
-            how = ending(result.returncode) if result.returncode else "wrote no mesh"
+            how = describe_exit(result.returncode) if result.returncode else "wrote no mesh"
             raise MeshFileError(f"Blender can't read {Path(path).name}: it {how}; its last words: {said[0]}") from error
     if not len(triangles):
         raise MeshFileError(f"{Path(path).name} holds no mesh objects with faces.")

@@ -14,7 +14,7 @@ import threading
 import time
 from pathlib import Path
 
-from ..worker.ending import ending
+from ..worker.exit_status import describe_exit
 
 MEGABYTE = 2**20
 # For reading and writing, of processor time, where the user sets no limit: many times what any file takes.
@@ -56,7 +56,7 @@ class Slot:
         if self._late or process.returncode == -getattr(signal, "SIGXCPU", 24):
             return {"error": {"name": "time limit",
                               "message": f"Reading it, or writing what was made of it, took more than {limit:g} seconds."}}
-        return {"error": {"name": "crash", "message": f"The process that read the file {ending(process.returncode)}."}}
+        return {"error": {"name": "crash", "message": f"The process that read the file {describe_exit(process.returncode)}."}}
 
     def watch(self):
         """To be called now and then: kills a process that waits for ever."""

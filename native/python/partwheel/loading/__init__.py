@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The native library's file: loaded so that it can be replaced meanwhile, or in words why it can't be loaded.
+"""Loads the native library so that its file can be replaced while it is in use, and explains why it can't be loaded.
 
-Also imported by the worker's bare Python, which is to start fast: the standard library alone, and most of it where it is
-needed.
+The worker's bare Python imports this module, too, and must start fast: it uses the standard library only, and imports most
+of it inside functions.
 """
+
+from __future__ import annotations
 
 import ctypes
 import os
@@ -13,35 +15,36 @@ from pathlib import Path
 
 FILE_NAMES = {"linux": "libpartwheel.so", "windows": "partwheel.dll", "macos": "libpartwheel.dylib"}
 SYSTEM = {"win32": "windows", "darwin": "macos"}.get(sys.platform, "linux")
-PEOPLE_SAY = {"linux": "Linux", "windows": "Windows", "macos": "macOS", "x64": "x64", "arm64": "ARM"}
+DISPLAY_NAMES = {"linux": "Linux", "windows": "Windows", "macos": "macOS", "x64": "x64", "arm64": "ARM"}
 MACHINES = {"x86_64": "x64", "amd64": "x64", "aarch64": "arm64", "arm64": "arm64"}
-# The machine's number in the head of an ELF, PE and Mach-O file.
+# Machine codes in the headers of ELF, PE and Mach-O files.
 ELF, PE, MACH = {62: "x64", 183: "arm64"}, {0x8664: "x64", 0xAA64: "arm64"}, {0x1000007: "x64", 0x100000C: "arm64"}
 
 
-def open_library(path):
-    """A ctypes.CDLL. Raises OSError: str() is sentences a user can act on, its cause has the loader's own words."""
+def open_library(path: str | Path) -> ctypes.CDLL:
+    """Loads the library. Raises OSError: its str() says what to do, its __cause__ is the loader's own error."""
     try:
-        if cut_short(path):
+        if is_truncated(path):
             raise OSError(f"{path}: the file is cut short")
         return _open_copy(path) if SYSTEM == "windows" else ctypes.CDLL(str(path))
     except OSError as error:
-        raise OSError(why(path, str(error), getattr(error, "winerror", None))) from error
+        raise OSError(explain_error(path, str(error), getattr(error, "winerror", None))) from error
 
 
-def _open_copy(path):
-    copy = replaceable(path)
+def _open_copy(path: str | Path) -> ctypes.CDLL:
+    copy = temporary_copy(path)
     try:
         return ctypes.CDLL(str(copy))
     except OSError:
         if copy == path:
             raise
-        return ctypes.CDLL(str(path))  # a policy may forbid libraries in %TEMP%; better in use than not at all
+        return ctypes.CDLL(str(path))  # a policy may forbid libraries in %TEMP%
 
 
-def replaceable(path):
-    """A copy of the file in the system's directory for such. On Windows a library that is in use can be neither
-    replaced nor removed, so Blender could not update or remove the add-on, and would leave half of it."""
+def temporary_copy(path: str | Path) -> Path:
+    """Copies the library into the temporary directory; returns the path of the copy, or of the file if that fails.
+
+    Windows locks the file of a library that is in use: without a copy, Blender could not update or remove the add-on."""
     import hashlib
     import tempfile
 
@@ -52,35 +55,35 @@ def replaceable(path):
         directory.mkdir(exist_ok=True)
         for other in directory.glob(f"*-{path.name}"):
             if other != copy:
-                _removed(other)
+                _remove_if_unused(other)
         if not copy.is_file() or copy.read_bytes() != data:
             partial = copy.with_suffix(f".{os.getpid()}")
             partial.write_bytes(data)
             partial.replace(copy)
         return copy
     except OSError:
-        return path  # better in use than not at all
+        return path  # the add-on works, but can't be updated while in use
 
 
-def _removed(path):
+def _remove_if_unused(path: Path) -> None:
     try:
         path.unlink()
     except OSError:
-        pass  # another program has it in use: it goes another time
+        pass  # another program uses it; a later call removes it
 
 
-def here():
-    """The platform of this process, as packages are named after: linux-x64."""
+def current_platform() -> str:
+    """The platform of this process as in the names of packages: "linux-x64"."""
     import platform
     import sysconfig
 
-    # On Windows platform.machine() may tell the computer's, not that of a program which is translated for it.
+    # On Windows, platform.machine() may be the computer's architecture rather than that of an emulated process.
     machine = sysconfig.get_platform().rpartition("-")[2] if SYSTEM == "windows" else platform.machine()
     return f"{SYSTEM}-{MACHINES.get(machine.lower(), machine.lower())}"
 
 
-def made_for(path):
-    """The platform that a library is for, from its head; None if it is no library for any that Partwheel is made for."""
+def library_platform(path: str | Path) -> str | None:
+    """The platform of a library, from its file header; None if it is not a library for a supported platform."""
     try:
         with open(path, "rb") as file:
             head = file.read(4096)
@@ -96,9 +99,9 @@ def made_for(path):
     return None
 
 
-def cut_short(path):
-    """Whether an ELF file, whose table of sections is its end, lacks that: Linux would load it, and end the program by a
-    bus error. The loaders of other systems look for themselves."""
+def is_truncated(path: str | Path) -> bool:
+    """Whether an ELF file ends before the end of its section table, which is its last part. Linux would load such a file and
+    crash with a bus error; the loaders of other systems check for themselves."""
     try:
         with open(path, "rb") as file:
             head = file.read(64)
@@ -111,42 +114,42 @@ def cut_short(path):
         return False
 
 
-def why(path, words, code=None):
-    """Sentences: why the library can't be loaded, and what to do. words, code: the loader's, and Windows' number."""
+def explain_error(path: str | Path, message: str, code: int | None = None) -> str:
+    """Why the library can't be loaded, and what to do. message: the loader's; code: the Windows error code."""
     path = Path(path)
-    anew = f"Install the Partwheel that is made for {in_words(here())} ({here()})"
+    install = f"Install Partwheel for {display_name(current_platform())} ({current_platform()})"
     if not path.is_file():
         others = [name for name in FILE_NAMES.values() if path.with_name(name).is_file()]
         if others:
-            return _of_other_platform(made_for(path.with_name(others[0])), anew)
-        return (f"Partwheel's native library is missing: there is no {path}. Its installation was cut short, or a "
-                f"virus scanner has taken it away. {anew} again, and allow the file if you are asked. From the sources, "
-                "scripts/build makes it.")
-    found = made_for(path)
-    if found and found != here():
-        return _of_other_platform(found, anew)
-    if not found or code == 193 or "too short" in words or "cut short" in words:
-        return f"Partwheel's native library is damaged: {path}. {anew} again."
-    if "GLIBC" in words:
+            return _wrong_platform(library_platform(path.with_name(others[0])), install)
+        return (f"Partwheel's native library is missing: there is no {path}. The installation was interrupted, or a "
+                f"virus scanner removed the file. {install} again, and allow the file if you are asked. In a source tree, "
+                "run scripts/build.")
+    platform = library_platform(path)
+    if platform and platform != current_platform():
+        return _wrong_platform(platform, install)
+    if not platform or code == 193 or "too short" in message or "cut short" in message:
+        return f"Partwheel's native library is damaged: {path}. {install} again."
+    if "GLIBC" in message:
         return ("This Linux is too old for Partwheel's native library: it needs glibc 2.28 or newer, as Blender 4.2 "
                 "does. Update the system, or build the library on it (scripts/build).")
-    if SYSTEM == "macos" and any(word in words for word in ("signature", "policy", "quarantine", "verif", "permitted")):
+    if SYSTEM == "macos" and any(word in message for word in ("signature", "policy", "quarantine", "verif", "permitted")):
         return (f"macOS does not let Partwheel's native library be loaded: {path}. Allow it in System Settings > "
                 f"Privacy & Security, or in Terminal: xattr -d com.apple.quarantine '{path}'. Then restart Blender.")
-    if code in (5, 225, 1260, 4551):  # access denied, a virus suspected, blocked by a policy, by application control
+    if code in (5, 225, 1260, 4551):  # access denied, virus, group policy, application control
         return (f"Windows, or a virus scanner, does not let Partwheel's native library be loaded: {path}. Allow this "
-                "file there, or ask whoever looks after this computer. Then restart Blender.")
-    if code == 126 or "Could not find module" in words:
+                "file there, or ask your administrator. Then restart Blender.")
+    if code == 126 or "Could not find module" in message:
         return ("A part of Windows that Partwheel's native library needs is missing: the Universal C Runtime. Windows "
                 "Update installs it. Then restart Blender.")
-    return f"Partwheel's native library can't be loaded: {words}. {anew} again."
+    return f"Partwheel's native library can't be loaded: {message}. {install} again."
 
 
-def in_words(name):
-    """For people: "Linux x64"."""
-    return " ".join(PEOPLE_SAY.get(word, word) for word in name.split("-"))
+def display_name(platform: str) -> str:
+    """A platform for messages: "linux-x64" -> "Linux x64"."""
+    return " ".join(DISPLAY_NAMES.get(word, word) for word in platform.split("-"))
 
 
-def _of_other_platform(found, anew):
-    what = in_words(found) if found else "another platform"
-    return f"This is Partwheel for {what}, but it runs on {in_words(here())}. {anew}."
+def _wrong_platform(platform: str | None, install: str) -> str:
+    name = display_name(platform) if platform else "another platform"
+    return f"This is Partwheel for {name}, but it runs on {display_name(current_platform())}. {install}."

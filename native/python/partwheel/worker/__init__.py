@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Builds in a process of their own."""
+"""Builds in a separate process."""
 
 from .job import MESSAGE, WAIT_SECONDS, Job, WorkerError, available_memory
 

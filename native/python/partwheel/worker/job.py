@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Job: a build in a process of its own, so that nothing the native library does can harm this one.
+"""Job: a build in a separate process, so that a crash, a hang or memory exhaustion in the native library can't harm this one.
 
-Everything goes through two pipes, so no file and no shared memory can be left behind; and the end of a pipe tells each
-side that the other has died. The other side is process.py.
+All data goes through two pipes, so no files and no shared memory can be left behind, and the end of a pipe tells each
+process that the other has died. process.py runs on the other side.
 """
+
+from __future__ import annotations
 
 import json
 import struct
@@ -11,212 +13,246 @@ import subprocess
 import threading
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
 
 from . import interpreter
-from .ending import ending
-from .said import Said
+from .exit_status import describe_exit
+from .translatable import TranslatableText
 from ..hierarchy import Hierarchy, checked_surface
 from ..library import RUNGS, Mode, NonCopyable, PartwheelError, Rung, Status, load
 
+if TYPE_CHECKING:
+    from typing import IO
+
+    from numpy.typing import ArrayLike
+
 ENTRY = Path(__file__).with_name("process.py")
-MEMORY_SHARE = 0.8  # of the memory that is available when the build starts
-# Some fifty times what an ordinary build takes: only what would never end should meet this limit.
-SECONDS, SECONDS_PER_TRIANGLE = 120, 0.002
-WATCH_SECONDS = 0.1  # between two looks at what the worker has taken
-# One wait of result(), which has several: a Ctrl-C that comes just before a wait without end would not be noticed in it.
+MEMORY_FRACTION = 0.8  # of the memory that is available when the build starts
+# Default limit on processor time, about fifty times what an ordinary build takes: only an endless build should reach it.
+CPU_SECONDS, CPU_SECONDS_PER_TRIANGLE = 120, 0.002
+POLL_SECONDS = 0.1  # between two checks of the time limit
+# result() waits in steps: an endless wait would not notice a Ctrl-C that comes just before it.
 WAIT_SECONDS = 0.1
-SEARCH_SECONDS = 0.01  # between two looks whether a Python was found
-# A message to or from the worker: kind, length, then so many bytes.
+SEARCH_SECONDS = 0.01  # between two polls of the search for a Python
+# Header of a message to or from the worker: kind, number of bytes that follow.
 MESSAGE = struct.Struct("<cQ")
 
-# What it says, see Said.
-CANCELLED = "The build was cancelled."
-HARMLESS = "Nothing else was harmed; the mesh is as it was."
-LATE = "The build was not done after {seconds} seconds of work and was stopped."
-IDLE = "The build was not done after {seconds} seconds without any work and was stopped."
-FASTER = "A mesh with fewer faces (Decimate, or a voxel remesh) is faster."
-FULL = "The worker process ran out of memory."
-LIMIT = "It may use {size:.1f} GiB."
-LESS = "A mesh with fewer faces (Decimate, or a voxel remesh) needs less."
-BROKEN = "The worker process {how} before it was done."
-MENDED = "Merging vertices by distance, or a voxel remesh, often helps."
-DAMAGED = "The worker process gave a damaged answer."
-DAMAGED_BY = "The worker process gave a damaged answer: {reason}"
-OTHER = "The worker process gave the answer to another mesh."
+# Messages, see TranslatableText.
+BUILD_CANCELED = "The build was canceled."
+MESH_UNCHANGED = "The mesh was not changed."
+CPU_LIMIT_REACHED = "The build was not done after {seconds} seconds of work and was stopped."
+IDLE_LIMIT_REACHED = "The build was not done after {seconds} seconds without any work and was stopped."
+HINT_FASTER = "A mesh with fewer faces (Decimate, or a voxel remesh) is faster."
+OUT_OF_MEMORY = "The worker process ran out of memory."
+MEMORY_LIMIT = "It may use {size:.1f} GiB."
+HINT_LESS_MEMORY = "A mesh with fewer faces (Decimate, or a voxel remesh) needs less."
+WORKER_DIED = "The worker process {how} before it was done."
+HINT_REPAIR = "Merging vertices by distance, or a voxel remesh, often helps."
+DAMAGED_ANSWER = "The worker process gave a damaged answer."
+DAMAGED_ANSWER_REASON = "The worker process gave a damaged answer: {reason}"
+WRONG_MESH = "The worker process returned the parts of another mesh."
 NO_PYTHON = "There is no Python to run the worker process: {reason}."
-NO_START = "The worker process could not be started: {reason}."
-SILENT = "The worker process did not begin in {seconds} seconds."
-GONE = "The worker process {how} before it began."
-WHICH = "If it stays so, say which Python 3 is to run it: Python in the add-on's preferences, or the argument python."
+START_FAILED = "The worker process could not be started: {reason}."
+START_TIMEOUT = "The worker process did not begin in {seconds} seconds."
+DIED_AT_START = "The worker process {how} before it began."
+HINT_PYTHON = "If this happens again, choose a Python 3 to run it: Python in the add-on's preferences, or the argument python."
 
 
 class WorkerError(PartwheelError):
-    """The worker process ended, or had to be ended, without an answer. status: Status.INTERNAL, or Status.MEMORY.
-    name: "crash", "time limit", "memory", or "worker" when it could not even be started.
-    sentences, values: as of a Said."""
+    """The worker process ended, or was killed, without an answer.
 
-    def __init__(self, name, *sentences, **values):
-        said = Said(*sentences, **values)
-        super().__init__(Status.MEMORY if name == "memory" else Status.INTERNAL, str(said))
-        self.name, self.sentences, self.values = name, said.sentences, said.values
+    status : Status.INTERNAL, or Status.MEMORY
+    name : "crash", "time limit", "memory", or "worker" if it could not be started
+    sentences, values : see TranslatableText
+    """
+
+    def __init__(self, name: str, *sentences: str, **values: object) -> None:
+        text = TranslatableText(*sentences, **values)
+        super().__init__(Status.MEMORY if name == "memory" else Status.INTERNAL, str(text))
+        self.name, self.sentences, self.values = name, text.sentences, text.values
 
 
 class Job(NonCopyable):
-    """One build in a worker process; arguments as for Hierarchy.build().
+    """One build in a worker process. Every method may be called from any thread.
 
-    memory_limit: bytes that the worker may use (None: 80 % of what is available now; 0: no limit). Kept on Linux only:
-    macOS does not honour such limits, and on Windows none is set; there the system's own limits hold.
-    cpu_limit: seconds of processor time that one process may take, all its threads together, so that a machine busy
-    with other things stops no build; and seconds by the clock in which it may do nothing at all (None: two minutes and
-    2 ms a triangle).
-    python: the path of the Python that runs the worker, if it does; "": see interpreter.candidates(). Which one does is
-    found out once, beside what the caller does: the worker starts when one was found and any method is called, which also
-    looks after the time limit.
+    A worker that crashes, exits or exceeds a limit is followed by another one that starts with the next fill method, if
+    there is one. The worker ends when this process does, however that happens. It starts when any method is called after a
+    Python was found; these calls also enforce the time limit.
 
-    A worker that crashes, exits, or goes beyond a limit is followed by another that begins at the rung of the ladder
-    after the one it tried, if there is one; failures holds a WorkerError for each. Every method may be called from any
-    thread. The worker ends when this process does, however that happens.
+    Parameters
+    ----------
+    vertices ... exact_triangles : see Hierarchy.build()
+    memory_limit : bytes that the worker may use; None: 80 % of what is available now; 0: no limit. Linux only: macOS
+        ignores such limits, and none is set on Windows
+    cpu_limit : seconds of processor time of one worker, all threads together, so that a busy machine stops no build; also
+        seconds of wall-clock time without any work. None: 120 s plus 2 ms per triangle
+    python : path of the Python that runs the worker, if it works; "": see interpreter.candidates()
+
+    Attributes
+    ----------
+    failures : a WorkerError for each worker that failed
+
+    Raises
+    ------
+    LibraryError, PartwheelError, ValueError, TypeError : as Hierarchy.build() for its arguments
     """
 
-    def __init__(self, vertices, triangles, faces=None, face_count=None, *, quality=0.0, rungs=0, open_surfaces=False,
-                 threads=0, mode=Mode.REGROUPED, exactly=False, exact_triangles=0, memory_limit=None, cpu_limit=None, python=""):
-        load()  # a missing library is better told here
+    def __init__(self, vertices: ArrayLike, triangles: ArrayLike, faces: Optional[ArrayLike] = None,
+                 face_count: Optional[int] = None, *, quality: float = 0.0, rungs: int = 0, open_surfaces: bool = False,
+                 threads: int = 0, mode: int = Mode.REGROUPED, exactly: bool = False, exact_triangles: int = 0,
+                 memory_limit: Optional[int] = None, cpu_limit: Optional[float] = None, python: str = "") -> None:
+        load()  # raises LibraryError here rather than in the worker
         self._arrays, self._face_count = checked_surface(vertices, triangles, faces, face_count)
         self._options = {"quality": float(quality), "open_surfaces": int(open_surfaces), "threads": threads,
                          "mode": int(mode), "exact_triangles": -1 if exactly else exact_triangles}
-        self._rungs = rungs or sum(RUNGS)
-        self._rung = Rung.EXACT  # that the worker tries, as far as it has told
-        self._memory_limit = int(MEMORY_SHARE * available_memory()) if memory_limit is None else memory_limit
-        self._cpu_limit = cpu_limit or SECONDS + SECONDS_PER_TRIANGLE * len(self._arrays[1])
-        self.failures = []
-        self._progress = 0.0, "surface"
-        # Of this worker: whether it has begun to answer; processor time, and when that last grew.
-        self._answered, self._work, self._seen_working = False, 0.0, 0.0
-        self._watched = None  # (the process that is at work, a list to say in how it has gone beyond the time limit)
+        self._rungs: int = rungs or sum(RUNGS)
+        self._rung: int = Rung.EXACT  # the fill method that the worker last reported
+        self._memory_limit = int(MEMORY_FRACTION * available_memory()) if memory_limit is None else memory_limit
+        self._cpu_limit = cpu_limit or CPU_SECONDS + CPU_SECONDS_PER_TRIANGLE * len(self._arrays[1])
+        self.failures: List[WorkerError] = []
+        self._progress: Tuple[float, str] = (0.0, "surface")
+        # Of the current worker: whether it has sent a message, its processor time, and when that last grew.
+        self._has_answered, self._cpu_time, self._last_work_time = False, 0.0, 0.0
+        # (the current worker, a list to which the message about an exceeded time limit is appended)
+        self._watched: Optional[Tuple[subprocess.Popen[bytes], List[str]]] = None
         self._lock = threading.RLock()  # for the four below
-        self._search, self._python = interpreter.Search(python), None
-        self._process = None
-        self._cancelled = False
-        self._hierarchy = self._error = None
-        self._done = threading.Event()  # not is_alive(), which may say no too early after Ctrl-C (bpo-45274)
-        self._thread = None
+        self._search: Optional[interpreter.Search] = interpreter.Search(python)
+        self._python: Optional[str] = None
+        self._process: Optional[subprocess.Popen[bytes]] = None
+        self._is_canceled = False
+        self._hierarchy: Optional[Hierarchy] = None
+        self._error: Optional[Exception] = None
+        self._done = threading.Event()  # not is_alive(), which may return False too early after Ctrl-C (bpo-45274)
+        self._thread: Optional[threading.Thread] = None
 
-    def poll(self):
-        """(fraction 0..1 that never falls, name of the stage) while it runs; None once result() won't block."""
+    def poll(self) -> Optional[Tuple[float, str]]:
+        """(monotone fraction 0..1, name of the stage) while the job runs; None once result() won't block."""
         self._begin()
-        self._look()
+        self._enforce_time_limit()
         return None if self._done.is_set() else self._progress
 
-    def wait(self, seconds):
-        """Waits so long at most, and says whether the job is done."""
+    def wait(self, seconds: float) -> bool:
+        """Waits at most this long; returns whether the job is done."""
         end = time.monotonic() + seconds
         while self.poll() and (left := end - time.monotonic()) > 0:
-            self._done.wait(min(SEARCH_SECONDS if self._search else WATCH_SECONDS, left))
+            self._done.wait(min(SEARCH_SECONDS if self._search else POLL_SECONDS, left))
         return self._done.is_set()
 
-    def cancel(self):
-        """Kills the worker at once. result() then raises PartwheelError with Status.CANCELLED, unless it was done."""
+    def cancel(self) -> None:
+        """Kills the worker. result() then raises PartwheelError with Status.CANCELLED, unless the job was done."""
         with self._lock:
-            self._cancelled = True
+            self._is_canceled = True
             if self._process:
                 self._process.kill()
             self._begin()
 
-    def result(self):
-        """Waits for the end: the Hierarchy. Raises PartwheelError: what is wrong with the surface, that the build was
-        cancelled, or a WorkerError."""
+    def result(self) -> Hierarchy:
+        """Waits for the end of the job and returns the Hierarchy.
+
+        Raises
+        ------
+        PartwheelError : what is wrong with the surface, or that the build was canceled
+        WorkerError : every worker failed
+        """
         try:
             while not self.wait(WAIT_SECONDS):
                 pass
+            assert self._thread is not None
             self._thread.join()
         except BaseException:  # Ctrl-C
             self.cancel()
             raise
         if self._error:
             raise self._error
+        assert self._hierarchy is not None
         return self._hierarchy
 
     @property
-    def process_id(self):
-        """Of the worker that runs now, or ran last; None if there is none yet, or none could be started."""
+    def process_id(self) -> Optional[int]:
+        """The id of the current or last worker; None if there is none yet, or none could be started."""
         self._begin()
-        return self._process and self._process.pid
+        return self._process.pid if self._process else None
 
-    def _begin(self):
-        """Starts the worker as soon as there is a Python for it, and the job's thread. Not in that thread, which so has
-        little Python left to run: with Python up to 3.11 Blender takes any thread's hold of the interpreter for its
-        own, and crashes (seen in 3.4, at once with a thread that only counts) where a script calls operators under
-        temp_override() meanwhile. Nor when the job is made, for the same script may call the next one.
+    def _begin(self) -> None:
+        """Starts the worker and the job's thread as soon as a Python was found.
+
+        The caller's thread does this, not the job's, and not the constructor, so that the job's thread runs as little Python
+        as possible: up to Python 3.11, Blender mistakes any thread that holds the interpreter lock for its own, and crashes
+        if a script calls operators under temp_override() at that time (observed in 3.4).
         """
         with self._lock:
             if not self._search:
                 return
             try:
                 self._python = self._search.poll()
-                if not self._python and not self._cancelled:
+                if not self._python and not self._is_canceled:
                     return
-                launched = self._launch()
+                launched: Union[subprocess.Popen[bytes], PartwheelError] = self._launch()
             except interpreter.NoInterpreter as reason:
-                launched = _no_worker(NO_PYTHON, reason=reason.said)
+                launched = _start_error(NO_PYTHON, reason=reason.text)
             self._search.close()
             self._search = None
             self._thread = threading.Thread(target=self._run, args=[launched], name="partwheel-job", daemon=True)
             self._thread.start()
 
-    def _look(self):
-        """Ends a worker that is late. Not in a thread of its own, see _begin()."""
-        watched, work, idle = self._watched, self._work, time.monotonic() - self._seen_working
-        if watched and max(work, idle) > self._cpu_limit:
-            process, late = watched
-            late.append(LATE if work > idle else IDLE)
+    def _enforce_time_limit(self) -> None:
+        """Kills a worker that exceeds the time limit. In the caller's thread, see _begin()."""
+        watched, cpu_time, idle_time = self._watched, self._cpu_time, time.monotonic() - self._last_work_time
+        if watched and max(cpu_time, idle_time) > self._cpu_limit:
+            process, exceeded = watched
+            exceeded.append(CPU_LIMIT_REACHED if cpu_time > idle_time else IDLE_LIMIT_REACHED)
             process.kill()
 
-    def _launch(self):
-        """A worker process that was started, or the error why there is none."""
+    def _launch(self) -> Union[subprocess.Popen[bytes], PartwheelError]:
+        """Starts a worker process; returns it, or the error."""
         with self._lock:
-            if self._cancelled:
-                return PartwheelError(Status.CANCELLED, CANCELLED)
+            if self._is_canceled:
+                return PartwheelError(Status.CANCELLED, BUILD_CANCELED)
+            assert self._python is not None
             try:
                 self._process = process = interpreter.start(self._python, str(ENTRY), stdin=subprocess.PIPE,
                                                             stdout=subprocess.PIPE)
             except OSError as error:
-                return _no_worker(NO_START, reason=error)
+                return _start_error(START_FAILED, reason=error)
         return process
 
     # ---- In the job's thread ---------------------------------------------------------------------------------------
 
-    def _run(self, launched):
+    def _run(self, launched: Union[subprocess.Popen[bytes], PartwheelError, None]) -> None:
         try:
             rungs = self._rungs
             while rungs:
-                self._rung = rungs & -rungs  # the first
+                self._rung = rungs & -rungs  # the lowest bit: the first fill method
                 try:
                     self._hierarchy = self._attempt(launched or self._launch(), rungs)
                     return
                 except WorkerError as error:
                     self.failures.append(error)
-                    if error.name == "worker":  # the next would not start either
-                        interpreter.forget()
+                    if error.name == "worker":  # another one would not start either
+                        interpreter.clear_cache()
                         break
                 launched = None
-                rungs &= -2 * self._rung  # those after it
+                rungs &= -2 * self._rung  # the fill methods after it
             self._error = self.failures[-1]
-        except Exception as error:  # whatever it is, result() raises it
+        except Exception as error:  # result() raises it
             self._error = error
         finally:
             self._done.set()
 
-    def _attempt(self, launched, rungs):
-        """One worker process from start to end: the Hierarchy, or raises PartwheelError."""
-        process = _unless_error(launched)
-        self._answered, self._work, self._seen_working = False, 0.0, time.monotonic()
-        late = []
-        self._watched = process, late
+    def _attempt(self, launched: Union[subprocess.Popen[bytes], PartwheelError], rungs: int) -> Hierarchy:
+        """Runs one worker process from start to end. Raises PartwheelError."""
+        if isinstance(launched, PartwheelError):
+            raise launched
+        process = launched
+        assert process.stdin and process.stdout
+        self._has_answered, self._cpu_time, self._last_work_time = False, 0.0, time.monotonic()
+        exceeded: List[str] = []
+        self._watched = process, exceeded
         try:
             self._send(process.stdin, rungs)
             answer = self._listen(process.stdout)
             if not answer:
-                process.wait()  # it has closed its pipe, so it is ending
+                process.wait()  # the worker closed its pipe, so it is ending
         finally:
             self._watched = None
             process.kill()
@@ -225,20 +261,22 @@ class Job(NonCopyable):
             try:
                 process.stdin.close()
             except OSError:
-                pass  # the worker died before it had read everything: that is told below
+                pass  # the worker died before it had read everything; reported below
+        if isinstance(answer, PartwheelError):
+            raise answer
         if answer:
-            return self._loaded(_unless_error(answer))
-        if self._cancelled:
-            raise PartwheelError(Status.CANCELLED, CANCELLED)
-        if not self._answered:
-            raise (_no_worker(SILENT, seconds=f"{self._cpu_limit:g}") if late else
-                   _no_worker(GONE, how=ending(process.returncode)))
-        if late:
-            raise WorkerError("time limit", late[0], HARMLESS, FASTER, seconds=f"{self._cpu_limit:g}")
-        raise WorkerError("crash", BROKEN, HARMLESS, MENDED, how=ending(process.returncode))
+            return self._load_hierarchy(*answer)
+        if self._is_canceled:
+            raise PartwheelError(Status.CANCELLED, BUILD_CANCELED)
+        if not self._has_answered:
+            raise (_start_error(START_TIMEOUT, seconds=f"{self._cpu_limit:g}") if exceeded else
+                   _start_error(DIED_AT_START, how=describe_exit(process.returncode)))
+        if exceeded:
+            raise WorkerError("time limit", exceeded[0], MESH_UNCHANGED, HINT_FASTER, seconds=f"{self._cpu_limit:g}")
+        raise WorkerError("crash", WORKER_DIED, MESH_UNCHANGED, HINT_REPAIR, how=describe_exit(process.returncode))
 
-    def _send(self, pipe, rungs):
-        """Hands the surface over. A worker that dies meanwhile is left for _listen() to find."""
+    def _send(self, pipe: IO[bytes], rungs: int) -> None:
+        """Sends the surface and the options. _listen() notices if the worker dies meanwhile."""
         header = {"options": {**self._options, "rungs": rungs}, "face_count": self._face_count,
                   "memory_limit": self._memory_limit, "sizes": [array.nbytes for array in self._arrays]}
         text = json.dumps(header).encode()
@@ -250,56 +288,58 @@ class Job(NonCopyable):
         except OSError:
             pass
 
-    def _listen(self, pipe):
-        """Takes in messages up to the answer: (the saved Hierarchy, seconds of the stages), or an error; None: none."""
-        seconds = {}
+    def _listen(self, pipe: IO[bytes]) -> Union[Tuple[bytes, Dict[str, float]], PartwheelError, None]:
+        """Receives messages up to the answer: (the saved hierarchy, stage name -> seconds), or an error, or None if the pipe
+        ends without one."""
+        seconds: Dict[str, float] = {}
         while True:
-            head = _read(pipe, MESSAGE.size)
-            if len(head) < MESSAGE.size:
+            header = _read(pipe, MESSAGE.size)
+            if len(header) < MESSAGE.size:
                 return None
-            kind, length = MESSAGE.unpack(head)
+            kind, length = MESSAGE.unpack(header)
             payload = _read(pipe, length)
             if len(payload) < length:
                 return None
-            self._answered = True
+            self._has_answered = True
             try:
                 if kind == b"H":
                     return payload, seconds
                 values = json.loads(payload)
                 if kind == b"E":
-                    return self._refused(values, seconds)
+                    return self._build_error(values, seconds)
                 if kind == b"S":
                     seconds = {str(stage): float(value) for stage, value in values.items()}
                 else:
-                    fraction, stage, rung, work = values
-                    self._rung = max(self._rung, Rung(rung))  # before it tries any, a context tells the first of all
-                    if float(work) > self._work:
-                        self._work, self._seen_working = float(work), time.monotonic()
+                    fraction, stage, rung, cpu_time = values
+                    self._rung = max(self._rung, Rung(rung))  # a new context reports the first method until it tries one
+                    if float(cpu_time) > self._cpu_time:
+                        self._cpu_time, self._last_work_time = float(cpu_time), time.monotonic()
                     self._progress = max(self._progress[0], float(fraction)), str(stage)
-            except (ValueError, TypeError, AttributeError, LookupError):  # not what a sound worker writes
-                return WorkerError("crash", DAMAGED, HARMLESS)
+            except (ValueError, TypeError, AttributeError, LookupError):  # malformed: the worker's memory is corrupt
+                return WorkerError("crash", DAMAGED_ANSWER, MESH_UNCHANGED)
 
-    def _loaded(self, answer):
-        data, seconds = answer
+    def _load_hierarchy(self, data: bytes, seconds: Dict[str, float]) -> Hierarchy:
+        """The hierarchy of an answer. Raises WorkerError."""
         try:
             hierarchy = Hierarchy.load(data)
         except PartwheelError as error:
-            raise WorkerError("crash", DAMAGED_BY, HARMLESS, reason=error) from error
+            raise WorkerError("crash", DAMAGED_ANSWER_REASON, MESH_UNCHANGED, reason=error) from error
         if len(hierarchy.order) != self._face_count:
-            raise WorkerError("crash", OTHER, HARMLESS)
+            raise WorkerError("crash", WRONG_MESH, MESH_UNCHANGED)
         hierarchy.seconds = seconds
         return hierarchy
 
-    def _refused(self, values, seconds):
+    def _build_error(self, values: Dict[str, Any], seconds: Dict[str, float]) -> PartwheelError:
+        """The error that the worker reports."""
         error = PartwheelError(int(values["status"]), str(values["message"]), seconds)
         if error.status == Status.MEMORY:
-            error = WorkerError("memory", FULL, *[LIMIT] * bool(self._memory_limit), HARMLESS, LESS,
-                                size=self._memory_limit / 2**30)
+            error = WorkerError("memory", OUT_OF_MEMORY, *[MEMORY_LIMIT] * bool(self._memory_limit), MESH_UNCHANGED,
+                                HINT_LESS_MEMORY, size=self._memory_limit / 2**30)
         return error
 
 
-def available_memory():
-    """Bytes that a new process could use without the system having to swap, or 0 where it does not tell."""
+def available_memory() -> int:
+    """Bytes that a new process could use without swapping; 0 if unknown, outside Linux."""
     try:
         with open("/proc/meminfo", encoding="ascii") as lines:
             return next(int(line.split()[1]) * 1024 for line in lines if line.startswith("MemAvailable:"))
@@ -307,23 +347,17 @@ def available_memory():
         return 0
 
 
-def _no_worker(sentence, **values):
-    return WorkerError("worker", sentence, HARMLESS, WHICH, **values)
+def _start_error(sentence: str, **values: object) -> WorkerError:
+    return WorkerError("worker", sentence, MESH_UNCHANGED, HINT_PYTHON, **values)
 
 
-def _unless_error(found):
-    if isinstance(found, PartwheelError):
-        raise found
-    return found
-
-
-def _read(pipe, length):
-    """So many bytes, or fewer at the pipe's end. In pieces, for a mad worker may announce any length."""
-    pieces = []
+def _read(pipe: IO[bytes], length: int) -> bytes:
+    """length bytes, or fewer at the pipe's end. In chunks: a corrupt worker may announce any length."""
+    chunks = []
     while length > 0:
-        piece = pipe.read(min(length, 2**20))
-        if not piece:
+        chunk = pipe.read(min(length, 2**20))
+        if not chunk:
             break
-        pieces.append(piece)
-        length -= len(piece)
-    return b"".join(pieces)
+        chunks.append(chunk)
+        length -= len(chunk)
+    return b"".join(chunks)

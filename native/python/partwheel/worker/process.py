@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The worker process: one surface in by standard input, progress and a saved hierarchy out by standard output.
+"""The worker process: reads a surface from standard input, writes progress and a saved hierarchy to standard output.
 
-job.py starts it by its path, with a bare Python: no numpy, no site-packages, nothing of Blender. Messages are a
-kind, a length and so many bytes. In: B {options, face_count, memory_limit, sizes}, then the arrays' bytes. Out: P
-[fraction, stage, rung, seconds of processor time] some times a second; in the end S {stage: seconds}, and H saved
-hierarchy or E {status, message}.
+job.py starts it by its path with a bare Python: no numpy, no site-packages, nothing from Blender. A message is a kind, a
+length and that many bytes.
+
+Input:  B {options, face_count, memory_limit, sizes}, then the bytes of the arrays
+Output: P [fraction, stage, fill method, seconds of processor time], every TICK seconds
+        S {stage: seconds}, then H saved hierarchy or E {status, message}
 """
+
+from __future__ import annotations
 
 import ctypes
 import json
@@ -17,6 +21,10 @@ import threading
 import time
 from ctypes import c_int, c_size_t, c_uint8
 
+TYPE_CHECKING = False  # typing.TYPE_CHECKING, without the time that importing typing takes
+if TYPE_CHECKING:
+    from typing import BinaryIO
+
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
 from library import Build, BuildOptions, Context, PartwheelError, Status, load, told  # noqa: E402
@@ -25,74 +33,76 @@ MESSAGE = struct.Struct("<cQ")
 TICK = 0.05  # seconds between reports of progress
 
 
-def main():
+def main() -> None:
     answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # whatever a library prints must not get between the messages
-    end_with_parent()
+    os.dup2(2, 1)  # what a library prints to standard output must not mix with the messages
+    die_with_parent()
     load()
     try:
         header, arrays = receive()
-        limit(header["memory_limit"])
-        threading.Thread(target=wait_for_end_of_input, daemon=True).start()
+        set_limits(header["memory_limit"])
+        threading.Thread(target=exit_at_end_of_input, daemon=True).start()
         build(header, arrays, answers)
-    except (MemoryError, PartwheelError):  # of what is refused but for want of memory, build() tells
+    except (MemoryError, PartwheelError):  # build() sends all other errors
         send(answers, b"E", {"status": Status.MEMORY, "message": "Out of memory."})
-    # Not sys.exit(): a build that went wrong may have left the library in a state that does not bear tidying up.
+    # Not sys.exit(): after a failed build, the library's cleanup could crash.
     answers.flush()
     os._exit(0)
 
 
-def end_with_parent():
-    """On Linux even a stopped worker dies with its parent; everywhere else wait_for_end_of_input() sees to it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in a terminal goes to parent and worker: the parent decides
+def die_with_parent() -> None:
+    """On Linux even a stopped worker dies with its parent; on other systems exit_at_end_of_input() ends it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal sends Ctrl-C to both processes: the parent handles it
     if sys.platform == "linux":
         set_parent_death_signal = 1
         ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL, 0, 0, 0)
 
 
-def wait_for_end_of_input():
-    """The parent writes nothing after the arrays: when the pipe ends, the parent has. The build lets go of Python's
-    lock while it is in the library, so this thread runs whatever the library does."""
+def exit_at_end_of_input() -> None:
+    """Exits when the parent has died. The parent writes nothing after the arrays and keeps the pipe open. This thread runs
+    during the build, because ctypes releases the interpreter lock."""
     while os.read(0, 4096):
         pass
     os._exit(1)
 
 
-def limit(memory):
-    """Memory for data, in bytes, as far as the system keeps such limits; and no core file after a crash."""
+def set_limits(memory: int) -> None:
+    """Limits the data segment to this many bytes (Linux only; 0: no limit), and disables core files."""
     try:
         import resource
     except ImportError:  # Windows
         return
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     if memory and sys.platform == "linux":
-        _, most = resource.getrlimit(resource.RLIMIT_DATA)
-        memory = memory if most == resource.RLIM_INFINITY else min(memory, most)
-        resource.setrlimit(resource.RLIMIT_DATA, (memory, most))
+        _, hard = resource.getrlimit(resource.RLIMIT_DATA)
+        memory = memory if hard == resource.RLIM_INFINITY else min(memory, hard)
+        resource.setrlimit(resource.RLIMIT_DATA, (memory, hard))
 
 
-def receive():
-    """(header, arrays as bytearrays), read from standard input."""
+def receive() -> tuple[dict, list[bytearray]]:
+    """(header, arrays), read from standard input."""
     kind, length = MESSAGE.unpack(read(MESSAGE.size))
     if kind != b"B":
-        sys.exit("worker/process.py is started by worker/job.py and makes no sense alone.")
+        sys.exit("worker/process.py can't be run by hand: worker/job.py starts it.")
     header = json.loads(read(length))
     return header, [read(size) for size in header["sizes"]]
 
 
-def read(size):
+def read(size: int) -> bytearray:
+    """Exactly this many bytes of standard input."""
     buffer = bytearray(size)
     view, done = memoryview(buffer), 0
     with open(0, "rb", buffering=0, closefd=False) as pipe:
         while done < size:
-            got = pipe.readinto(view[done:])
-            if not got:
+            count = pipe.readinto(view[done:])
+            if not count:
                 os._exit(1)  # the parent has ended
-            done += got
+            done += count
     return buffer
 
 
-def send(pipe, kind, payload):
+def send(pipe: BinaryIO, kind: bytes, payload: object) -> None:
+    """Sends a memoryview as it is, anything else as JSON."""
     if not isinstance(payload, memoryview):
         payload = json.dumps(payload).encode()
     try:
@@ -103,33 +113,35 @@ def send(pipe, kind, payload):
         os._exit(1)  # the parent has ended
 
 
-def build(header, arrays, answers):
+def build(header: dict, arrays: list[bytearray], answers: BinaryIO) -> None:
+    """Builds the hierarchy of a surface and sends progress and the result."""
     vertices, triangles, *faces = ((c_uint8 * len(array)).from_buffer(array) for array in arrays)
     surface = vertices, len(vertices) // 24, triangles, len(triangles) // 12, faces[0] if faces else None
     context = Context()
     thread = Build(context, (*surface, header["face_count"]), BuildOptions(**header["options"]))
-    report(context, answers)  # that it has begun: one that ends before this could not be started
+    send_progress(context, answers)  # job.py takes a worker that exits before its first message as one that can't be started
     thread.start()
     while not thread.done.wait(TICK):
-        report(context, answers)
-    report(context, answers)
+        send_progress(context, answers)
+    send_progress(context, answers)
     send(answers, b"S", context.seconds())
     if thread.error:
         send(answers, b"E", {"status": thread.error.status, "message": str(thread.error)})
     else:
-        send(answers, b"H", saved(thread.address.value))
+        send(answers, b"H", save(thread.address.value))
 
 
-def report(context, answers):
-    send(answers, b"P", [*context.progress(), *told([c_int], load().pw_context_rung, context), work()])
+def send_progress(context: Context, answers: BinaryIO) -> None:
+    send(answers, b"P", [*context.progress(), *told([c_int], load().pw_context_rung, context), build_time()])
 
 
-def work():
-    """Processor time that all has taken but the reporting itself, in hundredths of a second."""
+def build_time() -> float:
+    """Processor time in seconds of all threads but this one, which only reports; rounded to 0.01."""
     return round(time.process_time() - time.thread_time(), 2)
 
 
-def saved(hierarchy):
+def save(hierarchy: int | None) -> memoryview:
+    """The saved form of the native hierarchy at this address."""
     size, = told([c_size_t], load().pw_hierarchy_save, hierarchy, None, 0)
     buffer = (c_uint8 * size)()
     told([c_size_t], load().pw_hierarchy_save, hierarchy, buffer, size)
