@@ -254,7 +254,7 @@ def write(obj, cut, to=(), names=None, closed=True, origins=True, explode=0.0, s
     if names is not None and (len(names) != len(cut) or len(set(names)) != len(cut)):
         raise ValueError(f"There are {len(cut)} parts; as many names are needed, each another one.")
     known = None if names is None else dict(zip(cut.parts, names))
-    return writing.write(obj, cut, to, known, parts_as_objects.Options(solids.Options(smooth, material), closed,
+    return writing.write(obj, cut, to, known, parts_as_objects.Options(solids.CapOptions(smooth, material), closed,
                                                                        origins, explode, shell), unwrap)
 
 
@@ -309,7 +309,7 @@ def copy_part(obj, node, smooth=False, material=False, snap=False):
     it be there. partwheel.Error: it can't be closed. Outside Edit Mode only."""
     _mesh(obj, edited=False)
     built, node = _node(obj, node)
-    return composition.copied(obj, built, node, solids.Options(smooth, material), snap)
+    return composition.create_part_object(obj, built, node, solids.CapOptions(smooth, material), snap)
 
 
 def remove(obj, node, smooth=False, material=False, snap=False):
@@ -317,7 +317,7 @@ def remove(obj, node, smooth=False, material=False, snap=False):
     removes and what copy_part() gives make the whole. Outside Edit Mode only."""
     _mesh(obj, edited=False, changes=True)
     built, node = _node(obj, node)
-    composition.removed(obj, built, node, solids.Options(smooth, material), snap)
+    composition.remove_part(obj, built, node, solids.CapOptions(smooth, material), snap)
 
 
 def split(obj, parts=None, height=None, explode=0.0, smooth=False, material=False, least_concavity=None):
@@ -327,7 +327,7 @@ def split(obj, parts=None, height=None, explode=0.0, smooth=False, material=Fals
     _mesh(obj, edited=False)
     built = hierarchy(obj)
     bounds = _bounds(built, parts, height, least_concavity)
-    return composition.split(obj, built, bounds, solids.Options(smooth, material), explode)
+    return composition.split_into_objects(obj, built, bounds, solids.CapOptions(smooth, material), explode)
 
 
 def place(obj, location, normal=(0, 0, 1), scale=1.0, angle=0.0, depth=0.0, target=None, fit=False, mirror=False):

@@ -29,7 +29,7 @@ class First(MeshTest):
 
     def test_what_is_selected_tells_the_part(self):
         node, faces = self.limb()
-        copied = part("solid.composition").copied(self.obj, part("api").build(self.obj), node, snap=True)
+        copied = part("solid.composition").create_part_object(self.obj, part("api").build(self.obj), node, snap=True)
         expected = len(copied.data.polygons)
         bpy.data.objects.remove(copied)
         self.select(faces)

@@ -195,7 +195,7 @@ class Copy(SolidTest):
             hierarchy = package().Hierarchy.build(*part("mesh.arrays").surface(obj.data), rungs=rungs)
             self.assertEqual(hierarchy.summary.rung, rung)
             for node in self.nodes(hierarchy):
-                copy = part("solid.solids").part(obj, hierarchy, int(hierarchy.tet_first[node]),
+                copy = part("solid.solids").create_mesh(obj, hierarchy, int(hierarchy.tet_first[node]),
                                            int(hierarchy.tet_last[node]))
                 self.assertSolid(copy)
                 once = {frozenset(broken[face]): obj.data.polygons[face].area for face in hierarchy.faces(node).tolist()}
@@ -225,7 +225,7 @@ class Copy(SolidTest):
                   for polygon in obj.data.polygons}
             for node in self.nodes(hierarchy):
                 tets = slice(int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node]))
-                copy = part("solid.solids").part(obj, hierarchy, tets.start, tets.stop)
+                copy = part("solid.solids").create_mesh(obj, hierarchy, tets.start, tets.stop)
                 self.assertSolid(copy)
                 sides = numpy.diff(hierarchy.vertices[hierarchy.tetrahedra[tets]], axis=1)
                 filled = numpy.abs(numpy.linalg.det(sides)).sum() / 6
@@ -268,7 +268,7 @@ class Copy(SolidTest):
         filled = []
         for node in nodes:
             ends = int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])
-            copy = part("solid.solids").part(obj, hierarchy, *ends)
+            copy = part("solid.solids").create_mesh(obj, hierarchy, *ends)
             self.assertSolid(copy)
             self.assertEqual((~caps(copy)).sum(), len(hierarchy.faces(node)))
             sides = numpy.diff(hierarchy.vertices[hierarchy.tetrahedra[slice(*ends)]], axis=1)
@@ -288,7 +288,7 @@ class Copy(SolidTest):
         for node in nodes[:24]:
             ends, made = (int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])), []
             for _ in range(3):
-                copy = part("solid.solids").part(obj, hierarchy, *ends)
+                copy = part("solid.solids").create_mesh(obj, hierarchy, *ends)
                 made.append((arrays(copy)[0].tolist(), arrays(copy)[1], caps(copy).tolist()))
                 held.append(bmesh.new())  # so that the next one's elements lie elsewhere
                 held[-1].from_mesh(copy)
@@ -310,7 +310,7 @@ class Copy(SolidTest):
                 if all((i or j <= m // 2) and (i < n or j > m // 2) and (j or i <= n // 2) and (j < m or i > n // 2)
                        for i, j in cells):
                     least = min(least, sum(across[cell] for cell in cells))
-            steps = numpy.array(part("solid.bridging")._along(across))
+            steps = numpy.array(part("solid.bridging")._cheapest_steps(across))
             cells = list(zip(numpy.cumsum(steps).tolist(), numpy.cumsum(~steps).tolist()))
             self.assertEqual(cells[-1], (n, m))
             self.assertEqual(len({(i % n, j % m) for i, j in cells}), n + m)  # no edge twice
@@ -434,7 +434,7 @@ class Remove(SolidTest):
                   if any(frozenset(tuple(vertices[v]) for v in key) in before for key in polygon.edge_keys)}
         self.assertFalse(inside & around)
         node = self.nodes(hierarchy)[-3]
-        part("solid.solids").remove(obj, hierarchy, int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node]))
+        part("solid.solids").remove_from_mesh(obj, hierarchy, int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node]))
         self.assertEqual(open_edges(obj.data), before)
         self.assertEqual((~caps(obj.data)).sum(), total - len(inside))
 

@@ -82,7 +82,7 @@ class Foreign(MeshTest):
         """Under names that Blender or we use: face sets, caps, parts that are remembered."""
         obj = self.add(*read_off("hand"))
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        names = [part("pick.writers").FACE_SET, part("solid.solids").CAP, "part: hand"]
+        names = [part("pick.writers").FACE_SET, part("solid.solids").CAP_ATTRIBUTE, "part: hand"]
         for kind, domain in (("FLOAT", "FACE"), ("INT", "POINT"), ("FLOAT_VECTOR", "CORNER")):
             for name in names:
                 if name in obj.data.attributes:

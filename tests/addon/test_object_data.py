@@ -518,7 +518,7 @@ class ObjectData(SolidTest):
         obj.modifiers.new("levels", "MULTIRES")
         bpy.context.view_layer.objects.active = obj
         bpy.ops.object.multires_subdivide(modifier="levels")
-        self.assertIn("several resolutions", " ".join(part("solid.composition").losses(obj)))
+        self.assertIn("several resolutions", " ".join(part("solid.composition").loss_messages(obj)))
         copy = part("api").copy_part(obj, self.middle(hierarchy))
         self.assertEqual(len(copy.modifiers), 0)
         bpy.ops.mesh.primitive_cube_add(size=obj.dimensions.x)

@@ -61,12 +61,12 @@ class Place(SolidTest):
         for one, other in zip(*results):
             self.near(one, other)
         placement.put_back(obj, where)
-        again = composition.copied(obj, hierarchy, node)
+        again = composition.create_part_object(obj, hierarchy, node)
         bpy.context.view_layer.update()
         self.near(again.location, (5, 6, 7))
         self.reset(obj)
         placement.put_back(obj, where)
-        for each in composition.split(obj, hierarchy, hierarchy.cut_parts(3)):
+        for each in composition.split_into_objects(obj, hierarchy, hierarchy.cut_parts(3)):
             self.near(each.matrix_world.translation, (5, 6, 7))
 
     def reset(self, obj):

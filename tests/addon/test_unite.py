@@ -64,7 +64,7 @@ class Unite(SolidTest):
         for name in ("hand", "dragknob", "helmet"):
             obj, hierarchy = self.built(name)
             for node in self.nodes(hierarchy, 5)[1:]:
-                made.append(part("solid.solids").part(obj, hierarchy, int(hierarchy.tet_first[node]),
+                made.append(part("solid.solids").create_mesh(obj, hierarchy, int(hierarchy.tet_first[node]),
                                                 int(hierarchy.tet_last[node])))
             made.append(obj.data)
         return [mesh for mesh in made if len({*edge_components(part("mesh.arrays").edge_vertices(mesh)).tolist()}) == 1]

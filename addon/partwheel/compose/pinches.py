@@ -5,7 +5,7 @@ same. What partwheel's solids do, for a mesh of Blender's own making."""
 import bmesh
 import numpy as np
 
-from ..solid.closing import groups
+from ..solid.closing import connected_components
 
 
 def set_apart(bm):
@@ -87,7 +87,7 @@ def _umbrellas(vert, across):
             other = across.get(edge_loop) or edge_loop.link_loop_radial_next
             yield other if other.vert == vert else other.link_loop_next  # of the face beyond, the loop at this vertex
 
-    return groups(vert.link_loops, beside)
+    return connected_components(vert.link_loops, beside)
 
 
 def _copy_face(bm, old, corners):

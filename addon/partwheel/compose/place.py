@@ -48,7 +48,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
         if (self.fit or self.mirror) and (target is None or target.type != "MESH"):
             self.report({"ERROR"}, rpt_("Say which mesh object the part is placed on."))
             return {"CANCELLED"}
-        for sentence in composition.losses(part) if self.mirror else ():
+        for sentence in composition.loss_messages(part) if self.mirror else ():
             self.report({"WARNING"}, sentence)
         try:
             mirrored = placement.place(part, target, self._pose(), self.mirror)

@@ -8,10 +8,10 @@ from mathutils import Matrix, Quaternion, Vector
 
 from ..mesh import arrays
 from ..mesh.datablocks import all_or_nothing
-from ..solid.composition import beside, update_matrices
+from ..solid.composition import create_object_like, update_matrices
 from partwheel import compatible
 from ..mesh.errors import Refused
-from ..solid.solids import CAP
+from ..solid.solids import CAP_ATTRIBUTE
 
 _CHANNELS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
 SINK = 0.05  # of its border's radius that a part is sunk in: solids that only touch don't unite
@@ -19,7 +19,7 @@ SINK = 0.05  # of its border's radius that a part is sunk in: solids that only t
 
 def caps(mesh):
     """(F,) bool: the faces that close a mesh where it was cut; None if nothing is marked so."""
-    layer = arrays.attribute(mesh, CAP, "BOOLEAN", "FACE")
+    layer = arrays.attribute(mesh, CAP_ATTRIBUTE, "BOOLEAN", "FACE")
     return arrays.read(layer.data, "value", bool) if layer else None
 
 
@@ -108,7 +108,7 @@ def mirrored(part, target):
     """A new object: the part's mirror image across the target's own YZ plane. Its mesh is mirrored, not its matrix."""
     mesh = part.data.copy()
     flip = Matrix.Scale(-1, 4, (1, 0, 0))
-    new = beside(part, mesh, part.name)
+    new = create_object_like(part, mesh, part.name)
     across = target.matrix_world @ flip @ target.matrix_world.inverted()
     # A mirror image of a mirror image is a turn: the matrix stays free of reflection.
     mesh.transform(flip, shape_keys=True)

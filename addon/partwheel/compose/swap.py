@@ -12,21 +12,21 @@ from . import swapping
 from partwheel import Error
 from ..mesh.errors import Refused
 from ..mesh.poll import poll_is_editable
-from ..solid.copy_part import OnPart
+from ..solid.copy_part import PartOperator
 from ..view.in_view import waiting
 from ..words.say import iface_
 from .adjusting import Adjusting
 from .unite import find_parts
 
 
-class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
+class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
     """Exchange the picked part for one of another object that fits its border; the wheel goes through what there is"""
 
     bl_idname = "mesh.partwheel_swap"
     bl_label = "Swap with Compatible Part"
     lost_message = "{operator} stopped: the object is no longer the active one."
     was_edited, preview, taken = False, None, keys.OFFER.events
-    takes_away = True
+    removes_faces = True
 
     other: bpy.props.StringProperty(
         name="From", description="The object that the new part comes from; none: those selected, or else all others",
@@ -52,7 +52,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
     def poll(cls, context):
         return super().poll(context) and poll_is_editable(cls, context.active_object)
 
-    def work(self, context, obj, hierarchy):
+    def run(self, context, obj, hierarchy):
         place = swapping.Place(obj, hierarchy, self.node, self.snap)
         self._swap(place, self._chosen(context, place, obj))
 
@@ -68,7 +68,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
     def _swap(self, place, offer):
         self.other, self.whole = offer.name, offer.node is None
         self.other_node = -1 if self.whole else offer.node
-        for sentence in composition.bound(mesh_identity.find_object(place.name)):
+        for sentence in composition.bound_modifier_messages(mesh_identity.find_object(place.name)):
             self.report({"WARNING"}, sentence)
         place.swap(offer, self._adjustment(), self.blend)
         if self.build:
@@ -85,7 +85,7 @@ class MESH_OT_partwheel_swap(Adjusting, OnPart, bpy.types.Operator):
             self.check(obj)
             if not waited_for(self, context, obj):
                 return {"CANCELLED"}
-            hierarchy = self.hierarchy(obj)
+            hierarchy = self.require_hierarchy(obj)
             other = mesh_identity.resolve_object(self.other)
             others = [other] if other else swapping.sources(context, obj)
             self.was_edited = obj.mode == "EDIT"
@@ -166,7 +166,7 @@ class Preview:
         mesh = self.place.rest()
         rest = obj.copy()  # with its modifiers and materials
         rest.data = mesh
-        composition.home(obj).objects.link(rest)
+        composition.target_collection(obj).objects.link(rest)
         self.rest, self.shown = previews.show(rest).name, {}
         previews.hide(obj)
 

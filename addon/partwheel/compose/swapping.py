@@ -101,7 +101,7 @@ class Place:
 
     def rest(self):
         """A new mesh: the object's without the part, closed. Raises Refused or PartwheelError."""
-        return composition.rest(find_object(self.name), self.hierarchy, self.node, self.snap)
+        return composition.create_rest_mesh(find_object(self.name), self.hierarchy, self.node, self.snap)
 
     @all_or_nothing()
     def stand_in(self, offer, adjustment=Adjustment()):
@@ -112,8 +112,8 @@ class Place:
         if offer.node is None:
             name, mesh = source.name, source.data.copy()
         else:
-            name, mesh = f"{source.name} part", composition.part_mesh(source, _hierarchy_of(offer), offer.node, snap=self.snap)
-        new = composition.bare(source, mesh, name, composition.home(obj))
+            name, mesh = f"{source.name} part", composition.create_part_mesh(source, _hierarchy_of(offer), offer.node, snap=self.snap)
+        new = composition.create_bare_object(source, mesh, name, composition.target_collection(obj))
         for own, slot in zip(new.material_slots, source.material_slots):
             own.link, own.material = slot.link, slot.material
         self.put(new, offer, adjustment)
@@ -188,7 +188,7 @@ def _shapes(obj, hierarchy, nodes, snap=False):
     matrix = np.array(obj.matrix_world)
     size = _size(positions, matrix)
     shapes = [(node, compatible.part_shape(hierarchy, node, positions, matrix, size,
-                                      composition.moved_faces(obj, hierarchy, node, snap))) for node in nodes]
+                                      composition.snapped_faces(obj, hierarchy, node, snap))) for node in nodes]
     return [(node, shape) for node, shape in shapes if shape]
 
 

@@ -35,7 +35,7 @@ def unite(target, others, blend=0.0, instead=None):
     a mesh to be taken for the target's own. What is left of the target's surface keeps its shape keys. Returns the solver
     that did it. Raises Refused before anything has changed."""
     slots, keyed = [], instead or target.data
-    solids.check_resolution(target)
+    solids.check_no_multires(target)
     base = _input(target, instead or target.data, slots)
     try:
         if blend > 0:
@@ -60,14 +60,14 @@ def unite(target, others, blend=0.0, instead=None):
     except Exception:
         bpy.data.meshes.remove(base)
         raise
-    with composition.hooks_kept(target):
+    with composition.preserve_hooks(target):
         _replace(target, base, slots, offsets)
     return solver
 
 
 def losses(target, others):
     """Sentences on what of these objects a union can't keep, to be said beforehand."""
-    found = composition.bound(target)
+    found = composition.bound_modifier_messages(target)
     keyed = [obj.name for obj in others if obj.data.shape_keys]
     if keyed:
         found.append(rpt_("The shape keys of {names} can't be kept: the parts stay as they are now. The shape keys of {target} "

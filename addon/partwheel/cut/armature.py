@@ -51,7 +51,7 @@ def _new(obj):
     data = bpy.data.armatures.new(f"{obj.name} bones")
     data[OURS] = True
     rig = bpy.data.objects.new(data.name, data)
-    composition.home(obj).objects.link(rig)
+    composition.target_collection(obj).objects.link(rig)
     rig.show_in_front = True
     rig.parent, rig.parent_type, rig.parent_bone = obj.parent, obj.parent_type, obj.parent_bone
     if obj.parent_type in {"VERTEX", "VERTEX_3"}:

@@ -5,12 +5,12 @@ import bpy
 import numpy as np
 
 from ..pick.build import Beside
-from ..solid.copy_part import OnParts
+from ..solid.copy_part import PartsOperator
 from ..words.say import rpt_
 from . import hulls
 
 
-class MESH_OT_partwheel_convex(OnParts, Beside, bpy.types.Operator):
+class MESH_OT_partwheel_convex(PartsOperator, Beside, bpy.types.Operator):
     """Make few convex hulls that contain the model and little else: children of it, as engines want its collision"""
 
     bl_idname = "mesh.partwheel_convex"
@@ -45,7 +45,7 @@ class MESH_OT_partwheel_convex(OnParts, Beside, bpy.types.Operator):
         for name in ("vertices", "primitives", "engine"):
             layout.prop(self, name)
 
-    def work(self, context, obj, hierarchy):
+    def run(self, context, obj, hierarchy):
         across = float(np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)))
         wanted = {"error": self.error / 100 * across} if self.by == "ERROR" else {"hulls": self.hulls}
         found = hierarchy.convex_parts(**wanted, max_vertices=self.vertices)

@@ -25,14 +25,14 @@ def made(context, obj, hulls, engine="UNREAL", primitives=0.0):
     as wires and not rendered, in a new collection, or in that of the earlier ones, which are removed. RIGID_BODY: the
     object is a body whose shape they are together. primitives: the length that a box, sphere, capsule or cylinder may
     reach beyond a hull to be taken instead, as far as the engine has these; 0: hulls alone. Refused: nothing has changed."""
-    earlier = [child for child in obj.children if child.type == "MESH" and composition.HULL in child]
+    earlier = [child for child in obj.children if child.type == "MESH" and composition.HULL_PROPERTY in child]
     kinds = tuple(kind for kind in convex.KINDS if kind in NAMES[engine])
     shapes = [(primitives > 0 and convex.fit_primitive(*hull[:2], primitives, kinds)) or hull for hull in hulls]
     names = [NAMES[engine][convex.kind_of(shape)].format(model=obj.name, number=number)
              for number, shape in enumerate(shapes)]
     _check(obj, names, earlier, engine)
     home = next((each.users_collection[0] for each in earlier if each.users_collection), None)
-    home = home or composition.new_collection(obj, f"{obj.name} hulls")
+    home = home or composition.create_collection(obj, f"{obj.name} hulls")
     found = [_child(obj, shape, name, home) for shape, name in zip(shapes, names)]
     if engine == "RIGID_BODY":
         _simulated(context, obj, {child: convex.kind_of(shape) for child, shape in zip(found, shapes)})
@@ -62,7 +62,7 @@ def _child(obj, shape, name, collection):
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(vertices.tolist(), [], triangles.tolist())
     new = bpy.data.objects.new(name, mesh)
-    new[composition.HULL] = True
+    new[composition.HULL_PROPERTY] = True
     collection.objects.link(new)
     new.parent, new.matrix_parent_inverse = obj, Matrix()
     if primitive:

@@ -25,13 +25,13 @@ ANYWHERE = {"ARMATURE", "BEVEL", "BOOLEAN", "DATA_TRANSFER", "EDGE_SPLIT", "LAPL
 
 
 class Options(NamedTuple):
-    """caps: see solids.Options. closed: as solids, that add up to the whole and fit each other exactly, unless caps
+    """caps: see solids.CapOptions. closed: as solids, that add up to the whole and fit each other exactly, unless caps
     says smooth; a part of a broken mesh that can't be closed stays open. Else their own polygons alone. origins: at the
     middle of the border, of a loose piece in its own, unless a modifier needs it where it is; else all where the object's is.
     explode: each is moved away from the one that it hangs on by so many times the distance of their middles; by drivers, so
     that the root's property changes it; 0: without. shell: so thick, inwards, by a modifier, where a part is thick enough; 0: solid."""
 
-    caps: solids.Options = solids.Options()
+    caps: solids.CapOptions = solids.CapOptions()
     closed: bool = True
     origins: bool = True
     explode: float = 0.0
@@ -48,8 +48,8 @@ def made(obj, cut, names, options=Options()):
     hung, places, middles = _hung(mesh, cut)
     meshes = _closed(obj, cut, options.caps) if options.closed else [
         _open(mesh, cut, part) for part in range(len(cut))]
-    collection = composition.new_collection(obj, f"{obj.name} parts")
-    new = {part: composition.beside(obj, each, names[part], collection) for part, each in enumerate(meshes) if each}
+    collection = composition.create_collection(obj, f"{obj.name} parts")
+    new = {part: composition.create_object_like(obj, each, names[part], collection) for part, each in enumerate(meshes) if each}
     root, chained = new.get(_root(hung)), _hangs_alone(obj)
     moved = options.origins and chained and all(each.type in ANYWHERE for each in obj.modifiers)
     parents = {part: new[hung[part].parent] for part in new if hung[part].parent in new}
@@ -97,7 +97,7 @@ def _mirror_about(obj, center):
 
 def notes(obj, cut, made, smooth):
     """Sentences on what closed objects don't have in common with the model: duplicates, and a volume."""
-    original = fitting.originals(obj.data, cut.hierarchy)
+    original = fitting.duplicate_originals(obj.data, cut.hierarchy)
     if count := np.count_nonzero(original != np.arange(len(original))):
         yield rpt_("The model has {count:,} duplicate faces. Each is in the objects once.").format(count=count)
     whole, total = cut.hierarchy.summary.volume, sum(_volume(each.data) for each in made)
@@ -137,12 +137,12 @@ def _drive(obj, root, away, factor):
 def _closed(obj, cut, options):
     slices = [cut.slices(part) for part in range(len(cut))]
     try:
-        return solids.parts(obj, cut.hierarchy, slices, options)
+        return solids.create_meshes(obj, cut.hierarchy, slices, options)
     except Refused:
         found = []
         for part, each in enumerate(slices):
             try:
-                found += solids.parts(obj, cut.hierarchy, [each], options)
+                found += solids.create_meshes(obj, cut.hierarchy, [each], options)
             except Refused:
                 found.append(_open(obj.data, cut, part))
         return found
@@ -150,7 +150,7 @@ def _closed(obj, cut, options):
 
 def _open(mesh, cut, part):
     """The part's polygons."""
-    plan = fitting.of_faces(mesh, cut.hierarchy, 0, 1, cut.labels == part, alone=True)
+    plan = fitting.plan_of_faces(mesh, cut.hierarchy, 0, 1, cut.labels == part, standalone=True)
     new, loops = pieces.assembled(mesh, plan, f"{mesh.name} part", False), plan.loops.first
     normals = arrays.custom_normals(mesh)
     if normals is not None:

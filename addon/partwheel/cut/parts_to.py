@@ -145,7 +145,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     def _losses(self, obj):
         """Sentences on what will be lost."""
-        found = composition.losses(obj) if "OBJECTS" in self.to else []
+        found = composition.loss_messages(obj) if "OBJECTS" in self.to else []
         if "PRINT" in self.to and obj.modifiers:
             found.append(rpt_("What is printed is the mesh of {name} itself: the effect of its modifiers is left out. Apply them "
                               "first to print it.").format(name=obj.name))
@@ -160,7 +160,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if before == "EDIT":
             # Undo steps of Edit Mode hold its mesh alone: without this one, undo would leave the rest.
             bpy.ops.ed.undo_push(message="Leave Edit Mode")
-        options = objects.Options(solids.Options(self.smooth, self.material), self.closed, self.origins,
+        options = objects.Options(solids.CapOptions(self.smooth, self.material), self.closed, self.origins,
                                   self.explode, self.shell)
         known = writing.known_names(obj, cut)
         plan = self._planned(context, obj, cut, known) if "PRINT" in self.to else None
@@ -169,11 +169,11 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if mode != "OBJECT" and not made:
             bpy.ops.object.mode_set(mode=mode)
         if made:
-            copy_part.only(context, made)
+            copy_part.select_only(context, made)
             if self.hide:
                 obj.hide_set(True)
         elif "BONES" in self.to and mode == "OBJECT":
-            copy_part.only(context, [obj.find_armature()])
+            copy_part.select_only(context, [obj.find_armature()])
         self.count, self.clusters = len(cut), json.dumps(cut.parts)
         self.report({"INFO"}, rpt_("{name} is in {count} parts now: {made}.").format(
             name=obj.name, count=len(cut), made=self._results()))

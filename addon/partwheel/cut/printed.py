@@ -50,13 +50,13 @@ def made(obj, plan):
     without its modifiers and all else, since what is printed is the mesh itself.
     What the checks found is the collection's property "notes"."""
     composition.update_matrices()
-    collection = composition.new_collection(obj, f"{obj.name} for printing")
+    collection = composition.create_collection(obj, f"{obj.name} for printing")
     collection["notes"] = "\n".join(plan.printable.notes)
     found = []
     for part, (vertices, triangles) in plan.printable.solids.items():
         mesh = bpy.data.meshes.new(plan.printable.names[part])
         mesh.from_pydata((vertices / plan.scale).tolist(), [], triangles.tolist())
-        new = composition.bare(obj, mesh, mesh.name, collection)
+        new = composition.create_bare_object(obj, mesh, mesh.name, collection)
         found.append(new)
     composition.update_matrices()
     return found

@@ -1,146 +1,158 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Caps for a part of a mesh that was filled from points: the facets that divide it inside. They end on its surface, near
-the borders of the mesh's own polygons, and strips of triangles join the two."""
+"""Bridges between a mesh and the facets that divide its filling from points.
+
+The facets end near the boundary loops of the mesh's own polygons, not on them. Strips of triangles join the two."""
+
+from __future__ import annotations
 
 import bmesh
 import numpy as np
 
 from . import closing
 
-NEAR = 1.0  # of a border's radius: borders are joined if they are no farther apart, in the mean, from either side
-MOST = 0.5  # of the length of its borders that is to be joined, for a group of facets to be of use
+MAX_LOOP_DISTANCE = 1.0  # between two loops that are joined, see _loop_distance()
+MIN_BRIDGED_FRACTION = 0.5  # of the length of its boundary loops, for a component of facets to be used
 
 
-def bridge(bm, facets):
-    """Adds facets, (vertices (n,3), triangles (m,3) wound outwards), to a bmesh: each group of them of which most of the
-    border has one of the bmesh's own to itself nearby. What its polygons there are a part of is turned as the facets
-    are. The new faces. Other borders stay open: those of holes that only the filling closes are there, too."""
-    own = closing.borders([edge for edge in bm.edges if edge.is_boundary])
-    places, triangles = facets
-    if not own or not len(triangles):
+def bridge(bm: bmesh.types.BMesh, facets: tuple[np.ndarray, np.ndarray]) -> list[bmesh.types.BMFace]:
+    """Adds facets to a bmesh and joins them to its boundary loops. Returns the new faces.
+
+    A connected component of the facets is used if loops of the bmesh match most of the length of its boundary, one
+    loop each. The polygons around a matched loop are turned to the facets' winding. All other boundary loops stay
+    open, also those of holes that only the filling closes. facets: (vertices (n, 3), triangles (m, 3) wound outward).
+    """
+    mesh_loops = closing.boundary_loops([edge for edge in bm.edges if edge.is_boundary])
+    positions, triangles = facets
+    if not mesh_loops or not len(triangles):
         return []
-    groups = _groups(bm, places, triangles)
-    rings = [(group, ring) for group, (_, borders) in enumerate(groups) for ring in borders]
-    pairs = _pairs([_places(ring) for _, ring in rings], [_places(ring) for ring in own])
-    joints, lengths = [[] for _ in groups], np.zeros((len(groups), 2))
-    for (group, ring), border in zip(rings, pairs):
-        lengths[group] += np.array([1, border is not None]) * _length(ring)
-        if border is not None:
-            joints[group].append((ring, own[border]))
-    used = lengths[:, 1] > MOST * lengths[:, 0]
-    _turn_pieces(bm, [joint for each, use in zip(joints, used) if use for joint in each])
+    components = _add_facet_components(bm, positions, triangles)
+    facet_loops = [(component, ring) for component, (_, loops) in enumerate(components) for ring in loops]
+    matches = _match_loops([_positions(ring) for _, ring in facet_loops], [_positions(ring) for ring in mesh_loops])
+    joints, lengths = [[] for _ in components], np.zeros((len(components), 2))
+    for (component, ring), match in zip(facet_loops, matches):
+        lengths[component] += np.array([1, match is not None]) * _loop_length(ring)
+        if match is not None:
+            joints[component].append((ring, mesh_loops[match]))
+    is_used = lengths[:, 1] > MIN_BRIDGED_FRACTION * lengths[:, 0]
+    _orient_components(bm, [joint for joined, use in zip(joints, is_used) if use for joint in joined])
     caps = []
-    for (faces, _), each, use in zip(groups, joints, used):
-        if not use or any(_run_alike(*joint) for joint in each):
+    for (faces, _), joined, use in zip(components, joints, is_used):
+        if not use or any(_have_same_direction(*joint) for joint in joined):
             verts = dict.fromkeys(vert for face in faces for vert in face.verts)
             bmesh.ops.delete(bm, geom=list(verts), context="VERTS")
             continue
         caps += faces
-        for ring, border in each:
-            caps += _strip(bm, border, ring[::-1])
+        for ring, match in joined:
+            caps += _add_strip(bm, match, ring[::-1])
     return caps
 
 
-def _turn_pieces(bm, joints):
-    """Turns those pieces of the mesh of which most borders run as the facets' do: two that a strip can join never do.
-    The borders, lists of vertices, are turned too."""
-    pieces = {}  # the number of the first border of each piece -> (its faces, borders, votes)
-    of, left = {}, set(bm.faces)
-    for number, (ring, border) in enumerate(joints):
-        if border[0] not in of:
-            faces = closing.reached(border[0].link_faces[0], left, closing.around)
-            pieces[number] = faces, [], []
-            of.update((vert, number) for face in faces for vert in face.verts)
-        _, borders, votes = pieces[of[border[0]]]
-        borders.append(border)
-        votes.append(len(border) if _run_alike(ring, border) else -len(border))
-    for faces, borders, votes in pieces.values():
+def _orient_components(bm: bmesh.types.BMesh, joints: list[tuple[list, list]]) -> None:
+    """Turns those components of the mesh whose joined loops mostly run in the facets' direction: a strip can only
+    join loops of opposite directions. The loops of joints [(facet loop, mesh loop), ...] are reversed with them."""
+    components = {}  # number of the first loop of a component -> (its faces, its loops, votes)
+    component_of, remaining = {}, set(bm.faces)
+    for number, (facet_loop, mesh_loop) in enumerate(joints):
+        if mesh_loop[0] not in component_of:
+            faces = closing.take_component(mesh_loop[0].link_faces[0], remaining, closing.faces_around)
+            components[number] = faces, [], []
+            component_of.update((vert, number) for face in faces for vert in face.verts)
+        _, loops, votes = components[component_of[mesh_loop[0]]]
+        loops.append(mesh_loop)
+        votes.append(len(mesh_loop) if _have_same_direction(facet_loop, mesh_loop) else -len(mesh_loop))
+    for faces, loops, votes in components.values():
         if sum(votes) > 0:
             for face in faces:
                 face.normal_flip()
-            for border in borders:
-                border.reverse()
+            for mesh_loop in loops:
+                mesh_loop.reverse()
 
 
-def _groups(bm, places, triangles):
-    """[(faces, borders), ...] of the new faces, those that are joined across edges together."""
-    used, triangles = np.unique(triangles, return_inverse=True)
-    verts = [closing.new_vert(bm, place) for place in places[used].tolist()]
-    new = [bm.faces.new([verts[k] for k in triangle]) for triangle in triangles.reshape(-1, 3).tolist()]
-    closing.set_apart(bm)
-    return [(faces, closing.borders([edge for face in faces for edge in face.edges if edge.is_boundary]))
-            for faces in closing.groups(new, closing.around)]
+def _add_facet_components(bm: bmesh.types.BMesh, positions: np.ndarray,
+                          triangles: np.ndarray) -> list[tuple[list, list]]:
+    """Adds the facets to the bmesh. Returns (faces, boundary loops) of each connected component."""
+    used_vertices, triangles = np.unique(triangles, return_inverse=True)
+    verts = [closing.add_vertex(bm, position) for position in positions[used_vertices].tolist()]
+    new_faces = [bm.faces.new([verts[k] for k in triangle]) for triangle in triangles.reshape(-1, 3).tolist()]
+    closing.split_non_manifold(bm)
+    return [(faces, closing.boundary_loops([edge for face in faces for edge in face.edges if edge.is_boundary]))
+            for faces in closing.connected_components(new_faces, closing.faces_around)]
 
 
-def _places(ring):
-    return np.array([vert.co[:] for vert in ring])
+def _positions(loop: list[bmesh.types.BMVert]) -> np.ndarray:
+    """(n, 3) positions of a loop's vertices."""
+    return np.array([vert.co[:] for vert in loop])
 
 
-def _length(ring):
-    places = _places(ring)
-    return np.linalg.norm(places - np.roll(places, 1, axis=0), axis=1).sum()
+def _loop_length(loop: list[bmesh.types.BMVert]) -> float:
+    """Length of a closed loop of vertices."""
+    positions = _positions(loop)
+    return np.linalg.norm(positions - np.roll(positions, 1, axis=0), axis=1).sum()
 
 
-def _pairs(rings, own):
-    """For each ring (n,3) which of the others it is to be joined with, or None; none with two."""
-    chosen = []
-    for ring in rings:
-        apart = [_apart(ring, other) for other in own]
-        best = int(np.argmin(apart))
-        chosen.append(best if apart[best] < NEAR else None)
-    return [None if choice is None or chosen.count(choice) > 1 else choice for choice in chosen]
+def _match_loops(facet_loops: list[np.ndarray], mesh_loops: list[np.ndarray]) -> list[int | None]:
+    """For each facet loop (n, 3), the index of its nearest mesh loop; None if it is too far or another facet loop
+    claims it, too."""
+    choices = []
+    for loop in facet_loops:
+        distances = [_loop_distance(loop, other) for other in mesh_loops]
+        nearest = int(np.argmin(distances))
+        choices.append(nearest if distances[nearest] < MAX_LOOP_DISTANCE else None)
+    return [None if choice is None or choices.count(choice) > 1 else choice for choice in choices]
 
 
-def _apart(one, other):
-    """Mean distance from each point of either to the nearest of the other, whichever is more, by the first's radius."""
-    radius = np.linalg.norm(one - one.mean(axis=0), axis=1).mean()
-    distance = np.linalg.norm(one[:, None] - other[None], axis=2)
+def _loop_distance(first: np.ndarray, second: np.ndarray) -> float:
+    """Symmetric mean distance between two loops of points (n, 3), the larger of both directions, divided by the first
+    one's mean radius."""
+    radius = np.linalg.norm(first - first.mean(axis=0), axis=1).mean()
+    distance = np.linalg.norm(first[:, None] - second[None], axis=2)
     return max(distance.min(axis=0).mean(), distance.min(axis=1).mean()) / max(radius, 1e-30)
 
 
-def _run_alike(one, other):
-    """Whether two rings of vertices run the same way."""
-    one, other = _places(one), _places(other)
-    nearest = np.linalg.norm(one[:, None] - other[None], axis=2).argmin(axis=1)
-    ahead, beyond = (np.roll(ring, -1, axis=0) - np.roll(ring, 1, axis=0) for ring in (one, other))
-    return float(np.einsum("ij,ij->", ahead, beyond[nearest])) > 0
+def _have_same_direction(first: list[bmesh.types.BMVert], second: list[bmesh.types.BMVert]) -> bool:
+    """Whether two loops of vertices run the same way."""
+    first, second = _positions(first), _positions(second)
+    nearest = np.linalg.norm(first[:, None] - second[None], axis=2).argmin(axis=1)
+    first_tangents, second_tangents = (np.roll(loop, -1, axis=0) - np.roll(loop, 1, axis=0) for loop in (first, second))
+    return float(np.einsum("ij,ij->", first_tangents, second_tangents[nearest])) > 0
 
 
-def _strip(bm, one, other):
-    """Triangles between two rings of vertices that run the same way, along the first: those whose edges across are the
-    shortest, together, of all that have the one between the nearest two (by dynamic programming, as Fuchs, Kedem and
-    Uselton 1977 find those of least area)."""
-    a, b = _places(one), _places(other)
+def _add_strip(bm: bmesh.types.BMesh, first: list[bmesh.types.BMVert],
+               second: list[bmesh.types.BMVert]) -> list[bmesh.types.BMFace]:
+    """Adds triangles between two loops of vertices that run the same way, and returns them. They minimize the total
+    length of the edges across, among all strips that contain the shortest one (dynamic programming, as in Fuchs,
+    Kedem and Uselton 1977 for least area)."""
+    a, b = _positions(first), _positions(second)
     start = np.unravel_index(np.linalg.norm(a[:, None] - b[None], axis=2).argmin(), (len(a), len(b)))
-    one, other = ([*ring[at:], *ring[:at], ring[at]] for ring, at in zip((one, other), start))
+    first, second = ([*loop[index:], *loop[:index], loop[index]] for loop, index in zip((first, second), start))
     faces, i, j = [], 0, 0
-    for along in _along(np.linalg.norm(_places(one)[:, None] - _places(other)[None], axis=2)):
-        if along:
-            faces.append(bm.faces.new((one[i], one[i + 1], other[j])))
+    for is_first in _cheapest_steps(np.linalg.norm(_positions(first)[:, None] - _positions(second)[None], axis=2)):
+        if is_first:
+            faces.append(bm.faces.new((first[i], first[i + 1], second[j])))
             i += 1
         else:
-            faces.append(bm.faces.new((one[i], other[j + 1], other[j])))
+            faces.append(bm.faces.new((first[i], second[j + 1], second[j])))
             j += 1
     return faces
 
 
-def _along(across):
-    """The steps from the first to the last of across (n+1,m+1), True along the first axis and False along the second,
-    for which the sum of what is passed is least."""
-    n, m = np.array(across.shape) - 1
-    # No edge across is there twice, though both rings end where they began: at most half of either lies before it.
-    across = across.copy()
-    across[0, m // 2 + 1:] = across[n, :m // 2 + 1] = np.inf
-    across[n // 2 + 1:, 0] = across[:n // 2 + 1, m] = np.inf
-    across[n, m] = 0
-    least = np.full((n + 2, m + 2), np.inf)  # with a row and a column before
-    least[1, 1] = 0
-    for step in range(1, n + m + 1):  # all that are so many steps from the first
-        i = np.arange(max(step - m, 0), min(step, n) + 1)
-        j = step - i
-        least[i + 1, j + 1] = np.minimum(least[i, j + 1], least[i + 1, j]) + across[i, j]
+def _cheapest_steps(costs: np.ndarray) -> list[bool]:
+    """The monotone path of least total cost from the first to the last cell of costs (n+1, m+1): for each step,
+    whether it is along the first axis."""
+    n, m = np.array(costs.shape) - 1
+    # Both loops end where they began: to use no edge across twice, a corner of the grid is closed on either side.
+    costs = costs.copy()
+    costs[0, m // 2 + 1:] = costs[n, :m // 2 + 1] = np.inf
+    costs[n // 2 + 1:, 0] = costs[:n // 2 + 1, m] = np.inf
+    costs[n, m] = 0
+    least_cost = np.full((n + 2, m + 2), np.inf)  # with a row and a column of infinities before it
+    least_cost[1, 1] = 0
+    for count in range(1, n + m + 1):  # all cells at this number of steps from the first
+        i = np.arange(max(count - m, 0), min(count, n) + 1)
+        j = count - i
+        least_cost[i + 1, j + 1] = np.minimum(least_cost[i, j + 1], least_cost[i + 1, j]) + costs[i, j]
     steps, i, j = [], n, m
     while i or j:
-        steps.append(bool(least[i, j + 1] <= least[i + 1, j]))
+        steps.append(bool(least_cost[i, j + 1] <= least_cost[i + 1, j]))
         i, j = (i - 1, j) if steps[-1] else (i, j - 1)
     return steps[::-1]

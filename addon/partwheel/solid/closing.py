@@ -1,166 +1,180 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Borders of a bmesh closed by faces, flat or going on as the surface about them does. A set of its elements is
-only asked what it holds: its order is that of memory, another on every run."""
+"""Closes boundary loops of a bmesh by flat or smooth caps.
+
+Sets of bmesh elements are used for membership tests only: their order depends on addresses and changes from run to
+run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any
 
 import bmesh
 import numpy as np
 
-RINGS = 4  # of faces in a smooth cap, between its border and its middle
-STEPS = 200  # of fairing
+CAP_RINGS = 4  # rings of faces in a smooth cap, between its boundary and its center
+FAIRING_STEPS = 200
+FAIRING_STEP_SIZE = 0.4
 
 
-def set_apart(bm):
-    """Afterwards at most two faces meet at each edge, wound alike, and the faces about each vertex are one fan."""
+def split_non_manifold(bm: bmesh.types.BMesh) -> None:
+    """Splits edges and vertices until at most two faces, wound alike, meet at each edge and the faces around each
+    vertex form one fan."""
     bad = [edge for edge in bm.edges
            if len(edge.link_faces) > 2 or (len(edge.link_faces) == 2 and not edge.is_contiguous)]
     if bad:
         bmesh.ops.split_edges(bm, edges=bad)
     for vert in [vert for vert in bm.verts if vert.is_boundary]:
-        fans = _fans(vert)
+        fans = _edge_fans(vert)
         for fan in fans[1:]:
             bmesh.utils.vert_separate(vert, [edge for edge in fan if edge.is_boundary])
 
 
-def _fans(vert):
-    """The edges about a vertex in groups that are joined by faces."""
-    return groups((edge for edge in vert.link_edges if edge.link_faces),
-                  lambda edge: (other for face in edge.link_faces for other in face.edges))
+def _edge_fans(vert: bmesh.types.BMVert) -> list[list[bmesh.types.BMEdge]]:
+    """The edges at a vertex, grouped by the fans of faces that connect them."""
+    return connected_components((edge for edge in vert.link_edges if edge.link_faces),
+                                lambda edge: (other for face in edge.link_faces for other in face.edges))
 
 
-def groups(items, beside):
-    """The items in lists of those that are joined by steps to one that is beside(item)."""
+def connected_components(items: Iterable, neighbors: Callable[[Any], Iterable]) -> list[list]:
+    """The items as lists, one for each connected component of the graph given by neighbors(item). In the order of the
+    items."""
     items = list(items)
-    left = set(items)
-    return [reached(first, left, beside) for first in items if first in left]
+    remaining = set(items)
+    return [take_component(first, remaining, neighbors) for first in items if first in remaining]
 
 
-def reached(first, left, beside):
-    """The list of those of a set that are joined so with the first, which it then has no more."""
-    left.remove(first)
-    group = [first]
-    for each in group:
-        new = [other for other in dict.fromkeys(beside(each)) if other in left]
-        left.difference_update(new)
-        group += new
-    return group
+def take_component(first: Any, remaining: set, neighbors: Callable[[Any], Iterable]) -> list:
+    """Removes the connected component of the first item from the set of remaining items, and returns it as a list."""
+    remaining.remove(first)
+    component = [first]
+    for item in component:
+        new = [other for other in dict.fromkeys(neighbors(item)) if other in remaining]
+        remaining.difference_update(new)
+        component += new
+    return component
 
 
-def fill(bm, smooth, open_before):
-    """Closes every other border by rings of faces around a new vertex in its middle; smooth: relaxed so that they go on
-    as the surface about them does. The new faces."""
+def fill_boundary_loops(bm: bmesh.types.BMesh, smooth: bool,
+                        excluded_edges: set[bmesh.types.BMEdge]) -> list[bmesh.types.BMFace]:
+    """Closes every boundary loop, except those of excluded edges, by a fan around a new vertex in its center. Returns
+    the new faces. smooth: with rings of faces between, faired to continue the surface."""
     caps = []
-    for border in borders([edge for edge in bm.edges if edge.is_boundary and edge not in open_before]):
-        caps += _fill_border(bm, border, RINGS if smooth else 0)
+    for loop in boundary_loops([edge for edge in bm.edges if edge.is_boundary and edge not in excluded_edges]):
+        caps += _fill_loop(bm, loop, CAP_RINGS if smooth else 0)
     return caps
 
 
-def borders(edges):
-    """The borders that a list of edges makes, each as its vertices in the order that new faces run along it."""
-    left = set(edges)
-    return list(filter(None, (_border(first, left) for first in edges if first in left)))
+def boundary_loops(edges: list[bmesh.types.BMEdge]) -> list[list[bmesh.types.BMVert]]:
+    """The closed loops that a list of boundary edges forms, each as its vertices in the order in which new faces run
+    along it."""
+    remaining = set(edges)
+    return list(filter(None, (_trace_boundary_loop(first, remaining) for first in edges if first in remaining)))
 
 
-def _border(edge, left):
-    """The vertices of a border in the order that new faces run along it: against its own faces."""
-    left.remove(edge)
-    loop = edge.link_loops[0]
-    start, vert = loop.link_loop_next.vert, loop.vert
-    border = [start]
+def _trace_boundary_loop(edge: bmesh.types.BMEdge, remaining: set[bmesh.types.BMEdge]) -> list[bmesh.types.BMVert]:
+    """The vertices of the loop with this edge, in the order in which new faces run along it, against its own faces;
+    [] if it is not closed. Removes its edges from the remaining ones."""
+    remaining.remove(edge)
+    corner = edge.link_loops[0]
+    start, vert = corner.link_loop_next.vert, corner.vert
+    boundary = [start]
     while vert != start:
-        border.append(vert)
-        edge = next((other for other in vert.link_edges if other in left), None)
+        boundary.append(vert)
+        edge = next((other for other in vert.link_edges if other in remaining), None)
         if edge is None:
             return []
-        left.remove(edge)
+        remaining.remove(edge)
         vert = edge.other_vert(vert)
-    return border
+    return boundary
 
 
-def _fill_border(bm, border, rings):
-    middle = sum((vert.co for vert in border[1:]), border[0].co.copy()) / len(border)
-    rows, caps = [border], []
-    for ring in range(rings):
-        share = (ring + 1) / (rings + 1)
-        rows.append([new_vert(bm, vert.co.lerp(middle, share)) for vert in border])
-    top = new_vert(bm, middle)
-    count = len(border)
+def _fill_loop(bm: bmesh.types.BMesh, loop: list[bmesh.types.BMVert], n_rings: int) -> list[bmesh.types.BMFace]:
+    """Closes one loop of vertices by n_rings rings of quads and a fan of triangles. Returns the new faces."""
+    center = sum((vert.co for vert in loop[1:]), loop[0].co.copy()) / len(loop)
+    rows, caps = [loop], []
+    for ring in range(n_rings):
+        fraction = (ring + 1) / (n_rings + 1)
+        rows.append([add_vertex(bm, vert.co.lerp(center, fraction)) for vert in loop])
+    apex = add_vertex(bm, center)
+    count = len(loop)
     for outer, inner in zip(rows, rows[1:]):
         caps += [bm.faces.new((outer[i], outer[(i + 1) % count], inner[(i + 1) % count], inner[i]))
                  for i in range(count)]
-    caps += [bm.faces.new((rows[-1][i], rows[-1][(i + 1) % count], top)) for i in range(count)]
+    caps += [bm.faces.new((rows[-1][i], rows[-1][(i + 1) % count], apex)) for i in range(count)]
     for face in caps:
-        face.smooth = rings > 0
-    if rings:
-        _fair(rows, top)
+        face.smooth = n_rings > 0
+    if n_rings:
+        _fair_cap(rows, apex)
     return caps
 
 
-def turn_outwards(bm, told):
-    """Turns those pieces of a closed bmesh that are inside out, but for pieces with one of the faces told: what was
-    open has no outside before it is closed."""
-    told = set(told)
-    for piece in groups(bm.faces, around):
-        if told.isdisjoint(piece) and _volume(piece) < 0:
-            for face in piece:
+def orient_outward(bm: bmesh.types.BMesh, exempt_faces: Iterable[bmesh.types.BMFace]) -> None:
+    """Turns the components of a closed bmesh that are inside out, except those with exempt faces: the side of these
+    is already known."""
+    exempt_faces = set(exempt_faces)
+    for component in connected_components(bm.faces, faces_around):
+        if exempt_faces.isdisjoint(component) and _six_volumes(component) < 0:
+            for face in component:
                 face.normal_flip()
 
 
-def around(face):
-    """Those that it has a vertex in common with."""
+def faces_around(face: bmesh.types.BMFace) -> Iterator[bmesh.types.BMFace]:
+    """The faces that share a vertex with this one."""
     return (other for corner in face.verts for other in corner.link_faces)
 
 
-def _volume(faces):
-    """Six times that of closed faces."""
-    about, volume = faces[0].verts[0].co, 0.0
+def _six_volumes(faces: list[bmesh.types.BMFace]) -> float:
+    """Six times the volume that closed faces enclose."""
+    origin, volume = faces[0].verts[0].co, 0.0
     for face in faces:
-        first, *others = (vert.co - about for vert in face.verts)
-        volume += sum(first.dot(one.cross(other)) for one, other in zip(others, others[1:]))
+        first, *rest = (vert.co - origin for vert in face.verts)
+        volume += sum(first.dot(second.cross(third)) for second, third in zip(rest, rest[1:]))
     return volume
 
 
-def new_vert(bm, place):
-    """There in all shape keys."""
-    vert = bm.verts.new(place)
+def add_vertex(bm: bmesh.types.BMesh, position: Sequence[float]) -> bmesh.types.BMVert:
+    """A new vertex that has this position in all shape keys."""
+    vert = bm.verts.new(position)
     for key in bm.verts.layers.shape.values():
         vert[key] = vert.co
     return vert
 
 
-def _fair(rows, top):
-    """Moves the new vertices until the discrete bi-Laplacian vanishes (Kobbelt et al. 1998), so that the cap leaves the
-    border as the surface arrives there. Rows of vertices from the border inwards; the border and what lies outside it
+def _fair_cap(rows: list[list[bmesh.types.BMVert]], apex: bmesh.types.BMVert) -> None:
+    """Moves the vertices of a cap until the discrete bi-Laplacian vanishes (Kobbelt et al. 1998), so that the cap
+    continues the surface. rows: vertices in rings from the boundary loop inward. The loop itself and all outside it
     stay."""
-    border = rows[0]
-    count = len(border)
+    loop = rows[0]
+    count = len(loop)
     inside = np.array([[vert.co[:] for vert in row] for row in rows[1:]])
-    fixed = np.array([vert.co[:] for vert in border])
-    # One row outside the border: where the surface comes from.
-    new = {vert for row in rows[1:] for vert in row} | {top}
-    beside = []
-    for vert in border:
-        around = [edge.other_vert(vert).co for edge in vert.link_edges
-                  if edge.other_vert(vert) not in new and edge.other_vert(vert) not in border]
-        beside.append(sum(around[1:], around[0].copy()) / len(around) if around else vert.co)
-    beside = np.array([co[:] for co in beside])
-    size = np.linalg.norm(inside[0] - fixed, axis=1).mean()
-    away = beside - fixed
-    length = np.linalg.norm(away, axis=1, keepdims=True)
-    beside = fixed + away * (size / np.maximum(length, 1e-30))
-    grid = np.concatenate([beside[None], fixed[None], inside])
-    peak = np.array(top.co[:])
-    for _ in range(STEPS):
-        full = np.concatenate([grid, np.broadcast_to(peak, (1, count, 3))])
+    fixed = np.array([vert.co[:] for vert in loop])
+    # One row outside the boundary loop continues the surface.
+    new = {vert for row in rows[1:] for vert in row} | {apex}
+    outer = []
+    for vert in loop:
+        neighbors = [edge.other_vert(vert).co for edge in vert.link_edges
+                     if edge.other_vert(vert) not in new and edge.other_vert(vert) not in loop]
+        outer.append(sum(neighbors[1:], neighbors[0].copy()) / len(neighbors) if neighbors else vert.co)
+    outer = np.array([co[:] for co in outer])
+    spacing = np.linalg.norm(inside[0] - fixed, axis=1).mean()
+    direction = outer - fixed
+    length = np.linalg.norm(direction, axis=1, keepdims=True)
+    outer = fixed + direction * (spacing / np.maximum(length, 1e-30))
+    grid = np.concatenate([outer[None], fixed[None], inside])
+    apex_position = np.array(apex.co[:])
+    for _ in range(FAIRING_STEPS):
+        full = np.concatenate([grid, np.broadcast_to(apex_position, (1, count, 3))])
         umbrella = np.zeros_like(full)
         umbrella[1:-1] = (full[:-2] + full[2:] + np.roll(full[1:-1], 1, axis=1) + np.roll(full[1:-1], -1, axis=1)
                           ) / 4 - full[1:-1]
-        umbrella[-1] = grid[-1].mean(axis=0) - peak
+        umbrella[-1] = grid[-1].mean(axis=0) - apex_position
         second = np.zeros_like(full)
         second[2:-1] = (umbrella[1:-2] + umbrella[3:] + np.roll(umbrella[2:-1], 1, axis=1)
                         + np.roll(umbrella[2:-1], -1, axis=1)) / 4 - umbrella[2:-1]
-        grid[2:] -= 0.4 * second[2:-1]
-        peak = peak - 0.4 * (umbrella[-2].mean(axis=0) - umbrella[-1][0])
-    for row, places in zip(rows[1:], grid[2:]):
-        for vert, place in zip(row, places):
-            vert.co = place
-    top.co = peak
+        grid[2:] -= FAIRING_STEP_SIZE * second[2:-1]
+        apex_position = apex_position - FAIRING_STEP_SIZE * (umbrella[-2].mean(axis=0) - umbrella[-1][0])
+    for row, positions in zip(rows[1:], grid[2:]):
+        for vert, position in zip(row, positions):
+            vert.co = position
+    apex.co = apex_position

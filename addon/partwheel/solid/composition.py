@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects made of parts (the paper, section 4.2): copied and split off. In Object Mode; the caller looks after undo."""
+"""Objects made from parts (paper, section 4.2): copies, removals and splits. In Object Mode; undo is up to the
+caller."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 import bpy
@@ -13,167 +17,180 @@ from ..mesh.errors import Refused
 from ..pick import borders
 from ..words.say import rpt_
 from . import solids
+from partwheel import Hierarchy
 
-HULL = "partwheel_hull"  # the property of objects that Convex Parts removes again: never of a copy
-WHOLE = "The part is the whole model: nothing would be left without it. Pick a smaller one."
-# How modifiers say that they were bound to the vertices of a mesh, as copies have no longer.
-_BOUND = {"SURFACE_DEFORM": "is_bound", "MESH_DEFORM": "is_bound", "CORRECTIVE_SMOOTH": "is_bind", "LAPLACIANDEFORM": "is_bind"}
+HULL_PROPERTY = "partwheel_hull"  # property of the objects that Convex Parts replaces; copies of them don't get it
+WHOLE_MODEL_MESSAGE = "The part is the whole model: nothing would be left without it. Pick a smaller one."
+# Modifier type -> its property that says whether it is bound to the vertices of a mesh. Copies have other vertices.
+_BIND_PROPERTIES = {"SURFACE_DEFORM": "is_bound", "MESH_DEFORM": "is_bound", "CORRECTIVE_SMOOTH": "is_bind",
+                    "LAPLACIANDEFORM": "is_bind"}
 
 
 @all_or_nothing()
-
-def copied(obj, hierarchy, node, options=solids.Options(), snap=False, collection=None):
-    """A new object with the part as a closed mesh, in the place of the part; beside the object, or in a collection. snap:
-    with its border in creases, as far as the tetrahedra about it let it be there."""
+def create_part_object(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
+                       options: solids.CapOptions = solids.CapOptions(), snap: bool = False,
+                       collection: bpy.types.Collection | None = None) -> bpy.types.Object:
+    """A new object with the part as a closed mesh, where the part is; in the object's collections, or in the given
+    one. snap: with its border in creases, as far as the tetrahedra nearby allow it."""
     update_matrices()
-    return beside(obj, part_mesh(obj, hierarchy, node, options, snap), f"{obj.name} part", collection)
+    return create_object_like(obj, create_part_mesh(obj, hierarchy, node, options, snap), f"{obj.name} part",
+                              collection)
 
 
-def part_mesh(obj, hierarchy, node, options=solids.Options(), snap=False):
-    """The new mesh of such an object."""
-    first, last = _slice(hierarchy, node)
-    return solids.part(obj, hierarchy, first, last, options, moved_faces(obj, hierarchy, node, snap))
+def create_part_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
+                     options: solids.CapOptions = solids.CapOptions(), snap: bool = False) -> bpy.types.Mesh:
+    """The mesh of create_part_object()."""
+    first, last = _tetrahedron_slice(hierarchy, node)
+    return solids.create_mesh(obj, hierarchy, first, last, options, snapped_faces(obj, hierarchy, node, snap))
 
 
 @all_or_nothing()
-def removed(obj, hierarchy, node, options=solids.Options(), snap=False):
-    """Takes the part, as copied() makes it, out of the object's mesh and closes the hole."""
-    first, last = _slice(hierarchy, node)
-    faces = moved_faces(obj, hierarchy, node, snap)
-    check_rest(hierarchy, node, faces)
-    with hooks_kept(obj):
-        solids.remove(obj, hierarchy, first, last, options, faces)
+def remove_part(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
+                options: solids.CapOptions = solids.CapOptions(), snap: bool = False) -> None:
+    """Removes the part, as create_part_object() copies it, from the object's mesh and closes the hole."""
+    first, last = _tetrahedron_slice(hierarchy, node)
+    faces = snapped_faces(obj, hierarchy, node, snap)
+    check_rest_has_faces(hierarchy, node, faces)
+    with preserve_hooks(obj):
+        solids.remove_from_mesh(obj, hierarchy, first, last, options, faces)
 
 
-def check_rest(hierarchy, node, faces=None):
-    """Raises Refused if nothing of the model is left without a node. faces (F,) bool: those that it has instead."""
+def check_rest_has_faces(hierarchy: Hierarchy, node: int, faces: np.ndarray | None = None) -> None:
+    """Raises Refused if no face is left without the node. faces (F,) bool: the part's faces, if other than the
+    node's."""
     count = len(hierarchy.faces(node)) if faces is None else np.count_nonzero(faces)
     if count == len(hierarchy.order):
-        raise Refused(WHOLE)
+        raise Refused(WHOLE_MODEL_MESSAGE)
 
 
-def rest(obj, hierarchy, node, snap=False):
-    """A new mesh: the object's without the part, as removed() leaves it, but for what has no face."""
-    solids.check_resolution(obj)
-    first, last = _slice(hierarchy, node)
-    faces = moved_faces(obj, hierarchy, node, snap)
-    check_rest(hierarchy, node, faces)
-    return solids.part(obj, hierarchy, last, first, faces=faces)
+def create_rest_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snap: bool = False) -> bpy.types.Mesh:
+    """A new mesh: the object's without the part, as remove_part() leaves it, but without loose edges and vertices."""
+    solids.check_no_multires(obj)
+    first, last = _tetrahedron_slice(hierarchy, node)
+    faces = snapped_faces(obj, hierarchy, node, snap)
+    check_rest_has_faces(hierarchy, node, faces)
+    return solids.create_mesh(obj, hierarchy, last, first, faces=faces)
 
 
 @all_or_nothing()
-def split(obj, hierarchy, bounds, options=solids.Options(), explode=0.0):
-    """New objects in a new collection: the parts of a cut as closed meshes, those without faces left out. Each is moved
-    away from the middle of the object's bounding box by explode times its distance to it."""
+def split_into_objects(obj: bpy.types.Object, hierarchy: Hierarchy, bounds: np.ndarray,
+                       options: solids.CapOptions = solids.CapOptions(),
+                       explode: float = 0.0) -> list[bpy.types.Object]:
+    """New objects in a new collection: the parts of a cut as closed meshes. Parts without faces are left out. Each
+    object moves away from the center of the object's bounding box by explode times its distance."""
     update_matrices()
-    middle = sum((Vector(corner) for corner in obj.bound_box), Vector()) / 8
-    made = []
-    meshes = solids.parts(obj, hierarchy, list(zip(bounds.tolist(), bounds[1:].tolist())), options)
-    collection = new_collection(obj, f"{obj.name} parts")
+    center = sum((Vector(corner) for corner in obj.bound_box), Vector()) / 8
+    objects = []
+    meshes = solids.create_meshes(obj, hierarchy, list(zip(bounds.tolist(), bounds[1:].tolist())), options)
+    collection = create_collection(obj, f"{obj.name} parts")
     for mesh in filter(None, meshes):
-        part = beside(obj, mesh, f"{obj.name} part", collection)
+        part = create_object_like(obj, mesh, f"{obj.name} part", collection)
         corners = arrays.read(mesh.vertices, "co", np.float32, 3)
-        away = Vector((corners.min(axis=0) + corners.max(axis=0)) / 2) - middle
-        part.delta_location += obj.matrix_basis.to_3x3() @ away * explode  # what is animated stays so
-        made.append(part)
+        offset = Vector((corners.min(axis=0) + corners.max(axis=0)) / 2) - center
+        part.delta_location += obj.matrix_basis.to_3x3() @ offset * explode  # delta: the location may be animated
+        objects.append(part)
     update_matrices()
-    return made
+    return objects
 
 
-def update_matrices():
-    """Afterwards each object's matrix_world fits its location, rotation and scale. Blender 5 forgets the matrices at
+def update_matrices() -> None:
+    """Makes each object's matrix_world match its location, rotation and scale. Blender 5 forgets the matrices at
     undo, and repeats an operator with other options right after that."""
     bpy.context.view_layer.update()
 
 
-def homes(obj):
-    """The collections that new objects beside this one go to: all that it is in, but for those that Blender can't edit, since
-    another file holds them; the scene's if none of them is in the view layer. Raises Refused if that can't be edited."""
-    found = [each for each in obj.users_collection if not each.library and not each.override_library]
+def target_collections(obj: bpy.types.Object) -> list[bpy.types.Collection]:
+    """The collections for new objects like this one: all of its collections that are editable, those in the view
+    layer first; the scene's collection if none of them is in the view layer. Raises Refused if that is not editable."""
+    editable = [collection for collection in obj.users_collection if not collection.library
+                and not collection.override_library]
     scene = bpy.context.scene
-    shown = set(_shown(bpy.context.view_layer.layer_collection))
-    if shown.isdisjoint(found) and (not found or obj.name in bpy.context.view_layer.objects):
+    included = set(_included_collections(bpy.context.view_layer.layer_collection))
+    if included.isdisjoint(editable) and (not editable or obj.name in bpy.context.view_layer.objects):
         if scene.library or scene.override_library:
             raise Refused("The scene is linked from another file, and nothing can be added to it.")
-        return [scene.collection, *found]
-    return sorted(found, key=lambda each: each not in shown)
+        return [scene.collection, *editable]
+    return sorted(editable, key=lambda collection: collection not in included)
 
 
-def _shown(layer):
-    """The collections of a view layer, from this one on, that are not excluded."""
-    if not layer.exclude:
-        yield layer.collection
-    for child in layer.children:
-        yield from _shown(child)
+def _included_collections(layer_collection: bpy.types.LayerCollection) -> Iterator[bpy.types.Collection]:
+    """The collections of a view layer, from this one down, that are not excluded."""
+    if not layer_collection.exclude:
+        yield layer_collection.collection
+    for child in layer_collection.children:
+        yield from _included_collections(child)
 
 
-def home(obj):
-    """The collection that new ones beside this object go to."""
-    return homes(obj)[0]
+def target_collection(obj: bpy.types.Object) -> bpy.types.Collection:
+    """The first of target_collections()."""
+    return target_collections(obj)[0]
 
 
-def new_collection(obj, name):
-    """For what is made of the object."""
-    parent, collection = home(obj), bpy.data.collections.new(name)
+def create_collection(obj: bpy.types.Object, name: str) -> bpy.types.Collection:
+    """A new collection for objects made from this one."""
+    parent, collection = target_collection(obj), bpy.data.collections.new(name)
     parent.children.link(collection)
     return collection
 
 
-def moved_faces(obj, hierarchy, node, snap):
-    """(F,) bool: the faces of a node with its border in creases; None for its own: if not snap, or if it has none."""
+def snapped_faces(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snap: bool) -> np.ndarray | None:
+    """(F,) bool: the faces of a node with its border in creases; None (the node's own faces) without snap or faces."""
     return borders.inside(obj, hierarchy, node) if snap and len(hierarchy.faces(node)) else None
 
 
-def _slice(hierarchy, node):
+def _tetrahedron_slice(hierarchy: Hierarchy, node: int) -> tuple[int, int]:
     return int(hierarchy.tet_first[node]), int(hierarchy.tet_last[node])
 
 
-def beside(obj, mesh, name, collection=None):
-    """A new object with this mesh, made of the object's, and all else as the object has it, as Blender's Separate makes one:
-    parent, modifiers, constraints, animation and drivers, custom properties, slots. In the object's collections; collection:
-    in place of the first of them. Only levels of sculpting go, see losses()."""
+def create_object_like(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
+                       collection: bpy.types.Collection | None = None) -> bpy.types.Object:
+    """A new object with this mesh, made from the object's, and all else like the object, as Blender's Separate does
+    it: parent, modifiers, constraints, animation, drivers, custom properties, material slots. In the object's
+    collections; collection: in place of the first of them. Multires levels are lost, see loss_messages()."""
     new = _local_copy(obj)
     new.data, new.name = mesh, name
-    if HULL in new:
-        del new[HULL]
-    for each in homes(obj) if collection is None else [collection, *homes(obj)[1:]]:
-        each.objects.link(new)
-    images = {obj: new, obj.data: mesh, **({obj.data.shape_keys: mesh.shape_keys} if mesh.shape_keys else {})}
+    if HULL_PROPERTY in new:
+        del new[HULL_PROPERTY]
+    for target in target_collections(obj) if collection is None else [collection, *target_collections(obj)[1:]]:
+        target.objects.link(new)
+    copies = {obj: new, obj.data: mesh, **({obj.data.shape_keys: mesh.shape_keys} if mesh.shape_keys else {})}
     for block in (new, mesh, mesh.shape_keys):
         if block:
             own_actions(block)
-            redirect_drivers(block, images)
+            redirect_drivers(block, copies)
     for modifier in list(new.modifiers):
         if modifier.type == "MULTIRES" and modifier.total_levels:
             new.modifiers.remove(modifier)
-    _hook(new, _hooked(obj))
+    _bind_hooks(new, _hook_positions(obj))
     return new
 
 
 @contextmanager
-def hooks_kept(obj):
-    """What is in this block gives the object's mesh other vertices; its Hook modifiers go on to move those at the same
-    places."""
-    hooked = _hooked(obj)
+def preserve_hooks(obj: bpy.types.Object) -> Iterator[None]:
+    """While the block gives the object's mesh other vertices, its Hook modifiers stay bound to the vertices at the
+    same positions."""
+    hook_positions = _hook_positions(obj)
     yield
-    _hook(obj, hooked)
+    _bind_hooks(obj, hook_positions)
 
 
-def _hooked(obj):
-    """{modifier: the places of the vertices that it names by number}"""
+def _hook_positions(obj: bpy.types.Object) -> dict[str, set[tuple[float, ...]]]:
+    """{modifier name: positions of the vertices that a Hook modifier moves}"""
     vertices = obj.data.vertices
     return {modifier.name: {tuple(vertices[vertex].co) for vertex in modifier.vertex_indices}
             for modifier in obj.modifiers if modifier.type == "HOOK" and len(modifier.vertex_indices)}
 
 
-def _hook(obj, hooked):
-    for name, places in hooked.items():
-        obj.modifiers[name].vertex_indices_set([vertex.index for vertex in obj.data.vertices if tuple(vertex.co) in places])
+def _bind_hooks(obj: bpy.types.Object, hook_positions: dict[str, set[tuple[float, ...]]]) -> None:
+    """Binds Hook modifiers to the vertices at these positions."""
+    for name, positions in hook_positions.items():
+        obj.modifiers[name].vertex_indices_set([vertex.index for vertex in obj.data.vertices
+                                                if tuple(vertex.co) in positions])
 
 
-def _local_copy(obj):
-    """Also of an override, of which Blender makes another override."""
-    if obj.override_library and bpy.app.version < (4, 0, 0):  # it has no way to make that local
+def _local_copy(obj: bpy.types.Object) -> bpy.types.Object:
+    """A local copy of the object, also of a library override, which Blender would copy as another override."""
+    if obj.override_library and bpy.app.version < (4, 0, 0):  # which can't make an override local
         new = obj.override_library.reference.copy()
         copy_settings(obj, new, {"name", "data", "dimensions", "matrix_world", "matrix_local", "matrix_basis"})
         return new
@@ -181,32 +198,33 @@ def _local_copy(obj):
     return new.make_local(clear_liboverride=True) if new.override_library else new
 
 
-def bare(obj, mesh, name, collection=None):
-    """A new object with this mesh in the object's place, and nothing else of it."""
+def create_bare_object(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
+                       collection: bpy.types.Collection | None = None) -> bpy.types.Object:
+    """A new object with this mesh and the object's transform, and nothing else of it."""
     new = bpy.data.objects.new(name, mesh)
-    (collection or home(obj)).objects.link(new)
+    (collection or target_collection(obj)).objects.link(new)
     new.matrix_world = obj.matrix_world
     return new
 
 
-def losses(obj):
-    """Sentences on what objects made of the object's parts will not have, to be said beforehand; [] if they have all."""
-    found = []
-    if any(each.type == "MULTIRES" and each.total_levels for each in obj.modifiers):
-        found.append(rpt_("{name} is sculpted in several resolutions: the new objects have only the coarsest one. To keep the "
-                          "details, apply its Multiresolution modifier first.").format(name=obj.name))
-    keys = obj.data.shape_keys and obj.data.shape_keys.animation_data
-    if keys and any(not strip.action for track in keys.nla_tracks for strip in track.strips):
-        found.append(rpt_("The shape keys of {name} have NLA strips that play no action: the new objects go without those.").format(
-            name=obj.name))
-    return found + bound(obj)
+def loss_messages(obj: bpy.types.Object) -> list[str]:
+    """Warnings for the user about what objects made from the object's parts will lack; [] if nothing."""
+    messages = []
+    if any(modifier.type == "MULTIRES" and modifier.total_levels for modifier in obj.modifiers):
+        messages.append(rpt_("{name} is sculpted in several resolutions: the new objects have only the coarsest one. "
+                             "To keep the details, apply its Multiresolution modifier first.").format(name=obj.name))
+    animation = obj.data.shape_keys and obj.data.shape_keys.animation_data
+    if animation and any(not strip.action for track in animation.nla_tracks for strip in track.strips):
+        messages.append(rpt_("The shape keys of {name} have NLA strips that play no action: the new objects go without "
+                             "those.").format(name=obj.name))
+    return messages + bound_modifier_messages(obj)
 
 
-def bound(obj):
-    """The same on what depends on the very vertices of the object's mesh."""
-    found = []
-    for each in obj.modifiers:
-        if getattr(each, _BOUND.get(each.type, ""), False):
-            found.append(rpt_("The modifier {modifier} is bound to the vertices of {name}, which will be others: bind it "
-                              "again.").format(modifier=each.name, name=obj.name))
-    return found
+def bound_modifier_messages(obj: bpy.types.Object) -> list[str]:
+    """Warnings about modifiers that are bound to the vertices of the object's mesh."""
+    messages = []
+    for modifier in obj.modifiers:
+        if getattr(modifier, _BIND_PROPERTIES.get(modifier.type, ""), False):
+            messages.append(rpt_("The modifier {modifier} is bound to the vertices of {name}, which will be others: "
+                                 "bind it again.").format(modifier=modifier.name, name=obj.name))
+    return messages

@@ -12,65 +12,66 @@ from ..parts import picks, registry
 from ..pick import borders
 from ..pick.build import Beside, waited_for
 from . import composition, solids
-from partwheel import Error
+from partwheel import Error, Hierarchy
 from partwheel.likeness import nearest
 
-OVERLAP = 0.9  # of what is selected with a part, to be taken for it
+MIN_OVERLAP = 0.9  # overlap of the selected faces with a part, to count as this part
 
 
-class OnParts(NeedsActiveMesh):
-    """What operators on an object with parts share: Edit Mode, errors."""
+class PartsOperator(NeedsActiveMesh):
+    """Base of operators on an object with parts: leaves and reenters Edit Mode, reports errors."""
 
     bl_options = {"REGISTER", "UNDO"}
-    edits = False  # whether it changes the mesh itself: then Edit Mode goes on afterwards
+    edits_mesh = False  # whether it changes the mesh itself: then it returns to Edit Mode
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         obj = context.active_object
         try:
             self.check(obj)
             if not waited_for(self, context, obj):
                 return {"CANCELLED"}
-            hierarchy = self.hierarchy(obj)
-            for sentence in self.losses(obj):
+            hierarchy = self.require_hierarchy(obj)
+            for sentence in self.loss_messages(obj):
                 self.report({"WARNING"}, sentence)
             with all_or_nothing():
-                self._outside_edit_mode(context, obj, hierarchy)
+                self._run_in_object_mode(context, obj, hierarchy)
         except Error as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         return {"FINISHED"}
 
-    def _outside_edit_mode(self, context, obj, hierarchy):
+    def _run_in_object_mode(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> None:
         was_edited = obj.mode == "EDIT"
         if was_edited:
             bpy.ops.object.mode_set(mode="OBJECT")
-            if not self.edits:
-                # Undo steps of Edit Mode hold its mesh alone: without this one, undo would leave the new objects.
+            if not self.edits_mesh:
+                # Undo steps of Edit Mode hold only its mesh: without this step, undo would leave the new objects.
                 bpy.ops.ed.undo_push(message="Leave Edit Mode")
-        self.work(context, obj, hierarchy)
-        if was_edited and self.edits:
+        self.run(context, obj, hierarchy)
+        if was_edited and self.edits_mesh:
             bpy.ops.object.mode_set(mode="EDIT")
 
-    def losses(self, _obj):
-        """Sentences on what will be lost."""
+    def loss_messages(self, _obj: bpy.types.Object) -> list[str]:
+        """Warnings about what will be lost."""
         return []
 
-    def _lacking(self, context):
+    def _lacking(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         self.check(context.active_object)
         return super()._lacking(context)
 
-    def check(self, obj):
-        """Raises Refused for what can be told before its parts are found."""
+    def check(self, obj: bpy.types.Object) -> None:
+        """Raises Refused for what is wrong before the parts are found."""
 
-    def hierarchy(self, obj):
+    def require_hierarchy(self, obj: bpy.types.Object) -> Hierarchy:
+        """The object's hierarchy. Raises Refused."""
         return registry.needed(obj)
 
 
-class OnPart(OnParts):
-    """The same for operators that cut a part out: a node, or the one that was picked last, or else the selected one.
-    takes_away: whether its faces are gone from the mesh then, so that they must be what the user has selected."""
+class PartOperator(PartsOperator):
+    """Base of operators that cut out a part: the given node, else the last pick, else the selected faces.
+    removes_faces: the mesh loses the part's faces, so these must be what the user has selected."""
 
-    takes_away = False
+    removes_faces = False
 
     snap: bpy.props.BoolProperty(
         name="Snap Border", description="Move the border of the part to the creases nearby, as far as what is inside "
@@ -79,39 +80,41 @@ class OnPart(OnParts):
         name="Part", description="The part's number; -1: the part that was picked last",
         default=-1, min=-1, options={"SKIP_SAVE"})
 
-    def check(self, obj):
-        if self.node < 0 and not picks.picked_as_told(obj) and not _selected(obj):
+    def check(self, obj: bpy.types.Object) -> None:
+        if self.node < 0 and not picks.picked_as_told(obj) and not _has_selected_faces(obj):
             raise Refused(picks.NO_PICK)
 
-    def hierarchy(self, obj):
-        by_user, pick = self.node < 0, picks.picked(obj)
-        if by_user and not pick and _selected(obj):
-            found = registry.needed(obj)
-            self.node, overlap = nearest(found, arrays.read(obj.data.polygons, "select", bool))
-            if overlap < OVERLAP:
+    def require_hierarchy(self, obj: bpy.types.Object) -> Hierarchy:
+        uses_pick, pick = self.node < 0, picks.picked(obj)
+        if uses_pick and not pick and _has_selected_faces(obj):
+            hierarchy = registry.needed(obj)
+            self.node, overlap = nearest(hierarchy, arrays.read(obj.data.polygons, "select", bool))
+            if overlap < MIN_OVERLAP:
                 raise Refused("What is selected is no part. Pick one with Select Part by Wheel, and confirm it.")
-        found, node = picks.chosen(obj, self.node)
-        if by_user and self.takes_away and not _is_selected(obj, found, node, [pick.snap] if pick else [False, True]):
-            raise Refused("Only a part that is selected as a whole, and nothing else with it, can be taken away. Pick it anew "
-                          "with Select Part by Wheel, and confirm it.")
+        hierarchy, node = picks.chosen(obj, self.node)
+        if uses_pick and self.removes_faces and not _is_part_selected(obj, hierarchy, node, [pick.snap] if pick
+                                                                      else [False, True]):
+            raise Refused("Only a part that is selected as a whole, and nothing else with it, can be taken away. Pick "
+                          "it anew with Select Part by Wheel, and confirm it.")
         self.node = node
-        return found
+        return hierarchy
 
 
-def _selected(obj):
-    """Whether faces are: where none was picked since the last edit, they say which part is meant."""
+def _has_selected_faces(obj: bpy.types.Object) -> bool:
+    """Whether faces are selected in Edit Mode: without a pick since the last edit, they define the part."""
     return obj.mode == "EDIT" and obj.data.total_face_sel > 0
 
 
-def _is_selected(obj, hierarchy, node, snaps):
-    """Whether a part's faces are what is selected, with one of these borders: its own, or that in creases."""
+def _is_part_selected(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snaps: list[bool]) -> bool:
+    """Whether exactly the part's faces are selected. snaps: which borders to compare: the part's own, that in
+    creases."""
     modes = bpy.context.tool_settings.mesh_select_mode
     kind = next(kind for kind, on in zip(KINDS, modes) if on)
     return any(is_selected(obj.data, borders.faces(obj, hierarchy, node, snap), kind) for snap in snaps)
 
 
-class _Caps:
-    """The options of what makes caps."""
+class _CapOptions:
+    """Options of operators that create caps."""
 
     smooth: bpy.props.BoolProperty(
         name="Smooth Caps", description="Close the part with a smooth surface, instead of the flat facets inside the "
@@ -119,42 +122,42 @@ class _Caps:
     material: bpy.props.BoolProperty(
         name="Cap Material", description="Give the caps a material of their own", default=False)
 
-    def caps(self):
-        return solids.Options(self.smooth, self.material)
+    def cap_options(self) -> solids.CapOptions:
+        return solids.CapOptions(self.smooth, self.material)
 
 
-class MESH_OT_partwheel_copy(OnPart, Beside, _Caps, bpy.types.Operator):
+class MESH_OT_partwheel_copy(PartOperator, Beside, _CapOptions, bpy.types.Operator):
     """Copy the picked part as a solid: a new object, closed where it was cut; Ctrl C, Ctrl V take it to other files"""
 
     bl_idname = "mesh.partwheel_copy"
     bl_label = "Copy Part as Solid"
 
-    def losses(self, obj):
-        return composition.losses(obj)
+    def loss_messages(self, obj: bpy.types.Object) -> list[str]:
+        return composition.loss_messages(obj)
 
-    def work(self, context, obj, hierarchy):
-        only(context, [composition.copied(obj, hierarchy, self.node, self.caps(), self.snap)])
+    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> None:
+        select_only(context, [composition.create_part_object(obj, hierarchy, self.node, self.cap_options(), self.snap)])
 
 
-class MESH_OT_partwheel_remove(OnPart, Beside, _Caps, bpy.types.Operator):
+class MESH_OT_partwheel_remove(PartOperator, Beside, _CapOptions, bpy.types.Operator):
     """Take the picked part out of the mesh and close the hole"""
 
     bl_idname = "mesh.partwheel_remove"
     bl_label = "Remove Part"
-    edits = takes_away = True
+    edits_mesh = removes_faces = True
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return super().poll(context) and poll_is_editable(cls, context.active_object)
 
-    def losses(self, obj):
-        return composition.bound(obj)
+    def loss_messages(self, obj: bpy.types.Object) -> list[str]:
+        return composition.bound_modifier_messages(obj)
 
-    def work(self, context, obj, hierarchy):
-        composition.removed(obj, hierarchy, self.node, self.caps(), self.snap)
+    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> None:
+        composition.remove_part(obj, hierarchy, self.node, self.cap_options(), self.snap)
 
 
-class MESH_OT_partwheel_split(OnParts, Beside, _Caps, bpy.types.Operator):
+class MESH_OT_partwheel_split(PartsOperator, Beside, _CapOptions, bpy.types.Operator):
     """Make each part of a cut an object of its own: closed solids that fit each other exactly"""
 
     bl_idname = "mesh.partwheel_split"
@@ -175,7 +178,7 @@ class MESH_OT_partwheel_split(OnParts, Beside, _Caps, bpy.types.Operator):
         min=0, soft_max=2)
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was split", default=True)
 
-    def draw(self, _context):
+    def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
         layout.prop(self, "by")
@@ -183,25 +186,25 @@ class MESH_OT_partwheel_split(OnParts, Beside, _Caps, bpy.types.Operator):
         for name in ("explode", "hide", "smooth", "material"):
             layout.prop(self, name)
 
-    def losses(self, obj):
-        return composition.losses(obj)
+    def loss_messages(self, obj: bpy.types.Object) -> list[str]:
+        return composition.loss_messages(obj)
 
-    def work(self, context, obj, hierarchy):
+    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> None:
         count = min(self.parts, len(hierarchy.tetrahedra))
-        into = {"PARTS": hierarchy.cut_parts, "LEAST_CONCAVITY": hierarchy.cut_least_concavity}
-        bounds = hierarchy.cut_height(self.height) if self.by == "HEIGHT" else into[self.by](count)
-        made = composition.split(obj, hierarchy, bounds, self.caps(), self.explode)
-        only(context, made)
+        cut_functions = {"PARTS": hierarchy.cut_parts, "LEAST_CONCAVITY": hierarchy.cut_least_concavity}
+        bounds = hierarchy.cut_height(self.height) if self.by == "HEIGHT" else cut_functions[self.by](count)
+        objects = composition.split_into_objects(obj, hierarchy, bounds, self.cap_options(), self.explode)
+        select_only(context, objects)
         if self.hide:
             obj.hide_set(True)
 
 
-def only(context, objects):
+def select_only(context: bpy.types.Context, objects: list[bpy.types.Object]) -> None:
     """Selects these objects and no other; the first becomes active."""
     for other in context.selected_objects:
         other.select_set(False)
-    for new in objects:
-        new.select_set(True)
+    for obj in objects:
+        obj.select_set(True)
     context.view_layer.objects.active = objects[0]
 
 

@@ -1,257 +1,278 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A partwheel.Solid fitted to the Blender mesh that it is a part of: where each vertex, corner and polygon comes from."""
+"""Maps a partwheel.Solid to the Blender mesh it is a part of: which vertex, corner and polygon each element comes
+from."""
+
+from __future__ import annotations
 
 from typing import NamedTuple
 
+import bpy
 import numpy as np
 
 from ..mesh import arrays
-from partwheel import PartwheelError, Solid, Status, duplicate_faces
+from partwheel import Hierarchy, PartwheelError, Solid, Status, duplicate_faces
 from ..mesh.pieces import Origins, Plan
 from ..mesh.errors import Refused
 
 
-class Fitted(NamedTuple):
-    """A partwheel.Solid of which every face is of a polygon of the mesh. between (n,2): the mesh's vertices that each of its
-    is midway between, mostly the same twice; -1: none. alias (V,): the vertex that each of the mesh's is taken for, or
-    None: itself. against (F,): which polygons are wound the other way than the solid."""
+class MappedSolid(NamedTuple):
+    """A partwheel.Solid whose faces all come from polygons of the mesh.
+
+    midpoint_of (n, 2): each solid vertex is midway between these two mesh vertices, mostly one twice; -1: none.
+    alias (V,): the mesh vertex that each mesh vertex is merged into; None: no merging.
+    is_reversed (F,) bool: the polygons whose winding is opposite to the solid's.
+    """
 
     solid: Solid
-    between: np.ndarray
-    alias: np.ndarray
-    against: np.ndarray
+    midpoint_of: np.ndarray
+    alias: np.ndarray | None
+    is_reversed: np.ndarray
 
 
-def solid_of(hierarchy, tet_first, tet_last, faces=None):
-    """The partwheel.Solid of a slice; faces: as for solids.part()."""
+def slice_solid(hierarchy: Hierarchy, tet_first: int, tet_last: int, faces: np.ndarray | None = None) -> Solid:
+    """The partwheel.Solid of a slice of tetrahedra. faces: as for solids.create_mesh()."""
     if faces is None:
         return hierarchy.solid_of_slice(tet_first, tet_last)
     return hierarchy.solid_of_faces(tet_first, tet_last, faces)
 
 
-def solids_of(hierarchy, slices, faces=None):
-    """The same of each of several slices, matching where they meet; None for one that has no tetrahedron left. faces: for
-    a single slice."""
-    return hierarchy.solids(slices) if len(slices) > 1 else [solid_of(hierarchy, *slices[0], faces)]
+def slice_solids(hierarchy: Hierarchy, slices: list[tuple], faces: np.ndarray | None = None) -> list[Solid | None]:
+    """The solids of several slices, matching where they meet; None for a slice without tetrahedra. faces: for a
+    single slice only."""
+    return hierarchy.solids(slices) if len(slices) > 1 else [slice_solid(hierarchy, *slices[0], faces)]
 
 
-def facets(hierarchy, tet_first, tet_last, faces=None):
-    """(vertices (n,3), triangles (m,3)) of those facets of a slice that are inside the whole, wound outwards; None if it
-    has no tetrahedron left. faces: as above."""
+def inner_facets(hierarchy: Hierarchy, tet_first: int, tet_last: int,
+                 faces: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray] | None:
+    """(vertices (n, 3), triangles (m, 3)) of the slice's facets inside the whole, wound outward; None if the slice is
+    empty."""
     try:
-        found = solid_of(hierarchy, tet_first, tet_last, faces)
+        solid = slice_solid(hierarchy, tet_first, tet_last, faces)
     except PartwheelError as error:
         if error.status != Status.EMPTY:
             raise
         return None
-    return found.vertices, found.triangles[found.beyond >= 0]
+    return solid.vertices, solid.triangles[solid.beyond >= 0]
 
 
-def exactly(mesh, hierarchy, solid, alone):
-    """The Fitted of a Solid of the exact rung."""
-    between = hierarchy.source[solid.ends]
-    plain = (between[:, 0] == between[:, 1])[solid.triangles].all(axis=1) & (solid.faces >= 0)
-    turned = False
-    if plain.any():  # all are wound alike
-        example = int(plain.argmax())
+def map_exact_solid(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: Solid, standalone: bool) -> MappedSolid:
+    """The MappedSolid of a Solid that was filled exactly."""
+    midpoint_of = hierarchy.source[solid.ends]
+    is_plain = (midpoint_of[:, 0] == midpoint_of[:, 1])[solid.triangles].all(axis=1) & (solid.faces >= 0)
+    is_reversed = False
+    if is_plain.any():  # the winding is consistent: one triangle is enough
+        example = int(is_plain.argmax())
         polygon = list(mesh.polygons[solid.faces[example]].vertices)
-        corners = between[solid.triangles[example], 0]
-        turned = not _ascending(np.array([[polygon.index(vertex) for vertex in corners]]))[0]
-    return _turned_like_mesh(Fitted(solid, between, None, np.full(len(mesh.polygons), turned)), alone)
+        corners = midpoint_of[solid.triangles[example], 0]
+        is_reversed = not _is_ascending(np.array([[polygon.index(vertex) for vertex in corners]]))[0]
+    return _match_mesh_winding(MappedSolid(solid, midpoint_of, None, np.full(len(mesh.polygons), is_reversed)),
+                               standalone)
 
 
-def originals(mesh, hierarchy):
-    """(F,) of each polygon the one that it is a duplicate of, or itself."""
+def duplicate_originals(mesh: bpy.types.Mesh, hierarchy: Hierarchy) -> np.ndarray:
+    """(F,) for each polygon, the one that it is a duplicate of, or itself."""
     if hierarchy.summary.rung == "exact":
         return np.arange(len(mesh.polygons))
     return duplicate_faces(*arrays.surface(mesh))
 
 
-def unbroken(mesh, hierarchy, slices, options, faces, alone):
-    """For each slice its Fitted, or None where the repair changed one of its polygons, or where that is of no use. If
-    alone, what the repair added is caps of it, and duplicates are there once; else what was added is not there."""
-    if hierarchy.summary.rung != "repaired" or options.smooth:
+def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list[tuple], smooth: bool,
+                        faces: np.ndarray | None, standalone: bool) -> list[MappedSolid | None]:
+    """For each slice its MappedSolid; None if the repair changed one of its polygons, or the fill method is another.
+
+    standalone: faces that the repair added become caps, and duplicate polygons appear once. Otherwise added faces are
+    left out."""
+    if hierarchy.summary.rung != "repaired" or smooth:
         return [None] * len(slices)
     surface = arrays.surface(mesh)
-    _, first, place = np.unique(surface.vertices, axis=0, return_index=True, return_inverse=True)
-    alias = first[place.ravel()]
-    between = np.where(hierarchy.source < 0, -1, alias[hierarchy.source])
+    _, first, inverse = np.unique(surface.vertices, axis=0, return_index=True, return_inverse=True)
+    alias = first[inverse.ravel()]
+    midpoint_of = np.where(hierarchy.source < 0, -1, alias[hierarchy.source])
     original = duplicate_faces(*surface)
-    once = original[surface.faces] == surface.faces
-    copies = np.stack([surface.faces[~once], *alias[surface.triangles[~once]].T], axis=1)
-    triangles, of = alias[surface.triangles[once]], surface.faces[once]
+    is_original = original[surface.faces] == surface.faces
+    duplicates = np.stack([surface.faces[~is_original], *alias[surface.triangles[~is_original]].T], axis=1)
+    triangles, triangle_faces = alias[surface.triangles[is_original]], surface.faces[is_original]
 
-    def matched(solid):
-        # The far side of a wall between two cells has no face.
+    def match_solid(solid: Solid) -> tuple[np.ndarray, np.ndarray]:
+        # Of a wall between two cells, only one side has a source face.
         outer = (solid.beyond < 0) & (solid.faces >= 0)
-        return _matched(triangles, np.where(outer[:, None], _whole(between[solid.ends[solid.triangles]]), -1))
+        return _match_triangles(triangles, np.where(outer[:, None],
+                                                    _original_triangles(midpoint_of[solid.ends[solid.triangles]]), -1))
 
-    match, turned = matched(hierarchy.solid_of_slice(0, len(hierarchy.tetrahedra)))
-    wanted, there, against = (np.bincount(of[which], minlength=surface.face_count)
-                              for which in (slice(None), match[match >= 0], match[turned]))
-    lost = ((wanted == 0) | (there != wanted) | (against % np.maximum(wanted, 1) != 0))[original]
-    against = against > 0
-    if not alone:  # then the mesh stays wound as it is
-        lost |= against != (2 * against.sum() > len(against))
-    made = []
-    found = solids_of(hierarchy, slices, faces)
-    for (tet_first, tet_last), solid in zip(slices, found):
-        if solid is None or (lost & _inside(hierarchy, tet_first, tet_last, faces)).any():
-            made.append(None)
+    match, is_flipped = match_solid(hierarchy.solid_of_slice(0, len(hierarchy.tetrahedra)))
+    n_expected, n_present, is_reversed = (np.bincount(triangle_faces[which], minlength=surface.face_count)
+                                          for which in (slice(None), match[match >= 0], match[is_flipped]))
+    is_changed = ((n_expected == 0) | (n_present != n_expected)
+                  | (is_reversed % np.maximum(n_expected, 1) != 0))[original]
+    is_reversed = is_reversed > 0
+    if not standalone:  # the mesh keeps its winding
+        is_changed |= is_reversed != (2 * is_reversed.sum() > len(is_reversed))
+    mapped = []
+    found_solids = slice_solids(hierarchy, slices, faces)
+    for (tet_first, tet_last), solid in zip(slices, found_solids):
+        if solid is None or (is_changed & _face_mask(hierarchy, tet_first, tet_last, faces)).any():
+            mapped.append(None)
             continue
-        match, _ = matched(solid)
-        own = np.where(match >= 0, of[match], -1)
-        own[(own >= 0) & lost[own]] = -1
-        added = (solid.beyond < 0) & (own < 0)
-        keep = np.ones(len(own), bool) if alone else ~added
-        solid = Solid(solid.vertices, solid.triangles[keep], solid.ends, own[keep],
-                      np.where(added, 0, solid.beyond)[keep])
-        if not alone:
-            solid = _with_copies(solid, between, copies, original, wanted)
-        made.append(_turned_like_mesh(Fitted(solid, between[solid.ends], alias, against), alone))
-    return made
+        match, _ = match_solid(solid)
+        own_faces = np.where(match >= 0, triangle_faces[match], -1)
+        own_faces[(own_faces >= 0) & is_changed[own_faces]] = -1
+        is_added = (solid.beyond < 0) & (own_faces < 0)
+        is_kept = np.ones(len(own_faces), bool) if standalone else ~is_added
+        solid = Solid(solid.vertices, solid.triangles[is_kept], solid.ends, own_faces[is_kept],
+                      np.where(is_added, 0, solid.beyond)[is_kept])
+        if not standalone:
+            solid = _add_duplicates(solid, midpoint_of, duplicates, original, n_expected)
+        mapped.append(_match_mesh_winding(MappedSolid(solid, midpoint_of[solid.ends], alias, is_reversed), standalone))
+    return mapped
 
 
-def _with_copies(solid, between, copies, original, wanted):
-    """The Solid with the triangles of duplicates as well, where it has all of their originals. copies (n,4): the face and
-    the corners of each, vertices of the mesh; wanted (F,): how many triangles a face has."""
+def _add_duplicates(solid: Solid, midpoint_of: np.ndarray, duplicates: np.ndarray, original: np.ndarray,
+                    n_triangles: np.ndarray) -> Solid:
+    """The Solid with the triangles of duplicate polygons whose originals it has in full. duplicates (n, 4): face and
+    corners (mesh vertices); n_triangles (F,): triangles per face."""
     outer = solid.faces >= 0
-    there = np.bincount(solid.faces[outer], minlength=len(wanted)) == wanted
-    copies = copies[there[original[copies[:, 0]]]]
-    if not len(copies):
+    is_complete = np.bincount(solid.faces[outer], minlength=len(n_triangles)) == n_triangles
+    duplicates = duplicates[is_complete[original[duplicates[:, 0]]]]
+    if not len(duplicates):
         return solid
-    # The corners of an original, by face and vertex of the mesh.
+    # Keys of an original's corners: face * count + mesh vertex.
     corners = solid.triangles[outer].ravel()
-    count = 1 + max(int(between.max()), int(copies[:, 1:].max()))
-    known, first = np.unique(np.repeat(solid.faces[outer], 3).astype(np.int64) * count
-                             + between[solid.ends[corners, 0]], return_index=True)
-    wanted_keys = original[copies[:, :1]].astype(np.int64) * count + copies[:, 1:]
-    place = np.minimum(np.searchsorted(known, wanted_keys), len(known) - 1)
-    whole = (known[place] == wanted_keys).all(axis=1)
-    added = corners[first[place[whole]]]
-    return Solid(np.asarray(solid.vertices), np.concatenate([solid.triangles, added]).astype(np.int32), solid.ends,
-                 np.concatenate([solid.faces, copies[whole, 0]]).astype(np.int32),
-                 np.concatenate([solid.beyond, np.full(whole.sum(), -1)]).astype(np.int32))
+    count = 1 + max(int(midpoint_of.max()), int(duplicates[:, 1:].max()))
+    known_keys, first = np.unique(np.repeat(solid.faces[outer], 3).astype(np.int64) * count
+                                  + midpoint_of[solid.ends[corners, 0]], return_index=True)
+    wanted_keys = original[duplicates[:, :1]].astype(np.int64) * count + duplicates[:, 1:]
+    index = np.minimum(np.searchsorted(known_keys, wanted_keys), len(known_keys) - 1)
+    is_whole = (known_keys[index] == wanted_keys).all(axis=1)
+    added_corners = corners[first[index[is_whole]]]
+    return Solid(np.asarray(solid.vertices), np.concatenate([solid.triangles, added_corners]).astype(np.int32),
+                 solid.ends,
+                 np.concatenate([solid.faces, duplicates[is_whole, 0]]).astype(np.int32),
+                 np.concatenate([solid.beyond, np.full(is_whole.sum(), -1)]).astype(np.int32))
 
 
-def _turned_like_mesh(fitted, alone):
-    """What stays of a mesh stays wound as it is, so caps are turned where the mesh is inside out; what is alone has its
-    polygons turned outwards."""
-    if alone or not fitted.against.any():
-        return fitted
-    solid = fitted.solid._replace(triangles=fitted.solid.triangles[:, ::-1])
-    return fitted._replace(solid=solid, against=np.zeros_like(fitted.against))
+def _match_mesh_winding(mapped: MappedSolid, standalone: bool) -> MappedSolid:
+    """What stays of a mesh keeps its winding, so the solid turns to it if the mesh is inside out. A standalone solid
+    keeps its polygons outward."""
+    if standalone or not mapped.is_reversed.any():
+        return mapped
+    solid = mapped.solid._replace(triangles=mapped.solid.triangles[:, ::-1])
+    return mapped._replace(solid=solid, is_reversed=np.zeros_like(mapped.is_reversed))
 
 
-def _whole(ends):
-    """(T,3) the corners of the triangles that those with these corners are, or are a piece of, wound alike; -1 where they
-    are of none. ends (T,3,2): the vertices that each corner is midway between, mostly the same twice."""
+def _original_triangles(ends: np.ndarray) -> np.ndarray:
+    """(T, 3) the corners of the triangle that each triangle is, or is a piece of, wound alike; -1 if none. ends (T,
+    3, 2): the two vertices that each corner is midway between, mostly the same one twice."""
     corners = np.where(ends[..., 0] == ends[..., 1], ends[..., 0], -1)
     for t in np.flatnonzero((corners < 0).any(axis=1) & (ends >= 0).all(axis=(1, 2))):
-        names, place = np.unique(ends[t], return_inverse=True)
-        if len(names) == 3:
-            shares = np.eye(3)[place.reshape(3, 2)].mean(axis=1)  # of each corner, where in the whole it lies
-            corners[t] = names if np.linalg.det(shares) > 0 else names[::-1]
+        vertices, inverse = np.unique(ends[t], return_inverse=True)
+        if len(vertices) == 3:
+            barycentric = np.eye(3)[inverse.reshape(3, 2)].mean(axis=1)  # of each corner in the original
+            corners[t] = vertices if np.linalg.det(barycentric) > 0 else vertices[::-1]
     return corners
 
 
-def _matched(own, other):
-    """((S,) which of the triangles own each of the others is, or -1, (S,) whether it is there, wound the other way).
-    One that is in own twice is none of them."""
-    rows = np.sort(np.concatenate([own, other]), axis=1)
-    _, number = np.unique(rows, axis=0, return_inverse=True)
+def _match_triangles(own: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """((S,) index of each other triangle in own, or -1; (S,) whether it is there with the opposite winding). A
+    triangle that is in own twice matches none."""
+    sorted_corners = np.sort(np.concatenate([own, other]), axis=1)
+    _, number = np.unique(sorted_corners, axis=0, return_inverse=True)
     number = number.ravel()
-    mine, theirs = number[:len(own)], number[len(own):]
-    at = np.full(number.max() + 1, -1)
-    at[mine] = np.arange(len(own))
-    at[np.bincount(mine, minlength=len(at)) > 1] = -1
-    match = at[theirs]
-    return match, (match >= 0) & (_ascending(own)[match] != _ascending(other))
+    own_numbers, other_numbers = number[:len(own)], number[len(own):]
+    own_index = np.full(number.max() + 1, -1)
+    own_index[own_numbers] = np.arange(len(own))
+    own_index[np.bincount(own_numbers, minlength=len(own_index)) > 1] = -1
+    match = own_index[other_numbers]
+    return match, (match >= 0) & (_is_ascending(own)[match] != _is_ascending(other))
 
 
-def _ascending(triangles):
-    """(T,) whether the corners' numbers go up, when one begins with the least."""
+def _is_ascending(triangles: np.ndarray) -> np.ndarray:
+    """(T,) whether the corner numbers ascend, starting at the smallest."""
     return (triangles < np.roll(triangles, -1, axis=1)).sum(axis=1) == 2
 
 
-def of_solid(mesh, fitted, alone, facets):
-    """The pieces.Plan of a Fitted: the polygons that lie in it whole stay, those that are cut become triangles; and
-    its caps (if facets)."""
-    solid, between, alias, against = fitted
+def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, with_caps: bool) -> Plan:
+    """The pieces.Plan of a MappedSolid: polygons that lie in it whole stay, cut ones become triangles; with its caps
+    if with_caps."""
+    solid, midpoint_of, alias, is_reversed = mapped
     outer = solid.faces >= 0
     faces, corners = solid.faces[outer], solid.triangles[outer]
-    source = np.where(solid.ends[:, 0] == solid.ends[:, 1], between[:, 0], -1)
+    source = np.where(solid.ends[:, 0] == solid.ends[:, 1], midpoint_of[:, 0], -1)
 
-    # Where the surface is cut apart, one source vertex is several: the first keeps Blender's.
-    first = np.full(len(mesh.vertices) + 1, -1)  # the last: of vertices that are no source vertex
+    # Where the surface is split, a source vertex has several copies; the first one keeps its index.
+    first = np.full(len(mesh.vertices) + 1, -1)  # the last entry is for solid vertices without a source vertex
     first[source[::-1]] = np.arange(len(source))[::-1]
     is_first = (first[source] == np.arange(len(source))) & (source >= 0)
 
     begin, totals = arrays.polygon_sizes(mesh)
-    triangles = np.bincount(faces, minlength=len(totals))
-    # With a corner that is not the polygon's own; with one at which the surface is cut apart.
-    strange = arrays.mask(len(totals), faces[(source < 0)[corners].any(axis=1)])
-    parted = arrays.mask(len(totals), faces[~is_first[corners].all(axis=1)])
-    whole = (triangles == totals - 2) & ~strange
-    large = whole[faces] & (totals[faces] > 3)
-    of, _ = _corners_of(faces[large], corners[large], len(source))
-    whole &= (totals <= 3) | (np.bincount(of, minlength=len(totals)) == totals)
-    stays, apart = np.flatnonzero(whole & ~parted), np.flatnonzero(whole & parted)
-    cut, split = ~whole[faces], (~whole | parted)[faces]
-    caps = solid.triangles[solid.beyond >= 0] if facets else np.empty((0, 3), np.int32)
+    n_triangles = np.bincount(faces, minlength=len(totals))
+    # Polygons with a corner that is not their own; with a corner where the surface is split.
+    has_foreign_corner = arrays.mask(len(totals), faces[(source < 0)[corners].any(axis=1)])
+    has_split_corner = arrays.mask(len(totals), faces[~is_first[corners].all(axis=1)])
+    is_whole = (n_triangles == totals - 2) & ~has_foreign_corner
+    is_large = is_whole[faces] & (totals[faces] > 3)
+    ngon_faces, _ = _unique_corners(faces[is_large], corners[is_large], len(source))
+    is_whole &= (totals <= 3) | (np.bincount(ngon_faces, minlength=len(totals)) == totals)
+    unchanged = np.flatnonzero(is_whole & ~has_split_corner)
+    split_polygons = np.flatnonzero(is_whole & has_split_corner)
+    is_cut, is_changed = ~is_whole[faces], (~is_whole | has_split_corner)[faces]
+    caps = solid.triangles[solid.beyond >= 0] if with_caps else np.empty((0, 3), np.int32)
 
-    def outwards(polygons):
-        """The loops of whole polygons; of those that are wound against the solid in the other order."""
-        loops = _loops_of(begin, totals, polygons)
-        if not against.any():
+    def outward_loops(polygons: np.ndarray) -> np.ndarray:
+        """The loops of whole polygons, in reversed order where the winding is opposite to the solid's."""
+        loops = _polygon_loops(begin, totals, polygons)
+        if not is_reversed.any():
             return loops
-        of = np.repeat(polygons, totals[polygons])
-        return np.where(against[of], begin[of] + (begin[of] - loops) % totals[of], loops)
+        ngon_faces = np.repeat(polygons, totals[polygons])
+        return np.where(is_reversed[ngon_faces], begin[ngon_faces] + (begin[ngon_faces] - loops) % totals[ngon_faces],
+                        loops)
 
-    # Solid vertices that are not only corners of polygons that stay.
-    used = np.unique(np.concatenate([corners[split].ravel(), caps.ravel()]))
-    loops = outwards(stays)
-    vertex, keep, wires = _kept(mesh, loops, alone, alias)
-    keep[source[used[is_first[used]]]] = True
-    kept = np.flatnonzero(keep)
-    numbers = np.cumsum(keep, dtype=np.int32) - 1  # of the mesh's vertices: those of the plan
+    # Solid vertices that are corners of other faces than unchanged polygons.
+    used = np.unique(np.concatenate([corners[is_changed].ravel(), caps.ravel()]))
+    loops = outward_loops(unchanged)
+    vertex, is_kept, wires = _kept_elements(mesh, loops, standalone, alias)
+    is_kept[source[used[is_first[used]]]] = True
+    kept = np.flatnonzero(is_kept)
+    from_mesh = np.cumsum(is_kept, dtype=np.int32) - 1  # mesh vertex -> plan vertex
     new = used[~is_first[used]]
-    ends = between[new]
+    ends = midpoint_of[new]
     ends[(ends < 0).any(axis=1)] = -1
     middle = np.flatnonzero(ends[:, 0] != ends[:, 1])
     origins = Origins(np.concatenate([kept, ends[:, 0]]), len(kept) + middle, ends[middle, 1])
-    places = solid.vertices[new].astype(np.float32)
-    number = np.zeros(len(source), np.int32)  # of the solid's vertices: those of the plan
-    number[is_first] = numbers[source[is_first]]
-    number[new] = len(kept) + np.arange(len(new))
+    positions = solid.vertices[new].astype(np.float32)
+    from_solid = np.zeros(len(source), np.int32)  # solid vertex -> plan vertex
+    from_solid[is_first] = from_mesh[source[is_first]]
+    from_solid[new] = len(kept) + np.arange(len(new))
 
-    parts = [_Corners(Origins(loops), numbers[vertex[loops]], totals[stays], stays)]
-    # The loops of polygons that don't stay, by polygon and vertex.
-    others = np.flatnonzero((triangles > 0) & ~(whole & ~parted))
-    theirs = _loops_of(begin, totals, others)
-    key = np.repeat(others, totals[others]) * len(mesh.vertices) + vertex[theirs]
+    parts = [_PolygonGroup(Origins(loops), from_mesh[vertex[loops]], totals[unchanged], unchanged)]
+    # The mesh's loops of changed polygons, sorted by (polygon, vertex).
+    changed_polygons = np.flatnonzero((n_triangles > 0) & ~(is_whole & ~has_split_corner))
+    changed_loops = _polygon_loops(begin, totals, changed_polygons)
+    key = np.repeat(changed_polygons, totals[changed_polygons]) * len(mesh.vertices) + vertex[changed_loops]
     order = np.argsort(key)
 
-    def loop_of(face, at):
-        return theirs[order[np.searchsorted(key, face.astype(np.int64) * len(mesh.vertices) + at, sorter=order)]]
+    def find_loop(face: np.ndarray, at: np.ndarray) -> np.ndarray:
+        return changed_loops[order[np.searchsorted(key, face.astype(np.int64) * len(mesh.vertices) + at, sorter=order)]]
 
-    of_apart = (whole & parted)[faces]
-    replaced, by = _corners_of(faces[of_apart], corners[of_apart], len(source))
+    is_split = (is_whole & has_split_corner)[faces]
+    replaced_faces, replacements = _unique_corners(faces[is_split], corners[is_split], len(source))
     in_loop = np.zeros(len(vertex), np.int32)
-    in_loop[loop_of(replaced, source[by])] = number[by]
-    loops = outwards(apart)
-    parts.append(_Corners(Origins(loops), in_loop[loops], totals[apart], apart))
-    at = corners[cut].ravel()
-    one, other = (loop_of(np.repeat(faces[cut], 3), between[at, k]) for k in (0, 1))
-    middle = np.flatnonzero(one != other)
-    parts.append(_Corners(Origins(one, middle, other[middle]), number[at], np.full(cut.sum(), 3), faces[cut]))
-    parts.append(_Corners(Origins(np.full(caps.size, -1)), number[caps.ravel()], np.full(len(caps), 3),
-                          np.full(len(caps), -1)))
-    return _plan(mesh, parts, 0 if against.any() else len(stays), origins, places, wires, numbers, alias)
+    in_loop[find_loop(replaced_faces, source[replacements])] = from_solid[replacements]
+    loops = outward_loops(split_polygons)
+    parts.append(_PolygonGroup(Origins(loops), in_loop[loops], totals[split_polygons], split_polygons))
+    at = corners[is_cut].ravel()
+    first_loop, second_loop = (find_loop(np.repeat(faces[is_cut], 3), midpoint_of[at, k]) for k in (0, 1))
+    middle = np.flatnonzero(first_loop != second_loop)
+    parts.append(_PolygonGroup(Origins(first_loop, middle, second_loop[middle]), from_solid[at],
+                               np.full(is_cut.sum(), 3), faces[is_cut]))
+    parts.append(_PolygonGroup(Origins(np.full(caps.size, -1)), from_solid[caps.ravel()], np.full(len(caps), 3),
+                               np.full(len(caps), -1)))
+    return _concatenate(mesh, parts, 0 if is_reversed.any() else len(unchanged), origins, positions, wires, from_mesh,
+                        alias)
 
 
-def _loops_of(begin, totals, polygons):
-    """The loops of polygons, in turn. begin, totals (F,): the first loop of each of the mesh's, and how many it has."""
+def _polygon_loops(begin: np.ndarray, totals: np.ndarray, polygons: np.ndarray) -> np.ndarray:
+    """The loops of the polygons, one after the other. begin, totals (F,): first loop and loop count of each of the
+    mesh's polygons."""
     sizes = totals[polygons]
     if len(sizes) and (sizes == sizes[0]).all():
         return (begin[polygons][:, None] + np.arange(sizes[0])).ravel()
@@ -259,37 +280,40 @@ def _loops_of(begin, totals, polygons):
     return np.arange(len(sizes) and ends[-1]) + np.repeat(begin[polygons] - (ends - sizes), sizes)
 
 
-def _corners_of(faces, corners, count):
-    """Of triangles (T,3) with the faces that they are of, each pair of a face and one of its corners, once."""
+def _unique_corners(faces: np.ndarray, corners: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """(faces, corners): each pair of a face and one of its corners once, from triangles (T, 3) and their faces (T,)."""
     pairs = np.unique(np.repeat(faces, 3).astype(np.int64) * count + corners.ravel())
     return np.divmod(pairs, count)
 
 
-def of_faces(mesh, hierarchy, tet_first, tet_last, faces, alone, original=None):
-    """The pieces.Plan of the slice's polygons alone, or of those that it is to have in their place. original: as
-    originals() gives it, where duplicates are to be there once."""
-    inside = _inside(hierarchy, tet_first, tet_last, faces)
+def plan_of_faces(mesh: bpy.types.Mesh, hierarchy: Hierarchy, tet_first: int, tet_last: int, faces: np.ndarray | None,
+                  standalone: bool, original: np.ndarray | None = None) -> Plan:
+    """The pieces.Plan of the slice's own polygons, or of the given faces. original: as from duplicate_originals(), to
+    have duplicates once."""
+    inside = _face_mask(hierarchy, tet_first, tet_last, faces)
     if original is not None:
         inside = inside & (original == np.arange(len(original)))
     inside = np.flatnonzero(inside)
     if not len(inside):
         raise Refused("This part has no face of the mesh. Take a larger one.")
     begin, totals = arrays.polygon_sizes(mesh)
-    loops = _loops_of(begin, totals, inside)
-    vertex, keep, wires = _kept(mesh, loops, alone)
-    numbers = np.cumsum(keep, dtype=np.int32) - 1
-    part = _Corners(Origins(loops), numbers[vertex[loops]], totals[inside], inside)
-    return _plan(mesh, [part], len(inside), Origins(np.flatnonzero(keep)), np.empty((0, 3), np.float32), wires, numbers)
+    loops = _polygon_loops(begin, totals, inside)
+    vertex, is_kept, wires = _kept_elements(mesh, loops, standalone)
+    plan_vertices = np.cumsum(is_kept, dtype=np.int32) - 1
+    part = _PolygonGroup(Origins(loops), plan_vertices[vertex[loops]], totals[inside], inside)
+    return _concatenate(mesh, [part], len(inside), Origins(np.flatnonzero(is_kept)), np.empty((0, 3), np.float32),
+                        wires, plan_vertices)
 
 
-def has_faces(hierarchy, tet_first, tet_last):
-    """Whether a slice, or several, have any."""
-    return bool(_inside(hierarchy, tet_first, tet_last).any())
+def has_faces(hierarchy: Hierarchy, tet_first: int | np.ndarray, tet_last: int | np.ndarray) -> bool:
+    """Whether a slice, or several, have source faces."""
+    return bool(_face_mask(hierarchy, tet_first, tet_last).any())
 
 
-def _inside(hierarchy, tet_first, tet_last, faces=None):
-    """(F,) which faces are of a slice of the tetrahedra, or of several, or with the two exchanged of the rest, or are
-    those (F,) bool."""
+def _face_mask(hierarchy: Hierarchy, tet_first: int | np.ndarray, tet_last: int | np.ndarray,
+               faces: np.ndarray | None = None) -> np.ndarray:
+    """(F,) bool: the faces of a slice of tetrahedra, of several (as arrays), or, for first > last, of the rest; or
+    the given faces instead."""
     leaf = hierarchy.leaf
     if np.ndim(tet_first):
         return np.any([(leaf >= first) & (leaf < last) for first, last in zip(tet_first, tet_last)], axis=0)
@@ -300,8 +324,8 @@ def _inside(hierarchy, tet_first, tet_last, faces=None):
     return (leaf >= tet_first) | (leaf < tet_last)
 
 
-class _Corners(NamedTuple):
-    """Some of a Plan's polygons: the Origins of their loops, corners (L,), how many corners each has (P,), and the
+class _PolygonGroup(NamedTuple):
+    """Some of a Plan's polygons: the Origins of their loops, their corners (L,), corner counts (P,), and source
     polygons (P,)."""
 
     loops: Origins
@@ -310,32 +334,36 @@ class _Corners(NamedTuple):
     polygons: np.ndarray
 
 
-def _kept(mesh, loops, alone, alias=None):
-    """((L,) the vertex of each loop, by alias if there is one, (V,) whether it is of one of the loops that stay, or has
-    no face and stays, edges without a face that stay). What has no face goes if alone."""
+def _kept_elements(mesh: bpy.types.Mesh, loops: np.ndarray, standalone: bool,
+                   alias: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """((L,) the vertex of each loop, after alias; (V,) whether it is kept; edges without faces that are kept). Kept
+    are vertices of the given loops and, unless standalone, loose vertices and edges."""
     vertex = own = arrays.read(mesh.loops, "vertex_index", np.int32)
     if alias is not None:
         vertex = alias[own]
-    keep = arrays.mask(len(mesh.vertices), vertex[loops])
+    is_kept = arrays.mask(len(mesh.vertices), vertex[loops])
     wires = np.empty(0, np.int64)
-    if not alone:
+    if not standalone:
         edges = arrays.read(mesh.loops, "edge_index", np.int32)
         wires = np.flatnonzero(np.bincount(edges, minlength=len(mesh.edges)) == 0)
         ends = arrays.edge_vertices(mesh)
-        loose = np.ones(len(keep), bool)
-        loose[own] = loose[ends] = False
-        keep[ends[wires]] = keep[loose] = True
-    return vertex, keep, wires
+        is_loose = np.ones(len(is_kept), bool)
+        is_loose[own] = is_loose[ends] = False
+        is_kept[ends[wires]] = is_kept[is_loose] = True
+    return vertex, is_kept, wires
 
 
-def _plan(mesh, parts, whole, origins, places, wires, numbers, alias=None):
-    """The Plan of _Corners, of which the first has whole polygons as they are, or none. places (m,3): of the last of
-    the vertices, the others are the mesh's own."""
+def _concatenate(mesh: bpy.types.Mesh, parts: list[_PolygonGroup], n_whole: int, origins: Origins,
+                 positions: np.ndarray, wires: np.ndarray, plan_vertices: np.ndarray,
+                 alias: np.ndarray | None = None) -> Plan:
+    """The Plan of several _PolygonGroups; the first n_whole polygons are unchanged. positions (m, 3): of the last
+    vertices; all before are the mesh's own."""
     starts = np.cumsum([0] + [len(part.corners) for part in parts])
-    loops = Origins(*(np.concatenate(each) for each in zip(*(
+    loops = Origins(*(np.concatenate(columns) for columns in zip(*(
         (part.loops.first, start + part.loops.at, part.loops.other) for part, start in zip(parts, starts)))))
-    corners, totals, polygons = (np.concatenate(each) for each in list(zip(*parts))[1:])
-    own = arrays.read(mesh.vertices, "co", np.float32, 3)
-    kept = origins.first[:len(origins.first) - len(places)]
-    places = np.concatenate([own[kept], places])
-    return Plan(places, origins, loops, corners, np.cumsum(totals) - totals, polygons, whole, wires, numbers, alias)
+    corners, totals, polygons = (np.concatenate(columns) for columns in list(zip(*parts))[1:])
+    mesh_positions = arrays.read(mesh.vertices, "co", np.float32, 3)
+    kept_vertices = origins.first[:len(origins.first) - len(positions)]
+    positions = np.concatenate([mesh_positions[kept_vertices], positions])
+    return Plan(positions, origins, loops, corners, np.cumsum(totals) - totals, polygons, n_whole, wires,
+                plan_vertices, alias)

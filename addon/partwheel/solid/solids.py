@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A part of a Blender mesh as a closed mesh of its own, and the mesh without it: polygons keep all their layers.
+"""A part of a Blender mesh as a closed mesh of its own, and the mesh without it. Polygons keep all their layers.
 
-On the exact rung the part is partwheel's Solid: the polygons that lie in it whole stay as they are, those that are cut
-become triangles with their attributes, and the caps close it. On the repaired rung too, where the repair has left all
-of its polygons as they are; what the repair added is a cap then. Else, and where the mesh was filled from points, it is
-the mesh's own polygons: doubles welded, wound alike, set apart where more than two meet at an edge, joined with the
-facets inside, every other border filled. Either way each edge has two faces: polygons that are duplicates are in a part
-once, and what is left of a mesh without a part keeps them.
-"""
+If the mesh was filled exactly, the part is partwheel's Solid: whole polygons stay as they are, cut polygons become
+triangles with the same attributes, and caps close it. The same holds after a repair that left all of the part's
+polygons unchanged; faces that the repair added become caps. In all other cases (another repair, or filled from
+points), the part is the mesh's own polygons: coincident vertices are welded, faces are wound alike, non-manifold
+edges are split, the facets inside are joined to them, and every other boundary loop is filled. Either way each edge
+has two faces. Duplicate polygons appear once in a part; the mesh that a part is removed from keeps them."""
+
+from __future__ import annotations
 
 from typing import NamedTuple
 
@@ -17,174 +18,192 @@ import numpy as np
 
 from ..mesh import arrays, pieces
 from . import bridging, closing, fitting
+from partwheel import Hierarchy
 from ..mesh.errors import Refused
 
-CAP = "partwheel_cap"  # the attribute of faces that closes what was cut
-CAP_MATERIAL = "Partwheel Cap"
-WELD = 1e-7  # doubles are at most this part of the diagonal apart
-_LOOP = "partwheel_loop"  # while we work: 1 + the source's loop that each loop was
+CAP_ATTRIBUTE = "partwheel_cap"  # face attribute: True on faces that close a cut
+CAP_MATERIAL_NAME = "Partwheel Cap"
+WELD_DISTANCE = 1e-7  # largest distance of coincident vertices, by the size of the mesh
+_LOOP_LAYER = "partwheel_loop"  # temporary layer: 1 + the source loop of each loop
 
 
-class Options(NamedTuple):
-    """smooth: caps that go on as the surface about them does, in place of the tetrahedra's own flat ones. material:
-    caps get a material slot of their own."""
+class CapOptions(NamedTuple):
+    """smooth: faired caps that continue the surface, instead of the tetrahedra's own facets. material: caps get a
+    material slot of their own."""
 
     smooth: bool = False
     material: bool = False
 
 
-def part(obj, hierarchy, tet_first, tet_last, options=Options(), faces=None):
-    """A new mesh: the part tetrahedra[tet_first:tet_last] of the object's mesh, as it now is. faces (F,) bool: the faces
-    that it is to have in place of its own, see partwheel's solid_of_faces(). Raises PartwheelError."""
-    return parts(obj, hierarchy, [(tet_first, tet_last)], options, faces)[0]
+def create_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, tet_first: int, tet_last: int,
+                options: CapOptions = CapOptions(), faces: np.ndarray | None = None) -> bpy.types.Mesh:
+    """A new mesh: the part tetrahedra[tet_first:tet_last] of the object's current mesh. faces (F,) bool: faces to
+    have instead of the slice's own, see partwheel's solid_of_faces(). Raises PartwheelError."""
+    return create_meshes(obj, hierarchy, [(tet_first, tet_last)], options, faces)[0]
 
 
-def parts(obj, hierarchy, slices, options=Options(), faces=None):
-    """New meshes, one for each slice (tet_first, tet_last), or several each as arrays (n,); with caps that match
-    exactly, where they aren't smooth. None for a slice that has no tetrahedron left, or where they can't be solids no
-    face, unless it is the only one. faces: as above, for a single slice."""
+def create_meshes(obj: bpy.types.Object, hierarchy: Hierarchy, slices: list[tuple], options: CapOptions = CapOptions(),
+                  faces: np.ndarray | None = None) -> list[bpy.types.Mesh | None]:
+    """New meshes, one for each slice (tet_first, tet_last), where both may be arrays (n,) of several slices. Caps
+    match exactly, unless they are smooth. None for a slice without tetrahedra, or, unless it is the only one, without
+    faces where it can't be a solid. faces: as for create_mesh(), for a single slice."""
     mesh = arrays.up_to_date(obj)
     exact = hierarchy.summary.rung == "exact"
     if not exact:
-        found = fitting.unbroken(mesh, hierarchy, slices, options, faces, alone=True)
+        solids = fitting.map_repaired_solids(mesh, hierarchy, slices, options.smooth, faces, standalone=True)
     else:
-        found = [solid and fitting.exactly(mesh, hierarchy, solid, alone=True)
-                 for solid in fitting.solids_of(hierarchy, slices, faces)]
-    made = []
+        solids = [solid and fitting.map_exact_solid(mesh, hierarchy, solid, standalone=True)
+                  for solid in fitting.slice_solids(hierarchy, slices, faces)]
+    meshes = []
     try:
-        for each, solid in zip(slices, found):
-            if solid is None and (exact or len(slices) > 1 and not fitting.has_faces(hierarchy, *each)):
-                made.append(None)
+        for tet_slice, solid in zip(slices, solids):
+            if solid is None and (exact or len(slices) > 1 and not fitting.has_faces(hierarchy, *tet_slice)):
+                meshes.append(None)
                 continue
-            new, normals = _carved(mesh, hierarchy, solid, *each, options, faces, alone=True)
-            made.append(new)
+            new, normals = _create_closed_mesh(mesh, hierarchy, solid, *tet_slice, options, faces, standalone=True)
+            meshes.append(new)
             if normals is not None:
                 arrays.set_custom_normals(new, normals)
     except Exception:
-        for new in filter(None, made):
+        for new in filter(None, meshes):
             bpy.data.meshes.remove(new)
         raise
-    return made
+    return meshes
 
 
-def remove(obj, hierarchy, tet_first, tet_last, options=Options(), faces=None):
-    """Takes the part out of the object's mesh, which must not be in Edit Mode, and closes the hole. faces: as for part().
-    Raises PartwheelError or Refused before anything has changed."""
+def remove_from_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, tet_first: int, tet_last: int,
+                     options: CapOptions = CapOptions(), faces: np.ndarray | None = None) -> None:
+    """Removes the part from the object's mesh, which must not be in Edit Mode, and closes the hole. faces: as for
+    create_mesh(). Raises PartwheelError or Refused before any change."""
     target = obj.data
-    check_resolution(obj)
+    check_no_multires(obj)
     if hierarchy.summary.rung == "exact":
-        solid = fitting.exactly(target, hierarchy, fitting.solid_of(hierarchy, tet_last, tet_first, faces), alone=False)
+        solid = fitting.map_exact_solid(target, hierarchy, fitting.slice_solid(hierarchy, tet_last, tet_first, faces),
+                                        standalone=False)
     else:
-        solid = fitting.unbroken(target, hierarchy, [(tet_last, tet_first)], options, faces, alone=False)[0]
-    made, normals = _carved(target, hierarchy, solid, tet_last, tet_first, options, faces, alone=False)
-    if options.material and len(made.materials) > len(target.materials):
-        _cap_slot(target)
-    pieces.replace_geometry(target, made)
-    bpy.data.meshes.remove(made)
+        solid = fitting.map_repaired_solids(target, hierarchy, [(tet_last, tet_first)], options.smooth, faces,
+                                            standalone=False)[0]
+    new, normals = _create_closed_mesh(target, hierarchy, solid, tet_last, tet_first, options, faces, standalone=False)
+    if options.material and len(new.materials) > len(target.materials):
+        _cap_material_slot(target)
+    pieces.replace_geometry(target, new)
+    bpy.data.meshes.remove(new)
     if normals is not None:
         arrays.set_custom_normals(target, normals)
     target.update()
 
 
-def check_resolution(obj):
-    """Raises Refused if the object's mesh can't be given other faces without a loss that nobody would expect."""
+def check_no_multires(obj: bpy.types.Object) -> None:
+    """Raises Refused if changing the faces of the object's mesh would lose multires details."""
     if any(other.data == obj.data and any(each.type == "MULTIRES" and each.total_levels for each in other.modifiers)
            for other in bpy.data.objects):
-        raise Refused("{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution modifier "
-                      "first.", name=obj.name)
+        raise Refused("{name} is sculpted in several resolutions, which would be lost. Apply its Multiresolution "
+                      "modifier first.", name=obj.name)
 
 
-def _carved(mesh, hierarchy, solid, tet_first, tet_last, options, faces, alone):
-    """(new mesh: what is in the slice, closed; its custom normals (L,3), if the mesh has any). solid: the Fitted of
-    the slice, or None: its polygons alone, closed. alone: without what has no face."""
+def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitting.MappedSolid | None,
+                        tet_first: int | np.ndarray, tet_last: int | np.ndarray, options: CapOptions,
+                        faces: np.ndarray | None, standalone: bool) -> tuple[bpy.types.Mesh, np.ndarray | None]:
+    """(new mesh: the slice, closed; its custom normals (L, 3), if the mesh has any). solid: the slice's MappedSolid,
+    or None: its polygons, closed. standalone: without loose edges and vertices."""
     exact = solid is not None
-    turned = np.zeros(len(mesh.polygons), bool)
+    is_reversed = np.zeros(len(mesh.polygons), bool)
     if exact:
-        plan, turned = fitting.of_solid(mesh, solid, alone, facets=not options.smooth), solid.against
+        is_reversed = solid.is_reversed
+        plan = fitting.plan_of_solid(mesh, solid, standalone, with_caps=not options.smooth)
     else:
-        original = fitting.originals(mesh, hierarchy) if alone else None
-        plan = fitting.of_faces(mesh, hierarchy, tet_first, tet_last, faces, alone, original)
+        original = fitting.duplicate_originals(mesh, hierarchy) if standalone else None
+        plan = fitting.plan_of_faces(mesh, hierarchy, tet_first, tet_last, faces, standalone, original)
     normals = arrays.custom_normals(mesh)
-    made, loops = pieces.assembled(mesh, plan, f"{mesh.name} part", not alone), plan.loops.first
+    new, loops = pieces.assembled(mesh, plan, f"{mesh.name} part", not standalone), plan.loops.first
     try:
         caps = np.flatnonzero(plan.polygons < 0)
         if not exact or options.smooth:
-            facets = fitting.facets(hierarchy, tet_first, tet_last, faces) if alone and not options.smooth else None
-            caps, loops = _closed(made, loops, mesh, facets, options.smooth, exact, alone)
+            facets = None
+            if standalone and not options.smooth:
+                facets = fitting.inner_facets(hierarchy, tet_first, tet_last, faces)
+            caps, loops = _close_boundary(new, loops, mesh, facets, options.smooth, exact, standalone)
         if options.material and len(caps):
-            indices = arrays.material_indices(made)
-            indices[caps] = _cap_slot(made)
-            arrays.set_material_indices(made, indices)
-        _mark(made, caps)
+            indices = arrays.material_indices(new)
+            indices[caps] = _cap_material_slot(new)
+            arrays.set_material_indices(new, indices)
+        _mark_caps(new, caps)
     except Exception:
-        bpy.data.meshes.remove(made)
+        bpy.data.meshes.remove(new)
         raise
     if normals is not None:
-        normals[np.repeat(turned, arrays.polygon_sizes(mesh)[1])] *= -1
-        normals = np.where(loops[:, None] < 0, 0, normals[loops])  # 0: as Blender computes them
-    return made, normals
+        normals[np.repeat(is_reversed, arrays.polygon_sizes(mesh)[1])] *= -1
+        normals = np.where(loops[:, None] < 0, 0, normals[loops])  # 0: computed by Blender
+    return new, normals
 
 
-def _closed(made, loops, mesh, facets, smooth, exact, alone):
-    """Closes the borders of a mesh made of another's polygons, by facets near them, or else by new faces; where the
-    polygons are of no use as a solid, all that were open before stay so, unless alone. (its caps, (L,) the loop of the
-    other that each of its is, -1 for new ones)"""
-    with pieces.edited(made, made) as bm:
-        number = bm.loops.layers.int.new(_LOOP)
+def _close_boundary(new: bpy.types.Mesh, loops: np.ndarray, mesh: bpy.types.Mesh,
+                    facets: tuple[np.ndarray, np.ndarray] | None, smooth: bool, exact: bool,
+                    standalone: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Closes a mesh made from another's polygons, by facets near its boundary, else by new faces. If the polygons are
+    unusable as a solid, all boundary edges from before stay open, unless standalone. (its caps; (L,) source loop of
+    each loop, -1: new)"""
+    with pieces.edited(new, new) as bm:
+        loop_layer = bm.loops.layers.int.new(_LOOP_LAYER)
         for loop, source in zip((loop for face in bm.faces for loop in face.loops), loops.tolist()):
-            loop[number] = source + 1
-        open_before = set()
+            loop[loop_layer] = source + 1
+        excluded_edges = set()
         if not exact:
-            open_before = _mended(bm, loops, mesh, alone)
-        if exact or alone:
-            closing.set_apart(bm)
-        bridged = bridging.bridge(bm, facets) if facets else []
-        caps = bridged + closing.fill(bm, smooth, open_before)
-        if (exact or alone) and any(len(edge.link_faces) != 2 for edge in bm.edges if edge.link_faces):
+            excluded_edges = _repair_polygons(bm, loops, mesh, standalone)
+        if exact or standalone:
+            closing.split_non_manifold(bm)
+        bridges = bridging.bridge(bm, facets) if facets else []
+        caps = bridges + closing.fill_boundary_loops(bm, smooth, excluded_edges)
+        if (exact or standalone) and any(len(edge.link_faces) != 2 for edge in bm.edges if edge.link_faces):
             raise Refused("This part can't be closed: its border crosses itself. Take a larger or smaller one.")
-        if alone and not exact:
-            closing.turn_outwards(bm, bridged)
+        if standalone and not exact:
+            closing.orient_outward(bm, bridges)
         bm.faces.index_update()
         caps = np.array([face.index for face in caps], np.int32)
-        number = bm.loops.layers.int[_LOOP]
-        loops = np.array([loop[number] - 1 for face in bm.faces for loop in face.loops], np.int32)
-        bm.loops.layers.int.remove(number)
+        loop_layer = bm.loops.layers.int[_LOOP_LAYER]
+        loops = np.array([loop[loop_layer] - 1 for face in bm.faces for loop in face.loops], np.int32)
+        bm.loops.layers.int.remove(loop_layer)
     return caps, loops
 
 
-def _mended(bm, loops, mesh, alone):
-    """Wound alike and doubles welded, if alone; else it is the edges that stay open, since they were before: what is left
-    of a broken mesh is as broken as before, and only the new hole is closed."""
-    if not alone:
+def _repair_polygons(bm: bmesh.types.BMesh, loops: np.ndarray, mesh: bpy.types.Mesh,
+                     standalone: bool) -> set[bmesh.types.BMEdge]:
+    """If standalone, welds coincident vertices, removes duplicate faces and winds all alike; returns no edges.
+    Otherwise returns the edges that were open before: a broken mesh stays as broken as it was, and only the new hole
+    is closed."""
+    if not standalone:
         edge = arrays.read(mesh.loops, "edge_index", np.int32)
         was_open = np.bincount(edge, minlength=len(mesh.edges))[edge[loops]] == 1
-        return {loop.edge for loop, was in zip((loop for face in bm.faces for loop in face.loops), was_open.tolist())
-                if was}
+        bm_loops = (loop for face in bm.faces for loop in face.loops)
+        return {loop.edge for loop, is_open in zip(bm_loops, was_open.tolist()) if is_open}
     size = max((max(vert.co[axis] for vert in bm.verts) - min(vert.co[axis] for vert in bm.verts)) for axis in range(3))
-    bmesh.ops.remove_doubles(bm, verts=[vert for vert in bm.verts if vert.is_boundary], dist=WELD * size)
-    known = set()
-    twice = [face for face in bm.faces if (verts := frozenset(face.verts)) in known or known.add(verts)]
-    bmesh.ops.delete(bm, geom=twice, context="FACES_ONLY")
+    bmesh.ops.remove_doubles(bm, verts=[vert for vert in bm.verts if vert.is_boundary], dist=WELD_DISTANCE * size)
+    vertex_sets = set()
+    duplicates = [face for face in bm.faces if (verts := frozenset(face.verts)) in vertex_sets
+                  or vertex_sets.add(verts)]
+    bmesh.ops.delete(bm, geom=duplicates, context="FACES_ONLY")
     bmesh.ops.recalc_face_normals(bm, faces=bm.faces[:])
     return set()
 
 
-# ---- Marks and materials, and which loop was which
+# ---- Cap attribute and material
 
 
-def _cap_slot(mesh):
+def _cap_material_slot(mesh: bpy.types.Mesh) -> int:
+    """Index of the slot of the cap material, which is added if missing."""
     for slot, material in enumerate(mesh.materials):
-        if material and material.name.startswith(CAP_MATERIAL):
+        if material and material.name.startswith(CAP_MATERIAL_NAME):
             return slot
-    material = bpy.data.materials.get(CAP_MATERIAL) or bpy.data.materials.new(CAP_MATERIAL)
+    material = bpy.data.materials.get(CAP_MATERIAL_NAME) or bpy.data.materials.new(CAP_MATERIAL_NAME)
     if not len(mesh.materials):
-        mesh.materials.append(None)  # what the other faces had
+        mesh.materials.append(None)  # the other faces had no material
     mesh.materials.append(material)
     return len(mesh.materials) - 1
 
 
-def _mark(mesh, caps):
-    layer = arrays.needed_attribute(mesh, CAP, "BOOLEAN", "FACE")  # a new one is False
+def _mark_caps(mesh: bpy.types.Mesh, caps: np.ndarray) -> None:
+    """Sets the cap attribute on these faces."""
+    layer = arrays.needed_attribute(mesh, CAP_ATTRIBUTE, "BOOLEAN", "FACE")  # False in a new attribute
     marks = arrays.read(layer.data, "value", bool)
     marks[caps] = True
     layer.data.foreach_set("value", marks)
