@@ -218,7 +218,7 @@ def cut(obj, parts=None, height=None, least_concavity=None):
     It is a value: cut.split(3), cut.join(3), cut.merge(0, 2) give others. cut.labels (F,): the part of each polygon."""
     built = hierarchy(obj)
     bounds = _bounds(built, parts, height, least_concavity)
-    return Cut.of_labels(built, built.face_labels(bounds)) if parts is None else Cut.into(built, operator.index(parts))
+    return Cut.from_labels(built, built.face_labels(bounds)) if parts is None else Cut.into(built, operator.index(parts))
 
 
 def kept_parts(obj):

@@ -58,7 +58,7 @@ def printing_(folder, images):
     mesh = read(folder, "armadillo")
     cut = Cut.automatic(Hierarchy.build(mesh.vertices, mesh.triangles))
     scale = 200 / np.ptp(mesh.vertices, axis=0).max()
-    made = printing.printable(cut, mesh.vertices, mesh.triangles, mesh.faces, printing.Options(scale, 0.2))
+    made = printing.prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, printing.PrintOptions(scale, 0.2))
     middle = np.mean([vertices.mean(axis=0) for vertices, _ in made.solids.values()], axis=0)
     apart = [(vertices + APART * 2 * (vertices.mean(axis=0) - middle), triangles) for vertices, triangles in made.solids.values()]
     save([[painted(apart, 900)]], images / "printing.jpg")

@@ -227,7 +227,7 @@ class Written(PartsCase):
         built = part("api").hierarchy(obj)
         centers = numpy.array([polygon.center[0] for polygon in mesh.polygons])
         labels = numpy.where(centers > 1.001, 1, numpy.where(centers < -1.001, 2, 0))
-        names, made, _ = part("api").write(obj, Cut.of_labels(built, labels), {"OBJECTS"})
+        names, made, _ = part("api").write(obj, Cut.from_labels(built, labels), {"OBJECTS"})
         self.assertEqual(len(made), 3)
         root, = [new for new in made if not new.parent]
         self.assertEqual(root.location.length, 0)
@@ -387,11 +387,11 @@ class Operator(PartsCase):
         self.run_parts(obj, to=set(), clusters=json.dumps(edited.parts), count=len(edited))
         self.assertEqual(part("api").kept_parts(obj)[0], edited)
         self.run_parts(obj, to=set(), clusters=json.dumps(edited.parts), count=len(edited) + 3)
-        self.assertEqual(part("api").kept_parts(obj)[0], edited.sized(len(edited) + 3))
+        self.assertEqual(part("api").kept_parts(obj)[0], edited.resize(len(edited) + 3))
         for wrong in ("no JSON", "[[1]]", "[[-5]]", "5", '[["a"]]', "[[99999999]]"):
             with self.assertRaises(RuntimeError):
                 self.run_parts(obj, clusters=wrong)
-        self.assertEqual(part("api").kept_parts(obj)[0], edited.sized(len(edited) + 3))
+        self.assertEqual(part("api").kept_parts(obj)[0], edited.resize(len(edited) + 3))
 
     def test_states_come_back_by_the_way_they_went(self):
         _, cut = self.model("homer")
@@ -411,7 +411,7 @@ class Operator(PartsCase):
         self.assertEqual((one.part, one.clicked(face).part, one.clicked(None).part), (2, None, None))
         self.assertEqual(one.turned(-1).cut, cut.split(2))
         self.assertEqual(one.turned(1).cut, cut.join(2))
-        self.assertEqual(start.with_digit("1").with_digit("2").cut, cut.sized(12))
+        self.assertEqual(start.with_digit("1").with_digit("2").cut, cut.resize(12))
         self.assertEqual(len(start.with_digit("1").with_digit("2").without_digit().cut), 1)
         self.assertEqual(len(start.with_digit("0").cut), 1)
         other = int(numpy.flatnonzero(cut.labels == 5)[0])

@@ -62,7 +62,7 @@ def bend(directory, name):
     began = time.process_time()
     hierarchy = api.build(obj)
     built = time.process_time() - began
-    cut = Cut.of_labels(hierarchy, labels)
+    cut = Cut.from_labels(hierarchy, labels)
     began = time.process_time()
     names = api.write(obj, cut, {"BONES"}).names
     seconds = {"ours": time.process_time() - began}

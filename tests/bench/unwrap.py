@@ -32,7 +32,7 @@ def by_xatlas(source, target):
 def main(python, names):
     import bpy
     from partwheel import Hierarchy, meshes
-    from partwheel.cut import Cut, laid_flat
+    from partwheel.cut import Cut, unwrap_cut
     from uv_measures import measured
 
     def unwrapped(vertices, triangles, ends, operator, **options):
@@ -75,7 +75,7 @@ def main(python, names):
             around += time.process_time() - began - seconds
             return uv
 
-        ends, uv = laid_flat(*model[:4], cut, by_blender)
+        ends, uv = unwrap_cut(*model[:4], cut, by_blender)
         maps = [(uv, time.process_time() - began - around), unwrapped(*model[:2], ends[:0], bpy.ops.uv.smart_project)]
         with tempfile.TemporaryDirectory() as folder:
             source, target = Path(folder) / "in.npz", Path(folder) / "out.npz"

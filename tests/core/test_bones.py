@@ -8,7 +8,7 @@ import pytest
 import trimesh
 from conftest import ROOT
 from partwheel import Hierarchy, meshes
-from partwheel.cut import Cut, bones, borders, links, mirror_planes, named, tree, weights
+from partwheel.cut import Cut, bones, link_parts, mirror_planes, name_parts, part_borders, part_tree, skin_weights
 
 SIDES, RADIUS = 24, 0.5
 
@@ -35,7 +35,7 @@ def tube(lengths, sides=SIDES, radius=RADIUS, step=0.25):
 
 
 class Volumes:
-    """What links() asks of a cut: parts in a row, joined from the first on."""
+    """What link_parts() asks of a cut: parts in a row, joined from the first on."""
 
     def __init__(self, volumes):
         self.volumes = volumes
@@ -46,14 +46,15 @@ class Volumes:
     def volume(self, part):
         return self.volumes[part]
 
-    def joined_at(self, one, other):
+    def common_ancestor(self, one, other):
         return max(one, other)
 
 
 def made(vertices, triangles, labels, volumes):
     middles = np.array([vertices[triangles[labels == part]].mean(axis=(0, 1)) for part in range(len(volumes))])
-    return bones(vertices, triangles, labels, links(Volumes(volumes), borders(vertices, triangles, labels), middles),
-                 weights(vertices, triangles, labels, len(volumes)))
+    return bones(vertices, triangles, labels, link_parts(
+        Volumes(volumes), part_borders(vertices, triangles, labels), middles),
+                 skin_weights(vertices, triangles, labels, len(volumes)))
 
 
 def assert_ends(bone, head, tail, close=1e-9):
@@ -72,8 +73,8 @@ def test_a_chain_of_cylinders(turn):
     assert_ends(chain[0], at[2], at[0])
     assert_ends(chain[2], at[6], at[9])
     assert_ends(chain[3], at[9], at[10])
-    assert chain[3].connected and not chain[1].connected
-    assert chain[2].connected == bool((tail == at[6]).all()) and chain[0].connected == bool((tail == at[2]).all())
+    assert chain[3].is_connected and not chain[1].is_connected
+    assert chain[2].is_connected == bool((tail == at[6]).all()) and chain[0].is_connected == bool((tail == at[2]).all())
 
 
 def test_the_largest_at_one_end():
@@ -81,7 +82,7 @@ def test_the_largest_at_one_end():
     assert [bone.parent for bone in chain] == [-1, 0, 1]
     for bone, head, tail in zip(chain, (0, 4, 7), (4, 7, 9)):
         assert_ends(bone, (0, 0, head), (0, 0, tail))
-    assert [bone.connected for bone in chain] == [False, True, True]
+    assert [bone.is_connected for bone in chain] == [False, True, True]
 
 
 def bent(vertices, bone, axis, angle, share):
@@ -102,13 +103,13 @@ def test_what_is_bent_keeps_its_volume():
     angle, z = np.arctan2(vertices[:, 1], vertices[:, 0]), vertices[:, 2]
     grown = 1 + 0.6 * np.maximum(np.cos(angle - 0.5), 0) ** 4 + 0.5 * np.exp(-((z - 3.6) / 0.3) ** 2) * np.cos(angle + 1)
     vertices[:, :2] *= grown[:, None]
-    own = borders(vertices, triangles, labels)[0]
+    own = part_borders(vertices, triangles, labels)[0]
     for open_end in (False, True):  # holes elsewhere don't matter
         kept = triangles[:-48] if open_end else triangles
         head = made(vertices, kept, labels[:len(kept)], (2, 1))[1]
         assert np.linalg.norm(head.head - own.center) > 0.03 * own.radius
         share = np.zeros(len(vertices))
-        chosen, values = weights(vertices, kept, labels[:len(kept)], 2)[1]
+        chosen, values = skin_weights(vertices, kept, labels[:len(kept)], 2)[1]
         share[chosen] = values
         before, middle = volume(vertices, triangles), head._replace(head=own.center)
         for axis in (np.eye(3)[0], np.eye(3)[1], np.array([-0.8, 0.6, 0])):
@@ -169,14 +170,14 @@ def test_fingers_end_a_palm_and_a_thumb_does_not():
     assert_ends(found[2], (2, 5.5, 1), (0, 5.5, 1), 0.1)
     for finger, x in zip((3, 4, 5), (2.5, 4.5, 6.5)):
         assert_ends(found[finger], (x, 9, 1), (x, 12, 1), 0.1)
-    assert [bone.connected for bone in found] == [False, True, False, False, True, False]
+    assert [bone.is_connected for bone in found] == [False, True, False, False, True, False]
 
 
 def test_the_roots_bone_lies_in_a_mirror_plane():
     vertices, triangles, labels = tube((4,))
     leaning = vertices + vertices[:, 2:] * (0.2, 0.1, 0)
-    root = links(Volumes((4,)), [], np.zeros((1, 3)))
-    whole = weights(leaning, triangles, labels, 1)
+    root = link_parts(Volumes((4,)), [], np.zeros((1, 3)))
+    whole = skin_weights(leaning, triangles, labels, 1)
     free, = bones(leaning, triangles, labels, root, whole)
     assert (free.tail - free.head)[:2] == pytest.approx((0.8, 0.4), abs=0.15)
     held, = bones(leaning, triangles, labels, root, whole, [(np.array([1.0, 0, 0]), 0.35)])
@@ -208,8 +209,8 @@ def real(name):
     mesh = meshes.read(ROOT / "build" / "deps" / "meshes" / f"{name}.off")
     cut = Cut.automatic(Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count))
     labels = cut.labels[mesh.faces]
-    hung = tree(cut, mesh.vertices, mesh.triangles, labels)
-    shares = weights(mesh.vertices, mesh.triangles, labels, len(cut))
+    hung = part_tree(cut, mesh.vertices, mesh.triangles, labels)
+    shares = skin_weights(mesh.vertices, mesh.triangles, labels, len(cut))
     return mesh, cut, hung, bones(mesh.vertices, mesh.triangles, labels, hung, shares,
                                   mirror_planes(mesh.vertices, mesh.triangles))
 
@@ -225,12 +226,12 @@ def test_real_models(name):
         assert (np.minimum(bone.head, bone.tail) > low - slack).all()
         assert (np.maximum(bone.head, bone.tail) < high + slack).all()
         assert np.linalg.norm(bone.tail - bone.head) > 1e-3 * np.linalg.norm(high - low)
-        assert not bone.connected or np.linalg.norm(found[bone.parent].tail - bone.head) < 0.01 * slack / 0.05
+        assert not bone.is_connected or np.linalg.norm(found[bone.parent].tail - bone.head) < 0.01 * slack / 0.05
 
 
 def test_mirror_images_have_mirrored_bones():
     mesh, cut, _, found = real("homer")
-    names = named(cut, *mesh[:3])
+    names = name_parts(cut, *mesh[:3])
     (normal, offset), = mirror_planes(mesh.vertices, mesh.triangles)
     size = np.linalg.norm(np.ptp(mesh.vertices, axis=0))
     pairs = [(names.index(name), names.index(name.replace(".L", ".R"))) for name in names if ".L" in name]

@@ -10,7 +10,7 @@ import pytest
 import trimesh
 from conftest import ROOT
 from partwheel import Hierarchy, PartwheelError, meshes
-from partwheel.cut import Cut, borders, files, links, mirror_planes, named, weights
+from partwheel.cut import Cut, files, link_parts, mirror_planes, name_parts, part_borders, skin_weights
 from partwheel.library import Status
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
@@ -49,13 +49,13 @@ def test_is_the_hierarchys_cut(cut):
         assert same_division(Cut.into(h, count).labels, h.face_labels(h.cut_parts(count))) or count > 9
         assert len(Cut.into(h, count)) == count == len(np.unique(Cut.into(h, count).labels))
     nine = Cut.into(h, 9)
-    assert nine.more() == Cut.into(h, 10) and nine.fewer() == Cut.into(h, 8)
-    assert nine.sized(30).sized(3) == Cut.into(h, 3)
-    assert Cut.of_labels(h, cut.labels) == cut
+    assert nine.refine() == Cut.into(h, 10) and nine.coarsen() == Cut.into(h, 8)
+    assert nine.resize(30).resize(3) == Cut.into(h, 3)
+    assert Cut.from_labels(h, cut.labels) == cut
 
 
 def test_each_tetrahedron_is_in_one_part(cut):
-    for each in (cut, cut.merge(0, len(cut) - 1), cut.sized(25)):
+    for each in (cut, cut.merge(0, len(cut) - 1), cut.resize(25)):
         count = np.zeros(len(cut.hierarchy.tetrahedra), int)
         for part in range(len(each)):
             for first, last in zip(*each.slices(part)):
@@ -124,7 +124,7 @@ def test_merges_any_two_parts_and_parts_them_again(cut):
         assert len(merged) == len(cut) - 1 and len(np.unique(merged.labels[both])) == 1
         assert same_division(merged.labels[~both], cut.labels[~both])
         again = merged.split(merged.labels[both][0])
-        assert len(again) >= len(cut) and Cut.of_labels(cut.hierarchy, merged.labels) == merged
+        assert len(again) >= len(cut) and Cut.from_labels(cut.hierarchy, merged.labels) == merged
     assert cut.merge(3, 3) is cut
     # What was merged across a node that is joined keeps what lies beyond.
     merged = cut.merge(0, len(cut) - 1)
@@ -135,8 +135,8 @@ def test_merges_any_two_parts_and_parts_them_again(cut):
 def test_labels_that_divide_a_tetrahedron():
     shape, h = model("homer")
     labels = np.arange(len(h.order)) % 2
-    assert len(Cut.of_labels(h, labels)) == 2
-    assert len(Cut.of_labels(h, labels * 0)) == 1
+    assert len(Cut.from_labels(h, labels)) == 2
+    assert len(Cut.from_labels(h, labels * 0)) == 1
 
 
 def test_slices_of_a_solid_are_checked():
@@ -170,7 +170,7 @@ def test_mirror_planes():
 def test_mirror_images_are_left_and_right():
     mesh, h = model("homer")
     cut = Cut.automatic(h)
-    names = named(cut, *mesh[:3])
+    names = name_parts(cut, *mesh[:3])
     assert len(set(names)) == len(cut)
     (normal, offset), = mirror_planes(mesh.vertices, mesh.triangles)
     middle = {name: mesh.vertices[mesh.triangles[cut.labels == part]].mean(axis=(0, 1))
@@ -196,8 +196,8 @@ def test_parts_that_are_alike_are_numbered_in_order():
     h = Hierarchy.build(whole.vertices, whole.faces)
     tall = whole.triangles_center[:, 2] > 0.55
     labels = np.where(tall, 1 + abs(whole.triangles_center[:, :1] - along).argmin(axis=1), 0)
-    cut = Cut.of_labels(h, labels)
-    names = named(cut, whole.vertices, whole.faces, np.arange(len(whole.faces)), "finger")
+    cut = Cut.from_labels(h, labels)
+    names = name_parts(cut, whole.vertices, whole.faces, np.arange(len(whole.faces)), "finger")
     of = {label: names[cut.labels[labels == label][0]] for label in range(7)}
     alike = [of[label] for label in (1, 2, 4, 5, 6)]
     assert len({name.split(".")[0] for name in alike}) == 1 and alike == sorted(alike), of
@@ -207,7 +207,7 @@ def test_parts_that_are_alike_are_numbered_in_order():
 def test_borders_are_where_two_parts_meet():
     mesh, h = model("homer")
     cut = Cut.automatic(h)
-    found = borders(mesh.vertices, mesh.triangles, cut.labels)
+    found = part_borders(mesh.vertices, mesh.triangles, cut.labels)
     whole = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False)
     pairs = cut.labels[whole.face_adjacency]
     apart = pairs[:, 0] != pairs[:, 1]
@@ -227,7 +227,7 @@ def test_the_tree_of_parts_reaches_all_of_them(cut):
     mesh = model(name)[0]
     labels = cut.labels[mesh.faces]
     middles = np.array([mesh.vertices[mesh.triangles[labels == part]].mean(axis=(0, 1)) for part in range(len(cut))])
-    tree = links(cut, borders(mesh.vertices, mesh.triangles, labels), middles)
+    tree = link_parts(cut, part_borders(mesh.vertices, mesh.triangles, labels), middles)
     root, = [part for part, link in enumerate(tree) if link.parent < 0]
     assert cut.volume(root) == max(map(cut.volume, range(len(cut))))
     for part, link in enumerate(tree):
@@ -245,7 +245,7 @@ def test_weights_add_up_and_fall_across_borders(name):
     cut = Cut.automatic(h)
     labels = cut.labels[mesh.faces]
     dense = np.zeros((len(cut), len(mesh.vertices)))
-    for part, (vertices, values) in enumerate(weights(mesh.vertices, mesh.triangles, labels, len(cut))):
+    for part, (vertices, values) in enumerate(skin_weights(mesh.vertices, mesh.triangles, labels, len(cut))):
         assert (values > 0).all() and (values <= 1).all() and len(np.unique(vertices)) == len(vertices)
         dense[part, vertices] = values
     assert abs(dense.sum(axis=0) - 1).max() < 1e-12
@@ -253,7 +253,7 @@ def test_weights_add_up_and_fall_across_borders(name):
     triangles = places[0][places[1].ravel()][mesh.triangles]  # the broken one has several vertices at a place
     own = [np.unique(triangles[labels == part]) for part in range(len(cut))]
     parts_at = np.bincount(np.concatenate(own), minlength=len(mesh.vertices))
-    found = borders(mesh.vertices, mesh.triangles, labels)
+    found = part_borders(mesh.vertices, mesh.triangles, labels)
     for part in range(len(cut)):
         inside = own[part][parts_at[own[part]] == 1]
         assert (dense[part, inside] >= dense[:, inside].max(axis=0)).all()
@@ -266,9 +266,9 @@ def test_weights_add_up_and_fall_across_borders(name):
 def test_weights_of_pieces_that_touch_nothing_are_whole():
     boxes = trimesh.util.concatenate([trimesh.creation.box(), trimesh.creation.box().apply_translation((3, 0, 0))])
     labels = np.repeat([0, 1], 12)
-    for part, (vertices, values) in enumerate(weights(boxes.vertices, boxes.faces, labels, 2)):
+    for part, (vertices, values) in enumerate(skin_weights(boxes.vertices, boxes.faces, labels, 2)):
         assert (values == 1).all() and set(vertices) == set(boxes.faces[labels == part].ravel())
-    assert borders(boxes.vertices, boxes.faces, labels) == []
+    assert part_borders(boxes.vertices, boxes.faces, labels) == []
 
 
 def test_files_hold_the_parts(tmp_path):
@@ -277,7 +277,7 @@ def test_files_hold_the_parts(tmp_path):
     files.write(tmp_path, "homer", mesh, cut, files.FORMATS)
     told = json.loads((tmp_path / "homer.json").read_text())
     names = [part["name"] for part in told["parts"]]
-    assert names == named(cut, *mesh[:3]) and told["labels"] == cut.labels.tolist()
+    assert names == name_parts(cut, *mesh[:3]) and told["labels"] == cut.labels.tolist()
     assert sum(part["parent"] is None for part in told["parts"]) == 1
     for suffix in ("glb", "3mf"):
         scene = trimesh.load(tmp_path / f"homer.{suffix}", process=False)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from partwheel import PartwheelError
 from partwheel.cut import Cut, CutError
-from partwheel.cut.cut import Tree
+from partwheel.cut.cut import ClusterTree
 
 
 def test_children_are_the_nodes_whose_parent_it_is(case):
@@ -37,14 +37,14 @@ def test_what_they_are_is_shown(build_shape):
 @pytest.mark.parametrize("count", [1, 4, 9])
 def test_parts_nodes_faces_and_tetrahedra(count, build_shape):
     _, h = build_shape("hand.off")
-    tree, cut = Tree(h), Cut.into(h, count)
+    tree, cut = ClusterTree(h), Cut.into(h, count)
     assert len(list(cut)) == count  # it can be iterated over
     for number, part in enumerate(cut):
         node = cut.node(number)
         assert operator.index(part) == node == cut[number - count].cut.node(number - count)
         assert sorted(h.faces(part).tolist()) == cut.faces(number).tolist() == np.flatnonzero(cut.labels == number).tolist()
         cluster, = cut.parts[number]
-        assert tree.ends(cluster) == (h.tet_first[node], h.tet_last[node])
+        assert tree.tet_slice(cluster) == (h.tet_first[node], h.tet_last[node])
         assert np.flatnonzero(cut.tet_labels == number).tolist() == list(range(h.tet_first[node], h.tet_last[node]))
         assert len(h.solid(part).triangles) == len(h.solid(node).triangles)
     assert (cut.tet_labels[h.leaf] == cut.labels).all()

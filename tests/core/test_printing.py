@@ -14,14 +14,13 @@ import trimesh
 from conftest import ROOT
 from partwheel import Hierarchy, meshes
 from partwheel.cut import Cut
-from partwheel.cut.printing import ROOT as DEEP
-from partwheel.cut.printing import SIDES, Options, printable, thickness
+from partwheel.cut.printing import PEG_ROOT_DEPTH, PEG_SIDES, PrintOptions, prepare_parts, wall_thickness
 from partwheel.requirements import RequirementError
 from solid_checks import count_crossings
 from test_command_line import run
 
 GAP, WALL = 0.2, 1.2
-COS = np.cos(np.pi / SIDES)
+COS = np.cos(np.pi / PEG_SIDES)
 MODELS = {"homer": 6, "elephant": 9, "man": 8, "cow": 8}  # into so many parts; the last two are broken
 if shapes.LIGHT:
     del MODELS["man"]  # takes minutes, and the cow is repaired as well
@@ -47,9 +46,9 @@ def bar(lengths, side=20.0):
 
 def of_bar(lengths, options, side=20.0):
     vertices, triangles, labels = bar(lengths, side)
-    cut = Cut.of_labels(Hierarchy.build(vertices, triangles), labels)
+    cut = Cut.from_labels(Hierarchy.build(vertices, triangles), labels)
     assert len(cut) == len(lengths)
-    return printable(cut, vertices, triangles, np.arange(len(triangles)), options)
+    return prepare_parts(cut, vertices, triangles, np.arange(len(triangles)), options)
 
 
 def volume(solid):
@@ -59,7 +58,7 @@ def volume(solid):
 
 
 def hexagon(radius):
-    return SIDES / 2 * np.sin(2 * np.pi / SIDES) * radius ** 2
+    return PEG_SIDES / 2 * np.sin(2 * np.pi / PEG_SIDES) * radius ** 2
 
 
 def body(solid):
@@ -73,9 +72,9 @@ def prism(peg, bottom, top, more):
     x = np.cross(np.eye(3)[abs(peg.direction).argmin()], peg.direction)
     x /= np.linalg.norm(x)
     axes = np.array([x, np.cross(peg.direction, x), peg.direction])
-    angle = 2 * np.pi * np.arange(SIDES) / SIDES
+    angle = 2 * np.pi * np.arange(PEG_SIDES) / PEG_SIDES
     around = (peg.radius + more / COS) * np.column_stack([np.cos(angle), np.sin(angle)])
-    return peg.center + np.vstack([np.column_stack([around, np.full(SIDES, z)]) for z in (bottom, top)]) @ axes
+    return peg.center + np.vstack([np.column_stack([around, np.full(PEG_SIDES, z)]) for z in (bottom, top)]) @ axes
 
 
 def assert_closed(solid):
@@ -85,7 +84,7 @@ def assert_closed(solid):
 
 
 def test_a_bar_in_two():
-    made = of_bar((30, 20), Options(pegs=GAP))
+    made = of_bar((30, 20), PrintOptions(pegs=GAP))
     assert made.notes == []
     peg, = made.pegs
     assert (peg.part, peg.into) == (1, 0)
@@ -100,21 +99,21 @@ def test_a_bar_in_two():
 
 
 def test_flat_cuts_alone_and_millimetres():
-    made = of_bar((30, 20), Options(scale=2.5))
+    made = of_bar((30, 20), PrintOptions(scale=2.5))
     assert made.pegs == [] and made.notes == []
     assert [volume(made.solids[part]) for part in (0, 1)] == pytest.approx([30 * 400 * 2.5 ** 3, 20 * 400 * 2.5 ** 3])
 
 
 def test_the_wall_decides():
     # As thick a wall as leaves 3 mm of the 10, or nothing.
-    peg, = of_bar((30, 20), Options(pegs=GAP, wall=6.8)).pegs
+    peg, = of_bar((30, 20), PrintOptions(pegs=GAP, wall=6.8)).pegs
     assert peg.radius == pytest.approx(10 - 6.8 - GAP / COS, rel=0.02)
-    made = of_bar((30, 20), Options(pegs=GAP, wall=9.5))
+    made = of_bar((30, 20), PrintOptions(pegs=GAP, wall=9.5))
     assert made.pegs == [] and any("no room for a peg" in note for note in made.notes)
     # A part that is short takes a short peg, or none.
-    peg, = of_bar((10, 30), Options(pegs=GAP)).pegs
+    peg, = of_bar((10, 30), PrintOptions(pegs=GAP)).pegs
     assert peg.length == pytest.approx(2 * peg.radius)  # it goes into the longer one
-    pegs = of_bar((9, 5, 8.5), Options(pegs=GAP), 10).pegs
+    pegs = of_bar((9, 5, 8.5), PrintOptions(pegs=GAP), 10).pegs
     assert len(pegs) == 2 and all(peg.length + GAP + WALL < 9 for peg in pegs)
 
 
@@ -122,13 +121,13 @@ def test_a_bed():
     lengths = (30, 30, 30, 30)
     vertices, triangles, labels = bar(lengths)
     hierarchy = Hierarchy.build(vertices, triangles)
-    options = Options(bed=(61, 25, 25))
-    made = printable(Cut.into(hierarchy, 1), vertices, triangles, np.arange(len(triangles)), options)
+    options = PrintOptions(bed=(61, 25, 25))
+    made = prepare_parts(Cut.into(hierarchy, 1), vertices, triangles, np.arange(len(triangles)), options)
     assert len(made.cut) > 1
     for solid in made.solids.values():
         assert (np.sort(np.ptp(solid[0], axis=0)) <= (25, 25, 61)).all()
     assert sum(map(volume, made.solids.values())) == pytest.approx(120 * 400)
-    made = printable(Cut.into(hierarchy, 1), vertices, triangles, np.arange(len(triangles)), Options(bed=(5, 5, 5)))
+    made = prepare_parts(Cut.into(hierarchy, 1), vertices, triangles, np.arange(len(triangles)), PrintOptions(bed=(5, 5, 5)))
     assert any("too large for the bed" in note for note in made.notes)
 
 
@@ -137,10 +136,10 @@ def test_hollows_stay():
     inner.invert()
     hollow = trimesh.util.concatenate([outer.subdivide(), inner.subdivide()])
     cut = Cut.into(Hierarchy.build(hollow.vertices, hollow.faces), 1)
-    made = printable(cut, hollow.vertices, hollow.faces, np.arange(len(hollow.faces)), Options(wall=4.0))
+    made = prepare_parts(cut, hollow.vertices, hollow.faces, np.arange(len(hollow.faces)), PrintOptions(wall=4.0))
     assert volume(made.solids[0]) == pytest.approx(40 * 400 - 30 * 100)
     assert made.notes == []
-    made = printable(cut, hollow.vertices, hollow.faces, np.arange(len(hollow.faces)), Options(wall=6.0))
+    made = prepare_parts(cut, hollow.vertices, hollow.faces, np.arange(len(hollow.faces)), PrintOptions(wall=6.0))
     assert any("walls thinner than 6 mm" in note and "5.00 mm" in note for note in made.notes)
 
 
@@ -149,17 +148,17 @@ def test_a_hollow_beside_a_cut_stays():
     inner = trimesh.creation.box((10, 10, 10)).apply_translation((10, 10, 10))
     inner.invert()
     whole = np.vstack([vertices, inner.vertices]), np.vstack([triangles, inner.faces + len(vertices)])
-    cut = Cut.of_labels(Hierarchy.build(*whole), np.concatenate([labels, np.zeros(len(inner.faces), int)]))
-    made = printable(cut, *whole, np.arange(len(whole[1])))
+    cut = Cut.from_labels(Hierarchy.build(*whole), np.concatenate([labels, np.zeros(len(inner.faces), int)]))
+    made = prepare_parts(cut, *whole, np.arange(len(whole[1])))
     assert sum(map(volume, made.solids.values())) == pytest.approx(50 * 400 - 1000)
 
 
 def test_thickness():
     plate = trimesh.creation.box((40, 30, 2)).subdivide().subdivide()
-    walls = thickness(plate.vertices, plate.faces)
+    walls = wall_thickness(plate.vertices, plate.faces)
     assert np.unique(walls.round(9)).tolist() == [2, 30, 40]
     ball = trimesh.creation.icosphere(4, 10)
-    walls = thickness(ball.vertices, ball.faces)
+    walls = wall_thickness(ball.vertices, ball.faces)
     assert len(walls) == 1000 and walls.min() > 19 and walls.max() <= 20.0001
 
 
@@ -169,7 +168,7 @@ def printed(name):
     mesh = meshes.read(ROOT / "build" / "deps" / "meshes" / f"{name}.off")
     cut = Cut.into(Hierarchy.build(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count), MODELS[name])
     scale = 200 / np.ptp(mesh.vertices, axis=0).max()
-    made = printable(cut, mesh.vertices, mesh.triangles, mesh.faces, Options(scale=scale, pegs=GAP, wall=WALL))
+    made = prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, PrintOptions(scale=scale, pegs=GAP, wall=WALL))
     return scale, cut, made
 
 
@@ -205,7 +204,7 @@ def test_no_two_solids_have_anything_in_common(name):
         assert abs((grown ^ bodies[peg.into]).volume()) < 1e-6 * grown.volume()
         thick = manifold3d.Manifold.hull_points(prism(peg, 0, peg.length + GAP + 0.01, GAP + 0.01))
         assert (thick ^ bodies[peg.into]).volume() > 1e-4 * thick.volume()  # but no more than that
-        own = manifold3d.Manifold.hull_points(prism(peg, -DEEP * peg.radius, peg.length, 0))
+        own = manifold3d.Manifold.hull_points(prism(peg, -PEG_ROOT_DEPTH * peg.radius, peg.length, 0))
         assert abs((own - bodies[peg.part]).volume()) < 1e-3 * own.volume()
 
 
@@ -238,7 +237,7 @@ def test_walls_stay_around_every_socket(name):
 def test_manifold3d_is_asked_for(monkeypatch):
     monkeypatch.setitem(sys.modules, "manifold3d", None)
     with pytest.raises(RequirementError, match=r'pip install "partwheel\[printing\]"'):
-        of_bar((30, 20), Options())
+        of_bar((30, 20), PrintOptions())
 
 
 def test_the_command(tmp_path, meshes_directory):

@@ -9,9 +9,9 @@ import pytest
 import trimesh
 from conftest import ROOT
 from partwheel import Hierarchy, meshes
-from partwheel.cut import Cut, further, seams
-from partwheel.cut.patches import Patch, Sheet, opened
-from partwheel.cut.stretch import Flat
+from partwheel.cut import Cut, refine_seams, seams
+from partwheel.cut.patches import Patch, SeamMesh, cut_to_disk
+from partwheel.cut.stretch import ConformalMap
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
@@ -100,11 +100,11 @@ def test_an_island_that_a_solver_has_failed_on_is_divided_and_no_other():
     high = np.linalg.norm(np.cross(b - a, c - a), axis=1) / length
     zero = np.zeros(len(a))
     uv = np.stack([np.column_stack(each) for each in ((zero, zero), (length, zero), (along, high))], axis=1)
-    assert (further(*mesh[:4], cut, found("homer"), uv) == found("homer")).all()
+    assert (refine_seams(*mesh[:4], cut, found("homer"), uv) == found("homer")).all()
     island = pieces(mesh.triangles, found("homer"))
     failed = np.flatnonzero(island == np.bincount(island).argmax())
     uv[failed[::2]] *= 10
-    after = further(*mesh[:4], cut, found("homer"), uv)
+    after = refine_seams(*mesh[:4], cut, found("homer"), uv)
     divided = pieces(mesh.triangles, after)
     assert len({*divided[failed].tolist()}) > 1 and (islands(mesh.triangles, after) == 1).all()
     others = np.setdiff1d(np.arange(len(island)), failed)
@@ -114,7 +114,7 @@ def test_an_island_that_a_solver_has_failed_on_is_divided_and_no_other():
 
 def test_less_stretch_takes_more_seams():
     mesh, cut = model("elephant")
-    assert len(seams(*mesh[:4], cut, stretch=1.3)) < len(found("elephant")) < len(seams(*mesh[:4], cut, stretch=1.05))
+    assert len(seams(*mesh[:4], cut, max_distortion=1.3)) < len(found("elephant")) < len(seams(*mesh[:4], cut, max_distortion=1.05))
 
 
 def test_parts_that_are_flat_get_no_other_seams_than_their_borders():
@@ -122,15 +122,15 @@ def test_parts_that_are_flat_get_no_other_seams_than_their_borders():
     hierarchy = Hierarchy.build(box.vertices, box.faces)
     sides = np.unique(box.face_normals.round(), axis=0, return_inverse=True)[1]
     ends = seams(box.vertices, box.faces, np.arange(len(box.faces)), len(box.faces),
-                 Cut.of_labels(hierarchy, sides.ravel()))
+                 Cut.from_labels(hierarchy, sides.ravel()))
     places = box.vertices[ends]
     assert ((abs(places) == 0.5).all(axis=1).sum(axis=1) >= 2).all()  # along the box's edges
     assert len(islands(np.array(box.faces), ends)) in range(1, 7)
 
 
 def opened_shape(vertices, triangles, faces=None):
-    sheet = Sheet(vertices, triangles, np.arange(len(triangles)) if faces is None else faces)
-    return sheet, opened(sheet)
+    mesh = SeamMesh(vertices, triangles, np.arange(len(triangles)) if faces is None else faces)
+    return mesh, cut_to_disk(mesh)
 
 
 def tube(height=3.0, around=24, rings=12, radius=np.ones(24), twist=0):
@@ -147,27 +147,27 @@ def tube(height=3.0, around=24, rings=12, radius=np.ones(24), twist=0):
 
 def test_a_tube_is_cut_straight_along_sides_of_its_polygons():
     vertices, triangles, faces = tube()
-    sheet, cut = opened_shape(vertices, triangles, faces)
-    ends = vertices[sheet.ends[sheet.edge[cut]]]
+    mesh, cut = opened_shape(vertices, triangles, faces)
+    ends = vertices[mesh.edges[mesh.interior_edges[cut]]]
     assert len(ends) == 12 and np.ptp(ends[..., :2].reshape(-1, 2), axis=0).max() == 0
-    assert not sheet.inner[cut].any() and (islands(triangles, sheet.ends[sheet.edge[cut]]) == 1).all()
+    assert not mesh.is_diagonal[cut].any() and (islands(triangles, mesh.edges[mesh.interior_edges[cut]]) == 1).all()
 
 
 def test_a_tube_that_is_twisted_is_not_cut_along_diagonals():
     vertices, triangles, faces = tube(twist=1)  # these are straight, and the shortest way
-    sheet, cut = opened_shape(vertices, triangles, faces)
-    assert sheet.inner.any() and not sheet.inner[cut].any()
-    assert islands(triangles, sheet.ends[sheet.edge[cut]]).tolist() == [1]
-    sheet, cut = opened_shape(vertices, triangles)
-    assert np.ptp(vertices[sheet.ends[sheet.edge[cut]]][..., :2].reshape(-1, 2), axis=0).max() < 1e-9
+    mesh, cut = opened_shape(vertices, triangles, faces)
+    assert mesh.is_diagonal.any() and not mesh.is_diagonal[cut].any()
+    assert islands(triangles, mesh.edges[mesh.interior_edges[cut]]).tolist() == [1]
+    mesh, cut = opened_shape(vertices, triangles)
+    assert np.ptp(vertices[mesh.edges[mesh.interior_edges[cut]]][..., :2].reshape(-1, 2), axis=0).max() < 1e-9
     # Of a closed one, a ring, neither.
     ring = triangles.reshape(12, -1, 3)
     joined = np.where(ring >= 12 * 24, ring - 12 * 24, ring).reshape(-1, 3)
     turned = vertices.copy()
     turned[:, 0], turned[:, 2] = (3 + vertices[:, 0]) * np.cos(vertices[:, 2] * 2 * np.pi / 3), (
         3 + vertices[:, 0]) * np.sin(vertices[:, 2] * 2 * np.pi / 3)
-    sheet, cut = opened_shape(turned, joined, faces)
-    assert not sheet.inner[cut].any() and islands(joined, sheet.ends[sheet.edge[cut]]).tolist() == [1]
+    mesh, cut = opened_shape(turned, joined, faces)
+    assert not mesh.is_diagonal[cut].any() and islands(joined, mesh.edges[mesh.interior_edges[cut]]).tolist() == [1]
 
 
 @pytest.mark.parametrize("radius", [0.6, 1.4])
@@ -176,8 +176,8 @@ def test_a_tube_is_cut_where_it_can_be_seen_least(radius):
     profile[7] = radius  # a groove, or a ridge, along it
     profile[15] = 2 - radius
     vertices, triangles, faces = tube(radius=profile)
-    sheet, cut = opened_shape(vertices, triangles, faces)
-    ends = sheet.ends[sheet.edge[cut]]
+    mesh, cut = opened_shape(vertices, triangles, faces)
+    ends = mesh.edges[mesh.interior_edges[cut]]
     assert len(ends) == 12 and len({*(ends % 24).ravel().tolist()}) == 1
     assert profile[ends[0, 0] % 24] < 1
 
@@ -187,8 +187,8 @@ def test_a_tube_is_cut_where_it_can_be_seen_least(radius):
     (trimesh.creation.torus(2, 0.7, 48, 24), 1.05 * 2 * np.pi * (0.7 + 1.3)),  # around it and around the hole
     (trimesh.creation.annulus(1, 2, 0.5), 1.05 * (2 * np.pi * 1 + 3))])
 def test_closed_shapes_are_cut_to_disks_by_short_ways(shape, longest):
-    sheet, cut = opened_shape(shape.vertices, shape.faces)
-    ends = sheet.ends[sheet.edge[cut]]
+    mesh, cut = opened_shape(shape.vertices, shape.faces)
+    ends = mesh.edges[mesh.interior_edges[cut]]
     assert islands(np.array(shape.faces), ends).tolist() == [1]
     assert 0 < np.linalg.norm(np.diff(shape.vertices[ends], axis=1)[:, 0], axis=1).sum() < longest
 
@@ -205,9 +205,9 @@ def test_a_band_with_one_side_becomes_a_disk_too():
         there = there if k < 39 else there[::-1]
         triangles += [(here[j], here[j + 1], there[j]) for j in range(2)] + [
             (here[j + 1], there[j + 1], there[j]) for j in range(2)]
-    sheet, cut = opened_shape(vertices, np.array(triangles))
+    mesh, cut = opened_shape(vertices, np.array(triangles))
     assert islands(np.array(triangles), np.zeros((0, 2), int)).tolist() == [0]
-    assert islands(np.array(triangles), sheet.ends[sheet.edge[cut]]).tolist() == [1]
+    assert islands(np.array(triangles), mesh.edges[mesh.interior_edges[cut]]).tolist() == [1]
 
 
 def disk(place, rings=24, around=96, to=1.0, closed=True):
@@ -223,29 +223,29 @@ def disk(place, rings=24, around=96, to=1.0, closed=True):
     if closed:
         triangles = np.where(triangles < count, 0, triangles)
         triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
-    sheet = Sheet(vertices, triangles, np.arange(len(triangles)))
-    return Patch(sheet, np.zeros(len(sheet.edge), bool))
+    mesh = SeamMesh(vertices, triangles, np.arange(len(triangles)))
+    return Patch(mesh, np.zeros(len(mesh.interior_edges), bool))
 
 
 @pytest.mark.parametrize("most", [0.4, 1.0, 1.5])
 def test_a_cap_of_a_sphere_is_scaled_as_the_stereographic_projection_does(most):
     patch = disk(lambda radius, angle: np.column_stack([np.sin(most * radius) * np.cos(angle), np.sin(
         most * radius) * np.sin(angle), np.cos(most * radius)]))
-    flat = Flat(patch)
-    places = np.empty((patch.count, 3))
-    places[patch.vertex] = patch.sheet.places[patch.sheet.triangles]
+    flat = ConformalMap(patch)
+    places = np.empty((patch.vertex_count, 3))
+    places[patch.triangles] = patch.mesh.positions[patch.mesh.triangles]
     expected = np.cos(most / 2) ** 2 / np.cos(np.arccos(np.clip(places[:, 2], -1, 1)) / 2) ** 2
-    assert abs(np.exp(flat.scale) / expected - 1).max() < 0.01
+    assert abs(np.exp(flat.log_scale) / expected - 1).max() < 0.01
     # And so are areas: by the factor's square, in the mean over the cap.
     at = np.linspace(0, most, 2001)
     share, factor = np.sin(at), 1 / np.cos(at / 2) ** 4
     factor /= np.average(factor, weights=share)
-    assert flat.stretch() == pytest.approx(np.average(np.maximum(factor, 1 / factor), weights=share), rel=0.01)
-    assert flat.covered() == 0
+    assert flat.area_distortion() == pytest.approx(np.average(np.maximum(factor, 1 / factor), weights=share), rel=0.01)
+    assert flat.overlap_fraction() == 0
 
 
 @pytest.mark.parametrize("turns, expected", [(0.5, 0), (0.95, 0), (1.5, 0.5), (1.25, 0.25)])
 def test_a_ramp_that_goes_around_more_than_once_covers_itself(turns, expected):
     patch = disk(lambda radius, angle: np.column_stack([(1 + radius) * np.cos(angle), (1 + radius) * np.sin(angle),
                                                         1e-3 * angle]), to=turns, closed=False)
-    assert Flat(patch).covered() == pytest.approx(expected, abs=0.01)
+    assert ConformalMap(patch).overlap_fraction() == pytest.approx(expected, abs=0.01)

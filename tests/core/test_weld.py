@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 import shapes
 from partwheel import Creases, Deformation, Hierarchy, likeness, surface_distances
-from partwheel.cut import Cut, bones, borders, further, mirror_planes, named, seams, tree, weights
+from partwheel.cut import (
+    Cut, bones, mirror_planes, name_parts, part_borders, part_tree, refine_seams, seams, skin_weights,
+)
 from partwheel.deform import FIXED, FREE
 from partwheel.joint import find_joint
 from partwheel.weld import weld_coincident_vertices
@@ -147,11 +149,11 @@ def test_borders_tree_weights_bones_and_names_are_the_same(both):
     results = []
     for shape in (whole, split):
         surface = shape.vertices, shape.triangles, labels
-        own = weights(*surface, len(cut))
-        hung = tree(cut, *surface)
+        own = skin_weights(*surface, len(cut))
+        hung = part_tree(cut, *surface)
         planes = mirror_planes(shape.vertices, shape.triangles)
-        results.append((borders(*surface), own, hung, bones(*surface, hung, own, planes), planes,
-                        named(cut, shape.vertices, shape.triangles, shape.faces)))
+        results.append((part_borders(*surface), own, hung, bones(*surface, hung, own, planes), planes,
+                        name_parts(cut, shape.vertices, shape.triangles, shape.faces)))
     (edges, own, hung, made, planes, names), (other, others, hanging, made_of_split, planes_of_split, names_of_split) = results
     assert [each.parts for each in edges] == [each.parts for each in other] and len(edges) > 5
     for one, two in zip(edges, other):
@@ -197,7 +199,7 @@ def test_seams_are_the_same(both):
     assert {*map(tuple, found.tolist())} == wanted
     # Where an unwrapping failed, here everywhere, the same parts are divided once more.
     uv = np.random.default_rng(1).random((len(whole.triangles), 3, 2)) ** 8
-    more, more_of_split = (further(*shape, parts(), ends, uv) for shape, ends in ((whole, expected), (split, found)))
+    more, more_of_split = (refine_seams(*shape, parts(), ends, uv) for shape, ends in ((whole, expected), (split, found)))
     assert len(more) > len(expected)
     np.testing.assert_array_equal(on_whole(more_of_split, was), np.unique(more, axis=0))
 

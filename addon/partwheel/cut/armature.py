@@ -7,7 +7,7 @@ import bpy
 from ..mesh import arrays
 from ..mesh.datablocks import all_or_nothing
 from ..solid import composition
-from partwheel.cut import bones, mirror_planes, tree
+from partwheel.cut import bones, mirror_planes, part_tree
 
 OURS = "partwheel_bones"  # a property of armatures that were made here
 
@@ -20,7 +20,7 @@ def made(obj, cut, names, weights):
     surface = arrays.surface(obj.data)
     labels = cut.labels[surface.faces]
     vertices, triangles = surface.vertices, surface.triangles
-    found = bones(vertices, triangles, labels, tree(cut, vertices, triangles, labels), weights,
+    found = bones(vertices, triangles, labels, part_tree(cut, vertices, triangles, labels), weights,
                   mirror_planes(vertices, triangles))
     modifier = _modifier(obj)
     if modifier and _usable(obj, modifier.object):
@@ -84,7 +84,7 @@ def _write(rig, found, names):
         for bone, each in zip(new, found):
             bone.head, bone.tail = each.head, each.tail
             if each.parent >= 0:
-                bone.parent, bone.use_connect = new[each.parent], each.connected
+                bone.parent, bone.use_connect = new[each.parent], each.is_connected
         bpy.ops.object.mode_set(mode="OBJECT")
     finally:
         layer.objects.active = active

@@ -7,7 +7,7 @@ import numpy as np
 from ..mesh import arrays
 from ..mesh.errors import Refused
 from ..pick.writers import FACE_SET
-from partwheel.cut import colors, weights
+from partwheel.cut import colors, skin_weights
 
 
 def face_sets(obj, cut, _names):
@@ -17,9 +17,9 @@ def face_sets(obj, cut, _names):
 
 
 def weights_of(obj, cut):
-    """Of each part, as cut.weights() gives them: 1 within, falling smoothly across the borders. A vertex's add up to 1."""
+    """Of each part, as skin_weights() gives them: 1 within, falling smoothly across the borders. A vertex's add up to 1."""
     surface = arrays.surface(obj.data)
-    return weights(surface.vertices, surface.triangles, cut.labels[surface.faces], len(cut))
+    return skin_weights(surface.vertices, surface.triangles, cut.labels[surface.faces], len(cut))
 
 
 def vertex_groups(obj, names, weights):

@@ -12,7 +12,7 @@ from ..mesh.datablocks import all_or_nothing
 from ..mesh.errors import Refused
 from ..solid import composition, fitting, solids
 from ..words.say import rpt_
-from partwheel.cut import tree
+from partwheel.cut import part_tree
 
 
 VOLUME_TOLERANCE = 0.01  # of the whole, by which closed objects may differ from it without a message
@@ -165,6 +165,6 @@ def _hung(mesh, cut):
     low, high = (np.array([end(surface.vertices[surface.triangles[labels == part]], axis=(0, 1))
                            for part in range(len(cut))]) for end in (np.min, np.max))
     middles = (low + high) / 2
-    hung = tree(cut, surface.vertices, surface.triangles, labels, middles)
+    hung = part_tree(cut, surface.vertices, surface.triangles, labels, middles)
     places = [Vector(link.border.center if link.border else middle) for link, middle in zip(hung, middles)]
     return hung, places, [Vector(middle) for middle in middles]

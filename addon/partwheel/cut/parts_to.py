@@ -132,10 +132,10 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if not self.clusters:
             return _first(obj, hierarchy, self.count)
         try:
-            cut = Cut.of_parts(hierarchy, json.loads(self.clusters))
+            cut = Cut.from_clusters(hierarchy, json.loads(self.clusters))
         except (ValueError, TypeError, RecursionError) as error:
             raise Refused("These are no parts of {name}: {reason}", name=obj.name, reason=error) from error
-        return cut.sized(self.count) if self.count else cut
+        return cut.resize(self.count) if self.count else cut
 
     def _write(self, context, obj, cut):
         for sentence in self._losses(obj):

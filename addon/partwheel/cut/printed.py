@@ -39,9 +39,9 @@ def planned(context, obj, cut, known, pegs=None, wall=1.2, bed=None):
         raise Refused("{name} is scaled differently along its axes: apply its scale first.", name=obj.name)
     scale = float(size.mean()) * context.scene.unit_settings.scale_length * MILLIMETRES
     surface = arrays.surface(obj.data)
-    return Plan(printing.printable(cut, surface.vertices, surface.triangles, surface.faces,
-                                   printing.Options(scale, pegs, wall, bed),
-                                   named_by=lambda cut: stored.names_of(obj, cut, known)), scale)
+    return Plan(printing.prepare_parts(cut, surface.vertices, surface.triangles, surface.faces,
+                                       printing.PrintOptions(scale, pegs, wall, bed),
+                                       name_cut=lambda cut: stored.names_of(obj, cut, known)), scale)
 
 
 @all_or_nothing()

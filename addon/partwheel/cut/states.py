@@ -22,7 +22,7 @@ class Cutting:
     @cached_property
     def cut(self):
         if self.face is None:
-            return self.base.sized(len(self.base) + self.level)
+            return self.base.resize(len(self.base) + self.level)
         cut = self.base
         for _ in range(abs(self.level)):
             part = int(cut.labels[self.face])

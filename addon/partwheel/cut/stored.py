@@ -8,7 +8,7 @@ import bmesh
 import numpy as np
 
 from ..mesh import arrays
-from partwheel.cut import Cut, named
+from partwheel.cut import Cut, name_parts
 
 ATTRIBUTE = "partwheel_part"  # of faces, whole numbers
 NAMES = "partwheel_parts"  # a property of the mesh: JSON, {number: name}
@@ -30,7 +30,7 @@ def found(obj, hierarchy):
     if labels is None:
         return None
     known = _known_names(mesh.get(NAMES))
-    cut, names = Cut.of_labels(hierarchy, labels), {}
+    cut, names = Cut.from_labels(hierarchy, labels), {}
     for part, clusters in enumerate(cut.parts):
         values, counts = np.unique(labels[cut.labels == part], return_counts=True)
         if (name := known.get(int(values[counts.argmax()]))) and name not in names.values():
@@ -68,7 +68,7 @@ def names_of(obj, cut, known):
     if None not in names:
         return names
     surface = arrays.surface(obj.data)
-    fresh = named(cut, surface.vertices, surface.triangles, surface.faces, WORD)
+    fresh = name_parts(cut, surface.vertices, surface.triangles, surface.faces, WORD)
     taken = set(filter(None, names))
     for part, name in enumerate(names):
         if name is None:

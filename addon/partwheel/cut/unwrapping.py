@@ -6,7 +6,7 @@ import numpy as np
 
 from ..mesh import apart, arrays
 from ..mesh.errors import Refused
-from partwheel.cut import laid_flat, seams
+from partwheel.cut import seams, unwrap_cut
 from partwheel.weld import is_welding, weld_coincident_vertices
 
 MOST_MAPS = 8  # UV maps that a mesh can have
@@ -36,7 +36,7 @@ def mark(obj, cut, unwrap):
             places = _unwrapped(obj, old_to_new)
             return places.reshape(-1, 2)[loops].astype(float)
 
-        laid_flat(*surface, cut, by_blender)
+        unwrap_cut(*surface, cut, by_blender)
         if own:
             old = arrays.read(own.data, "uv", np.float32, 2).ravel()
         else:

@@ -182,8 +182,8 @@ def for_printer(options, mesh, cut):
     """The printing.Printable of a cut."""
     longest = float(np.ptp(mesh.vertices, axis=0).max())
     scale = options.size / longest if options.size and longest > 0 else 1.0
-    return printing.printable(cut, mesh.vertices, mesh.triangles, mesh.faces,
-                              printing.Options(scale, options.pegs, options.wall, options.bed))
+    return printing.prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces,
+                                  printing.PrintOptions(scale, options.pegs, options.wall, options.bed))
 
 
 def describe(report):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from ctypes import c_double
-from typing import TYPE_CHECKING, Iterable, Optional, Tuple
+from typing import TYPE_CHECKING, Iterable, List, Optional, Tuple, Union
 
 import numpy as np
 
@@ -246,7 +246,8 @@ def vertex_normals(vertices: ArrayLike, triangles: ArrayLike) -> np.ndarray:
     return normals
 
 
-def surface_distances(vertices: ArrayLike, triangles: ArrayLike, start: np.ndarray) -> np.ndarray:
+def surface_distances(vertices: ArrayLike, triangles: ArrayLike,
+                      start: Union[np.ndarray, List[int]]) -> np.ndarray:
     """Distances along a surface from the nearest start vertex; a few percent too long. Coincident vertices are welded.
 
     Parameters

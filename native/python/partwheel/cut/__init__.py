@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The whole model in parts: a cut that can be edited, the parts' borders, seams and names, files of them."""
+"""The model divided into parts: a cut that can be edited; borders, bones, seams, names and files of its parts."""
 
 from .bones import Bone, bones
-from .borders import Border, Link, borders, links, tree, weights
+from .borders import ParentLink, PartBorder, link_parts, part_borders, part_tree, skin_weights
 from .colors import colors
 from .cut import Cut, CutError, CutPart
-from .names import mirror_planes, named
-from .seams import further, laid_flat, seams
+from .names import mirror_planes, name_parts
+from .seams import refine_seams, seams, unwrap_cut
 
-__all__ = ["Bone", "Border", "Cut", "CutError", "CutPart", "Link", "bones", "borders", "colors", "further", "laid_flat", "links", "mirror_planes",
-           "named", "seams", "tree", "weights"]
+__all__ = ["Bone", "Cut", "CutError", "CutPart", "ParentLink", "PartBorder", "bones", "colors", "link_parts", "mirror_planes",
+           "name_parts", "part_borders", "part_tree", "refine_seams", "seams", "skin_weights", "unwrap_cut"]

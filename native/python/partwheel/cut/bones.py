@@ -1,131 +1,164 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Bones for the parts of a cut: where each begins and ends."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
 from ..deform import surface_distances
 from ..weld import weld_surface
-from .borders import Link, from_root
+from .borders import ParentLink, PartBorder, VertexWeights, parents_first
 from .hinges import hinge
 
-END = 0.9  # what lies beyond this share of the way to a part's farthest point is its end
-BESIDE = 0.5  # borders nearer than this share, or so much smaller than another one, don't end a bone
-LEAST = 1e-3  # of the model's size: no bone is shorter
-NEAR, ALONG = 0.1, 0.5  # a root's bone is put into a mirror plane that is so near, in its lengths, and so nearly along it
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+TIP_FRACTION = 0.9  # of the distance to a part's farthest point: what lies beyond is its tip
+MIN_END_FRACTION = 0.5  # a border ends a bone if it is this far, in depths of the part, and this large, in radii of others
+MIN_LENGTH = 1e-3  # of a bone, in diagonals of the model's bounding box
+# A root's bone is projected to a mirror plane if it is close: in lengths of the bone, and the sine of the angle between.
+MAX_PLANE_DISTANCE, MAX_PLANE_SINE = 0.1, 0.5
 
 
 class Bone(NamedTuple):
-    """head, tail (3,); parent: the part whose bone it hangs on, -1 for the root's; connected: it begins where that
-    ends."""
+    """The bone of a part.
+
+    head, tail : (3,)
+    parent : the part whose bone is the parent; -1 for the root
+    is_connected : whether the bone begins where its parent ends
+    """
 
     head: np.ndarray
     tail: np.ndarray
     parent: int
-    connected: bool
+    is_connected: bool
 
 
-def bones(vertices, triangles, labels, tree, weights, planes=()):
-    """[Bone, ...] for each part. It begins in the middle of the border by which the part hangs on another, where its
-    hinge is best, a loose piece's in its own middle; and ends in the next border, in the middle of those that end the
-    part together (the fingers' of a hand), or where the part is farthest away. The root's goes through the part from end
-    to end, up or towards the + of the axis that it follows most; with one part alone that hangs on it, towards that.
+def bones(vertices: ArrayLike, triangles: np.ndarray, labels: np.ndarray, links: Sequence[ParentLink],
+          weights: Sequence[VertexWeights], planes: Sequence[Tuple[np.ndarray, float]] = ()) -> List[Bone]:
+    """The bones of the parts of a surface.
 
-    vertices (V,3), triangles (T,3), labels (T,) the part of each triangle, tree: the parts' Links. weights: theirs, with
-    which they are to be bent, as weights() gives them. planes: the model's mirror_planes(), in which the root's bone lies
-    if it may."""
+    A bone begins at the hinge in the part's border with its parent; that of a loose piece at the piece's center. It ends
+    at the center of the borders with those children that end the part together (for a hand, the fingers), or else at the
+    farthest point of the part. The root's bone spans the part along its longest axis, upward or in the positive direction
+    of the dominant axis; if the root has a single child, it ends at the border with that.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float
+    triangles : (T, 3) int, indices into vertices
+    labels : (T,) the part of each triangle
+    links : the tree of the parts, see part_tree()
+    weights : that the surface bends with, see skin_weights()
+    planes : mirror_planes() of the model; a root's bone that nearly lies in one is projected to it
+
+    Returns
+    -------
+    the Bone of each part
+    """
     vertices = np.asarray(vertices, np.float64)
-    tree = _with_hinges(vertices, triangles, tree, weights)
+    links = _center_borders_at_hinges(vertices, triangles, links, weights)
     _, triangles = weld_surface(vertices, triangles)
-    low, high = (end(vertices[triangles], axis=(0, 1)) for end in (np.min, np.max))
-    least = LEAST * np.linalg.norm(high - low)
-    shapes = [_Shape(vertices, triangles[labels == part]) for part in range(len(tree))]
+    low, high = (bound(vertices[triangles], axis=(0, 1)) for bound in (np.min, np.max))
+    min_length = MIN_LENGTH * np.linalg.norm(high - low)
+    surfaces = [_PartSurface(vertices, triangles[labels == part]) for part in range(len(links))]
     ends = []
-    for part, (shape, link) in enumerate(zip(shapes, tree)):
-        below = [other.border for other in tree if other.parent == part and other.border]
+    for part, (surface, link) in enumerate(zip(surfaces, links)):
+        child_borders = [other.border for other in links if other.parent == part and other.border]
         if link.border:
-            head, tail = link.border.center, shape.beyond(link.border, below)
+            head, tail = link.border.center, surface.bone_end(link.border, child_borders)
         elif link.parent >= 0:
-            head, tail = shape.middle, shape.along(shape.middle, shape.middle - shapes[link.parent].middle)
-        elif len(below) == 1:
-            head, tail = shape.beyond(below[0], []), below[0].center
+            head, tail = surface.center, surface.extreme(surface.center, surface.center - surfaces[link.parent].center)
+        elif len(child_borders) == 1:
+            head, tail = surface.bone_end(child_borders[0], []), child_borders[0].center
         else:
-            head, tail = _in_plane(*shape.through(), planes)
+            head, tail = _project_to_plane(*surface.long_axis(), planes)
         length = np.linalg.norm(tail - head)
-        if length < least:
-            tail = head + ((tail - head) / length if length > 0 else np.array([0.0, 0.0, 1.0])) * least
+        if length < min_length:
+            tail = head + ((tail - head) / length if length > 0 else np.array([0.0, 0.0, 1.0])) * min_length
         ends.append((head, tail))
-    joined = [link.parent >= 0 and bool(np.linalg.norm(ends[link.parent][1] - head) < least)
-              for (head, _), link in zip(ends, tree)]
-    return [Bone(*each, link.parent, connected) for each, link, connected in zip(ends, tree, joined)]
+    connected = [link.parent >= 0 and bool(np.linalg.norm(ends[link.parent][1] - head) < min_length)
+                 for (head, _), link in zip(ends, links)]
+    return [Bone(*head_tail, link.parent, is_connected) for head_tail, link, is_connected in zip(ends, links, connected)]
 
 
-def _with_hinges(vertices, triangles, tree, weights):
-    """The Links, whose borders have their hinges as their centers."""
-    shares = np.zeros((len(tree), len(vertices)))  # what turns with each part: its own weights, and of all that hangs on it
-    found = list(tree)
-    for part in from_root(tree)[::-1]:
-        own, values = weights[part]
-        shares[part, own] += values
-        parent, border = tree[part]
+def _center_borders_at_hinges(vertices: np.ndarray, triangles: np.ndarray, links: Sequence[ParentLink],
+                              weights: Sequence[VertexWeights]) -> List[ParentLink]:
+    """The links, with borders whose centers are their hinges."""
+    subtree_weights = np.zeros((len(links), len(vertices)))  # of each part with its descendants: they turn with it
+    result = list(links)
+    for part in parents_first(links)[::-1]:
+        part_vertices, values = weights[part]
+        subtree_weights[part, part_vertices] += values
+        parent, border = links[part]
         if parent >= 0:
-            shares[parent] += shares[part]
+            subtree_weights[parent] += subtree_weights[part]
         if border:
-            found[part] = Link(parent, border._replace(center=hinge(vertices, triangles, border, shares[part])))
-    return found
+            center = hinge(vertices, triangles, border, subtree_weights[part])
+            result[part] = ParentLink(parent, border._replace(center=center))
+    return result
 
 
-def _in_plane(head, tail, planes):
-    """The bone, put into the first plane that it nearly lies in. What is left on the root of a limb leads it astray."""
-    way, middle = tail - head, (head + tail) / 2
-    length = np.linalg.norm(way)
+def _project_to_plane(head: np.ndarray, tail: np.ndarray,
+                      planes: Sequence[Tuple[np.ndarray, float]]) -> Tuple[np.ndarray, np.ndarray]:
+    """(head, tail), projected to the first plane that they are close to. A stump of a limb that is left on the root would
+    tilt its bone."""
+    direction, center = tail - head, (head + tail) / 2
+    length = np.linalg.norm(direction)
     for normal, offset in planes:
-        if abs(middle @ normal - offset) <= NEAR * length and abs(way @ normal) <= ALONG * length:
-            return tuple(end - (end @ normal - offset) * normal for end in (head, tail))
+        if (abs(center @ normal - offset) <= MAX_PLANE_DISTANCE * length
+                and abs(direction @ normal) <= MAX_PLANE_SINE * length):
+            head, tail = (end - (end @ normal - offset) * normal for end in (head, tail))
+            break
     return head, tail
 
 
-class _Shape:
+class _PartSurface:
     """The surface of one part."""
 
-    def __init__(self, vertices, triangles):
+    def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
         used, self.triangles = np.unique(triangles, return_inverse=True)
-        self.number = {vertex: place for place, vertex in enumerate(used.tolist())}
+        self.old_to_new = {vertex: number for number, vertex in enumerate(used.tolist())}
         self.vertices, self.triangles = vertices[used], self.triangles.reshape(-1, 3)
         self.corners = self.vertices[self.triangles]
         sides = self.corners[:, 1:] - self.corners[:, :1]
         self.areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) + 1e-300
-        self.middle = np.average(self.corners.mean(axis=1), axis=0, weights=self.areas)
+        self.center = np.average(self.corners.mean(axis=1), axis=0, weights=self.areas)
 
-    def along(self, start, way):
-        """The farthest that the part reaches from there on a way."""
-        length = np.linalg.norm(way)
-        return start if length == 0 else start + way / length * max(((self.vertices - start) @ way).max() / length, 0)
+    def extreme(self, start: np.ndarray, direction: np.ndarray) -> np.ndarray:
+        """The point on a ray where it leaves the part's extent in the ray's direction."""
+        length = np.linalg.norm(direction)
+        if length == 0:
+            return start
+        return start + direction / length * max(((self.vertices - start) @ direction).max() / length, 0)
 
-    def beyond(self, border, others):
-        """Where a bone ends that begins at a border: at others that lie that far, or at the part's end."""
-        away = surface_distances(self.vertices, self.triangles, self._of(border))
-        known = np.isfinite(away)
-        if not known.all():  # loose pieces, by the straight way
-            away = np.where(known, away, np.linalg.norm(self.vertices - border.center, axis=1))
-        far = [other for other in others if away[self._of(other)].mean() >= BESIDE * away.max()]
-        wide = [other for other in far if other.radius >= BESIDE * max(each.radius for each in far)]
+    def bone_end(self, border: PartBorder, child_borders: Sequence[PartBorder]) -> np.ndarray:
+        """Where a bone ends that begins at a border: at the child borders that end the part, or else at its tip."""
+        distance = surface_distances(self.vertices, self.triangles, self._vertices_of(border))
+        is_reached = np.isfinite(distance)
+        if not is_reached.all():  # loose pieces: straight-line distance
+            distance = np.where(is_reached, distance, np.linalg.norm(self.vertices - border.center, axis=1))
+        far = [child for child in child_borders
+               if distance[self._vertices_of(child)].mean() >= MIN_END_FRACTION * distance.max()]
+        wide = [child for child in far if child.radius >= MIN_END_FRACTION * max(other.radius for other in far)]
         if wide:
-            return np.average([other.center for other in wide], axis=0, weights=[other.length for other in wide])
-        reach = away[self.triangles].mean(axis=1)
-        end = reach >= END * reach.max()
-        middle = np.average(self.corners[end].mean(axis=1), axis=0, weights=self.areas[end])
-        return self.along(border.center, middle - border.center)
+            return np.average([child.center for child in wide], axis=0, weights=[child.length for child in wide])
+        triangle_distance = distance[self.triangles].mean(axis=1)
+        tip = triangle_distance >= TIP_FRACTION * triangle_distance.max()
+        tip_center = np.average(self.corners[tip].mean(axis=1), axis=0, weights=self.areas[tip])
+        return self.extreme(border.center, tip_center - border.center)
 
-    def through(self):
-        """(head, tail): its two ends, by the way on which it is longest."""
-        away = self.corners - self.middle
-        sums = away.sum(axis=1)
-        moments = np.einsum("t,tki,tkj->ij", self.areas, away, away) + np.einsum("t,ti,tj->ij", self.areas, sums, sums)
-        way = np.linalg.eigh(moments)[1][:, -1]
-        way = way * np.sign(way[abs(way).argmax()])
-        return self.along(self.middle, -way), self.along(self.middle, way)
+    def long_axis(self) -> Tuple[np.ndarray, np.ndarray]:
+        """(head, tail): the ends of the part along its first principal axis."""
+        offsets = self.corners - self.center
+        sums = offsets.sum(axis=1)
+        moments = (np.einsum("t,tki,tkj->ij", self.areas, offsets, offsets)
+                   + np.einsum("t,ti,tj->ij", self.areas, sums, sums))
+        direction = np.linalg.eigh(moments)[1][:, -1]
+        direction = direction * np.sign(direction[abs(direction).argmax()])
+        return self.extreme(self.center, -direction), self.extreme(self.center, direction)
 
-    def _of(self, border):
-        return [self.number[vertex] for vertex in border.vertices.tolist()]
+    def _vertices_of(self, border: PartBorder) -> List[int]:
+        return [self.old_to_new[vertex] for vertex in border.vertices.tolist()]

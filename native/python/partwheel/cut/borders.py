@@ -1,157 +1,222 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the parts of a surface meet: their borders, the tree of parts that hangs together by them, and weights that go
-from one part to the next across them."""
+"""Borders between the parts of a surface, the tree of parts that they define, and skinning weights that blend across
+them."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Collection, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
 from ..deform import surface_distances
 from ..joint import MAX_REACH_FRACTION, edge_components
 from ..weld import weld_surface
-from .names import images
+from .names import mirror_images
 
-REACH = 2.0  # radii of a border in which weights fall, on either side: joints bend best so, see docs/bones.md
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from .cut import Cut
+
+REACH = 2.0  # radii of a border within which weights blend, on either side; joints bend best so, see docs/bones.md
+
+VertexWeights = Tuple[np.ndarray, np.ndarray]  # of a part: vertices (n,), weights (n,)
 
 
-class Border(NamedTuple):
-    """One connected group of edges between two parts, parts[0] < parts[1]. vertices (n,) of it; center (3,); radius:
-    the mean distance from there; length of its edges."""
+class PartBorder(NamedTuple):
+    """A connected group of edges between two parts.
 
-    parts: tuple
+    parts : the two parts, parts[0] < parts[1]
+    vertices : (n,) vertices of the edges
+    center : (3,)
+    radius : mean distance of the edges from the center
+    length : total length of the edges
+    """
+
+    parts: Tuple[int, int]
     vertices: np.ndarray
     center: np.ndarray
     radius: float
     length: float
 
 
-class Link(NamedTuple):
-    """What a part hangs on: another part, -1 for the root's; and by which Border, None for a loose piece."""
+class ParentLink(NamedTuple):
+    """The parent of a part in the tree of parts.
+
+    parent : a part; -1 for the root
+    border : the PartBorder between the two; None for the root and for loose pieces
+    """
 
     parent: int
-    border: Border
+    border: Optional[PartBorder]
 
 
-def borders(vertices, triangles, labels):
-    """The Borders of a surface's parts, sorted by parts, the longest first. vertices (V,3), triangles (T,3); labels
-    (T,) the part of each triangle. Coincident vertices are welded."""
+def part_borders(vertices: ArrayLike, triangles: ArrayLike, labels: np.ndarray) -> List[PartBorder]:
+    """The borders between the parts of a surface. Coincident vertices are welded.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float
+    triangles : (T, 3) int, indices into vertices
+    labels : (T,) the part of each triangle
+
+    Returns
+    -------
+    sorted by parts, then longest first
+    """
     vertices, (_, triangles) = np.asarray(vertices), weld_surface(vertices, triangles)
     edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
-    sides = np.unique(np.column_stack([edges, np.repeat(labels, 3)]), axis=0)  # ends of an edge, a part at it
-    sides = sides[sides[:, 0] != sides[:, 1]]
-    shared = np.flatnonzero((sides[1:, :2] == sides[:-1, :2]).all(axis=1))
-    edges, pairs = sides[shared, :2], np.column_stack([sides[shared, 2], sides[shared + 1, 2]])
-    found = []
+    edge_parts = np.unique(np.column_stack([edges, np.repeat(labels, 3)]), axis=0)  # rows (vertex, vertex, part)
+    edge_parts = edge_parts[edge_parts[:, 0] != edge_parts[:, 1]]
+    shared = np.flatnonzero((edge_parts[1:, :2] == edge_parts[:-1, :2]).all(axis=1))
+    edges, pairs = edge_parts[shared, :2], np.column_stack([edge_parts[shared, 2], edge_parts[shared + 1, 2]])
+    borders: List[PartBorder] = []
     for pair in np.unique(pairs, axis=0):
-        own = edges[(pairs == pair).all(axis=1)]
-        loop = edge_components(own)
-        found += [_border(vertices, pair, own[loop == number]) for number in range(loop.max() + 1)]
-    return sorted(found, key=lambda border: (border.parts, -border.length))
+        pair_edges = edges[(pairs == pair).all(axis=1)]
+        component = edge_components(pair_edges)
+        borders += [_part_border(vertices, pair, pair_edges[component == number]) for number in range(component.max() + 1)]
+    return sorted(borders, key=lambda border: (border.parts, -border.length))
 
 
-def _border(vertices, pair, edges):
+def _part_border(vertices: np.ndarray, pair: np.ndarray, edges: np.ndarray) -> PartBorder:
     a, b = vertices[edges[:, 0]], vertices[edges[:, 1]]
     length = np.linalg.norm(b - a, axis=1)
     weight = length if length.sum() > 0 else None
     center = np.average((a + b) / 2, axis=0, weights=weight)
     radius = np.average(np.linalg.norm((a + b) / 2 - center, axis=1), weights=weight)
-    return Border(tuple(pair.tolist()), np.unique(edges), center, float(radius), float(length.sum()))
+    return PartBorder(tuple(pair.tolist()), np.unique(edges), center, float(radius), float(length.sum()))
 
 
-def tree(cut, vertices, triangles, labels, middles=None):
-    """The Links of a cut's parts on the surface that it is of. labels (T,) the part of each triangle. middles
-    (parts,3): see links(); the means of their triangles unless given."""
-    if middles is None:
-        middles = np.array([vertices[triangles[labels == part]].mean(axis=(0, 1)) for part in range(len(cut))])
-    central = {part for part, image in images(vertices, triangles, labels)[0].items() if part == image}
-    return links(cut, borders(vertices, triangles, labels), middles, central)
+def part_tree(cut: Cut, vertices: np.ndarray, triangles: np.ndarray, labels: np.ndarray,
+              centers: Optional[np.ndarray] = None) -> List[ParentLink]:
+    """The tree of the parts of a cut, see link_parts().
+
+    Parameters
+    ----------
+    vertices : (V, 3), triangles : (T, 3), the surface that the cut is of
+    labels : (T,) the part of each triangle
+    centers : (parts, 3) of the parts; by default the means of their triangles' corners
+    """
+    if centers is None:
+        centers = np.array([vertices[triangles[labels == part]].mean(axis=(0, 1)) for part in range(len(cut))])
+    central = {part for part, image in mirror_images(vertices, triangles, labels)[0].items() if part == image}
+    return link_parts(cut, part_borders(vertices, triangles, labels), centers, central)
 
 
-def links(cut, found, middles, central=()):
-    """The tree of parts, a Link for each: what the cut's own tree joins first hangs together, by the longest of the
-    Borders found there. But first, parts on the plane of a symmetric model, central, hang together: neck and head on the
-    trunk, not on an arm; and are as one for what hangs on them, on the one with the longest border. The root is the part
-    with the most volume. middles (parts,3): a loose piece goes with the nearest of what it was joined with."""
-    joined = list(range(len(cut)))
+def link_parts(cut: Cut, borders: Sequence[PartBorder], centers: np.ndarray,
+               central: Collection[int] = ()) -> List[ParentLink]:
+    """The tree of the parts of a cut: a minimum spanning tree over their borders (Kruskal), rooted at the part with the
+    largest volume.
 
-    def at(part):
-        while joined[part] != part:
-            part = joined[part]
+    Borders come in the order in which the hierarchy merges their parts, longest first. Two exceptions make the tree of a
+    symmetric model symmetric: borders between central parts come first, so neck and head hang on the trunk, not on an arm;
+    and the borders of a part with central parts count as one, at the level of the earliest merge, so the part hangs on
+    the central part with the longest border. Loose pieces are linked last, each to the nearest of the parts that the
+    hierarchy merges it with.
+
+    Parameters
+    ----------
+    borders : see part_borders()
+    centers : (parts, 3)
+    central : the parts that lie in the symmetry plane
+
+    Returns
+    -------
+    the ParentLink of each part
+    """
+    representative = list(range(len(cut)))
+
+    def find(part: int) -> int:
+        while representative[part] != part:
+            part = representative[part]
         return part
 
-    beside = [[] for _ in joined]
+    neighbors: List[List[Tuple[int, Optional[PartBorder]]]] = [[] for _ in representative]
 
-    def join(ways):
-        for *_, (one, other), border in ways:
-            if at(one) != at(other):
-                joined[at(one)] = at(other)
-                beside[one].append((other, border))
-                beside[other].append((one, border))
+    def link(candidates: Sequence[tuple]) -> None:
+        for *_, (one, other), border in candidates:
+            if find(one) != find(other):
+                representative[find(one)] = find(other)
+                neighbors[one].append((other, border))
+                neighbors[other].append((one, border))
 
-    def apart(one, other):
-        return float(np.linalg.norm(middles[one] - middles[other]))
+    def center_distance(one: int, other: int) -> float:
+        return float(np.linalg.norm(centers[one] - centers[other]))
 
-    levels = [cut.joined_at(*border.parts) for border in found]
-    sides = [frozenset(border.parts).difference(central) for border in found]  # of which none, one or two are not central
-    first = {}
-    for side, level in zip(sides, levels):
-        first[side] = min(first.get(side, level), level)
-    join(sorted(((bool(side), first[side] if len(side) == 1 else level, -border.length, number, border.parts, border)
-                 for number, (border, side, level) in enumerate(zip(found, sides, levels))), key=lambda way: way[:4]))
-    if len({at(part) for part in joined}) > 1:
-        pairs = [(one, other) for one in range(len(cut)) for other in range(one) if at(one) != at(other)]
-        join(sorted((cut.joined_at(*pair), apart(*pair), pair, None) for pair in pairs))
+    levels = [cut.common_ancestor(*border.parts) for border in borders]
+    lateral_parts = [frozenset(border.parts).difference(central) for border in borders]
+    lowest: Dict[frozenset, int] = {}
+    for lateral, level in zip(lateral_parts, levels):
+        lowest[lateral] = min(lowest.get(lateral, level), level)
+    link(sorted(((bool(lateral), lowest[lateral] if len(lateral) == 1 else level, -border.length, number, border.parts,
+                  border) for number, (border, lateral, level) in enumerate(zip(borders, lateral_parts, levels))),
+                key=lambda candidate: candidate[:4]))
+    if len({find(part) for part in representative}) > 1:
+        pairs = [(one, other) for one in range(len(cut)) for other in range(one) if find(one) != find(other)]
+        link(sorted((cut.common_ancestor(*pair), center_distance(*pair), pair, None) for pair in pairs))
     root = max(range(len(cut)), key=cut.volume)
-    tree, todo = {root: Link(-1, None)}, [root]
-    for part in todo:
-        for other, border in beside[part]:
-            if other not in tree:
-                tree[other] = Link(part, border)
-                todo.append(other)
-    return [tree[part] for part in range(len(cut))]
+    links, queue = {root: ParentLink(-1, None)}, [root]
+    for part in queue:
+        for other, border in neighbors[part]:
+            if other not in links:
+                links[other] = ParentLink(part, border)
+                queue.append(other)
+    return [links[part] for part in range(len(cut))]
 
 
-def from_root(hung):
-    """The parts of a tree, each after what it hangs on."""
-    order = [part for part, link in enumerate(hung) if link.parent < 0]
+def parents_first(links: Sequence[ParentLink]) -> List[int]:
+    """The parts of a tree, each after its parent."""
+    order = [part for part, link in enumerate(links) if link.parent < 0]
     for part in order:
-        order += [other for other, link in enumerate(hung) if link.parent == part]
+        order += [other for other, link in enumerate(links) if link.parent == part]
     return order
 
 
-def weights(vertices, triangles, labels, count, reach=REACH):
-    """[(vertices (n,), weights (n,)), ...] for each part, as groups for an armature: 1 within the part, falling
-    smoothly to 0 beyond its borders, from as far on this side of each as on the other, within so many of its radii; but
-    at most half way to the farthest point of either part. A vertex's weights add up to 1; those without a triangle have
-    none. Coincident vertices are welded: each has the weights of the one.
+def skin_weights(vertices: ArrayLike, triangles: ArrayLike, labels: np.ndarray, count: int,
+                 reach: float = REACH) -> List[VertexWeights]:
+    """Skinning weights of the parts, for an armature. A part's weight is 1 inside it and falls smoothly to 0 across each
+    border, over the same distance on both sides. The weights of a vertex add up to 1; a vertex without triangles has
+    none. Coincident vertices are welded, so they have equal weights.
 
-    vertices (V,3), triangles (T,3), labels (T,) the part, of so many, of each triangle."""
-    places, (same, triangles) = np.asarray(vertices, np.float64), weld_surface(vertices, triangles)
-    own = np.full(len(places), -1)
-    own[triangles.ravel()] = np.repeat(labels, 3)
-    # Of each border: how much of the weight the other side has, on either side: a half at the border.
-    beyond = []
-    for border in borders(places, triangles, labels):
-        start = np.zeros(len(places), bool)
-        start[border.vertices] = True
-        distance = surface_distances(places, triangles, start)
-        depths = [distance[(own == part) & np.isfinite(distance)].max(initial=0) for part in border.parts]
-        far = min(reach * border.radius, MAX_REACH_FRACTION * min(depths))
-        near = np.flatnonzero(distance <= far)
-        way = distance[near] / far if far > 0 else np.zeros(len(near))
-        beyond.append((border.parts, near, 0.5 - way * way * (1.5 - way)))
-    raw, total = [], np.zeros(len(places))
+    Parameters
+    ----------
+    vertices : (V, 3) float
+    triangles : (T, 3) int, indices into vertices
+    labels : (T,) the part of each triangle
+    count : number of parts
+    reach : distance from a border over which weights blend, in its radii; limited to MAX_REACH_FRACTION of the depth of
+        either part
+
+    Returns
+    -------
+    of each part (vertices (n,), weights (n,))
+    """
+    positions, (old_to_new, triangles) = np.asarray(vertices, np.float64), weld_surface(vertices, triangles)
+    vertex_part = np.full(len(positions), -1)
+    vertex_part[triangles.ravel()] = np.repeat(labels, 3)
+    # Of each border: parts, vertices nearby, and the weight of the part on the other side there; one half at the border.
+    blends = []
+    for border in part_borders(positions, triangles, labels):
+        is_start = np.zeros(len(positions), bool)
+        is_start[border.vertices] = True
+        distance = surface_distances(positions, triangles, is_start)
+        depths = [distance[(vertex_part == part) & np.isfinite(distance)].max(initial=0) for part in border.parts]
+        width = min(reach * border.radius, MAX_REACH_FRACTION * min(depths))
+        near = np.flatnonzero(distance <= width)
+        x = distance[near] / width if width > 0 else np.zeros(len(near))
+        blends.append((border.parts, near, 0.5 - x * x * (1.5 - x)))
+    part_weights, total = [], np.zeros(len(positions))
     for part in range(count):
-        share = (own == part).astype(np.float64)
-        for parts, near, other in beyond:
+        weight = (vertex_part == part).astype(np.float64)
+        for parts, near, across in blends:
             if part in parts:
-                ours = own[near] == part
-                share[near] = np.where(ours, np.minimum(share[near], 1 - other), np.maximum(share[near], other))
-        raw.append(share)
-        total += share
+                is_inside = vertex_part[near] == part
+                weight[near] = np.where(is_inside, np.minimum(weight[near], 1 - across), np.maximum(weight[near], across))
+        part_weights.append(weight)
+        total += weight
     result = []
-    for share in raw:
-        share = (share / np.where(total > 0, total, 1))[same]
-        chosen = np.flatnonzero(share)
-        result.append((chosen, share[chosen]))
+    for weight in part_weights:
+        weight = (weight / np.where(total > 0, total, 1))[old_to_new]
+        nonzero = np.flatnonzero(weight)
+        result.append((nonzero, weight[nonzero]))
     return result

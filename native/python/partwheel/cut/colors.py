@@ -1,13 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Colours of parts."""
+"""Colors of parts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
-def colors(numbers):
-    """(n,3) a colour, 0..1, for each whole number (n,), far from those of the numbers next to it."""
+
+def colors(numbers: ArrayLike) -> np.ndarray:
+    """Colors for whole numbers; numbers that are close get colors that are far apart (golden-ratio hues).
+
+    Parameters
+    ----------
+    numbers : (n,) int
+
+    Returns
+    -------
+    (n, 3) RGB, 0 to 1
+    """
     numbers = np.asarray(numbers)
     hue = (numbers * 0.6180339887) % 1
     value = 0.75 + 0.25 * ((numbers * 0.7548776662) % 1)
-    bow = np.clip(np.abs((hue[:, None] * 6 + [0, 4, 2]) % 6 - 3) - 1, 0, 1)
-    return value[:, None] * (0.35 + 0.65 * bow)
+    rgb = np.clip(np.abs((hue[:, None] * 6 + [0, 4, 2]) % 6 - 3) - 1, 0, 1)
+    return value[:, None] * (0.35 + 0.65 * rgb)

@@ -1,76 +1,86 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A cut: the whole model in parts, as a value. What edits it gives a new one."""
+"""A cut: the model divided into disjoint parts, as an immutable value. Each edit returns a new cut."""
+
+from __future__ import annotations
 
 import heapq
 from functools import cached_property
-from typing import Optional
+from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
 from ..library import Error
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
-class Tree:
-    """The unpruned binary tree of a hierarchy with T tetrahedra: cluster c < T is leaf c, cluster T + m what merge m
-    joins. Each cluster's tetrahedra are a slice, its left child's before its right one's."""
+    from ..hierarchy import Hierarchy, Solid
 
-    def __init__(self, hierarchy):
+MAX_PARTS = 4096  # of Cut.into()
+
+
+class ClusterTree:
+    """The unpruned merge tree of a hierarchy with T tetrahedra. Cluster c < T is tetrahedron c; cluster T + m is the
+    result of merge m; the root is 2T - 2. The tetrahedra of a cluster are one slice, the left child's before the right
+    child's."""
+
+    def __init__(self, hierarchy: Hierarchy) -> None:
         self.hierarchy = hierarchy
-        self.leaves = len(hierarchy.tetrahedra)
-        self.root = 2 * self.leaves - 2
-        self._by_leaf = hierarchy.leaf[hierarchy.order]
-        self._ends = {}
+        self.leaf_count = len(hierarchy.tetrahedra)
+        self.root = 2 * self.leaf_count - 2
+        self._ordered_leaves = hierarchy.leaf[hierarchy.order]  # ascending
+        self._tet_slices: Dict[int, Tuple[int, int]] = {}
 
     @cached_property
-    def parent(self):
-        """(2T-1,) -1 at the root."""
-        parent = np.full(2 * self.leaves - 1, -1, np.int32)
+    def parent(self) -> np.ndarray:
+        """(2T - 1,) int32; -1 at the root."""
+        parent = np.full(2 * self.leaf_count - 1, -1, np.int32)
         merges = self.hierarchy.merges
-        parent[merges] = self.leaves + np.arange(len(merges), dtype=np.int32)[:, None]
+        parent[merges] = self.leaf_count + np.arange(len(merges), dtype=np.int32)[:, None]
         return parent
 
-    def children(self, cluster):
-        """(left, right), or () of a leaf."""
-        return tuple(self.hierarchy.merges[cluster - self.leaves].tolist()) if cluster >= self.leaves else ()
+    def children(self, cluster: int) -> Tuple[int, ...]:
+        """(left, right); () for a leaf."""
+        return tuple(self.hierarchy.merges[cluster - self.leaf_count].tolist()) if cluster >= self.leaf_count else ()
 
-    def ends(self, cluster):
-        """(first, last): its slice of the tetrahedra."""
-        if cluster not in self._ends:
+    def tet_slice(self, cluster: int) -> Tuple[int, int]:
+        """(first, last): the cluster has the tetrahedra first..last-1."""
+        if cluster not in self._tet_slices:
             first = last = cluster
-            while first >= self.leaves:
-                first = int(self.hierarchy.merges[first - self.leaves, 0])
-            while last >= self.leaves:
-                last = int(self.hierarchy.merges[last - self.leaves, 1])
-            self._ends[cluster] = first, last + 1
-        return self._ends[cluster]
+            while first >= self.leaf_count:
+                first = int(self.hierarchy.merges[first - self.leaf_count, 0])
+            while last >= self.leaf_count:
+                last = int(self.hierarchy.merges[last - self.leaf_count, 1])
+            self._tet_slices[cluster] = first, last + 1
+        return self._tet_slices[cluster]
 
-    def run(self, cluster):
-        """(first, last): its slice of the hierarchy's order of faces."""
-        first, last = np.searchsorted(self._by_leaf, self.ends(cluster))
+    def face_slice(self, cluster: int) -> Tuple[int, int]:
+        """(first, last): the cluster has the source faces hierarchy.order[first:last]."""
+        first, last = np.searchsorted(self._ordered_leaves, self.tet_slice(cluster))
         return int(first), int(last)
 
-    def faces(self, cluster):
-        """How many source faces it has."""
-        first, last = self.run(cluster)
+    def face_count(self, cluster: int) -> int:
+        """The number of the cluster's source faces; 0 if it is inside the solid."""
+        first, last = self.face_slice(cluster)
         return last - first
 
-    def path(self, cluster):
-        """The clusters above it, growing."""
+    def ancestors(self, cluster: int) -> Iterator[int]:
+        """The clusters that contain this one, smallest first."""
         while (cluster := int(self.parent[cluster])) >= 0:
             yield cluster
 
 
 class CutPart:
-    """A part of a Cut, which stands for its node wherever a node is wanted."""
+    """A part of a Cut. Functions that take a node accept it."""
 
-    def __init__(self, cut: "Cut", number: int) -> None:
+    def __init__(self, cut: Cut, number: int) -> None:
         self.cut, self.number = cut, number
 
     def __repr__(self) -> str:
         return f"<part {self.number} of {self.cut!r}>"
 
     def __index__(self) -> int:
-        """The node's number. Raises CutError for a part that is no node."""
+        """The node's number. Raises CutError if the part is not a node."""
         node = self.cut.node(self.number)
         if node is None:
             raise CutError(f"Part {self.number} is not one node of the tree, perhaps because it was merged by hand. Split it "
@@ -79,27 +89,29 @@ class CutPart:
 
 
 class CutError(Error):
-    """What a cut can't do; str() says why."""
+    """A cut can't do what was asked; str() says why."""
 
     name = "cut"
 
 
 class Cut:
-    """A hierarchy's model in parts. Each part has at least one face and each tetrahedron is in one part.
+    """The model of a hierarchy, divided into parts. Each part has at least one face; each tetrahedron is in one part.
 
-    Make one with Cut.automatic(), Cut.into() or Cut.of_labels(). It never changes: split(), join(), merge(), more(),
-    fewer() and sized() give another one, or the same where there is nothing to be done. Parts are numbered from 0; what
-    an edit leaves as it was stays before what it makes, so numbers change little.
+    Create one with Cut.automatic(), Cut.into() or Cut.from_labels(). A cut is immutable: split(), join(), merge(),
+    refine(), coarsen() and resize() return another cut, or the same if there is nothing to do. Parts are numbered from 0;
+    an edit keeps the order of unchanged parts and puts new parts last.
 
-    parts: of each part its clusters (see Tree), sorted; more than one with faces where parts were merged by hand.
-    keys: of each part a number that it keeps whatever is done to others, for colours and the like.
+    Attributes
+    ----------
+    parts : of each part its clusters (see ClusterTree), ascending. More than one with faces: the part was merged by hand
+    keys : of each part a number that edits of other parts don't change, for colors and the like
     """
 
-    def __init__(self, tree, parts, keys):
+    def __init__(self, tree: ClusterTree, parts: Iterable[Tuple[int, ...]], keys: Iterable[int]) -> None:
         self._tree, self.parts, self.keys = tree, tuple(parts), tuple(keys)
 
     @property
-    def hierarchy(self):
+    def hierarchy(self) -> Hierarchy:
         return self._tree.hierarchy
 
     def __len__(self) -> int:
@@ -109,72 +121,91 @@ class Cut:
         return f"<Cut of {self.hierarchy!r} into {len(self)} parts>"
 
     def __getitem__(self, part: int) -> CutPart:
-        """A part as what stands for its node. Negative numbers count from the end. Raises IndexError."""
+        """The part, to pass where a node is expected. Negative numbers count from the end. Raises IndexError."""
         return CutPart(self, range(len(self))[part])
 
-    def __eq__(self, other):
-        """The same parts, whatever their numbers."""
+    def __eq__(self, other: Any) -> bool:
+        """Whether both have the same parts, in any order."""
         return isinstance(other, Cut) and self.hierarchy is other.hierarchy and set(self.parts) == set(other.parts)
 
-    def __hash__(self):
+    def __hash__(self) -> int:
         return hash(frozenset(self.parts))
 
-    # ---- Made
+    # ---- Creation
 
     @classmethod
-    def of_labels(cls, hierarchy, labels):
-        """The cut with these parts, in this order: labels (F,) whole numbers, one for each source face. Where they
-        divide the faces of one tetrahedron, most of them count. What is inside, without a face, goes with what it was
-        joined to."""
+    def from_labels(cls, hierarchy: Hierarchy, labels: ArrayLike) -> Cut:
+        """The cut with given parts.
+
+        Parameters
+        ----------
+        labels : (F,) int, any numbers, one for each source face; parts are in their ascending order. Where the faces of
+            one tetrahedron have several labels, the majority label counts. Clusters without faces join the part of their
+            sibling
+        """
         labels = np.unique(np.asarray(labels), return_inverse=True)[1].ravel()[hierarchy.order]
-        tree = Tree(hierarchy)
-        changes = np.concatenate([[0], np.cumsum(labels[1:] != labels[:-1])])
-        found, todo = {}, [tree.root]
-        while todo:  # from the root down, left first; most of a tree is never looked at
-            cluster = todo.pop()
-            first, last = tree.run(cluster)
+        tree = ClusterTree(hierarchy)
+        change_count = np.concatenate([[0], np.cumsum(labels[1:] != labels[:-1])])  # before each position of the order
+        clusters: Dict[int, List[int]] = {}
+        stack = [tree.root]
+        while stack:  # depth first, left first; stops at clusters with a single label
+            cluster = stack.pop()
+            first, last = tree.face_slice(cluster)
             children = tree.children(cluster)
-            if changes[first] != changes[last - 1] and children:
-                todo += [child for child in children[::-1] if tree.faces(child)]
+            if change_count[first] != change_count[last - 1] and children:
+                stack += [child for child in children[::-1] if tree.face_count(child)]
                 continue
             values, counts = np.unique(labels[first:last], return_counts=True)
-            found.setdefault(int(values[counts.argmax()]), []).append(cluster)
-        return cls(tree, *_complete(tree, [found[label] for label in sorted(found)]))
+            clusters.setdefault(int(values[counts.argmax()]), []).append(cluster)
+        return cls(tree, *_add_faceless_clusters(tree, [clusters[label] for label in sorted(clusters)]))
 
     @classmethod
-    def automatic(cls, hierarchy):
-        """The parts that people would most likely take."""
-        return cls.of_labels(hierarchy, hierarchy.face_labels(hierarchy.cut_automatic()))
+    def automatic(cls, hierarchy: Hierarchy) -> Cut:
+        """The automatic segmentation."""
+        return cls.from_labels(hierarchy, hierarchy.face_labels(hierarchy.cut_automatic()))
 
     @classmethod
-    def into(cls, hierarchy, count):
-        """So many parts, the last merges undone: at least one, and not more than there are to be told apart."""
-        most = min(max(count, 1), len(hierarchy.tetrahedra), 4096)
-        return cls.of_labels(hierarchy, hierarchy.face_labels(hierarchy.cut_parts(most))).sized(count)
+    def into(cls, hierarchy: Hierarchy, count: int) -> Cut:
+        """The cut that undoes the last merges.
+
+        Parameters
+        ----------
+        count : number of parts; the cut has fewer if the model can't be divided further
+        """
+        node_count = min(max(count, 1), len(hierarchy.tetrahedra), MAX_PARTS)
+        return cls.from_labels(hierarchy, hierarchy.face_labels(hierarchy.cut_parts(node_count))).resize(count)
 
     @classmethod
-    def of_parts(cls, hierarchy, parts):
-        """The cut whose parts are these lists of clusters, as another one's parts tell. ValueError: they don't make the
-        whole."""
-        tree, labels = Tree(hierarchy), np.full(len(hierarchy.order), -1)
+    def from_clusters(cls, hierarchy: Hierarchy, parts: Iterable[Iterable[int]]) -> Cut:
+        """The cut with the parts of another cut of the same hierarchy.
+
+        Parameters
+        ----------
+        parts : the clusters of each part, see Cut.parts
+
+        Raises
+        ------
+        ValueError : a cluster does not exist, or the parts don't cover the model
+        """
+        tree, labels = ClusterTree(hierarchy), np.full(len(hierarchy.order), -1)
         for number, clusters in enumerate(parts):
             for cluster in clusters:
                 if not 0 <= cluster <= tree.root:
                     raise ValueError(f"There is no cluster {cluster}: the tree has {tree.root + 1}.")
-                labels[hierarchy.order[slice(*tree.run(cluster))]] = number
+                labels[hierarchy.order[slice(*tree.face_slice(cluster))]] = number
         if (labels < 0).any():
-            raise ValueError("These parts don't make the whole.")
-        return cls.of_labels(hierarchy, labels)
+            raise ValueError("These parts don't cover the whole model.")
+        return cls.from_labels(hierarchy, labels)
 
-    # ---- Seen
+    # ---- Queries
 
     @cached_property
-    def labels(self):
-        """(F,) the part of each source face."""
+    def labels(self) -> np.ndarray:
+        """(F,) int32: the part of each source face."""
         labels = np.empty(len(self.hierarchy.order), np.int32)
         for number, clusters in enumerate(self.parts):
             for cluster in clusters:
-                labels[self.hierarchy.order[slice(*self._tree.run(cluster))]] = number
+                labels[self.hierarchy.order[slice(*self._tree.face_slice(cluster))]] = number
         return labels
 
     @cached_property
@@ -183,23 +214,23 @@ class Cut:
         labels = np.empty(len(self.hierarchy.tetrahedra), np.int32)
         for number, clusters in enumerate(self.parts):
             for cluster in clusters:
-                labels[slice(*self._tree.ends(cluster))] = number
+                labels[slice(*self._tree.tet_slice(cluster))] = number
         return labels
 
     def faces(self, part: int) -> np.ndarray:
-        """(n,) the source faces of a part, ascending. Raises IndexError for a part that there is not."""
+        """(n,) int32: the source faces of a part, ascending. Raises IndexError if there is no such part."""
         return np.flatnonzero(self.labels == range(len(self))[part]).astype(np.int32)
 
     def node(self, part: int) -> Optional[int]:
-        """The node of the hierarchy that has the same tetrahedra as a part.
+        """The node of the hierarchy with the same tetrahedra as a part.
 
         Parameters
         ----------
-        part : its number; negative ones count from the end
+        part : its number; negative numbers count from the end
 
         Returns
         -------
-        the node's number; None for a part that is no node, as those that were merged by hand
+        the node's number; None if the part is not a node, for example after a merge by hand
 
         Raises
         ------
@@ -208,158 +239,168 @@ class Cut:
         first, last = self.slices(range(len(self))[part])
         return self.hierarchy.find_node(int(first[0]), int(last[0])) if len(first) == 1 else None
 
-    def slices(self, part):
-        """((n,) first, (n,) last): the part's slices of the tetrahedra, for Hierarchy.solids()."""
-        first, last = np.array(sorted(map(self._tree.ends, self.parts[part])), np.int32).T
-        apart = first[1:] != last[:-1]
-        return first[np.r_[True, apart]], last[np.r_[apart, True]]
+    def slices(self, part: int) -> Tuple[np.ndarray, np.ndarray]:
+        """(first (n,), last (n,)): the maximal slices of the part's tetrahedra, for Hierarchy.solids()."""
+        first, last = np.array(sorted(map(self._tree.tet_slice, self.parts[part])), np.int32).T
+        has_gap = first[1:] != last[:-1]
+        return first[np.r_[True, has_gap]], last[np.r_[has_gap, True]]
 
-    def solids(self):
-        """The part's Solids, whose volumes add up to the whole's; caps between two are the same in both. None where
-        polygons that are cut leave nothing of a part."""
+    def solids(self) -> List[Optional[Solid]]:
+        """The Solid of each part; None where cut polygons leave nothing of it. Their volumes add up to the model's;
+        neighbors share the same caps."""
         return self.hierarchy.solids([self.slices(part) for part in range(len(self))])
 
-    def volume(self, part):
-        """Of the part's tetrahedra."""
+    def volume(self, part: int) -> float:
+        """The volume of the part's tetrahedra."""
         corners = np.concatenate([self.hierarchy.tetrahedra[first:last] for first, last in zip(*self.slices(part))])
         corners = self.hierarchy.vertices[corners]
         a, b, c = (corners[:, k] - corners[:, 3] for k in range(3))
         return float(np.abs(np.einsum("ij,ij->i", a, np.cross(b, c))).sum() / 6)
 
-    def joined_at(self, one, other):
-        """The number of the cluster that first holds all of two parts: the lower, the nearer they are in the tree."""
-        return next(cluster for cluster in self._ways[one] if cluster in self._ways[other])
+    def common_ancestor(self, one: int, other: int) -> int:
+        """The smallest cluster that contains all faces of two parts. Clusters are numbered in merge order, so the smaller
+        the number, the earlier the parts merge."""
+        return next(cluster for cluster in self._ancestors[one] if cluster in self._ancestors[other])
 
     @cached_property
-    def _ways(self):
-        """Of each part the clusters that hold all of it that is seen, growing: keys of a dict, for their order."""
-        ways = []
+    def _ancestors(self) -> List[Dict[int, None]]:
+        """Of each part the clusters that contain all its faces, smallest first, as an ordered set."""
+        ancestors = []
         for part in range(len(self)):
-            first, *others = ([cluster, *self._tree.path(cluster)] for cluster in self._seen(part))
-            ways.append(dict.fromkeys(cluster for cluster in first if all(cluster in other for other in others)))
-        return ways
+            first, *rest = ([cluster, *self._tree.ancestors(cluster)] for cluster in self._clusters_with_faces(part))
+            ancestors.append(dict.fromkeys(cluster for cluster in first if all(cluster in path for path in rest)))
+        return ancestors
 
-    # ---- Edited
+    # ---- Edits
 
-    def split(self, part):
-        """The part as its two halves: what was joined last, or merged by hand. The larger one keeps the part's number,
-        the other one comes last."""
-        seen = self._seen(part)
-        halves = self._halves(*seen) if len(seen) == 1 else [[cluster] for cluster in seen]
+    def split(self, part: int) -> Cut:
+        """Undo the last merge of a part. The larger half keeps the part's number, the other one comes last; so do all but
+        the first cluster of a part that was merged by hand."""
+        with_faces = self._clusters_with_faces(part)
+        halves = self._halves(*with_faces) if len(with_faces) == 1 else [[cluster] for cluster in with_faces]
         if not halves:
             return self
-        return self._with({part: halves[0] + sorted(set(self.parts[part]) - set(seen))}, halves[1:])
+        return self._replace_parts({part: halves[0] + sorted(set(self.parts[part]) - set(with_faces))}, halves[1:])
 
-    def join(self, part):
-        """The part and all that is in its sibling as one: the next larger node of the tree. Of parts that were merged
-        by hand across that node, what is beyond it stays."""
-        top = next(iter(self._ways[part]))
-        if self._seen(part) == [top]:
+    def join(self, part: int) -> Cut:
+        """Join a part with its sibling: with all parts in the next larger cluster. Of a part that reaches beyond this
+        cluster, after a merge by hand, what lies beyond remains a part."""
+        top = next(iter(self._ancestors[part]))
+        if self._clusters_with_faces(part) == [top]:
             top = int(self._tree.parent[top])
         if top < 0:
             return self
-        changes, joined = {}, [top]
+        changes: Dict[int, List[int]] = {}
+        joined = [top]
         for number, clusters in enumerate(self.parts):
-            beyond = [cluster for cluster in clusters if top not in (cluster, *self._tree.path(cluster))]
-            if len(beyond) < len(clusters):
-                seen = any(map(self._tree.faces, beyond))
-                joined += [] if seen else beyond
-                changes[number] = beyond if seen else []
-        return self._with(changes | {part: joined})
+            outside = [cluster for cluster in clusters if top not in (cluster, *self._tree.ancestors(cluster))]
+            if len(outside) < len(clusters):
+                has_faces = any(map(self._tree.face_count, outside))
+                joined += [] if has_faces else outside
+                changes[number] = outside if has_faces else []
+        return self._replace_parts(changes | {part: joined})
 
-    def merge(self, one, other):
-        """Any two parts as one, with the first one's number."""
-        return self if one == other else self._with({one: [*self.parts[one], *self.parts[other]], other: []})
+    def merge(self, one: int, other: int) -> Cut:
+        """Merge any two parts; the result has the first one's number."""
+        return self if one == other else self._replace_parts({one: [*self.parts[one], *self.parts[other]], other: []})
 
-    def more(self):
-        """One part more: of all that were not merged by hand the last merge is undone."""
-        return self.sized(len(self) + 1)
+    def refine(self) -> Cut:
+        """One more part: undo the last merge among the parts that were not merged by hand."""
+        return self.resize(len(self) + 1)
 
-    def fewer(self):
-        """One part less: the first merge that is still to be done is done."""
+    def coarsen(self) -> Cut:
+        """One part fewer: do the first merge that is not done yet."""
         owner = {cluster: part for part, clusters in enumerate(self.parts) for cluster in clusters}
-        ways = sorted({int(self._tree.parent[cluster]) for cluster in owner} - {-1})
-        for parent in ways:
-            own = {owner[child] for child in self._tree.children(parent) if child in owner}
-            if len(own) == 2:
-                return self.merge(*sorted(own))
+        parents = sorted({int(self._tree.parent[cluster]) for cluster in owner} - {-1})
+        for parent in parents:
+            owners = {owner[child] for child in self._tree.children(parent) if child in owner}
+            if len(owners) == 2:
+                return self.merge(*sorted(owners))
         return self.merge(0, 1) if len(self) > 1 else self
 
-    def sized(self, count):
-        """With so many parts, as far as more() and fewer() lead there."""
+    def resize(self, count: int) -> Cut:
+        """The cut after as many refine() or coarsen() as give it this number of parts; fewer parts if it can't be refined
+        that far."""
         cut = self
         while len(cut) > max(count, 1):
-            cut = cut.fewer()
+            cut = cut.coarsen()
         if len(cut) >= count:
             return cut
-        parts, total = {}, len(cut)  # those that become others, and new ones from there on
-        last = [(-seen[0], part) for part in range(len(cut)) if len(seen := cut._seen(part)) == 1]
-        heapq.heapify(last)
-        while last and total < count:
-            cluster, part = heapq.heappop(last)
+        parts: Dict[int, List[int]] = {}  # changed parts; new ones are numbered from len(cut)
+        total = len(cut)
+        heap = [(-clusters[0], part) for part in range(len(cut)) if len(clusters := cut._clusters_with_faces(part)) == 1]
+        heapq.heapify(heap)
+        while heap and total < count:
+            cluster, part = heapq.heappop(heap)
             halves = self._halves(-cluster)
             if not halves:
                 continue
             before = parts[part] if part in parts else cut.parts[part]
             parts[part] = halves[0] + [each for each in before if each != -cluster]
             parts[total] = halves[1]
-            heapq.heappush(last, (-halves[0][0], part))
-            heapq.heappush(last, (-halves[1][0], total))
+            heapq.heappush(heap, (-halves[0][0], part))
+            heapq.heappush(heap, (-halves[1][0], total))
             total += 1
-        new = [parts.pop(number) for number in range(len(cut), total)]
-        return cut._with(parts, new) if new else cut
+        new_parts = [parts.pop(number) for number in range(len(cut), total)]
+        return cut._replace_parts(parts, new_parts) if new_parts else cut
 
-    def _seen(self, part):
-        """The part's clusters with faces; several were merged by hand."""
-        return [cluster for cluster in self.parts[part] if self._tree.faces(cluster)]
+    def _clusters_with_faces(self, part: int) -> List[int]:
+        """The part's clusters that have faces; several after a merge by hand."""
+        return [cluster for cluster in self.parts[part] if self._tree.face_count(cluster)]
 
-    def _halves(self, cluster):
-        """The two parts, as lists of clusters, the larger first, that the cluster falls into first; [] for one that
-        can't be told apart. What has no face goes with the larger one."""
-        beside = []
+    def _halves(self, cluster: int) -> List[List[int]]:
+        """The clusters of the two halves that a cluster divides into, the half with more faces first. Clusters without
+        faces belong to that one. [] if it has no two descendants with faces."""
+        faceless: List[int] = []
         while children := self._tree.children(cluster):
-            small, large = sorted(children, key=self._tree.faces)
-            if self._tree.faces(small):
-                return [[large, *beside], [small]]
-            beside.append(small)
+            small, large = sorted(children, key=self._tree.face_count)
+            if self._tree.face_count(small):
+                return [[large, *faceless], [small]]
+            faceless.append(small)
             cluster = large
         return []
 
-    def _with(self, changes, new=()):
-        """Parts with other clusters: changes by number, none for parts that are no more; and new ones, which come
-        last."""
-        kept = [(changes.get(number, clusters), key)
-                for number, (clusters, key) in enumerate(zip(self.parts, self.keys))]
-        kept = [(_collapsed(self._tree, clusters), key) for clusters, key in kept if clusters]
-        kept += zip((_collapsed(self._tree, clusters) for clusters in new), range(max(self.keys) + 1, 1 << 30))
-        return Cut(self._tree, *zip(*kept))
+    def _replace_parts(self, changes: Dict[int, List[int]], new_parts: Iterable[List[int]] = ()) -> Cut:
+        """Replace the clusters of parts.
+
+        Parameters
+        ----------
+        changes : part -> its new clusters; an empty list removes the part
+        new_parts : the clusters of parts to append
+        """
+        parts: List[Tuple[Sequence[int], int]] = [(changes.get(number, clusters), key)
+                                                  for number, (clusters, key) in enumerate(zip(self.parts, self.keys))]
+        result = [(_collapse_clusters(self._tree, clusters), key) for clusters, key in parts if clusters]
+        result += zip((_collapse_clusters(self._tree, clusters) for clusters in new_parts),
+                      range(max(self.keys) + 1, 1 << 30))
+        return Cut(self._tree, *zip(*result))
 
 
-def _complete(tree, parts):
-    """(parts, keys) of lists of clusters that miss only what has no face: each such cluster goes with the part that its
-    sibling, or the last piece of that, is in."""
+def _add_faceless_clusters(tree: ClusterTree, parts: List[List[int]]) -> Tuple[List[Tuple[int, ...]], range]:
+    """(parts, keys): parts, lists of clusters, completed to cover the tree. Each missing cluster, which has no faces, goes
+    to the part of its sibling, or of the last covered cluster in it."""
     owner = {cluster: number for number, clusters in enumerate(parts) for cluster in clusters}
-    above = {cluster for each in owner for cluster in tree.path(each)}
+    ancestors = {ancestor for cluster in owner for ancestor in tree.ancestors(cluster)}
     parts = [list(clusters) for clusters in parts]
-    for cluster in sorted(above):
+    for cluster in sorted(ancestors):
         for child, sibling in zip(tree.children(cluster), tree.children(cluster)[::-1]):
-            if child in above or child in owner:
+            if child in ancestors or child in owner:
                 continue
             while sibling not in owner:
-                sibling = next(each for each in tree.children(sibling)[::-1] if each in above or each in owner)
+                sibling = next(each for each in tree.children(sibling)[::-1] if each in ancestors or each in owner)
             owner[child] = owner[sibling]
             parts[owner[sibling]].append(child)
-    return [_collapsed(tree, clusters) for clusters in parts], range(len(parts))
+    return [_collapse_clusters(tree, clusters) for clusters in parts], range(len(parts))
 
 
-def _collapsed(tree, clusters):
-    """The same tetrahedra with as few clusters as can be."""
-    clusters = set(clusters)
-    todo = sorted(clusters)
-    while todo:
-        parent = int(tree.parent[todo.pop(0)])
-        if parent >= 0 and clusters.issuperset(tree.children(parent)):
-            clusters -= set(tree.children(parent))
-            clusters.add(parent)
-            todo.append(parent)
-    return tuple(sorted(clusters))
+def _collapse_clusters(tree: ClusterTree, clusters: Iterable[int]) -> Tuple[int, ...]:
+    """The smallest set of clusters with the same tetrahedra, ascending."""
+    remaining = set(clusters)
+    queue = sorted(remaining)
+    while queue:
+        parent = int(tree.parent[queue.pop(0)])
+        if parent >= 0 and remaining.issuperset(tree.children(parent)):
+            remaining -= set(tree.children(parent))
+            remaining.add(parent)
+            queue.append(parent)
+    return tuple(sorted(remaining))

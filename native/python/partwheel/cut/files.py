@@ -1,65 +1,90 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A model's parts as files: closed objects, colours, labels. By trimesh."""
+"""The parts of a model as files: closed objects, colors, labels. With trimesh."""
+
+from __future__ import annotations
 
 import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from ..requirements import load_module
-from .borders import from_root, tree
+from .borders import parents_first, part_tree
 from .colors import colors
-from .names import named
+from .names import name_parts
+
+if TYPE_CHECKING:
+    from ..meshes import Mesh
+    from .cut import Cut
 
 FORMATS = "glb", "3mf", "stl", "ply"
 
 
-def write(folder, name, mesh, cut, formats=("glb", "ply"), word="Part", printed=None):
-    """Writes the parts of a cut into a folder, made if it is not there; [path, ...] what was written.
+def write(folder: Path, name: str, mesh: Mesh, cut: Cut, formats: Sequence[str] = ("glb", "ply"), word: str = "Part",
+          printed: Optional[Dict[int, Tuple[np.ndarray, np.ndarray]]] = None) -> List[Path]:
+    """Write the parts of a cut to files.
 
-    glb, 3mf: NAME.glb, NAME.3mf: all parts as closed objects with names and colours, in glb parented as the parts hang
-    together. stl: a file for each, PART.stl. ply: NAME.ply, the model itself in the parts' colours, the number of its
-    part on each triangle. And always NAME.json: of each part its name, colour, faces, volume and what it hangs on; the
-    part of each face. mesh: a meshes.Mesh. printed: {part: (vertices, triangles)} to be written as objects instead of
-    the cut's own solids, see printing. formats may be empty: then only NAME.json is written. Raises
-    RequirementError without trimesh where there are formats, OSError."""
-    trimesh = load_module("trimesh", "Writing parts") if formats else None
-    names = named(cut, mesh.vertices, mesh.triangles, mesh.faces, word)
+    glb, 3mf: NAME.glb, NAME.3mf, all parts as closed objects with names and colors; in GLB each is a child of its parent in
+    the tree of parts. stl: PART.stl for each part. ply: NAME.ply, the model in the colors of its parts, with the part of
+    each triangle. NAME.json, always: name, color, face count, volume and parent of each part; the part of each face.
+
+    Parameters
+    ----------
+    folder : created if it does not exist
+    name : of the files
+    formats : some of FORMATS; if empty, only NAME.json is written
+    word : what names of parts begin with
+    printed : part -> (vertices (n, 3), triangles (m, 3)), objects to write instead of the cut's solids, see printing
+
+    Returns
+    -------
+    the paths of the files
+
+    Raises
+    ------
+    RequirementError : there are formats, but trimesh is not installed
+    OSError : a file can't be written
+    """
+    trimesh: Any = load_module("trimesh", "Writing parts") if formats else None
+    names = name_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, word)
     labels = cut.labels[mesh.faces]
-    hung = tree(cut, mesh.vertices, mesh.triangles, labels)
-    paint = np.column_stack([colors(cut.keys), np.ones(len(cut))])
+    links = part_tree(cut, mesh.vertices, mesh.triangles, labels)
+    rgba = np.column_stack([colors(cut.keys), np.ones(len(cut))])
     folder.mkdir(parents=True, exist_ok=True)
-    written = []
+    paths = []
 
-    def put(file_name, data):
+    def write_file(file_name: str, data: Union[bytes, str]) -> None:
         path = folder / file_name
         path.write_bytes(data if isinstance(data, bytes) else data.encode())
-        written.append(path)
+        paths.append(path)
 
     if printed is None and formats:
         printed = {part: solid[:2] for part, solid in enumerate(cut.solids()) if solid is not None}
-    solids = {part: trimesh.Trimesh(*solid, process=False) for part, solid in printed.items()} if formats else {}
+    solids = {part: trimesh.Trimesh(*solid, process=False) for part, solid in (printed or {}).items()} if formats else {}
     for part, solid in solids.items():
-        solid.visual.vertex_colors = np.tile(paint[part] * 255, (len(solid.vertices), 1)).astype(np.uint8)
-    for form in formats:
-        if form == "stl":
+        solid.visual.vertex_colors = np.tile(rgba[part] * 255, (len(solid.vertices), 1)).astype(np.uint8)
+    for file_format in formats:
+        if file_format == "stl":
             for part, solid in solids.items():
-                put(f"{names[part]}.stl", solid.export(file_type=form))
-        elif form == "ply":
-            whole = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False)
-            whole.visual.face_colors = (paint[labels] * 255).astype(np.uint8)
-            whole.face_attributes["part"] = labels
-            put(f"{name}.ply", whole.export(file_type=form, include_attributes=True))
+                write_file(f"{names[part]}.stl", solid.export(file_type=file_format))
+        elif file_format == "ply":
+            model = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False)
+            model.visual.face_colors = (rgba[labels] * 255).astype(np.uint8)
+            model.face_attributes["part"] = labels
+            write_file(f"{name}.ply", model.export(file_type=file_format, include_attributes=True))
         else:
             scene = trimesh.Scene()
-            for part in from_root(hung):
+            for part in parents_first(links):
                 if part in solids:
-                    parent = hung[part].parent
+                    parent = links[part].parent
+                    parent_name = names[parent] if file_format == "glb" and parent in solids else None
                     scene.add_geometry(solids[part], node_name=names[part], geom_name=names[part],
-                                       parent_node_name=names[parent] if form == "glb" and parent in solids else None)
-            put(f"{name}.{form}", scene.export(file_type=form))
-    put(f"{name}.json", json.dumps({
-        "parts": [{"name": names[part], "parent": None if hung[part].parent < 0 else names[hung[part].parent],
+                                       parent_node_name=parent_name)
+            write_file(f"{name}.{file_format}", scene.export(file_type=file_format))
+    write_file(f"{name}.json", json.dumps({
+        "parts": [{"name": names[part], "parent": None if links[part].parent < 0 else names[links[part].parent],
                    "faces": int((cut.labels == part).sum()), "volume": cut.volume(part),
-                   "color": paint[part, :3].round(4).tolist()} for part in range(len(cut))],
+                   "color": rgba[part, :3].round(4).tolist()} for part in range(len(cut))],
         "labels": cut.labels.tolist()}))
-    return written
+    return paths

@@ -1,30 +1,50 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a joint is to turn, so that what bends there keeps its volume."""
+"""The center of rotation of a joint that keeps the volume of the bent surface."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-FARTHEST = 0.5  # of a border's radius: so far from its middle at most; borders of several loops have no better place
-SLANTED = 1e-3  # of a border's radius squared: loops that enclose less have no place of their own
+if TYPE_CHECKING:
+    from .borders import PartBorder
+
+MAX_OFFSET = 0.5  # largest distance from the border's center, in its radii; several loops may have no better center
+MIN_VECTOR_AREA = 1e-3  # in squared radii of the border: below it the hinge is undetermined, and the center is used
 
 
-def hinge(vertices, triangles, border, share):
-    """(3,) a place beside the Border's middle: turned about any axis through it, each vertex by its share (V,) of a small
-    angle, the surface keeps its volume, and nearly so by a large one. vertices (V,3), triangles (T,3).
+def hinge(vertices: np.ndarray, triangles: np.ndarray, border: PartBorder, weight: np.ndarray) -> np.ndarray:
+    """The center of rotation that keeps the volume: for any axis exactly to first order in the angle, nearly so for large
+    angles.
 
-    Each vertex turning by its share w, the volume changes by the integral of grad w . (axis x (x - hinge)). That is to
-    vanish for all axes, so hinge x G = M with G = integral of grad w, M = integral of x x grad w. By Stokes both are
-    integrals along the lines of equal w on the surface, so only triangles count where w changes, and holes elsewhere
-    don't matter: G = 1/2 of that of x x dl, M = -1/2 of that of x^2 dl. What is along G is free, and left as it is."""
-    at = share[triangles]
-    changes = np.ptp(at, axis=1) > 0
-    corners, at = vertices[triangles[changes]] - border.center, at[changes]
-    opposite = corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]]
-    line = (at[:, :, None] * opposite).sum(axis=1) / 2  # of all lines in a triangle, dl dw
-    squared = ((corners ** 2).sum(axis=(1, 2)) + (corners.sum(axis=1) ** 2).sum(axis=1)) / 12  # the mean of x^2
+    If each vertex x turns by w(x) times a small angle about an axis through h, the volume changes by the integral of
+    grad w . (axis x (x - h)). This vanishes for all axes if h x G = M, with G the integral of grad w and M the integral of
+    x x grad w. By Stokes, both are integrals along the level curves of w on the surface: G = 1/2 integral x x dl dw,
+    M = -1/2 integral |x|^2 dl dw. So only triangles where w changes count, and holes elsewhere don't matter. The component
+    of h along G is free; it is the border center's.
+
+    Parameters
+    ----------
+    vertices : (V, 3)
+    triangles : (T, 3)
+    border : where the joint is
+    weight : (V,) w, 0 to 1
+
+    Returns
+    -------
+    (3,) h
+    """
+    corner_weights = weight[triangles]
+    is_changing = np.ptp(corner_weights, axis=1) > 0
+    corners, corner_weights = vertices[triangles[is_changing]] - border.center, corner_weights[is_changing]
+    opposite_edges = corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]]
+    line = (corner_weights[:, :, None] * opposite_edges).sum(axis=1) / 2  # integral of dl dw over each triangle
+    mean_square = ((corners ** 2).sum(axis=(1, 2)) + (corners.sum(axis=1) ** 2).sum(axis=1)) / 12  # mean |x|^2
     area = np.cross(corners.mean(axis=1), line).sum(axis=0) / 2
-    moment = -(squared[:, None] * line).sum(axis=0) / 2
-    size = area @ area
-    if size <= (SLANTED * border.radius ** 2) ** 2:
+    moment = -(mean_square[:, None] * line).sum(axis=0) / 2
+    squared_area = area @ area
+    if squared_area <= (MIN_VECTOR_AREA * border.radius ** 2) ** 2:
         return border.center
-    away = np.cross(area, moment) / size
-    return border.center + away * min(1, FARTHEST * border.radius / max(np.linalg.norm(away), 1e-300))
+    offset = np.cross(area, moment) / squared_area
+    return border.center + offset * min(1, MAX_OFFSET * border.radius / max(float(np.linalg.norm(offset)), 1e-300))

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Names for the parts of a cut: mirror images of each other get .L and .R, parts that are alike a number in order."""
+"""Names of the parts of a cut: mirror images get .L and .R, similar parts a number. Also the model's mirror planes."""
 
 from __future__ import annotations
 
 import ctypes
 import hashlib
-from typing import TYPE_CHECKING, List, Optional, Tuple
+from typing import TYPE_CHECKING, Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -16,114 +16,149 @@ from ..library import check, load
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-SAMPLES = 2048  # points on the surface
-MIRRORED = 0.5  # of a part's points whose mirror images are on its counterpart
-ALIKE = 0.2  # lengths differ by at most a fifth, nearly
-# The surface that mirror_planes() was last called with, and its planes: one tuple, so threads never see half of a change.
+    from .cut import Cut
+
+SAMPLE_COUNT = 2048  # points on the surface
+MIN_MIRRORED_FRACTION = 0.5  # of a part's points whose mirror images are on its counterpart, and vice versa
+MAX_LOG_DIFFERENCE = 0.2  # of the lengths of similar parts: they differ by about a fifth at most
+# The surface that mirror_planes() was last called with, and its planes: one tuple, so that threads read both or neither.
 _last: Tuple[Optional[List[bytes]], np.ndarray] = (None, np.empty((0, 4)))
 
 
 def mirror_planes(vertices: ArrayLike, triangles: ArrayLike) -> List[Tuple[np.ndarray, float]]:
-    """[(normal (3,), offset), ...] the planes in which a surface is its own mirror image, at most three, the best
-    first: see pw_mirror_planes in partwheel_edit.h. vertices (V,3), triangles (T,3). Raises PartwheelError."""
+    """The planes in which a surface is its own mirror image: see pw_mirror_planes in partwheel_edit.h.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float
+    triangles : (T, 3) int, indices into vertices
+
+    Returns
+    -------
+    at most three (normal (3,), offset), the best first: points x with normal . x = offset
+
+    Raises
+    ------
+    PartwheelError : the surface is invalid
+    """
     global _last
-    given = surface(vertices, triangles)[:4]
-    key = [hashlib.blake2b(each).digest() for each in (given[0], given[2])]
+    arguments = surface(vertices, triangles)[:4]
+    key = [hashlib.blake2b(array).digest() for array in (arguments[0], arguments[2])]
     last = _last
-    if last[0] != key:  # names and bones ask for the same
+    if last[0] != key:  # names and bones need the planes of the same surface
         planes, count = np.empty((3, 4)), ctypes.c_size_t()
-        check(load().pw_mirror_planes(*given, planes, ctypes.byref(count)))
+        check(load().pw_mirror_planes(*arguments, planes, ctypes.byref(count)))
         last = _last = key, planes[:count.value]
     return [(plane[:3].copy(), float(plane[3])) for plane in last[1]]
 
 
-def named(cut, vertices, triangles, faces, word="Part"):
-    """[name, ...] of a cut's parts, each another one: "Part 2.L" and "Part 2.R" are mirror images of each other,
-    "Part 3.001" and "Part 3.002" alike, "Part 4.L.001" both. Numbers go by size. L is the side towards +x; or, of a
-    plane that faces another axis, the one towards the + of that.
+def name_parts(cut: Cut, vertices: ArrayLike, triangles: ArrayLike, faces: np.ndarray, word: str = "Part") -> List[str]:
+    """Unique names for the parts of a cut: "Part 2.L" and "Part 2.R" are mirror images of each other, "Part 3.001" and
+    "Part 3.002" are similar, "Part 4.L.001" is both. Larger parts have lower numbers. L is the side toward +x, or toward
+    the positive direction of the axis that the mirror plane's normal follows most.
 
-    vertices (V,3), triangles (T,3), faces (T,) the source face of each: the surface that the hierarchy is of."""
+    Parameters
+    ----------
+    vertices : (V, 3), triangles : (T, 3), faces : (T,) the source face of each triangle: the surface of the hierarchy
+    word : what names begin with
+
+    Returns
+    -------
+    the name of each part
+    """
     vertices, triangles = np.asarray(vertices, np.float64), np.asarray(triangles)
     labels = cut.labels[faces]
     corners = vertices[triangles]
     areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    size = np.bincount(labels, areas, len(cut))
-    measures = np.array([_measures(corners[labels == part]) for part in range(len(cut))])
-    middles = np.array([np.average(corners[labels == part].mean(axis=1), axis=0, weights=areas[labels == part] + 1e-300)
+    part_areas = np.bincount(labels, areas, len(cut))
+    sizes = np.array([_log_sizes(corners[labels == part]) for part in range(len(cut))])
+    centers = np.array([np.average(corners[labels == part].mean(axis=1), axis=0, weights=areas[labels == part] + 1e-300)
                         for part in range(len(cut))])
-    image, normal = images(vertices, triangles, labels)
+    image, normal = mirror_images(vertices, triangles, labels)
     image = {part: other for part, other in image.items() if part != other}
-    names = [None] * len(cut)
-    for number, kind in enumerate(_kinds(measures, size, image), 1):
+    names = [""] * len(cut)
+    for number, group in enumerate(_similar_groups(sizes, part_areas, image), 1):
         base = f"{word} {number}"
-        units = _in_order([(part,) if part not in image else
-                           tuple(sorted((part, image[part]), key=lambda each: -middles[each] @ normal))
-                           for part in kind if part not in image or part < image[part]], middles)
-        for place, unit in enumerate(units, 1):
-            end = f".{place:03}" if len(units) > 1 else ""
+        units = _order_along_line([(part,) if part not in image else
+                                   tuple(sorted((part, image[part]), key=lambda each: -centers[each] @ normal))
+                                   for part in group if part not in image or part < image[part]], centers)
+        for position, unit in enumerate(units, 1):
+            suffix = f".{position:03}" if len(units) > 1 else ""
             for part, side in zip(unit, (".L", ".R") if len(unit) == 2 else ("",)):
-                names[part] = base + side + end
+                names[part] = base + side + suffix
     return names
 
 
-def images(vertices, triangles, labels):
-    """({part: the part that is its mirror image}, the normal towards the left) by the plane across which the parts of the
-    most area have another one as theirs. One that lies on both sides is its own. labels (T,) the part of each triangle."""
+def mirror_images(vertices: ArrayLike, triangles: np.ndarray, labels: np.ndarray) -> Tuple[Dict[int, int], np.ndarray]:
+    """Which parts of a surface are mirror images of each other, in the mirror plane that pairs the most area.
+
+    Parameters
+    ----------
+    vertices : (V, 3), triangles : (T, 3)
+    labels : (T,) the part of each triangle
+
+    Returns
+    -------
+    ({part: its mirror image}, normal (3,) of the plane, toward the left). A part on both sides is its own image; a part
+    without one is missing. ({}, zeros) if no plane pairs parts
+    """
     corners = np.asarray(vertices, np.float64)[triangles]
     areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    size = np.bincount(labels, areas)
-    points, chosen = sample_triangles(corners, areas, SAMPLES)
-    labels = labels[chosen]
-    best, most = ({}, np.zeros(3)), 0.0
+    part_areas = np.bincount(labels, areas)
+    points, sampled = sample_triangles(corners, areas, SAMPLE_COUNT)
+    labels = labels[sampled]
+    best: Tuple[Dict[int, int], np.ndarray] = ({}, np.zeros(3))
+    best_area = 0.0
     for normal, offset in mirror_planes(vertices, triangles):
-        votes = np.zeros((len(size), len(size)))
+        votes = np.zeros((len(part_areas), len(part_areas)))  # (part, part of the mirrored point)
         reflected = points - 2 * np.outer(points @ normal - offset, normal)
         np.add.at(votes, (labels, labels[_nearest(reflected, points)]), 1)
-        likely = votes.argmax(axis=1).tolist()
-        image = {part: other for part, other in enumerate(likely) if likely[other] == part
-                 and all(votes[a, b] > MIRRORED * votes[a].sum() for a, b in ((part, other), (other, part)))}
-        area = sum(size[part] for part, other in image.items() if part != other)
-        if area > most:
-            best, most = (image, normal * np.sign(normal[abs(normal).argmax()])), area
+        majority = votes.argmax(axis=1).tolist()
+        image = {part: other for part, other in enumerate(majority) if majority[other] == part
+                 and all(votes[a, b] > MIN_MIRRORED_FRACTION * votes[a].sum() for a, b in ((part, other), (other, part)))}
+        area = sum(part_areas[part] for part, other in image.items() if part != other)
+        if area > best_area:
+            best, best_area = (image, normal * np.sign(normal[abs(normal).argmax()])), area
     return best
 
 
-def _nearest(points, others):
-    """(n,) of each point the nearest of the others; by products of matrices, some at a time."""
-    middle = others.mean(axis=0)
-    points, others = (np.asarray(each - middle, np.float32) for each in (points, others))
-    lengths = (others ** 2).sum(axis=1)
-    return np.concatenate([(lengths - 2 * some @ others.T).argmin(axis=1) for some in np.array_split(points, 8)])
+def _nearest(points: np.ndarray, targets: np.ndarray) -> np.ndarray:
+    """(n,) the nearest target of each point (n, 3); by matrix products, in blocks."""
+    center = targets.mean(axis=0)
+    points, targets = (np.asarray(array - center, np.float32) for array in (points, targets))
+    squared_norms = (targets ** 2).sum(axis=1)
+    return np.concatenate([(squared_norms - 2 * block @ targets.T).argmin(axis=1) for block in np.array_split(points, 8)])
 
 
-def _kinds(measures, size, image):
-    """Lists of parts that are alike, the largest first. Mirror images always are."""
-    kinds, seen = [], set()
-    for part in sorted(range(len(size)), key=lambda part: (-size[part], part)):
-        if part in seen:
+def _similar_groups(sizes: np.ndarray, areas: np.ndarray, image: Dict[int, int]) -> List[List[int]]:
+    """Groups of parts that are similar to their largest one, largest first. Mirror images are in one group."""
+    groups: List[List[int]] = []
+    grouped: Set[int] = set()
+    for part in sorted(range(len(areas)), key=lambda part: (-areas[part], part)):
+        if part in grouped:
             continue
-        kind = np.flatnonzero(abs(measures - measures[part]).max(axis=1) < ALIKE).tolist()
-        kind = {*kind, *(image[each] for each in kind if each in image)} - seen
-        seen.update(kind)
-        kinds.append(sorted(kind))
-    return kinds
+        similar = np.flatnonzero(abs(sizes - sizes[part]).max(axis=1) < MAX_LOG_DIFFERENCE).tolist()
+        group = {*similar, *(image[each] for each in similar if each in image)} - grouped
+        grouped.update(group)
+        groups.append(sorted(group))
+    return groups
 
 
-def _measures(corners):
-    """(4,) logarithms of lengths by which the surfaces of two parts differ: the root of the area, and how far it
-    extends along its principal axes. Unlike what partwheel.compatible measures they don't hang on the border, which in
-    one cut ends each of two like parts a little elsewhere. corners (T,3,3)."""
+def _log_sizes(corners: np.ndarray) -> np.ndarray:
+    """(4,) logarithms of the square root of a part's area and of its extents along the principal axes. Unlike the features
+    in partwheel.compatible they don't depend on the border, which differs a little between similar parts of a cut.
+    corners : (T, 3, 3)"""
     areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
     total = max(areas.sum(), 1e-300)
-    away = corners - (areas @ corners.mean(axis=1)) / total
-    sums = away.sum(axis=1)
-    moments = np.einsum("t,tki,tkj->ij", areas, away, away) + np.einsum("t,ti,tj->ij", areas, sums, sums)
+    offsets = corners - (areas @ corners.mean(axis=1)) / total
+    sums = offsets.sum(axis=1)
+    moments = np.einsum("t,tki,tkj->ij", areas, offsets, offsets) + np.einsum("t,ti,tj->ij", areas, sums, sums)
     return np.log(np.sqrt(np.maximum([total, *np.linalg.eigvalsh(moments / (12 * total))], 1e-300)))
 
 
-def _in_order(units, middles):
-    """Along the line on which they lie."""
-    places = np.array([middles[list(unit)].mean(axis=0) for unit in units])
-    along = np.linalg.svd(places - places.mean(axis=0))[2][0] if len(units) > 1 else np.ones(3)
-    along = along * np.sign(along[abs(along).argmax()])
-    return [units[number] for number in np.argsort(places @ along, kind="stable")]
+def _order_along_line(units: Sequence[Tuple[int, ...]], centers: np.ndarray) -> List[Tuple[int, ...]]:
+    """Parts or pairs, in their order along the line that fits them best."""
+    positions = np.array([centers[list(unit)].mean(axis=0) for unit in units])
+    direction = np.linalg.svd(positions - positions.mean(axis=0))[2][0] if len(units) > 1 else np.ones(3)
+    direction = direction * np.sign(direction[abs(direction).argmax()])
+    return [units[number] for number in np.argsort(positions @ direction, kind="stable")]

@@ -1,234 +1,299 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Seams for unwrapping: along the borders of a cut, in creases. Where a part would not lie flat, would stretch or would
-cover itself, cuts are added: into it, or through it along its tree."""
+"""Seams for unwrapping: along the borders of a cut, in creases. A part whose conformal map would overlap itself or distort
+areas too much gets more cuts: into it, or through it along its tree. See docs/seams.md."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Callable, Dict, List, Optional, Set, Tuple
 
 import numpy as np
 
 from ..border import Creases
 from ..components import components
 from ..weld import is_welding, weld_surface
-from .cut import Tree
-from .patches import Patch, Sheet, cut_back, opened
-from .stretch import Flat, measured
+from .cut import ClusterTree, Cut
+from .patches import Patch, SeamMesh, cut_path, cut_to_disk
+from .stretch import ConformalMap, measure_distortion
 
-STRETCH = 1.09  # by this factor areas of a patch may be too large or too small on average; of all patches: by 1.1
-COVERED = 0.0005  # the share of a patch that may lie on top of itself: what pixels can't tell
-NEARLY, AT_ONCE = 2, 16  # cuts into a patch: one by one, once it stretches at most twice too much; else several at once
-FAILED = 1.5  # by so much areas of an island differ only where a solver has failed: no patch is foretold half of that
-ROUNDS = 3  # so often at most seams are added where a solver failed
-SCRAP = 0.1  # of a part: pieces that are smaller, beside its largest, go with their neighbours
-LEAST = 0.05  # of a patch that is divided: each side has more
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ..hierarchy import Hierarchy
+
+MAX_DISTORTION = 1.09  # predicted area distortion of a patch: measured for all patches of a model, it is 1.1
+MAX_OVERLAP_FRACTION = 0.0005  # of a patch's area: less is below the resolution of the grid
+# While a patch distorts areas more than NEARLY times too much, up to MAX_PEAKS_PER_ROUND cuts are made at once, then one.
+NEARLY, MAX_PEAKS_PER_ROUND = 2, 16
+FAILED_DISTORTION = 1.5  # of an island after unwrapping: only a failed solver leaves so much
+MAX_REFINEMENTS = 3  # rounds in which seams are added where a solver failed
+SCRAP_FRACTION = 0.1  # of the area of a part's largest component: smaller components go to a neighbor
+MIN_SIDE_FRACTION = 0.05  # of a patch's area: either side of a division is larger
 
 
-def seams(vertices, triangles, faces, face_count, cut, stretch=STRETCH):
-    """(n,2) vertices, the ends of the edges that are to be seams: cut open there and at its own borders, the surface
-    falls into patches that are disks, of which none, laid flat with all angles kept, covers itself, nor has areas that
-    differ by more than the factor stretch on average, as far as cuts can help.
+def seams(vertices: ArrayLike, triangles: np.ndarray, faces: ArrayLike, face_count: int, cut: Cut,
+          max_distortion: float = MAX_DISTORTION) -> np.ndarray:
+    """Seams along the borders of a cut, snapped to creases. Cut open there, the surface becomes patches that are disks.
+    More cuts, preferably in creases, and most of all in concave ones, divide patches until the conformal map of none
+    overlaps itself or exceeds the area distortion, as far as cuts can help.
 
-    Seams follow the borders of the Cut, moved to the creases nearby; cuts into parts prefer creases, and hollows most. A
-    part is divided along its tree where cuts into it won't do.
+    Parameters
+    ----------
+    vertices : (V, 3), triangles : (T, 3), faces : (T,) the polygon of each triangle, face_count : F. The surface that the
+        cut is of. Coincident vertices are welded, and seams contain all edges that coincide
+    max_distortion : mean factor by which areas of a patch may differ
 
-    vertices (V,3), triangles (T,3), faces (T,) the polygon of each, face_count: the surface that the cut is of.
-    Coincident vertices are welded: what is cut there already is joined first, and of a seam all edges there are given.
-    Raises PartwheelError."""
+    Returns
+    -------
+    (n, 2) int, the vertices of the edges
+
+    Raises
+    ------
+    PartwheelError : the surface is invalid
+    """
     old_to_new, welded = weld_surface(vertices, triangles)
-    whole = Sheet(vertices, welded, faces)
+    mesh = SeamMesh(vertices, welded, faces)
     creases = Creases(vertices, triangles, faces, face_count)
-    tree = _Tree(cut.hierarchy, creases)
-    chosen = [whole.crowded]
-    labels = in_creases(whole, creases, cut.labels)
-    for own in whole.pieces(labels):
-        chosen += _within(whole.part(own), tree, stretch)
-    chosen.append(_between(whole, labels))
-    return _split(whole.ends[np.unique(np.concatenate(chosen))], old_to_new, triangles)
+    divider = _PatchDivider(cut.hierarchy, creases)
+    seam_edges = [mesh.non_manifold_edges]
+    labels = snap_labels(mesh, creases, cut.labels)
+    for selected in mesh.label_components(labels):
+        seam_edges += _patch_seams(mesh.submesh(selected), divider, max_distortion)
+    seam_edges.append(_border_edges(mesh, labels))
+    return _unweld_edges(mesh.edges[np.unique(np.concatenate(seam_edges))], old_to_new, triangles)
 
 
-def _split(ends, old_to_new, triangles):
-    """The edges (n,2) of a surface that welding makes these (n,2) of."""
-    if not is_welding(old_to_new):
-        return ends
-    edges = np.unique(np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2), axis=0)
-    return edges[np.isin(np.sort(old_to_new[edges], axis=1) @ [len(old_to_new), 1], ends @ [len(old_to_new), 1])]
+def unwrap_cut(vertices: ArrayLike, triangles: np.ndarray, faces: ArrayLike, face_count: int, cut: Cut,
+               unwrap: Callable[[np.ndarray], np.ndarray]) -> Tuple[np.ndarray, np.ndarray]:
+    """Unwrap a surface by the seams of a cut, and refine the seams where the solver failed.
 
+    Parameters
+    ----------
+    vertices, triangles, faces, face_count, cut : see seams()
+    unwrap : seams (n, 2) -> UVs (T, 3, 2) of the triangles' corners; called MAX_REFINEMENTS + 1 times at most
 
-def laid_flat(vertices, triangles, faces, face_count, cut, unwrap):
-    """(seams (n,2), UVs (T,3,2) of the triangles' corners) of a cut: seams(), and further() where the solver failed.
-    unwrap: the UVs by given seams, asked ROUNDS + 1 times at most."""
+    Returns
+    -------
+    (seams (n, 2), UVs (T, 3, 2))
+    """
     surface = vertices, triangles, faces, face_count
-    ends = seams(*surface, cut)
-    uv = unwrap(ends)
-    for _ in range(ROUNDS):
-        more = further(*surface, cut, ends, uv)
-        if np.array_equal(more, ends):
+    seam_edges = seams(*surface, cut)
+    uv = unwrap(seam_edges)
+    for _ in range(MAX_REFINEMENTS):
+        refined = refine_seams(*surface, cut, seam_edges, uv)
+        if np.array_equal(refined, seam_edges):
             break
-        ends = more
-        uv = unwrap(ends)
-    return ends, uv
+        seam_edges = refined
+        uv = unwrap(seam_edges)
+    return seam_edges, uv
 
 
-def further(vertices, triangles, faces, face_count, cut, ends, uv, stretch=STRETCH):
-    """(n,2) seams as ends are, where an unwrapping by those failed: islands whose areas differ far more than was foretold
-    are divided once more along the tree. The same seams if there are none, or nothing can be divided.
+def refine_seams(vertices: ArrayLike, triangles: np.ndarray, faces: ArrayLike, face_count: int, cut: Cut,
+                 seam_edges: np.ndarray, uv: np.ndarray, max_distortion: float = MAX_DISTORTION) -> np.ndarray:
+    """Divide the islands of an unwrapping whose area distortion is far above the prediction, once, along the tree.
 
-    ends (n,2): what seams() or this gave of the same surface and cut; uv (T,3,2): of the triangles' corners, by them."""
+    Parameters
+    ----------
+    vertices, triangles, faces, face_count, cut, max_distortion : see seams()
+    seam_edges : (n, 2) result of seams() or of this function
+    uv : (T, 3, 2) UVs of the triangles' corners, unwrapped by those seams
+
+    Returns
+    -------
+    (n, 2) the refined seams; the same ones if no island failed, or none can be divided
+    """
     old_to_new, welded = weld_surface(vertices, triangles)
-    whole = Sheet(vertices, welded, faces)
-    seam = np.isin(whole.ends @ [len(whole.places), 1], np.sort(old_to_new[ends], axis=1) @ [len(whole.places), 1])
-    tree, inside = None, ~seam[whole.edge]
-    for own in whole.pieces(components(len(whole.triangles), whole.pair[inside])):
-        sheet = whole.part(own)
-        if measured(sheet, uv[own]) <= FAILED:
+    mesh = SeamMesh(vertices, welded, faces)
+    is_seam = np.isin(mesh.edges @ [len(mesh.positions), 1],
+                      np.sort(old_to_new[seam_edges], axis=1) @ [len(mesh.positions), 1])
+    divider, is_uncut = None, ~is_seam[mesh.interior_edges]
+    for selected in mesh.label_components(components(len(mesh.triangles), mesh.edge_triangles[is_uncut])):
+        island = mesh.submesh(selected)
+        if measure_distortion(island, uv[selected]) <= FAILED_DISTORTION:
             continue
-        tree = tree or _Tree(cut.hierarchy, Creases(vertices, triangles, faces, face_count))
-        sides = tree.divided(sheet)
+        divider = divider or _PatchDivider(cut.hierarchy, Creases(vertices, triangles, faces, face_count))
+        sides = divider.divide(island)
         if sides is not None:
-            seam[sheet.edge] = False  # its own cuts begin anew
-            seam[_between(sheet, sides)] = True
-            for piece in sheet.pieces(sides):
-                for edges in _within(whole.part(own[piece]), tree, stretch):
-                    seam[edges] = True
-    return _split(whole.ends[seam], old_to_new, triangles)
+            is_seam[island.interior_edges] = False  # cuts into the island are computed again
+            is_seam[_border_edges(island, sides)] = True
+            for component in island.label_components(sides):
+                for edges in _patch_seams(mesh.submesh(selected[component]), divider, max_distortion):
+                    is_seam[edges] = True
+    return _unweld_edges(mesh.edges[is_seam], old_to_new, triangles)
 
 
-def _between(sheet, labels):
-    """The numbers of edges between triangles of different labels (T,)."""
-    return sheet.edge[labels[sheet.pair[:, 0]] != labels[sheet.pair[:, 1]]]
+def _unweld_edges(edges: np.ndarray, old_to_new: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """The edges (n, 2) of the surface before welding that became these edges (m, 2)."""
+    if not is_welding(old_to_new):
+        return edges
+    old_edges = np.unique(np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2), axis=0)
+    return old_edges[np.isin(np.sort(old_to_new[old_edges], axis=1) @ [len(old_to_new), 1],
+                             edges @ [len(old_to_new), 1])]
 
 
-def _within(part, tree, stretch):
-    """[edges, ...] that are to be cut within a connected part: divided as long as it must be, and what was divided for
-    another reason than its own joined again."""
-    patches, todo = {}, [np.arange(len(part.triangles))]
-    for own in todo:
-        sheet = part.part(own)
-        edges, _, apart = _slit(sheet, stretch)
-        sides = tree.divided(sheet) if not apart else None
+def _border_edges(mesh: SeamMesh, labels: np.ndarray) -> np.ndarray:
+    """Indices into mesh.edges of the edges between triangles with different labels (T,)."""
+    return mesh.interior_edges[labels[mesh.edge_triangles[:, 0]] != labels[mesh.edge_triangles[:, 1]]]
+
+
+def _patch_seams(part: SeamMesh, divider: _PatchDivider, max_distortion: float) -> List[np.ndarray]:
+    """The seams within a connected part, as arrays of indices into part.edges: divide the part along the tree until each
+    patch can be mapped, then merge patches, longest borders first, where one map serves both."""
+    patches: Dict[int, Tuple[np.ndarray, np.ndarray]] = {}  # number -> (triangles, cuts into the patch)
+    queue = [np.arange(len(part.triangles))]
+    for selected in queue:
+        patch_mesh = part.submesh(selected)
+        edges, _, is_injective = _cut_patch(patch_mesh, max_distortion)
+        sides = divider.divide(patch_mesh) if not is_injective else None
         if sides is None:
-            patches[len(patches)] = own, edges
+            patches[len(patches)] = selected, edges
         else:
-            todo += [own[piece] for piece in sheet.pieces(sides)]
-    label, refused, fresh = np.empty(len(part.triangles), int), set(), len(patches)
-    for number, (own, _) in patches.items():
-        label[own] = number
-    while way := _longest_border(part, label, refused):
-        own = np.sort(np.concatenate([patches[number][0] for number in way]))
-        edges, stretched, apart = _slit(part.part(own), stretch)
-        if apart and stretched <= stretch:
-            patches = {number: each for number, each in patches.items() if number not in way}
-            patches[fresh], label[own] = (own, edges), fresh
-            fresh += 1
+            queue += [selected[component] for component in patch_mesh.label_components(sides)]
+    label = np.empty(len(part.triangles), int)
+    rejected: Set[Tuple[int, ...]] = set()
+    next_number = len(patches)
+    for number, (selected, _) in patches.items():
+        label[selected] = number
+    while pair := _longest_border(part, label, rejected):
+        selected = np.sort(np.concatenate([patches[number][0] for number in pair]))
+        edges, distortion, is_injective = _cut_patch(part.submesh(selected), max_distortion)
+        if is_injective and distortion <= max_distortion:
+            patches = {number: patch for number, patch in patches.items() if number not in pair}
+            patches[next_number], label[selected] = (selected, edges), next_number
+            next_number += 1
         else:
-            refused.add(way)
-    return [_between(part, label), *(edges for _, edges in patches.values())]
+            rejected.add(pair)
+    return [_border_edges(part, label), *(edges for _, edges in patches.values())]
 
 
-def _longest_border(sheet, labels, refused):
-    """(label, label) of those that have most in common, not among refused; None if there are none."""
-    ways, common = _common(sheet, labels)
-    order = np.argsort(-common, kind="stable")
-    return next((way for way in map(tuple, ways[order].tolist()) if way[0] < way[1] and way not in refused), None)
+def _longest_border(mesh: SeamMesh, labels: np.ndarray, rejected: Set[Tuple[int, ...]]) -> Optional[Tuple[int, ...]]:
+    """The pair of labels whose border costs most to cut, except the rejected pairs; None if there is none."""
+    pairs, cost = _border_costs(mesh, labels)
+    order = np.argsort(-cost, kind="stable")
+    return next((pair for pair in map(tuple, pairs[order].tolist()) if pair[0] < pair[1] and pair not in rejected), None)
 
 
-def _common(sheet, labels):
-    """((n,2) labels that are beside each other, both ways, (n,) the cost of what is between them)"""
-    beside = labels[sheet.pair]
-    apart = beside[:, 0] != beside[:, 1]
-    ways, of = np.unique(np.concatenate([beside[apart], beside[apart, ::-1]]), axis=0, return_inverse=True)
-    return ways, np.bincount(of.ravel(), np.tile(sheet.cost[apart], 2), len(ways))
+def _border_costs(mesh: SeamMesh, labels: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """(pairs (n, 2) of adjacent labels, in both orders; cost (n,) of the edges between them)"""
+    edge_labels = labels[mesh.edge_triangles]
+    is_border = edge_labels[:, 0] != edge_labels[:, 1]
+    pairs, edge_pair = np.unique(np.concatenate([edge_labels[is_border], edge_labels[is_border, ::-1]]), axis=0,
+                                 return_inverse=True)
+    return pairs, np.bincount(edge_pair.ravel(), np.tile(mesh.cut_cost[is_border], 2), len(pairs))
 
 
-def _slit(sheet, stretch):
-    """(edges that make a connected Sheet a disk which stretches little, how much it then does, whether it lies apart from
-    itself)"""
-    cut, flat = opened(sheet), None
+def _cut_patch(mesh: SeamMesh, max_distortion: float) -> Tuple[np.ndarray, float, bool]:
+    """Cut a connected mesh to a disk, then from the boundary to the peaks of its conformal map while that distorts areas
+    too much.
+
+    Returns
+    -------
+    (cuts, as indices into mesh.edges; area distortion of the map; whether the map does not overlap itself)
+    """
+    is_cut, conformal_map = cut_to_disk(mesh), None
     while True:
-        patch = Patch(sheet, cut)
-        flat = Flat(patch, flat)
-        now = flat.stretch()
-        if now <= stretch:
+        patch = Patch(mesh, is_cut)
+        conformal_map = ConformalMap(patch, conformal_map)
+        distortion = conformal_map.area_distortion()
+        if distortion <= max_distortion:
             break
-        away, by, before = patch.ways(np.flatnonzero(patch.rim))
-        peaks = flat.peaks(away, 1 if now - 1 < NEARLY * (stretch - 1) else AT_ONCE)
+        boundary_distance, via, previous = patch.shortest_paths(np.flatnonzero(patch.is_boundary))
+        is_near = distortion - 1 < NEARLY * (max_distortion - 1)
+        peaks = conformal_map.peaks(boundary_distance, 1 if is_near else MAX_PEAKS_PER_ROUND)
         if not peaks:
             break
         for peak in peaks:
-            cut_back(patch, cut, by, before, peak)
-    return sheet.edge[cut], now, flat.covered() <= COVERED
+            cut_path(patch, is_cut, via, previous, peak)
+    return mesh.interior_edges[is_cut], distortion, conformal_map.overlap_fraction() <= MAX_OVERLAP_FRACTION
 
 
-class _Tree:
-    """Divides patches along the tree of a hierarchy."""
+class _PatchDivider:
+    """Divides patches along the merge tree of a hierarchy."""
 
-    def __init__(self, hierarchy, creases):
-        self.tree, self.creases = Tree(hierarchy), creases
-        self.place = np.empty(len(hierarchy.order), int)
-        self.place[hierarchy.order] = np.arange(len(hierarchy.order))
+    def __init__(self, hierarchy: Hierarchy, creases: Creases) -> None:
+        self.tree, self.creases = ClusterTree(hierarchy), creases
+        self.position = np.empty(len(hierarchy.order), int)  # of each face in the hierarchy's order
+        self.position[hierarchy.order] = np.arange(len(hierarchy.order))
 
-    def divided(self, sheet):
-        """(T,) 1 on one side of a patch, else 0: of the nodes on the way to its largest piece, and those beside the way,
-        the one with the shortest border for what it takes off. None if there is none."""
-        place, share = self.place[sheet.faces], sheet.areas / max(sheet.areas.sum(), 1e-300)
-        best, found, cluster = np.inf, None, self.tree.root
+    def divide(self, mesh: SeamMesh) -> Optional[np.ndarray]:
+        """Divide a patch by a node of the tree: of the nodes on the path from the root to the largest piece of the patch,
+        and their siblings, the one with the least border cost / area of the smaller side.
+
+        Returns
+        -------
+        (T,) int, 1 for triangles on one side, else 0; None if no node divides the patch
+        """
+        position, area_fraction = self.position[mesh.faces], mesh.areas / max(mesh.areas.sum(), 1e-300)
+        best, best_side, cluster = np.inf, None, self.tree.root
         while children := self.tree.children(cluster):
-            sides = [(first <= place) & (place < last) for first, last in map(self.tree.run, children)]
-            shares = [share[side].sum() for side in sides]
-            for side, taken in zip(sides, shares):
-                if LEAST <= taken <= 1 - LEAST:
-                    border = sheet.cost[side[sheet.pair[:, 0]] != side[sheet.pair[:, 1]]].sum()
-                    if border < best * min(taken, 1 - taken):
-                        best, found = border / min(taken, 1 - taken), side
-            larger = int(shares[1] > shares[0])
-            if shares[larger] < LEAST:
+            sides = [(first <= position) & (position < last) for first, last in map(self.tree.face_slice, children)]
+            fractions = [area_fraction[side].sum() for side in sides]
+            for side, fraction in zip(sides, fractions):
+                if MIN_SIDE_FRACTION <= fraction <= 1 - MIN_SIDE_FRACTION:
+                    is_border = side[mesh.edge_triangles[:, 0]] != side[mesh.edge_triangles[:, 1]]
+                    border_cost = mesh.cut_cost[is_border].sum()
+                    if border_cost < best * min(fraction, 1 - fraction):
+                        best, best_side = border_cost / min(fraction, 1 - fraction), side
+            larger = int(fractions[1] > fractions[0])
+            if fractions[larger] < MIN_SIDE_FRACTION:
                 break
             cluster = children[larger]
-        if found is None:
+        if best_side is None:
             return None
-        inside = np.zeros(len(self.place), bool)
-        inside[sheet.faces[found]] = True
-        snapped = self.creases.snap(inside)[sheet.faces]
-        if LEAST <= share[snapped].sum() <= 1 - LEAST:
-            found = snapped
-        return without_scraps(sheet, found.astype(int))
+        inside = np.zeros(len(self.position), bool)
+        inside[mesh.faces[best_side]] = True
+        snapped = self.creases.snap(inside)[mesh.faces]
+        if MIN_SIDE_FRACTION <= area_fraction[snapped].sum() <= 1 - MIN_SIDE_FRACTION:
+            best_side = snapped
+        return remove_scraps(mesh, best_side.astype(int))
 
 
-def in_creases(sheet, creases, labels):
-    """(T,) the part of each triangle: labels (F,) of faces, but each part's border in the creases nearby, the largest
-    part's last, and without scraps."""
-    labels, nobody = labels.copy(), labels.max(initial=0) + 1
-    one, other = sheet.faces[sheet.pair].T
-    area = np.bincount(sheet.faces, sheet.areas, len(labels))
+def snap_labels(mesh: SeamMesh, creases: Creases, labels: np.ndarray) -> np.ndarray:
+    """Snap the border of each part to the creases nearby, the largest part's last, and remove scraps.
+
+    Parameters
+    ----------
+    labels : (F,) int, the part of each face, from 0
+
+    Returns
+    -------
+    (T,) int, the part of each triangle
+    """
+    labels, unassigned = labels.copy(), labels.max(initial=0) + 1
+    one, other = mesh.faces[mesh.edge_triangles].T
+    area = np.bincount(mesh.faces, mesh.areas, len(labels))
     for part in np.argsort(np.bincount(labels, area), kind="stable").tolist():
         inside = labels == part
         snapped = creases.snap(inside) if inside.any() else inside
         if not snapped.any():
             continue
         labels[snapped] = part
-        labels[inside & ~snapped] = nobody  # until a neighbour takes it
-        while (lost := labels == nobody).any():
-            taken = labels.copy()
+        labels[inside & ~snapped] = unassigned  # until a neighbor's label spreads there
+        while (is_unassigned := labels == unassigned).any():
+            spread = labels.copy()
             for a, b in ((one, other), (other, one)):
-                near = lost[a] & ~lost[b] & (labels[b] != part)
-                np.minimum.at(taken, a[near], labels[b[near]])
-            if (taken == labels).all():
-                taken[lost] = part
-            labels = taken
-    return without_scraps(sheet, labels[sheet.faces])
+                is_front = is_unassigned[a] & ~is_unassigned[b] & (labels[b] != part)
+                np.minimum.at(spread, a[is_front], labels[b[is_front]])
+            if (spread == labels).all():
+                spread[is_unassigned] = part
+            labels = spread
+    return remove_scraps(mesh, labels[mesh.faces])
 
 
-def without_scraps(sheet, labels):
-    """labels (T,) where small pieces go with the neighbour that they have most in common with."""
+def remove_scraps(mesh: SeamMesh, labels: np.ndarray) -> np.ndarray:
+    """Labels (T,) after small components of each label have joined the neighbor with the costliest common border."""
     while True:
-        same = labels[sheet.pair[:, 0]] == labels[sheet.pair[:, 1]]
-        piece = components(len(labels), sheet.pair[same])
-        label, area = labels[np.unique(piece, return_index=True)[1]], np.bincount(piece, sheet.areas)
+        is_same = labels[mesh.edge_triangles[:, 0]] == labels[mesh.edge_triangles[:, 1]]
+        component = components(len(labels), mesh.edge_triangles[is_same])
+        label = labels[np.unique(component, return_index=True)[1]]  # of each component
+        area = np.bincount(component, mesh.areas)
         largest = np.zeros(labels.max(initial=0) + 1)
         np.maximum.at(largest, label, area)
-        scrap = area < SCRAP * largest[label]
-        ways, common = _common(sheet, piece)
-        usable = scrap[ways[:, 0]] & ~scrap[ways[:, 1]]
-        if not usable.any():
+        is_scrap = area < SCRAP_FRACTION * largest[label]
+        pairs, cost = _border_costs(mesh, component)
+        is_usable = is_scrap[pairs[:, 0]] & ~is_scrap[pairs[:, 1]]
+        if not is_usable.any():
             return labels
-        ways, common = ways[usable], common[usable]
-        order = np.lexsort((common, ways[:, 0]))  # of each piece the best is written last
-        label[ways[order, 0]] = label[ways[order, 1]]
-        labels = label[piece]
+        pairs, cost = pairs[is_usable], cost[is_usable]
+        order = np.lexsort((cost, pairs[:, 0]))  # ascending, so the last assignment to each scrap is the costliest border
+        label[pairs[order, 0]] = label[pairs[order, 1]]
+        labels = label[component]

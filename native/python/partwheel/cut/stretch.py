@@ -1,141 +1,168 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A patch laid flat with its angles kept, without laying it flat: how much each place is scaled follows from the
-curvature alone (Poisson's equation, with the rim as long as it is), and with it the outline."""
+"""The area distortion and the outline of a conformal map of a disk, without computing the map. The scale factor e^u follows
+from the curvature: L u = -K, with cotangent weights L and angle defects K, and u = 0 on the boundary."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Callable, List, Optional
 
 import numpy as np
 
-SHARPEST = 50.0  # a triangle's cotangents beyond that are taken as that
-EXACT = 1e-4  # the residual is to be so much smaller than at first
-MOST_STEPS = 3000
-SMOOTHED = 3  # so many rounds: a peak is to be more than one sharp vertex
-SADDLE = 0.5  # a cut to a saddle makes its surroundings cover each other: not so soon
-NEXT, FAR = 0.5, 2.0  # peaks at a time: those half as high, so much farther apart than from the rim
-DIGITS = 6  # of heights: of what is the same on both sides of a model the lower number comes first
-WORST = 10.0  # by which a triangle counts at most, where it is measured
-FINE = 192  # pixels that an outline is wide or high
+if TYPE_CHECKING:
+    from .patches import Patch, SeamMesh
+
+MAX_COTANGENT = 50.0  # cotangents of degenerate triangles are clamped to this
+SOLVER_TOLERANCE = 1e-4  # of conjugate gradients: relative residual
+MAX_SOLVER_ITERATIONS = 3000
+SMOOTHING_ROUNDS = 3  # of |u|, so that a peak is more than a single sharp vertex
+SADDLE_WEIGHT = 0.5  # of u > 0 (saddles) relative to u < 0: cuts to saddles make the outline overlap itself
+MIN_PEAK_FRACTION = 0.5  # of the highest peak
+MIN_PEAK_SPACING = 2.0  # between peaks, in distances from the boundary
+PEAK_DIGITS = 6  # decimals of relative heights: mirror images have equal ones, then the lower vertex comes first
+MAX_TRIANGLE_FACTOR = 10.0  # limit of a triangle's area distortion in measure_distortion()
+GRID_SIZE = 192  # pixels along the longer side of an outline's bounding box
 
 
-class Flat:
-    """A Patch that is a disk, laid flat so that all angles stay and the rim keeps its length: of all ways to keep the
-    angles the one in which areas differ least.
+class ConformalMap:
+    """The conformal map of a disk to the plane that keeps the length of the boundary, which minimizes area distortion
+    (Springborn, Schroeder, Pinkall 2008).
 
-    scale (vertices,) the natural logarithm of how much longer lengths get at each vertex: negative on bulges, positive
-    on saddles. before: the same sheet's Flat with fewer cuts, to begin the search from."""
+    log_scale : (vertices,) u, the logarithm of the scale factor at each vertex: negative on bulges, positive on saddles
+    turning_angle : (vertices,) at a boundary vertex: the angle by which the outline turns there
+    """
 
-    def __init__(self, patch, before=None):
-        self.patch, count, vertex = patch, patch.count, patch.vertex
-        free = ~patch.rim
-        angle, cotangent = patch.sheet.angles
-        turn = 2 * np.pi - np.bincount(vertex.ravel(), angle.ravel(), count)
-        # Half the cotangents of the corners across from it: an edge's weight.
-        a, b = vertex[:, [1, 2, 0]].ravel(), vertex[:, [2, 0, 1]].ravel()
-        weight = np.clip(cotangent.ravel(), -SHARPEST, SHARPEST) / 2
+    def __init__(self, patch: Patch, previous: Optional[ConformalMap] = None) -> None:
+        """previous : the map of the same mesh with fewer cuts, as the solver's initial guess"""
+        self.patch, count, triangles = patch, patch.vertex_count, patch.triangles
+        is_inner = ~patch.is_boundary
+        angle, cotangent = patch.mesh.angles
+        angle_defect = 2 * np.pi - np.bincount(triangles.ravel(), angle.ravel(), count)
+        # The weight of an edge: half the sum of the cotangents of the corners opposite to it.
+        a, b = triangles[:, [1, 2, 0]].ravel(), triangles[:, [2, 0, 1]].ravel()
+        weight = np.clip(cotangent.ravel(), -MAX_COTANGENT, MAX_COTANGENT) / 2
         low, high = np.minimum(a, b), np.maximum(a, b)
-        keys, of = np.unique(low * count + high, return_inverse=True)
-        low, high, weight = keys // count, keys % count, np.bincount(of.ravel(), weight)
+        keys, edge = np.unique(low * count + high, return_inverse=True)
+        low, high, weight = keys // count, keys % count, np.bincount(edge.ravel(), weight)
         diagonal = np.bincount(low, weight, count) + np.bincount(high, weight, count)
 
-        def differences(values):
+        def laplacian(values: np.ndarray) -> np.ndarray:
             return (diagonal * values - np.bincount(low, weight * values[high], count)
                     - np.bincount(high, weight * values[low], count))
 
-        begin = np.zeros(count)
-        if before:
-            begin[vertex] = before.scale[before.patch.vertex]
-            begin[patch.rim] = 0
-        self.scale = _solved(lambda values: np.where(free, differences(values), 0), np.where(free, -turn, 0),
-                             np.where(diagonal > 0, diagonal, 1), begin)
-        # At the rim: how far an outline turns there.
-        self.turn = turn - np.pi + differences(self.scale)
+        guess = np.zeros(count)
+        if previous:
+            guess[triangles] = previous.log_scale[previous.patch.triangles]
+            guess[patch.is_boundary] = 0
+        self.log_scale: np.ndarray = _conjugate_gradients(
+            lambda values: np.where(is_inner, laplacian(values), 0), np.where(is_inner, -angle_defect, 0),
+            np.where(diagonal > 0, diagonal, 1), guess)
+        self.turning_angle = angle_defect - np.pi + laplacian(self.log_scale)
 
-    def stretch(self):
-        """How much areas differ: the mean, by area, of by what factor a place is too large or too small."""
-        return _unevenness(np.exp(np.clip(2 * self.scale[self.patch.vertex].mean(axis=1), -50, 50)), self.patch.sheet.areas)
+    def area_distortion(self) -> float:
+        """See _area_distortion()."""
+        return _area_distortion(np.exp(np.clip(2 * self.log_scale[self.patch.triangles].mean(axis=1), -50, 50)),
+                                self.patch.mesh.areas)
 
-    def peaks(self, away, most):
-        """[vertex, ...] at most so many that are scaled most, up or down, each farther from the others than they are from
-        the rim: away (vertices,). By what is around them, so that noise is none."""
-        patch, smooth = self.patch, self.scale
-        a, b = patch.joined.T
-        around = 1 + np.bincount(a, minlength=patch.count) + np.bincount(b, minlength=patch.count)
-        for _ in range(SMOOTHED):
-            smooth = np.where(patch.rim, 0, (smooth + np.bincount(a, smooth[b], patch.count)
-                                             + np.bincount(b, smooth[a], patch.count)) / around)
-        size = np.where(smooth < 0, -smooth, SADDLE * smooth)
-        size = np.round(size / max(size.max(initial=0), 1e-300), DIGITS)
-        places = np.empty((patch.count, 3))
-        places[patch.vertex] = patch.sheet.places[patch.sheet.triangles]
-        likely = np.flatnonzero((size > NEXT) & np.isfinite(away))
-        likely, found = likely[np.argsort(-size[likely], kind="stable")], []
-        while len(likely) and len(found) < most:
-            found.append(int(likely[0]))
-            apart = np.linalg.norm(places[likely] - places[likely[0]], axis=1)
-            likely = likely[apart > FAR * np.maximum(away[likely], away[likely[0]])]
-        return found
+    def peaks(self, boundary_distance: np.ndarray, max_count: int) -> List[int]:
+        """The vertices where |u|, smoothed, is largest. Each is farther from the other ones than from the boundary.
 
-    def covered(self):
-        """The share of the inside of its outline that is covered more than once."""
-        rim, length = self.patch.outline()
-        heading = np.cumsum(self.turn[rim])
-        steps = length[:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
-        steps -= length[:, None] * (steps.sum(axis=0) / max(length.sum(), 1e-300))  # so that it closes
-        return _covered_twice(np.cumsum(steps, axis=0))
+        Parameters
+        ----------
+        boundary_distance : (vertices,) distance of each vertex from the boundary
+        max_count : maximum number of peaks
+        """
+        patch, smooth = self.patch, self.log_scale
+        a, b = patch.uncut_ends.T
+        degree = 1 + np.bincount(a, minlength=patch.vertex_count) + np.bincount(b, minlength=patch.vertex_count)
+        for _ in range(SMOOTHING_ROUNDS):
+            smooth = np.where(patch.is_boundary, 0, (smooth + np.bincount(a, smooth[b], patch.vertex_count)
+                                                     + np.bincount(b, smooth[a], patch.vertex_count)) / degree)
+        height = np.where(smooth < 0, -smooth, SADDLE_WEIGHT * smooth)
+        height = np.round(height / max(height.max(initial=0), 1e-300), PEAK_DIGITS)
+        positions = np.empty((patch.vertex_count, 3))
+        positions[patch.triangles] = patch.mesh.positions[patch.mesh.triangles]
+        candidates = np.flatnonzero((height > MIN_PEAK_FRACTION) & np.isfinite(boundary_distance))
+        candidates = candidates[np.argsort(-height[candidates], kind="stable")]
+        peaks: List[int] = []
+        while len(candidates) and len(peaks) < max_count:
+            peaks.append(int(candidates[0]))
+            distance = np.linalg.norm(positions[candidates] - positions[candidates[0]], axis=1)
+            candidates = candidates[distance > MIN_PEAK_SPACING * np.maximum(boundary_distance[candidates],
+                                                                             boundary_distance[candidates[0]])]
+        return peaks
+
+    def overlap_fraction(self) -> float:
+        """The fraction of the area inside the outline that the map covers more than once."""
+        vertices, lengths = self.patch.boundary_loop()
+        heading = np.cumsum(self.turning_angle[vertices])
+        steps = lengths[:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
+        steps -= lengths[:, None] * (steps.sum(axis=0) / max(lengths.sum(), 1e-300))  # closes the outline
+        return _overlap_fraction(np.cumsum(steps, axis=0))
 
 
-def measured(sheet, uv):
-    """What Flat.stretch() foretells, of a Sheet that was laid flat: uv (T,3,2). A triangle counts at most WORST."""
+def measure_distortion(mesh: SeamMesh, uv: np.ndarray) -> float:
+    """The area distortion of an unwrapping, comparable to ConformalMap.area_distortion(). A triangle counts at most
+    MAX_TRIANGLE_FACTOR.
+
+    Parameters
+    ----------
+    uv : (T, 3, 2) UVs of the triangles' corners
+    """
     a, b, c = uv.transpose(1, 0, 2)
-    return _unevenness(abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) / np.maximum(sheet.areas, 1e-300),
-                       sheet.areas, WORST)
+    doubled_areas = abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+    return _area_distortion(doubled_areas / np.maximum(mesh.areas, 1e-300), mesh.areas, MAX_TRIANGLE_FACTOR)
 
 
-def _unevenness(factor, areas, most=1e9):
-    """The mean, by area, of by what factor a place is too large or too small."""
-    area = areas / max(areas.sum(), 1e-300)
-    factor = factor / max(_dot(factor, area), 1e-300)
-    return _dot(np.minimum(np.maximum(factor, 1 / np.maximum(factor, 1e-9)), most), area)
+def _area_distortion(factor: np.ndarray, areas: np.ndarray, max_factor: float = 1e9) -> float:
+    """The area-weighted mean of max(f, 1/f), with f the factor (T,) by which each triangle's area is scaled, relative to
+    the mean factor; 1 if there is no distortion."""
+    weight = areas / max(areas.sum(), 1e-300)
+    factor = factor / max(_dot(factor, weight), 1e-300)
+    return _dot(np.minimum(np.maximum(factor, 1 / np.maximum(factor, 1e-9)), max_factor), weight)
 
 
-def _covered_twice(outline):
-    """The share of a closed line's inside (n,2) that it winds around more than once; by points of a grid."""
+def _overlap_fraction(outline: np.ndarray) -> float:
+    """The fraction of the inside of a closed polygon (n, 2) where its winding number exceeds 1 in size; by the pixels of a
+    grid, with one scanline per row."""
     low, size = outline.min(axis=0), np.ptp(outline, axis=0).max()
     if not size > 0:
         return 0.0
-    x, y = ((outline - low) * (FINE / size)).T
-    after_x, after_y = np.roll(x, -1), np.roll(y, -1)
-    first, last = np.ceil(np.minimum(y, after_y) - 0.5), np.ceil(np.maximum(y, after_y) - 0.5)
-    rows = (last - first).astype(int)
-    of = np.repeat(np.arange(len(x)), rows)
-    row = first[of] + np.arange(len(of)) - np.repeat(np.cumsum(rows) - rows, rows)
-    at = x[of] + (row + 0.5 - y[of]) / (after_y - y)[of] * (after_x - x)[of]
-    column = np.clip(np.ceil(at - 0.5), 0, FINE).astype(int)
-    winding = np.zeros((FINE + 1, FINE + 1))
-    np.add.at(winding, (np.clip(row, 0, FINE).astype(int), column), np.where(after_y < y, 1, -1)[of])
+    x, y = ((outline - low) * (GRID_SIZE / size)).T
+    next_x, next_y = np.roll(x, -1), np.roll(y, -1)
+    first, last = np.ceil(np.minimum(y, next_y) - 0.5), np.ceil(np.maximum(y, next_y) - 0.5)
+    row_count = (last - first).astype(int)
+    edge = np.repeat(np.arange(len(x)), row_count)  # of each crossing of an edge and a row
+    row = first[edge] + np.arange(len(edge)) - np.repeat(np.cumsum(row_count) - row_count, row_count)
+    crossing = x[edge] + (row + 0.5 - y[edge]) / (next_y - y)[edge] * (next_x - x)[edge]
+    column = np.clip(np.ceil(crossing - 0.5), 0, GRID_SIZE).astype(int)
+    winding = np.zeros((GRID_SIZE + 1, GRID_SIZE + 1))
+    np.add.at(winding, (np.clip(row, 0, GRID_SIZE).astype(int), column), np.where(next_y < y, 1, -1)[edge])
     winding = abs(np.cumsum(winding, axis=1))
-    return np.count_nonzero(winding > 1) / max(np.count_nonzero(winding), 1)
+    return np.count_nonzero(winding > 1) / max(int(np.count_nonzero(winding)), 1)
 
 
-def _solved(applied, right, diagonal, begin):
-    """Conjugate gradients."""
-    found, rest = begin, right - applied(begin)
-    goal = EXACT * EXACT * _dot(right, right / diagonal)
-    ready = rest / diagonal
-    way, size = ready, _dot(rest, ready)
-    for _ in range(MOST_STEPS):
-        if size <= goal:
+def _conjugate_gradients(operator: Callable[[np.ndarray], np.ndarray], right_side: np.ndarray, diagonal: np.ndarray,
+                         guess: np.ndarray) -> np.ndarray:
+    """Solve operator(x) = right_side with the Jacobi preconditioner; stops where the operator is not positive definite."""
+    x, residual = guess, right_side - operator(guess)
+    goal = SOLVER_TOLERANCE * SOLVER_TOLERANCE * _dot(right_side, right_side / diagonal)
+    preconditioned = residual / diagonal
+    direction, squared_norm = preconditioned, _dot(residual, preconditioned)
+    for _ in range(MAX_SOLVER_ITERATIONS):
+        if squared_norm <= goal:
             break
-        image = applied(way)
-        down = _dot(way, image)
-        if down <= 0:
+        image = operator(direction)
+        curvature = _dot(direction, image)
+        if curvature <= 0:
             break
-        found = found + size / down * way
-        rest = rest - size / down * image
-        ready = rest / diagonal
-        size, before = _dot(rest, ready), size
-        way = ready + size / before * way
-    return found
+        x = x + squared_norm / curvature * direction
+        residual = residual - squared_norm / curvature * image
+        preconditioned = residual / diagonal
+        squared_norm, before = _dot(residual, preconditioned), squared_norm
+        direction = preconditioned + squared_norm / before * direction
+    return x
 
 
-def _dot(one, other):
-    """Without BLAS, which adds in another order on other processors, and waits for its threads."""
+def _dot(one: np.ndarray, other: np.ndarray) -> float:
+    """The dot product without BLAS, whose order of additions depends on the processor, and which waits for its threads."""
     return float((one * other).sum())
