@@ -18,7 +18,7 @@ from partwheel import Hierarchy
 
 from partwheel import meshes
 from partwheel.batch import slot
-from partwheel.batch.run import Options, Run
+from partwheel.batch.run import BatchOptions, BatchRun
 
 # More models and kills, by the hour: PARTWHEEL_KILLS=20 PARTWHEEL_MODELS=FOLDER
 KILLS = int(os.environ.get("PARTWHEEL_KILLS", 4))
@@ -104,8 +104,8 @@ def test_a_reader_without_end_meets_its_limit(boxes, tmp_path, monkeypatch, does
         f"        {does}\n"
         "sys.addaudithook(hook)\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    monkeypatch.setattr(slot, "PATIENCE", patience)
-    counts = Run(tmp_path / "out", [str(boxes / "box03.off")], Options(SETTINGS, 1, 0, seconds=1)).go()
+    monkeypatch.setattr(slot, "WALL_CLOCK_FACTOR", patience)
+    counts = BatchRun(tmp_path / "out", [str(boxes / "box03.off")], BatchOptions(SETTINGS, 1, 0, seconds=1)).run()
     assert counts.failed == {"time limit": 1} and counts.made == 1
 
 
@@ -187,7 +187,7 @@ def test_ctrl_c_ends_all_and_keeps_what_is_done(boxes, tmp_path, ending):
     started = children(process.pid)
     process.send_signal(ending)
     words = process.communicate()[1]
-    assert process.returncode == 130 and "goes on with the rest" in words
+    assert process.returncode == 130 and "continues with the rest" in words
     assert not started or not alive(started)
     assert list((tmp_path / "out" / "unfinished").iterdir()) == []
     before = done(tmp_path / "out")

@@ -25,13 +25,13 @@ def holder(folder):
 
 def test_a_living_owner_keeps_it_and_a_killed_one_does_not(tmp_path):
     process = holder(tmp_path)
-    with pytest.raises(lock.Busy, match=str(process.pid)), lock.Lock(tmp_path, "one"):
+    with pytest.raises(lock.FolderInUseError, match=str(process.pid)), lock.Lock(tmp_path, "one"):
         pass
     process.kill()
     process.communicate()
     with lock.Lock(tmp_path, "one"):
-        assert lock.living(tmp_path) == {"one"}
-    assert lock.living(tmp_path) == set()
+        assert lock.held_locks(tmp_path) == {"one"}
+    assert lock.held_locks(tmp_path) == set()
 
 
 def test_given_back_it_can_be_taken_again(tmp_path):
@@ -57,7 +57,7 @@ def test_of_many_that_take_a_dead_ones_place_one_gets_it(tmp_path):
                     most.append(len(inside))
                     got.append(1)
                     inside.pop()
-            except lock.Busy:
+            except lock.FolderInUseError:
                 pass
 
         threads = [threading.Thread(target=take) for _ in range(8)]
@@ -71,7 +71,7 @@ def test_of_many_that_take_a_dead_ones_place_one_gets_it(tmp_path):
 def test_a_number_below_the_highest_is_no_place(tmp_path):
     """One that looked long ago, and comes when others have come and gone."""
     (tmp_path / "one.3").write_text("{}")
-    assert lock.Lock(tmp_path, "one")._make(2) is None and not (tmp_path / "one.2").exists()
+    assert lock.Lock(tmp_path, "one")._create(2) is None and not (tmp_path / "one.2").exists()
 
 
 def test_another_machines_owner_is_dead_when_it_does_not_touch_it(tmp_path):
@@ -79,7 +79,7 @@ def test_another_machines_owner_is_dead_when_it_does_not_touch_it(tmp_path):
         path, = tmp_path.glob("one.*")
         owner = path.read_text()
     path.write_text(json.dumps({**json.loads(owner), "machine": "another"}))
-    with pytest.raises(lock.Busy), lock.Lock(tmp_path, "one"):
+    with pytest.raises(lock.FolderInUseError), lock.Lock(tmp_path, "one"):
         pass
     before = path.stat().st_mtime - lock.STALE_SECONDS - 1
     os.utime(path, (before, before))
@@ -97,12 +97,12 @@ def test_a_used_process_number_is_no_living_owner(tmp_path):
 
 
 def test_an_owner_that_was_taken_over_knows(tmp_path, monkeypatch):
-    monkeypatch.setattr(lock, "BEAT_SECONDS", 0.01)
+    monkeypatch.setattr(lock, "HEARTBEAT_SECONDS", 0.01)
     with lock.Lock(tmp_path, "one") as held:
         path, = tmp_path.glob("one.*")
         path.unlink()
-        held._beat.join()
-        assert held.lost
+        held._heartbeat.join()
+        assert held.is_lost
     assert list(tmp_path.iterdir()) == []
 
 
@@ -120,39 +120,39 @@ def store(tmp_path):
 
 
 def put(store, text="some"):
-    beside = store.beside(KEY)
+    beside = store.create_folder(KEY)
     (beside / "file").write_text(text)
     return store.publish(beside, KEY, {"error": None})
 
 
 def test_a_result_whose_files_are_not_whole_is_none_and_is_made_again(store):
     assert store.report(KEY) is None and put(store) and store.report(KEY)["files"] == {"file": 4}
-    (store.place(KEY) / "file").write_text("so")
+    (store.result_folder(KEY) / "file").write_text("so")
     assert store.report(KEY) is None
     assert put(store) and store.report(KEY)
-    (store.place(KEY) / "model.json").write_text("{")
+    (store.result_folder(KEY) / "model.json").write_text("{")
     assert store.report(KEY) is None
 
 
 def test_the_second_of_two_results_is_dropped(store):
     assert put(store, "first") and not put(store, "other")
-    assert (store.place(KEY) / "file").read_text() == "first" and store.done() == [KEY]
+    assert (store.result_folder(KEY) / "file").read_text() == "first" and store.published_keys() == [KEY]
 
 
 def test_a_torn_line_loses_itself_only(store, tmp_path):
-    store.note("one", KEY)
+    store.add_input("one", KEY)
     with open(tmp_path / "inputs" / "1-of-1.jsonl", "ab") as file:
         file.write(b'{"path": "tw')
     again = Store(tmp_path)
     again.begin()
-    again.note("two", KEY)
-    again.note("one", KEY)
+    again.add_input("two", KEY)
+    again.add_input("one", KEY)
     assert again.inputs() == {"one": KEY, "two": KEY}
     assert len((tmp_path / "inputs" / "1-of-1.jsonl").read_text().splitlines()) == 3
 
 
 def test_what_was_left_unfinished_is_removed(store, tmp_path):
-    left = store.beside(KEY)
+    left = store.create_folder(KEY)
     (left / "file").write_text("half")
     Store(tmp_path).begin()
     assert not left.exists()

@@ -61,7 +61,7 @@ def test_a_real_batch(tmp_path, opened):
 def test_a_hundred_thousand_rows_are_paged(tmp_path, opened):
     rows = [[f"model{number:06}", f"{number:064x}", 1000, number, 0.1 + number % 7, "exact", None, "", 0]
             for number in range(100_000)]
-    (tmp_path / "report.html").write_text(report.page(rows))
+    (tmp_path / "report.html").write_text(report.render_page(rows))
     document = opened(tmp_path / "report.html", page="1667")
     assert "page 1667 of 1667, 100,000 models" in document and cards(document)[-1] == "model099999"
     assert len(cards(document)) == 100_000 - 1666 * 60

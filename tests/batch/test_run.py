@@ -7,23 +7,23 @@ import threading
 import pytest
 
 from partwheel.batch import lock, run
-from partwheel.batch.inputs import Input, found, of_shard
-from partwheel.batch.run import Options, Run
+from partwheel.batch.inputs import Input, expand_inputs, shard_files
+from partwheel.batch.run import BatchOptions, BatchRun
 
 SETTINGS = {"outputs": ["hierarchy"]}
 MEGABYTE = 2**20
 
 
 class Fake:
-    """A slot that does what the test says: make(task) -> answer."""
+    """A slot that does what the test says: build(task) -> answer."""
 
     def __init__(self, does):
         self._does = does
 
-    def make(self, task):
+    def build(self, task):
         return self._does(task)
 
-    def watch(self):
+    def enforce_deadline(self):
         pass
 
     def kill(self):
@@ -33,8 +33,8 @@ class Fake:
 
 
 def go(folder, paths, does=lambda task: {}, *, jobs=2, memory=2048 * MEGABYTE, **more):
-    work = Run(folder, [str(path) for path in paths], Options(SETTINGS, jobs, memory, **more), lambda: Fake(does))
-    return work, work.go()
+    work = BatchRun(folder, [str(path) for path in paths], BatchOptions(SETTINGS, jobs, memory, **more), lambda: Fake(does))
+    return work, work.run()
 
 
 @pytest.fixture
@@ -53,7 +53,7 @@ def test_all_is_done_once_and_then_it_is_there(tmp_path, files):
     assert sorted(seen) == [str(path) for path in files]
     work, counts = go(tmp_path / "out", files, lambda task: seen.append(task["path"]) or {})
     assert (counts.made, counts.old, len(seen)) == (0, 20, 20)
-    assert sorted(work.store.done()) == sorted(work.store.inputs().values())
+    assert sorted(work.store.published_keys()) == sorted(work.store.inputs().values())
 
 
 def test_files_with_the_same_content_are_done_once(tmp_path, files):
@@ -116,7 +116,7 @@ def test_failures_are_results_and_are_tried_again_when_told(tmp_path, files):
     assert counts.made == 2 and counts.failed == {"crash": 1}
     counts = go(tmp_path / "out", files, does, retry=frozenset({"all"}))[1]
     assert counts.made == 1 and counts.failed == {}
-    assert sorted(work.store.done()) == sorted([*work.store.inputs().values()] +
+    assert sorted(work.store.published_keys()) == sorted([*work.store.inputs().values()] +
                                                [work.store.inputs()[str(path)] for path in files[1:4]])
 
 
@@ -139,13 +139,13 @@ def test_two_runs_never_meet(tmp_path, files):
         leave.wait()
         return {}
 
-    first = Run(tmp_path / "out", list(map(str, files)), Options(SETTINGS, 2, 0), lambda: Fake(waits))
-    thread = threading.Thread(target=first.go)
+    first = BatchRun(tmp_path / "out", list(map(str, files)), BatchOptions(SETTINGS, 2, 0), lambda: Fake(waits))
+    thread = threading.Thread(target=first.run)
     thread.start()
     inside.wait()
     try:
         for shard in ((1, 1), (1, 2)):  # the same part of the files; another division of them
-            with pytest.raises(lock.Busy):
+            with pytest.raises(lock.FolderInUseError):
                 go(tmp_path / "out", files, shard=shard)
     finally:
         leave.set()
@@ -155,12 +155,12 @@ def test_two_runs_never_meet(tmp_path, files):
 
 def test_shards_divide_the_files_and_share_the_folder(tmp_path, files):
     paths = list(map(str, files))
-    parts = [of_shard(paths, index, 3) for index in (1, 2, 3)]
+    parts = [shard_files(paths, index, 3) for index in (1, 2, 3)]
     assert sorted(sum(parts, [])) == paths and all(parts)
     made = [go(tmp_path / "out", files, shard=(index, 3))[1].made for index in (1, 2, 3)]
     assert made == list(map(len, parts))
     assert go(tmp_path / "out", files)[1].old == 20
-    assert of_shard([*paths, "more"], 1, 3)[:len(parts[0])] == parts[0]
+    assert shard_files([*paths, "more"], 1, 3)[:len(parts[0])] == parts[0]
 
 
 def test_stopped_it_leaves_nothing_half_done(tmp_path, files):
@@ -178,14 +178,14 @@ def test_stopped_it_leaves_nothing_half_done(tmp_path, files):
         if begun.is_set():
             raise Stop
 
-    work = Run(tmp_path / "out", list(map(str, files)), Options(SETTINGS, 1, 0), lambda: Fake(does))
+    work = BatchRun(tmp_path / "out", list(map(str, files)), BatchOptions(SETTINGS, 1, 0), lambda: Fake(does))
     with contextlib.suppress(Stop):  # it may have been done before the stop
-        work.go(progress)
+        work.run(progress)
     assert not (tmp_path / "out" / "unfinished" / "1-of-1").exists()
-    done = work.store.done()
+    done = work.store.published_keys()
     assert len(done) == len(set(done)) >= 8
     assert go(tmp_path / "out", files)[1].made == 20 - len(done)
-    assert len(set(work.store.done())) == len(work.store.done()) == 20
+    assert len(set(work.store.published_keys())) == len(work.store.published_keys()) == 20
 
 
 def test_what_a_thread_meets_is_raised(tmp_path, files):
@@ -227,12 +227,12 @@ def test_inputs_are_files_folders_and_lists(tmp_path):
     for name in ("b.off", "a.GLB", "note.txt", "below/c.stl"):
         (tmp_path / name).write_text("x")
     (tmp_path / "list").write_text(f"{tmp_path}/b.off\n\n{tmp_path}/note.txt\n{tmp_path}/b.off\n")
-    names = [path[len(str(tmp_path)) + 1:] for path in found([str(tmp_path)])]
+    names = [path[len(str(tmp_path)) + 1:] for path in expand_inputs([str(tmp_path)])]
     assert names == ["a.GLB", "b.off", "below/c.stl"]
-    assert found([f"@{tmp_path}/list"]) == [f"{tmp_path}/b.off", f"{tmp_path}/note.txt"]
+    assert expand_inputs([f"@{tmp_path}/list"]) == [f"{tmp_path}/b.off", f"{tmp_path}/note.txt"]
 
 
 def test_the_estimate_comes_from_the_share_that_is_done():
     counts = run.Counts(10, 0, 5, {}, 0, 0, 0.25, 30.0, {})
-    assert counts.left == 90
-    assert counts._replace(share=0.0).left is None
+    assert counts.seconds_left == 90
+    assert counts._replace(share=0.0).seconds_left is None

@@ -29,7 +29,7 @@ def s3(monkeypatch):
 
 def test_a_task_reads_and_writes_objects_and_skips_what_is_done(s3, boxes, tmp_path):
     from partwheel.batch import on_ray
-    from partwheel.batch.run import Options
+    from partwheel.batch.run import BatchOptions
 
     import fsspec
 
@@ -38,11 +38,11 @@ def test_a_task_reads_and_writes_objects_and_skips_what_is_done(s3, boxes, tmp_p
     for path in sorted(boxes.iterdir())[:3]:
         s3.put_file(str(path), f"bucket/models/{path.name}")
     s3.pipe_file("bucket/models/torn.off", b"OFF")
-    paths = on_ray._found(fsspec, ["s3://bucket/models"])
+    paths = on_ray._expand_inputs(fsspec, ["s3://bucket/models"])
     assert len(paths) == 4 and all(path.startswith("s3://") for path in paths)
-    options = Options(settings, 0, 2**30)
+    options = BatchOptions(settings, 0, 2**30)
     for _ in range(2):
-        assert dict(on_ray.work([*paths, "s3://bucket/models/none.off"], "s3://bucket/out", options)) == {
+        assert dict(on_ray.process_files([*paths, "s3://bucket/models/none.off"], "s3://bucket/out", options)) == {
             None: 3, "mesh file": 1, "file": 1}
     s3.invalidate_cache()
     lines = [line for name in s3.ls("bucket/out/done", detail=False) for line in s3.cat_file(name).splitlines()]
@@ -52,7 +52,7 @@ def test_a_task_reads_and_writes_objects_and_skips_what_is_done(s3, boxes, tmp_p
     torn = s3.glob("bucket/out/models/*/*/hierarchy.partwheel")[0]
     whole = s3.cat_file(torn)
     s3.pipe_file(torn, whole[:10])
-    on_ray.work(paths, "s3://bucket/out", options)
+    on_ray.process_files(paths, "s3://bucket/out", options)
     assert s3.cat_file(torn) == whole
     run(boxes, "-o", tmp_path / "out", "--make", "hierarchy,cut")
     for name in s3.glob("bucket/out/models/*/*/cut.json"):

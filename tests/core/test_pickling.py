@@ -138,7 +138,7 @@ ERRORS = {
     "PartwheelError": lambda kind: kind(Status.OPEN, "A hole.", {"surface": 0.25}),
     "MeshFileError": lambda kind: kind("No mesh."),
     "PrintError": lambda kind: kind("Too thin."),
-    "Busy": lambda kind: kind("Another run is here."),
+    "FolderInUseError": lambda kind: kind("Another run is here."),
     "RequirementError": lambda kind: kind("A package is missing."),
     "WorkerError": lambda kind: kind("worker", worker.job.START_FAILED, worker.job.MESH_UNCHANGED, reason=OSError(2, "No such file")),
     "NoInterpreter": lambda kind: kind({"/bin/false": worker.exit_status.describe_exit(1), "/bin/cat": worker.exit_status.describe_exit(-9)}),

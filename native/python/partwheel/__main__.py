@@ -18,7 +18,7 @@ import numpy as np
 
 from . import contents, convex, meshes, requirements
 from .batch import command as batch
-from .batch.slot import memory
+from .batch.slot import memory_status
 from .cut import Cut, files, printing
 from .hierarchy import Hierarchy
 from .library import Error, Mode, Rung
@@ -29,7 +29,7 @@ BUILT, NAMED_ERROR, USAGE = 0, 1, 2
 def peak_memory():
     """The most bytes of memory this program held so far, or None where the system does not tell."""
     if sys.platform == "linux":  # whose getrusage() begins with what the caller's process held
-        return memory("VmHWM") or None
+        return memory_status("VmHWM") or None
     try:
         import resource
     except ImportError:  # Windows

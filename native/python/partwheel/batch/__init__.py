@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Many models, each in a process of its own, into one folder of results that can be gone on with: partwheel batch."""
+"""partwheel batch: builds many models, each in a separate process, into one folder of results. A run can be resumed."""

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A lock on a folder's part, for processes on all machines that share the folder; a killed owner's is taken over.
+"""A named lock in a shared folder, for processes on several machines. The lock of a killed process can be taken over.
 
-It is a file NAME.NUMBER that the owner made and touches as long as it lives. To take a lock over is to make the file
-of the next number, which only one process can; the highest number is never removed, so that nobody takes an older one's
-place. (Not flock(): it holds on one machine only on many network file systems.)
+The lock is a file NAME.NUMBER. Its owner creates it and touches it while it is alive. A process takes the lock over by
+creating the file with the next number, which succeeds for one process only. The file with the highest number is never removed,
+so numbers are not reused. (Not flock(): on many network file systems it works within one machine only.)
 """
+
+from __future__ import annotations
 
 import json
 import os
@@ -12,109 +14,118 @@ import platform
 import secrets
 import threading
 from pathlib import Path
+from typing import Any, Dict, List, Optional, Set, Tuple, Union
 
 from ..library import Error
 
-BEAT_SECONDS = 10  # between two touches
-STALE_SECONDS = 120  # without a touch, by the file system's clock: its owner, on another machine, is taken for dead
+HEARTBEAT_SECONDS = 10  # between two touches
+STALE_SECONDS = 120  # since the last touch, by the file system's clock: an owner on another machine is then considered dead
 
 
-class Busy(Error):
-    """Another run has the folder. str() says which."""
+class FolderInUseError(Error):
+    """Another run uses the folder; str() names it."""
 
     name = "busy"
 
 
 class Lock:
-    """with Lock(folder, name): nobody else has it. Raises Busy at once where a living process has it; OSError.
+    """A context manager that holds the lock.
 
-    lost: True when another has taken it over, for this process slept too long."""
+    Entering it raises FolderInUseError if a live process holds the lock, OSError if the folder can't be used.
 
-    def __init__(self, folder, name):
+    is_lost : True after another process took the lock over, because this one did not touch it for too long
+    """
+
+    def __init__(self, folder: Union[str, Path], name: str) -> None:
         self._folder, self._name = Path(folder), name
-        self._path, self._over = None, threading.Event()
-        self.lost = False
+        self._path: Optional[Path] = None
+        self._released = threading.Event()
+        self.is_lost = False
 
-    def __enter__(self):
+    def __enter__(self) -> Lock:
         self._folder.mkdir(parents=True, exist_ok=True)
         while self._path is None:
-            number, path = self._highest()
-            if path is not None and (owner := _living(path)):
-                raise Busy(f"{self._folder} is being worked on by process {owner.get('pid', '?')} on "
-                           f"{owner.get('host', '?')} ({path.name}). Wait for it, or end it.")
-            self._path = self._make(number + 1)
-        for old, path in self._all():
+            number, path = self._newest()
+            if path is not None and (owner := _live_owner(path)):
+                raise FolderInUseError(f"{self._folder} is in use by process {owner.get('pid', '?')} on "
+                                       f"{owner.get('host', '?')} ({path.name}). Wait for it, or end it.")
+            self._path = self._create(number + 1)
+        for old, old_path in self._files():
             if old < self._number:
-                path.unlink(missing_ok=True)
-        self._beat = threading.Thread(target=self._touch, name="partwheel-lock", daemon=True)
-        self._beat.start()
+                old_path.unlink(missing_ok=True)
+        self._heartbeat = threading.Thread(target=self._touch, name="partwheel-lock", daemon=True)
+        self._heartbeat.start()
         return self
 
-    def __exit__(self, *_):
-        self._over.set()
-        self._beat.join()
-        if not self.lost:
-            _write_beside(self._path, {})  # nobody's: its number stays
+    def __exit__(self, *_: object) -> None:
+        self._released.set()
+        self._heartbeat.join()
+        assert self._path is not None
+        if not self.is_lost:
+            _replace_content(self._path, {})  # without an owner; the number stays in use
 
-    def _all(self):
+    def _files(self) -> List[Tuple[int, Path]]:
+        """(number, path) of the lock's files, sorted."""
         numbers = ((path.name[len(self._name) + 1:], path) for path in self._folder.glob(f"{self._name}.*"))
         return sorted((int(number), path) for number, path in numbers if number.isdigit())
 
-    def _highest(self):
-        return (self._all() or [(0, None)])[-1]
+    def _newest(self) -> Tuple[int, Optional[Path]]:
+        files = self._files()
+        return files[-1] if files else (0, None)
 
-    def _make(self, number):
-        """The file, whole at once; None if another was first."""
-        path, whole = self._folder / f"{self._name}.{number}", self._folder / f"new-{secrets.token_hex(8)}"
-        whole.write_text(json.dumps(_myself()))
+    def _create(self, number: int) -> Optional[Path]:
+        """Creates the file atomically; None if another process was first."""
+        path, temporary = self._folder / f"{self._name}.{number}", self._folder / f"new-{secrets.token_hex(8)}"
+        temporary.write_text(json.dumps(_this_process()))
         try:
-            os.link(whole, path)
+            os.link(temporary, path)
         except FileExistsError:
             return None
         finally:
-            whole.unlink()
-        # Others may have come and gone between the look and this: then theirs is higher.
-        if self._highest()[0] != number:
+            temporary.unlink()
+        # If other processes have held and released the lock since this one read the number, theirs is higher.
+        if self._newest()[0] != number:
             path.unlink(missing_ok=True)
             return None
         self._number = number
         return path
 
-    def _touch(self):
-        while not self._over.wait(BEAT_SECONDS):
+    def _touch(self) -> None:
+        assert self._path is not None
+        while not self._released.wait(HEARTBEAT_SECONDS):
             try:
                 os.utime(self._path)
             except FileNotFoundError:
-                self.lost = True
+                self.is_lost = True
                 return
             except OSError:
-                continue  # the file server may come back
+                continue  # the file server may recover
 
 
-def living(folder, prefix=""):
-    """The names of the locks in a folder that living processes hold."""
-    newest = {}
+def held_locks(folder: Union[str, Path], prefix: str = "") -> Set[str]:
+    """The names of the locks in a folder that live processes hold."""
+    newest: Dict[str, int] = {}
     for path in Path(folder).glob(f"{prefix}*.*"):
         name, number = path.name.rsplit(".", 1)
         if number.isdigit():
             newest[name] = max(newest.get(name, 0), int(number))
-    return {name for name, number in newest.items() if _living(Path(folder) / f"{name}.{number}")}
+    return {name for name, number in newest.items() if _live_owner(Path(folder) / f"{name}.{number}")}
 
 
-def _myself():
-    return {"host": platform.node(), "machine": _machine(), "pid": os.getpid(), "began": _began(os.getpid())}
+def _this_process() -> Dict[str, Any]:
+    return {"host": platform.node(), "machine": _machine_id(), "pid": os.getpid(), "began": _start_time(os.getpid())}
 
 
-def _machine():
-    """What tells this machine and container, as long as it runs, from all others; None where the system does not tell."""
+def _machine_id() -> Optional[str]:
+    """An id of this boot of this machine and of its process namespace (container); None if unknown."""
     try:
         return Path("/proc/sys/kernel/random/boot_id").read_text().strip() + os.readlink("/proc/self/ns/pid")
     except OSError:
         return None
 
 
-def _began(pid):
-    """When a process began, for numbers are used again; None if there is none. A zombie is none."""
+def _start_time(pid: int) -> Optional[str]:
+    """When a process began, since process ids are reused; None if there is no such process, or it is a zombie."""
     try:
         fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
     except OSError:
@@ -122,21 +133,21 @@ def _began(pid):
     return None if fields[0] in "ZX" else fields[19]
 
 
-def _living(path):
-    """The owner in a lock's file if it lives, else None."""
+def _live_owner(path: Path) -> Optional[Dict[str, Any]]:
+    """The owner in a lock's file if it is alive."""
     try:
         owner = json.loads(path.read_text())
         if not owner:
             return None
-        if owner["machine"] and owner["machine"] == _machine():
-            return owner if owner["began"] == _began(owner["pid"]) else None
+        if owner["machine"] and owner["machine"] == _machine_id():
+            return owner if owner["began"] == _start_time(owner["pid"]) else None
         return owner if _age(path) < STALE_SECONDS else None
     except FileNotFoundError:
         return None
 
 
-def _age(path):
-    """Seconds since it was touched, by the clock that touches it: machines' clocks differ."""
+def _age(path: Path) -> float:
+    """Seconds since a file was touched, by the file system's clock: the clocks of machines differ."""
     now = path.parent / f"now-{secrets.token_hex(8)}"
     now.touch()
     try:
@@ -145,7 +156,8 @@ def _age(path):
         now.unlink()
 
 
-def _write_beside(path, value):
-    beside = path.parent / f"new-{secrets.token_hex(8)}"
-    beside.write_text(json.dumps(value))
-    os.replace(beside, path)
+def _replace_content(path: Path, value: Dict[str, Any]) -> None:
+    """Replaces the file atomically."""
+    temporary = path.parent / f"new-{secrets.token_hex(8)}"
+    temporary.write_text(json.dumps(value))
+    os.replace(temporary, path)

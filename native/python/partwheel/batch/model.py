@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One model, from its file to a folder of results."""
+"""Builds one model: from its file to a folder of results."""
+
+from __future__ import annotations
 
 import time
 from pathlib import Path
+from typing import Any, Dict, Optional, Union
 
 import numpy as np
 
@@ -11,83 +14,107 @@ from .. import convex, meshes
 from ..cut import Cut, files
 from ..library import Error, Mode
 from ..worker import Job
-from .preview import preview
+from .preview import draw_preview
 
-OUTPUTS = "hierarchy", "cut", "objects", "colliders", "preview"  # what can be made, see make()
-Y_UP = {".dae", ".glb", ".gltf"}  # formats whose second axis is up
+OUTPUTS = "hierarchy", "cut", "objects", "colliders", "preview"  # see build_model()
+Y_UP = {".dae", ".glb", ".gltf"}  # formats in which y is up
 
 
-def make(path, folder, settings, *, memory=0, seconds=None, threads=1):
-    """Makes what settings["outputs"] names, in the folder, and returns what is to be told of it.
+def build_model(path: Union[str, Path], folder: Path, settings: Dict[str, Any], *, memory: int = 0,
+                seconds: Optional[float] = None, threads: int = 1) -> Dict[str, Any]:
+    """Reads and builds a model and writes the chosen outputs.
 
-    hierarchy: hierarchy.partwheel. cut: cut.json, the parts and the part of each face. objects: objects.glb, the parts
-    as closed objects. colliders: colliders.obj, settings["hulls"] convex hulls of settings["max_vertices"] at most (0: any
-    number), UCX_00 and so on. preview: preview.png. settings: as command.settings() gives them. memory: bytes that
-    the worker process may take, 0: no limit. seconds: of its processor time; None: as Job has it. A model that the mesher
-    refuses is drawn in grey, if a preview is wanted and can be: the error has the attribute pictured then. Returns
-    {"account", "rung", sizes ..., "seconds": {stage: seconds}}; raises Error, OSError, MemoryError."""
-    clock = _Clock()
+    Outputs, of which settings["outputs"] lists some:
+
+    hierarchy  hierarchy.partwheel
+    cut        cut.json, the parts and the part of each face
+    objects    objects.glb, the parts as closed objects
+    colliders  colliders.obj, settings["hulls"] convex hulls UCX_00, UCX_01, ..., each with at most settings["max_vertices"]
+               vertices (0: any number)
+    preview    preview.png; also of a model that can't be built, in gray, if its numbers are valid
+
+    Parameters
+    ----------
+    path : the model
+    folder : where to write the outputs
+    settings : see command.settings()
+    memory : the limit of the worker process in bytes; 0: no limit
+    seconds : the limit of its processor time; None: the default of Job
+    threads : the most threads of the worker process
+
+    Returns
+    -------
+    the report: {"account", "rung", sizes ..., "seconds": {stage: seconds}}
+
+    Raises
+    ------
+    Error : the model can't be read or built; its attribute has_preview says whether preview.png was written
+    OSError, MemoryError
+    """
+    timer = _StageTimer()
     suffix = Path(path).suffix.lower()
     mesh = blend.read(path, folder) if suffix == ".blend" else meshes.read(path)
-    clock.lap("read")
+    timer.end_stage("read")
     build = dict(settings["build"], mode=Mode[settings["build"]["mode"].upper()])
     job = Job(mesh.vertices, mesh.triangles, mesh.faces, mesh.face_count, memory_limit=memory, cpu_limit=seconds,
               threads=threads, **build)
     try:
         hierarchy = job.result()
     except Error as error:
-        error.pictured = "preview" in settings["outputs"] and _sound(mesh)
-        if error.pictured:
+        has_preview = "preview" in settings["outputs"] and _is_drawable(mesh)
+        error.has_preview = has_preview  # type: ignore[attr-defined]
+        if has_preview:
             _draw(folder, mesh, None, settings, suffix)
         raise
-    clock.lap("build")
-    clock.laps.update(hierarchy.seconds)
+    timer.end_stage("build")
+    timer.seconds.update(hierarchy.seconds)
     report = {"vertices": len(mesh.vertices), "triangles": len(mesh.triangles), "faces": mesh.face_count,
-              "welded_vertices": mesh.welded, "dropped": mesh.dropped, "tets": len(hierarchy.tetrahedra), "nodes": len(hierarchy.parent),
-              "account": hierarchy.account, **hierarchy.summary._asdict(),
-              "worker_failures": [{"name": each.name, "message": str(each)} for each in job.failures],
-              "seconds": clock.laps}
-    wanted = settings["outputs"]
-    if "hierarchy" in wanted:
+              "welded_vertices": mesh.welded, "dropped": mesh.dropped, "tets": len(hierarchy.tetrahedra),
+              "nodes": len(hierarchy.parent), "account": hierarchy.account, **hierarchy.summary._asdict(),
+              "worker_failures": [{"name": failure.name, "message": str(failure)} for failure in job.failures],
+              "seconds": timer.seconds}
+    outputs = settings["outputs"]
+    if "hierarchy" in outputs:
         (folder / "hierarchy.partwheel").write_bytes(hierarchy.save())
-        clock.lap("save")
-    if set(wanted) & {"cut", "objects", "preview"}:
+        timer.end_stage("save")
+    if set(outputs) & {"cut", "objects", "preview"}:
         cut = Cut.into(hierarchy, settings["parts"]) if settings["parts"] else Cut.automatic(hierarchy)
         report["parts"] = len(cut)
-    if set(wanted) & {"cut", "objects"}:
-        name = "objects" if "objects" in wanted else "cut"
-        formats, solids = (["glb"], None) if "objects" in wanted else ([], {})
-        files.write(folder, name, mesh, cut, formats, printed=solids)
+    if set(outputs) & {"cut", "objects"}:
+        name = "objects" if "objects" in outputs else "cut"
+        solids: Any = None if "objects" in outputs else {}  # {}: no solids are needed for cut.json
+        files.write(folder, name, mesh, cut, ["glb"] if "objects" in outputs else [], printed=solids)
         if name == "objects":
             (folder / "objects.json").rename(folder / "cut.json")
-        clock.lap("cut")
-    if "colliders" in wanted:
+        timer.end_stage("cut")
+    if "colliders" in outputs:
         hulls = hierarchy.convex_parts(settings["hulls"], max_vertices=settings["max_vertices"])
         convex.write_obj(folder / "colliders.obj", [(f"UCX_{number:02}", *hull[:2]) for number, hull in enumerate(hulls)])
         report["hulls"] = len(hulls)
-        clock.lap("colliders")
-    if "preview" in wanted:
+        timer.end_stage("colliders")
+    if "preview" in outputs:
         _draw(folder, mesh, cut, settings, suffix)
-        clock.lap("preview")
+        timer.end_stage("preview")
     return report
 
 
-def _draw(folder, mesh, cut, settings, suffix):
-    preview(folder / "preview.png", mesh, cut, settings["preview"], suffix in Y_UP)
+def _draw(folder: Path, mesh: meshes.Mesh, cut: Optional[Cut], settings: Dict[str, Any], suffix: str) -> None:
+    draw_preview(folder / "preview.png", mesh, cut, settings["preview"], suffix in Y_UP)
 
 
-def _sound(mesh):
-    """Whether its numbers can be drawn at all, for the library may have refused them."""
-    return (len(mesh.triangles) > 0 and np.isfinite(mesh.vertices).all() and mesh.triangles.min() >= 0
-            and mesh.triangles.max() < len(mesh.vertices))
+def _is_drawable(mesh: meshes.Mesh) -> bool:
+    """Whether the mesh has triangles, finite coordinates and valid indices; the library may have rejected it."""
+    return bool(len(mesh.triangles) > 0 and np.isfinite(mesh.vertices).all() and mesh.triangles.min() >= 0
+                and mesh.triangles.max() < len(mesh.vertices))
 
 
-class _Clock:
-    """laps: {stage: seconds by the clock since the one before}."""
+class _StageTimer:
+    """Wall-clock time of consecutive stages. seconds: {stage: seconds}."""
 
-    def __init__(self):
-        self.laps, self._last = {}, time.monotonic()
+    def __init__(self) -> None:
+        self.seconds: Dict[str, float] = {}
+        self._last = time.monotonic()
 
-    def lap(self, stage):
+    def end_stage(self, stage: str) -> None:
         now = time.monotonic()
-        self.laps[stage], self._last = now - self._last, now
+        self.seconds[stage], self._last = now - self._last, now

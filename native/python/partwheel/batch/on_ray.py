@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""partwheel batch on a Ray cluster: inputs and results on any path of fsspec (a folder all nodes see, s3://).
+"""partwheel batch on a Ray cluster, with inputs and results in any file system of fsspec (a shared folder, s3://).
 
-Tasks of about a hundred models. A task brings each file to its node, makes the result there and puts it in its place,
-model.json last: what has a whole model.json is done. Ray begins a task again when its node dies; it then skips what is
-done, and so does a driver that is started again. Results, keys and reports are those of a run on one machine.
+The files are divided into tasks of about a hundred models. A task copies each file to its node, builds it there and uploads the
+result, model.json last: a model with a complete model.json is finished. Ray restarts a task when its node dies; the task then
+skips finished models, and so does a driver that is restarted. Results, keys and reports are those of a run on one machine.
 """
+
+from __future__ import annotations
 
 import hashlib
 import json
@@ -12,167 +14,196 @@ import secrets
 import tempfile
 import time
 from pathlib import Path, PurePosixPath
+from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple
 
-from .inputs import SUFFIXES, Input, of_shard, versions
-from .run import cores, memory
+from .inputs import SUFFIXES, Input, shard_files, tool_versions
+from .run import BatchOptions, available_cores, default_memory
 from .slot import Slot
-from .store import REPORT, written
-from ..requirements import RAY, check, load_module
+from .store import REPORT, encode_report
+from ..requirements import RAY, Need, check, load_module
 
-MODELS_A_TASK, TASKS_A_CORE = 100, 4  # at most; at least, so that no core waits long for the last
-WAIT_SECONDS = 1  # between two looks at what is done
-RETRIES = -1  # of a task whose node died: for ever, for each begins where the last one was
-
-
-def find_files(names, options):
-    """The paths of a shard's files, sorted: those that are named, and of folders all below that end as models do.
-
-    Raises RequirementError without fsspec."""
-    return of_shard(_found(load_module("fsspec", "Running on Ray"), names), *options.shard)
+MODELS_PER_TASK = 100  # at most
+TASKS_PER_CORE = 4  # at least, so that no core is idle for long at the end
+POLL_SECONDS = 1  # between two progress reports
+MAX_RETRIES = -1  # of a task whose node died: unlimited, since each attempt resumes the last one
 
 
-def run(address, paths, output, options, needs=(), progress=lambda done, total: None):
-    """Does all files; {failure name or None: how many}. address: of the cluster, "auto", or "local" for one of this
-    machine that ends with the run. paths: of find_files(); output: a folder, as fsspec writes it. options: run.Options,
-    of which jobs does not count; memory: for each model, 0: its core's share of what its node has free. needs: as
-    requirements.check_command() returns them, checked on each node. Raises RequirementError where a package is missing,
-    OSError, what Ray raises."""
+def find_files(names: Iterable[str], options: BatchOptions) -> List[str]:
+    """The paths of the shard's files: the named files, and the mesh files in the named folders, recursively.
+
+    Raises
+    ------
+    RequirementError : fsspec is not installed
+    """
+    return shard_files(_expand_inputs(load_module("fsspec", "Running on Ray"), names), *options.shard)
+
+
+def run(address: str, paths: List[str], output: str, options: BatchOptions, needs: Sequence[Need] = (),
+        progress: Callable[[int, int], None] = lambda done, total: None) -> Dict[Optional[str], int]:
+    """Builds all files on a cluster.
+
+    Parameters
+    ----------
+    address : of the cluster; "auto"; or "local" for a cluster of this machine that ends with the run
+    paths : see find_files()
+    output : the folder of results, as a path of fsspec
+    options : jobs is ignored; memory is that of each model, 0: its core's share of the node's free memory
+    needs : see requirements.check_command(); checked on each node
+    progress : called with the number of finished files and of all files
+
+    Returns
+    -------
+    {error name or None: number of files}
+
+    Raises
+    ------
+    RequirementError : a package is missing
+    OSError, errors of Ray
+    """
     ray, fsspec = (load_module(name, "Running on Ray") for name in RAY)
-    began = not ray.is_initialized()
-    if began:
+    owns_ray = not ray.is_initialized()
+    if owns_ray:
         ray.init(None if address == "local" else address, log_to_driver=False)
     try:
-        # A killed worker's task begins anew; an error of ours ends the run.
-        nodes_cores = int(ray.cluster_resources().get("CPU", 0)) or 1
-        size = max(1, min(MODELS_A_TASK, len(paths) // (TASKS_A_CORE * nodes_cores)))
+        # Ray retries the task of a killed worker, not one that raised an exception: that ends the run.
+        cluster_cores = int(ray.cluster_resources().get("CPU", 0)) or 1
+        size = max(1, min(MODELS_PER_TASK, len(paths) // (TASKS_PER_CORE * cluster_cores)))
         groups = [paths[start:start + size] for start in range(0, len(paths), size)]
-        task = ray.remote(num_cpus=1, max_retries=RETRIES)(work)
-        waiting = {task.remote(group, output, options, needs): len(group) for group in groups}
-        total, done, counts = len(paths), 0, {}
-        while waiting:
-            ready, _ = ray.wait(list(waiting), timeout=WAIT_SECONDS)
-            for each in ready:
-                for name, number in ray.get(each):
+        task = ray.remote(num_cpus=1, max_retries=MAX_RETRIES)(process_files)
+        pending = {task.remote(group, output, options, needs): len(group) for group in groups}
+        total, done = len(paths), 0
+        counts: Dict[Optional[str], int] = {}
+        while pending:
+            ready, _ = ray.wait(list(pending), timeout=POLL_SECONDS)
+            for future in ready:
+                for name, number in ray.get(future):
                     counts[name] = counts.get(name, 0) + number
-                done += waiting.pop(each)
+                done += pending.pop(future)
             progress(done, total)
     finally:
-        if began:
+        if owns_ray:
             ray.shutdown()
     return counts
 
 
-def _found(fsspec, names):
-    """The files, sorted: those that are named, and of folders all below that end as models do."""
-    found = {}
+def _expand_inputs(fsspec: Any, names: Iterable[str]) -> List[str]:
+    """The named files, and the mesh files in the named folders, recursively, without duplicates."""
+    paths: Dict[str, None] = {}
     for name in names:
         files, path = fsspec.core.url_to_fs(name)
-        below = files.find(path) if files.isdir(path) else None
-        if below is None:
-            found[name] = None
+        if files.isdir(path):
+            paths.update((files.unstrip_protocol(file), None) for file in sorted(files.find(path))
+                         if PurePosixPath(file).suffix.lower() in SUFFIXES)
         else:
-            found.update((files.unstrip_protocol(each), None) for each in sorted(below)
-                         if PurePosixPath(each).suffix.lower() in SUFFIXES)
-    return list(found)
+            paths[name] = None
+    return list(paths)
 
 
 # ---- In a task, on any node
 
 
-def work(paths, output, options, needs=()):
-    """Does these files; [(failure name or None, how many)]. Raises RequirementError for a node without the needs."""
+def process_files(paths: List[str], output: str, options: BatchOptions,
+                  needs: Sequence[Need] = ()) -> List[Tuple[Optional[str], int]]:
+    """Builds files; returns [(error name or None, number of files)]. Raises RequirementError if the node lacks a package."""
     check(needs)
     import fsspec
 
-    folder = _Folder(fsspec, output, paths)
-    options = options._replace(memory=options.memory or memory() // cores())
-    found, slot, known = {}, Slot(), versions(options.settings)
+    folder = _ResultFolder(fsspec, output, paths)
+    options = options._replace(memory=options.memory or default_memory() // available_cores())
+    counts: Dict[Optional[str], int] = {}
+    slot, versions = Slot(), tool_versions(options.settings)
     try:
         for path in paths:
-            with tempfile.TemporaryDirectory(prefix="partwheel-") as room:
-                name = _one(fsspec, folder, slot, path, options, known, Path(room))
-            found[name] = found.get(name, 0) + 1
+            with tempfile.TemporaryDirectory(prefix="partwheel-") as temporary:
+                name = _process(fsspec, folder, slot, path, options, versions, Path(temporary))
+            counts[name] = counts.get(name, 0) + 1
     finally:
         slot.close()
-    return list(found.items())
+    return list(counts.items())
 
 
-def _one(fsspec, folder, slot, path, options, known, room):
-    """Its failure's name, or None."""
-    local = room / "in" / PurePosixPath(path).name
+def _process(fsspec: Any, folder: _ResultFolder, slot: Slot, path: str, options: BatchOptions, versions: Dict[str, str],
+             temporary: Path) -> Optional[str]:
+    """Builds a file unless its result exists; returns the name of its error or None."""
+    local = temporary / "in" / PurePosixPath(path).name
     local.parent.mkdir()
-    trouble = None
+    download_error = None
     try:
-        _bring(fsspec, path, local)
-    except OSError as error:  # fsspec's own are OSErrors too
-        trouble = f"{error.strerror or error}: {path}"
-    source = Input(str(local), options.settings, known)
-    if trouble:
-        told = json.dumps(["unreadable", path, trouble, options.settings, source.versions], sort_keys=True)
-        source.key, source.error = hashlib.sha256(told.encode()).hexdigest(), trouble
-    folder.note(path, source.key)
+        _download(fsspec, path, local)
+    except OSError as error:  # includes fsspec's errors
+        download_error = f"{error.strerror or error}: {path}"
+    source = Input(str(local), options.settings, versions)
+    if download_error:
+        text = json.dumps(["unreadable", path, download_error, options.settings, source.versions], sort_keys=True)
+        source.key, source.error = hashlib.sha256(text.encode()).hexdigest(), download_error
+    folder.add_input(path, source.key)
     old = folder.report(source.key)
-    if old and not options.to_retry(old):
+    if old and not options.should_retry(old):
         return old["error"] and old["error"]["name"]
-    made = room / "out"
-    made.mkdir()
-    answer = {"error": {"name": "file", "message": source.error}} if source.error else slot.make(
-        options.task(source, made, options.memory))
-    pictured = answer.pop("pictured", True)
+    results = temporary / "out"
+    results.mkdir()
+    answer: Dict[str, Any] = {"error": {"name": "file", "message": source.error}} if source.error else slot.build(
+        options.task(source, results, options.memory))
+    has_preview = answer.pop("has_preview", True)
     report = {**source.report(), **answer}
-    folder.publish(made if pictured else None, source.key, report)
+    folder.publish(results if has_preview else None, source.key, report)
     return report["error"] and report["error"]["name"]
 
 
-def _bring(fsspec, path, local):
-    """The file, and of a glTF what lies beside it in its folder and may be its buffers."""
+def _download(fsspec: Any, path: str, local: Path) -> None:
+    """Copies the file; of a glTF also the .bin files of its folder, which may be its buffers."""
     files, remote = fsspec.core.url_to_fs(path)
     files.get_file(remote, str(local))
     if local.suffix.lower() == ".gltf":
-        for each in files.ls(files._parent(remote), detail=False):
-            if PurePosixPath(each).suffix.lower() == ".bin":
-                files.get_file(each, str(local.parent / PurePosixPath(each).name))
+        for name in files.ls(files._parent(remote), detail=False):
+            if PurePosixPath(name).suffix.lower() == ".bin":
+                files.get_file(name, str(local.parent / PurePosixPath(name).name))
 
 
-class _Folder:
-    """The folder of results, as store.Store lays it out, where nothing can be renamed. One file of each kind a task."""
+class _ResultFolder:
+    """The folder of results, laid out as by store.Store, in a file system without rename: each task writes a file of its own in
+    inputs/ and done/."""
 
-    def __init__(self, fsspec, output, paths):
+    def __init__(self, fsspec: Any, output: str, paths: List[str]) -> None:
         self._files, self._root = fsspec.core.url_to_fs(output)
         self._name = "ray-" + hashlib.sha256("\n".join(paths).encode()).hexdigest()[:16]
         self._attempt = f"{self._name}-{int(time.time())}-{secrets.token_hex(4)}"
-        self._inputs, self._done = [], []
+        self._inputs: List[Dict[str, str]] = []
+        self._done: List[Dict[str, str]] = []
 
-    def _at(self, *names):
+    def _path(self, *names: str) -> str:
         return "/".join([self._root.rstrip("/"), *names])
 
-    def report(self, key):
-        place = self._at("models", key[:2], key)
+    def report(self, key: str) -> Optional[Dict[str, Any]]:
+        """The content of model.json; None if there is no result, or its files don't have the sizes given there."""
+        folder = self._path("models", key[:2], key)
         try:
-            report = json.loads(self._files.cat_file(f"{place}/{REPORT}"))
-            there = self._files.ls(place, detail=True, refresh=True)
-            sizes = {PurePosixPath(each["name"]).name: each["size"] for each in there}
-        except (FileNotFoundError, ValueError):  # none, or torn
+            report = json.loads(self._files.cat_file(f"{folder}/{REPORT}"))
+            entries = self._files.ls(folder, detail=True, refresh=True)
+            sizes = {PurePosixPath(entry["name"]).name: entry["size"] for entry in entries}
+        except (FileNotFoundError, ValueError):  # missing or incomplete
             return None
         return report if report["files"].items() <= sizes.items() else None
 
-    def publish(self, made, key, report):
-        files = sorted(made.iterdir()) if made else []
-        report["files"] = {path.name: path.stat().st_size for path in files}
-        place = self._at("models", key[:2], key)
-        self._files.makedirs(place, exist_ok=True)
-        for path in files:
-            self._files.put_file(str(path), f"{place}/{path.name}")
-        self._files.pipe_file(f"{place}/{REPORT}", written(report))
+    def publish(self, results: Optional[Path], key: str, report: Dict[str, Any]) -> None:
+        """Uploads the files of a local folder, then the report."""
+        paths = sorted(results.iterdir()) if results else []
+        report["files"] = {path.name: path.stat().st_size for path in paths}
+        folder = self._path("models", key[:2], key)
+        self._files.makedirs(folder, exist_ok=True)
+        for path in paths:
+            self._files.put_file(str(path), f"{folder}/{path.name}")
+        self._files.pipe_file(f"{folder}/{REPORT}", encode_report(report))
         self._done.append({"key": key})
-        self._lines("done", self._attempt, self._done)
+        self._write_lines("done", self._attempt, self._done)
 
-    def note(self, path, key):
+    def add_input(self, path: str, key: str) -> None:
+        """Records the key of a file."""
         self._inputs.append({"path": path, "key": key})
-        self._lines("inputs", self._name, self._inputs)
+        self._write_lines("inputs", self._name, self._inputs)
 
-    def _lines(self, kind, name, values):
-        """Written whole: in a store of objects nothing can be appended."""
-        self._files.makedirs(self._at(kind), exist_ok=True)
-        lines = "".join(json.dumps(each) + "\n" for each in values)
-        self._files.pipe_file(self._at(kind, f"{name}.jsonl"), lines.encode())
+    def _write_lines(self, kind: str, name: str, values: Iterable[Dict[str, str]]) -> None:
+        """Writes the whole file: object stores can't append."""
+        self._files.makedirs(self._path(kind), exist_ok=True)
+        lines = "".join(json.dumps(value) + "\n" for value in values)
+        self._files.pipe_file(self._path(kind, f"{name}.jsonl"), lines.encode())

@@ -1,39 +1,50 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The report on a folder of results: one HTML page without a server; the pictures stay where they are."""
+"""The report on a folder of results: one HTML page that needs no server and links to the previews in the folder."""
+
+from __future__ import annotations
 
 import json
 import os
 import secrets
 from pathlib import Path
+from typing import Any, Dict, List, Tuple, Union
 
 from .store import Store
 
 NAME = "report.html"
-STAGES = "read", "build", "save", "cut", "colliders", "preview"  # that follow each other; build's own are in it
+STAGES = "read", "build", "save", "cut", "colliders", "preview"  # consecutive; "build" includes the stages of the native build
 
 
-def write(folder):
-    """Writes report.html into a folder of results, and returns its path and how many models it has. Results that are
-    gone or torn are left out. Raises OSError."""
+def write(folder: Union[str, Path]) -> Tuple[Path, int]:
+    """Writes report.html into a folder of results.
+
+    Returns
+    -------
+    its path, and the number of models; missing or incomplete results are left out
+
+    Raises
+    ------
+    OSError : the folder can't be read or written
+    """
     store = Store(folder)
-    rows = [row(path, key, report) for path, key in sorted(store.inputs().items()) if (report := store.report(key))]
+    rows = [table_row(path, key, report) for path, key in sorted(store.inputs().items()) if (report := store.report(key))]
     path = store.folder / NAME
-    beside = store.folder / f"{NAME}-{secrets.token_hex(4)}"
-    beside.write_text(page(rows), "utf-8")
-    os.replace(beside, path)
+    temporary = store.folder / f"{NAME}-{secrets.token_hex(4)}"
+    temporary.write_text(render_page(rows), "utf-8")
+    os.replace(temporary, path)
     return path, len(rows)
 
 
-def row(path, key, report):
-    """What the page knows of a model: path, key, bytes, faces, seconds, way, name and message of its failure, whether
-    there is a picture."""
+def table_row(path: str, key: str, report: Dict[str, Any]) -> List[Any]:
+    """The page's data of a model: path, key, bytes, faces, seconds, fill method, name and message of its error or None,
+    whether it has a preview."""
     error = report["error"] or {"name": None, "message": ""}
     seconds = sum(report.get("seconds", {}).get(stage, 0) for stage in STAGES)
     return [os.fsencode(path).decode("utf-8", "replace"), key, report["bytes"], report.get("faces", 0), round(seconds, 3),
             report.get("rung"), error["name"], error["message"], int("preview.png" in report["files"])]
 
 
-def page(rows):
+def render_page(rows: List[List[Any]]) -> str:
     """The page as HTML."""
-    told = json.dumps(rows, separators=(",", ":")).replace("<", "\\u003c")  # or a name could end the script
-    return Path(__file__).with_name("report.html").read_text("utf-8").replace("@ROWS@", told)
+    data = json.dumps(rows, separators=(",", ":")).replace("<", "\\u003c")  # so that no name can end the script element
+    return Path(__file__).with_name("report.html").read_text("utf-8").replace("@ROWS@", data)

@@ -1,121 +1,160 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A run: files in, results in a folder, as many at a time as there are cores and as there is memory for."""
+"""A run: builds files into a folder of results, in parallel as far as cores and memory allow."""
+
+from __future__ import annotations
 
 import collections
 import os
 import threading
 import time
 from pathlib import Path
-from typing import NamedTuple, Optional
+from typing import Any, Callable, Deque, Dict, FrozenSet, List, NamedTuple, Optional, Set, Tuple, Union
 
 from . import lock
-from .inputs import Input, of_shard, versions
+from .inputs import Input, shard_files, tool_versions
 from .slot import Slot
 from .store import Store
 from ..worker import available_memory
 
-TICK = 0.1  # seconds between two looks at what runs
-MEMORY_SHARE = 0.8  # of what is available when the run starts
-# What a model is given at first: some times what reading and building took at most, in files of either kind.
-NEED, NEED_PER_BYTE = 512 * 2**20, 120
-UNIT = 200_000  # bytes of a file that cost as much time as beginning with it does
+POLL_SECONDS = 0.1  # between two checks of the slots
+MEMORY_FRACTION = 0.8  # of what is available when the run starts
+# Memory that a model gets on the first attempt, in bytes and bytes per byte of its file: several times the most that
+# reading and building took, in text and binary formats.
+BASE_MEMORY, MEMORY_PER_BYTE = 512 * 2**20, 120
+FILE_OVERHEAD = 200_000  # the fixed cost of a file, as the number of bytes that take as long
 
 
-class Options(NamedTuple):
-    """settings: as command.settings() gives them, they are part of each key. jobs: models at a time. memory: bytes for
-    all of them, 0: no limit. seconds: of processor time a process, None: as Job and Slot have it. retry: names of
-    failures that are to be tried again, or {"all"}. shard: (i, n). threads: a model."""
+class BatchOptions(NamedTuple):
+    """Options of a run.
 
-    settings: dict
+    settings : see command.settings(); part of each key
+    jobs : number of models at a time
+    memory : bytes for all models at a time; 0: no limit
+    seconds : limit on processor time per process; None: the defaults of Job and Slot
+    retry : names of errors after which a model is built again, or {"all"}
+    shard : (index, count), 1 <= index <= count
+    threads : per model
+    """
+
+    settings: Dict[str, Any]
     jobs: int
     memory: int
     seconds: Optional[float] = None
-    retry: frozenset = frozenset()
-    shard: tuple = (1, 1)
+    retry: FrozenSet[str] = frozenset()
+    shard: Tuple[int, int] = (1, 1)
     threads: int = 1
 
-    def to_retry(self, report):
-        """Whether an old result is a failure that is to be tried again."""
-        return report["error"] and bool({"all", report["error"]["name"]} & self.retry)
+    def should_retry(self, report: Dict[str, Any]) -> bool:
+        """Whether an existing result is an error after which to build the model again."""
+        return bool(report["error"]) and bool({"all", report["error"]["name"]} & self.retry)
 
-    def task(self, source, folder, memory):
-        """What a Slot is asked to make of an Input in a folder, with so much memory."""
+    def task(self, source: Input, folder: Path, memory: int) -> Dict[str, Any]:
+        """The task for Slot.build(): an input, a folder for its results, its memory limit in bytes."""
         return {"path": source.path, "folder": str(folder), "settings": self.settings, "memory": memory,
                 "seconds": self.seconds, "size": source.size, "threads": self.threads}
 
 
 class Counts(NamedTuple):
-    """dropped: {what files have and no output: how many files}, see contents.KINDS. total: files. old: their results were there. made: in this run, failures among them. failed: {name: how many}, old
-    ones too. same: files whose content another one has. skipped: those that changed while they were read. share: how
-    much of the work is done, 0..1. seconds: since the start."""
+    """Progress and totals of a run; partwheel batch --json prints them.
+
+    total : number of files
+    old : files that already had a result
+    made : files built by this run, including failures
+    failed : {error name: number of files}, including old results
+    same : files with the content of another file
+    skipped : files that changed while they were read
+    share : fraction of the work done, 0..1
+    seconds : since the start
+    dropped : {kind, see contents.KINDS: number of files that have it}; no output has it
+    """
 
     total: int
     old: int
     made: int
-    failed: dict
+    failed: Dict[str, int]
     same: int
     skipped: int
     share: float
     seconds: float
-    dropped: dict
+    dropped: Dict[str, int]
 
     @property
-    def left(self):
-        """Seconds until the end, as far as can be told, or None."""
+    def seconds_left(self) -> Optional[float]:
+        """Estimated seconds until the end; None at the beginning."""
         return self.seconds / self.share - self.seconds if self.share > 0.005 else None
 
 
-def cores():
-    """That this process may use."""
+def available_cores() -> int:
+    """Number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def memory():
-    """Bytes that a run takes where it is not told: 80 % of what is available, to the system or to this job of a cluster."""
-    return int(MEMORY_SHARE * min((each for each in (available_memory(), _group_memory()) if each), default=0))
+def default_memory() -> int:
+    """The default memory of a run in bytes: 80 % of what is available to the system and to this process's control group."""
+    return int(MEMORY_FRACTION * min((size for size in (available_memory(), _cgroup_memory()) if size), default=0))
 
 
-def _group_memory():
-    """What this process's control group (a container, a SLURM job) may still take, in bytes, 0 for all."""
+def _cgroup_memory() -> int:
+    """Bytes that this process's control group (a container, a SLURM job) may still use; 0: no limit."""
     try:
-        below = Path("/proc/self/cgroup").read_text().strip().rsplit(":", 1)[-1].lstrip("/")
-        group = Path("/sys/fs/cgroup") / below
+        name = Path("/proc/self/cgroup").read_text().strip().rsplit(":", 1)[-1].lstrip("/")
+        group = Path("/sys/fs/cgroup") / name
         return max(int((group / "memory.max").read_text()) - int((group / "memory.current").read_text()), 1)
-    except (OSError, ValueError):  # none, another version of them, or "max"
+    except (OSError, ValueError):  # no control group, version 1, or "max"
         return 0
 
 
-class Run:
-    """One run over a shard's files. go() does it; stop() ends it from any thread or signal handler."""
+class BatchRun:
+    """One run over the files of a shard.
 
-    def __init__(self, folder, paths, options, slots=Slot):
+    Parameters
+    ----------
+    folder : the folder of results
+    paths : the files of all shards
+    options : BatchOptions
+    create_slot : creates a Slot; for tests
+    """
+
+    def __init__(self, folder: Union[str, Path], paths: List[str], options: BatchOptions,
+                 create_slot: Callable[[], Slot] = Slot) -> None:
         self.store = Store(folder, "{}-of-{}".format(*options.shard))
         self._options = options
-        self._versions = versions(options.settings)
-        paths = of_shard(paths, *options.shard)
-        sizes = {path: _size(path) for path in paths}
-        share = options.memory // options.jobs
-        # Those that need more than their share come last: then nothing small waits for them.
-        self._todo = collections.deque(sorted(paths, key=lambda path: _need(sizes[path]) > share))
-        self._sizes, self._share_of_memory = sizes, share
-        self._work = sum(map(_cost, sizes.values())) or 1
-        self._done_work = 0
-        self._again = collections.deque()  # inputs that had too little memory
-        self._free, self._busy = options.memory, 0
-        self._keys = set()  # that this run has begun
+        self._versions = tool_versions(options.settings)
+        paths = shard_files(paths, *options.shard)
+        self._sizes = {path: _file_size(path) for path in paths}
+        self._memory_share = options.memory // options.jobs
+        # Files that need more than their share come last, so that no small file waits for them.
+        self._queue: Deque[str] = collections.deque(
+            sorted(paths, key=lambda path: _memory_estimate(self._sizes[path]) > self._memory_share))
+        self._total_cost = sum(map(_cost, self._sizes.values())) or 1
+        self._finished_cost = 0
+        self._retries: Deque[Input] = collections.deque()  # ran out of memory; built again with all of it
+        self._free_memory, self._busy_slots = options.memory, 0
+        self._keys: Set[str] = set()  # of the files that this run has started
         self._old = self._made = self._same = self._skipped = 0
-        self._failed, self._dropped = collections.Counter(), collections.Counter()
-        self._change = threading.Condition()
-        self._stopped, self._error = threading.Event(), None
-        self._slots = [slots() for _ in range(options.jobs)]
+        self._failed: Dict[str, int] = collections.Counter()
+        self._dropped: collections.Counter[str] = collections.Counter()
+        self._change = threading.Condition()  # guards all of the above
+        self._stopped = threading.Event()
+        self._error: Optional[Exception] = None
+        self._slots = [create_slot() for _ in range(options.jobs)]
 
-    def go(self, progress=lambda counts: None):
-        """Does it all; the Counts. progress: called with Counts some times a second. Raises lock.Busy, OSError, and what
-        progress raises (KeyboardInterrupt): nothing is left half done then."""
-        self._began = time.monotonic()
+    def run(self, progress: Callable[[Counts], None] = lambda counts: None) -> Counts:
+        """Builds all files.
+
+        Parameters
+        ----------
+        progress : called about ten times a second; if it raises (KeyboardInterrupt), the run stops and leaves no partial result
+
+        Raises
+        ------
+        FolderInUseError : another run uses the folder
+        OSError : the folder can't be written
+        """
+        self._start_time = time.monotonic()
         name = "shard-{}-of-{}".format(*self._options.shard)
         with lock.Lock(self.store.folder / "locks", name) as held:
-            self._no_other_division()
+            self._check_shard_count()
             self.store.begin()
             threads = [threading.Thread(target=self._serve, args=[slot], daemon=True) for slot in self._slots]
             try:
@@ -123,157 +162,167 @@ class Run:
                     thread.start()
                 while any(thread.is_alive() for thread in threads) and not self._stopped.is_set():
                     for slot in self._slots:
-                        slot.watch()
-                    if held.lost:
-                        raise lock.Busy(f"{self.store.folder} was taken over by another run while this one slept.")
+                        slot.enforce_deadline()
+                    if held.is_lost:
+                        raise lock.FolderInUseError(f"Another run took {self.store.folder} over while this one was suspended.")
                     progress(self.counts())
                     with self._change:
-                        self._change.wait(TICK)
+                        self._change.wait(POLL_SECONDS)
             finally:
                 self.stop()
                 for thread in threads:
                     if thread.ident:
                         thread.join()
-                if not held.lost:
+                if not held.is_lost:
                     self.store.end()
         if self._error:
             raise self._error
         return self.counts()
 
-    def stop(self):
-        """What runs is killed; what is done stays."""
+    def stop(self) -> None:
+        """Kills the running processes; finished results remain. Call it from any thread or signal handler."""
         self._stopped.set()
         for slot in self._slots:
             slot.close()
 
-    def counts(self):
+    def counts(self) -> Counts:
         return Counts(len(self._sizes), self._old, self._made, dict(self._failed), self._same, self._skipped,
-                      self._done_work / self._work, time.monotonic() - self._began, dict(self._dropped))
+                      self._finished_cost / self._total_cost, time.monotonic() - self._start_time, dict(self._dropped))
 
-    def _no_other_division(self):
-        """Raises lock.Busy where the folder is being worked on in another number of shards. Asked with our own lock
-        held: of two that begin at once, one sees the other."""
-        ours = "-of-{}".format(self._options.shard[1])
-        others = {name for name in lock.living(self.store.folder / "locks", "shard-") if not name.endswith(ours)}
+    def _check_shard_count(self) -> None:
+        """Raises FolderInUseError if a run with another number of shards uses the folder. Called with this run's lock held, so
+        that of two runs that start at the same time at least one sees the other."""
+        suffix = "-of-{}".format(self._options.shard[1])
+        others = {name for name in lock.held_locks(self.store.folder / "locks", "shard-") if not name.endswith(suffix)}
         if others:
-            raise lock.Busy(f"{self.store.folder} is being worked on in another number of shards: "
-                            f"{', '.join(sorted(others))}.")
+            raise lock.FolderInUseError(f"Runs with another number of shards use {self.store.folder}: "
+                                        f"{', '.join(sorted(others))}.")
 
     # ---- In a thread for each slot
 
-    def _serve(self, slot):
+    def _serve(self, slot: Slot) -> None:
+        """Builds files from the queue until it is empty."""
         try:
             while not self._stopped.is_set():
+                path, retry = None, None
                 with self._change:
-                    if self._todo:
-                        path, again = self._todo.popleft(), None
-                    elif self._again:
-                        path, again = None, self._again.popleft()
-                    elif self._busy:
-                        self._change.wait(TICK)  # what runs may have to be done again
+                    if self._queue:
+                        path = self._queue.popleft()
+                    elif self._retries:
+                        retry = self._retries.popleft()
+                    elif self._busy_slots:
+                        self._change.wait(POLL_SECONDS)  # a running model may have to be built again
                         continue
                     else:
                         return
-                    self._busy += 1
+                    self._busy_slots += 1
                 try:
-                    self._one(slot, again or self._input(path), bool(again))
+                    if retry:
+                        self._process(slot, retry, True)
+                    elif path is not None:
+                        self._process(slot, self._hash_input(path), False)
                 finally:
                     with self._change:
-                        self._busy -= 1
+                        self._busy_slots -= 1
                         self._change.notify_all()
-        except Exception as error:  # a full disk, for instance: go() raises it
+        except Exception as error:  # a full disk, for example; run() raises it
             with self._change:
                 if not self._stopped.is_set():
                     self._error = error
                 self._stopped.set()
                 self._change.notify_all()
 
-    def _input(self, path):
+    def _hash_input(self, path: str) -> Input:
         return Input(path, self._options.settings, self._versions, self._stopped.is_set)
 
-    def _one(self, slot, source, again):
+    def _process(self, slot: Slot, source: Input, is_retry: bool) -> None:
+        """Builds an input unless its result exists, and publishes the result."""
         if self._stopped.is_set():
             return
-        if not again:
+        if not is_retry:
             with self._change:
-                same = source.key in self._keys
+                is_same = source.key in self._keys
                 self._keys.add(source.key)
-                self.store.note(source.path, source.key)
-            if same:
+                self.store.add_input(source.path, source.key)
+            if is_same:
                 self._count(source, "_same")
                 return
             old = self.store.report(source.key)
-            if old and not self._options.to_retry(old):
+            if old and not self._options.should_retry(old):
                 self._count(source, "_old", old)
                 return
-        beside = self.store.beside(source.key)
+        folder = self.store.create_folder(source.key)
         if source.error:
-            answer, all_memory = {"error": {"name": "file", "message": source.error}}, True
+            answer: Dict[str, Any] = {"error": {"name": "file", "message": source.error}}
+            had_all_memory = True
         else:
-            answer, all_memory = self._made_in(slot, source, beside, again)
-        if self._stopped.is_set():  # it was killed, perhaps
-            self.store.discard(beside)
+            answer, had_all_memory = self._build(slot, source, folder, is_retry)
+        if self._stopped.is_set():  # the process may have been killed
+            self.store.discard(folder)
             return
         error = answer.get("error")
         if error:
-            pictured = answer.pop("pictured", False)
-            if not pictured:
-                self.store.discard(beside)
-            if error["name"] == "memory" and not all_memory:
+            has_preview = answer.pop("has_preview", False)
+            if not has_preview:
+                self.store.discard(folder)
+            if error["name"] == "memory" and not had_all_memory:
                 with self._change:
-                    self._again.append(source)  # later, with all memory
-                self.store.discard(beside)
+                    self._retries.append(source)
+                self.store.discard(folder)
                 return
-            if not pictured:
-                beside = self.store.beside(source.key)
-        if source.changed():
-            self.store.discard(beside)
+            if not has_preview:
+                folder = self.store.create_folder(source.key)
+        if source.has_changed():
+            self.store.discard(folder)
             self._count(source, "_skipped")
             return
         report = {**source.report(), **answer}
         with self._change:
             if (old := self.store.report(source.key)) and old["error"]:
-                self.store.withdraw(source.key)  # it was tried again
-            self.store.publish(beside, source.key, report)
+                self.store.remove(source.key)  # the error of an earlier attempt
+            self.store.publish(folder, source.key, report)
         self._count(source, "_made", report)
 
-    def _made_in(self, slot, source, beside, again):
-        """(the slot's answer, whether it had all the memory that any may have)"""
-        most = self._options.memory
-        granted = most if again else min(max(self._share_of_memory, _need(source.size)), most)
+    def _build(self, slot: Slot, source: Input, folder: Path, is_retry: bool) -> Tuple[Dict[str, Any], bool]:
+        """(the slot's answer, whether it had all of the run's memory). Waits until enough memory is free."""
+        total = self._options.memory
+        granted = total if is_retry else min(max(self._memory_share, _memory_estimate(source.size)), total)
         with self._change:
-            while most and granted > self._free and not self._stopped.is_set():
-                self._change.wait(TICK)
-            self._free -= granted
+            while total and granted > self._free_memory and not self._stopped.is_set():
+                self._change.wait(POLL_SECONDS)
+            self._free_memory -= granted
         try:
             if self._stopped.is_set():
                 return {}, True
-            return slot.make(self._options.task(source, beside, granted)), granted == most
+            return slot.build(self._options.task(source, folder, granted)), granted == total
         finally:
             with self._change:
-                self._free += granted
+                self._free_memory += granted
                 self._change.notify_all()
 
-    def _count(self, source, what, report=None):
+    def _count(self, source: Input, counter: str, report: Optional[Dict[str, Any]] = None) -> None:
+        """Adds a finished file to the counter of this name."""
         with self._change:
-            setattr(self, what, getattr(self, what) + 1)
+            setattr(self, counter, getattr(self, counter) + 1)
             if report:
                 self._dropped.update(report.get("dropped", ()))
             if report and report["error"]:
                 self._failed[report["error"]["name"]] += 1
-            self._done_work += _cost(self._sizes[source.path])
+            self._finished_cost += _cost(self._sizes[source.path])
 
 
-def _size(path):
+def _file_size(path: str) -> int:
     try:
         return os.stat(path).st_size
     except OSError:
         return 0
 
 
-def _cost(size):
-    return size + UNIT
+def _cost(size: int) -> int:
+    """The expected time of a file of this size, in bytes."""
+    return size + FILE_OVERHEAD
 
 
-def _need(size):
-    return NEED + NEED_PER_BYTE * size
+def _memory_estimate(size: int) -> int:
+    """Bytes of memory for a file of this size on the first attempt."""
+    return BASE_MEMORY + MEMORY_PER_BYTE * size

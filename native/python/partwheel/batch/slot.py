@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A process that makes one model after the other, and the handle by which a run holds it.
+"""A process that builds one model after another, and the run's handle to it.
 
-What a file does to its reader (a crash, all memory taken, no end) this process alone suffers; the mesher is in one more
-of its own, see worker. A line of JSON a model goes in by standard input, and one comes out by standard output.
+If a file makes its reader crash, hang or run out of memory, only this process is affected; the native build runs in yet another
+process, see worker. For each model, one line of JSON goes to standard input and one comes from standard output.
 """
+
+from __future__ import annotations
 
 import json
 import os
@@ -13,77 +15,89 @@ import sys
 import threading
 import time
 from pathlib import Path
+from typing import Any, Dict, Optional
 
 from ..worker.exit_status import describe_exit
 
 MEGABYTE = 2**20
-# For reading and writing, of processor time, where the user sets no limit: many times what any file takes.
-SECONDS, SECONDS_PER_MEGABYTE = 120, 20
-PATIENCE = 10  # times the limit, by the clock: for one that waits for ever, on a machine however busy
-KEPT = 512 * MEGABYTE  # a process that holds more after a model makes place for a new one
+# The default limit on processor time for reading and writing: many times what any file takes.
+CPU_SECONDS, CPU_SECONDS_PER_MEGABYTE = 120, 20
+WALL_CLOCK_FACTOR = 10  # wall-clock limit / processor time limit: for a process that waits forever, on a busy machine
+MAX_RESIDENT_BYTES = 512 * MEGABYTE  # a process that holds more after a model is replaced by a new one
 ENTRY = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from partwheel.batch.slot import main; main()"
 
 
 class Slot:
-    """The handle. One thread asks, any may kill."""
+    """The handle. One thread calls build(); any thread may call the other methods."""
 
-    def __init__(self):
-        self._process, self._late, self._closed = None, False, False
+    def __init__(self) -> None:
+        self._process: Optional[subprocess.Popen[bytes]] = None
+        self._is_overdue, self._is_closed = False, False
         self._deadline = float("inf")
         self._lock = threading.Lock()  # for the process
 
-    def make(self, task):
-        """The answer to {"path", "folder", "settings", "memory", "seconds", "size", "threads"}, as for model.make() but
-        size, the file's bytes: what it returns, or {"error": {"name", "message"}, "pictured": whether preview.png
-        was made all the same}; and "processor_seconds", all processes' together."""
-        process, self._late = self._started(), False
-        limit = task["seconds"] or SECONDS + SECONDS_PER_MEGABYTE * task["size"] / MEGABYTE
-        self._deadline = time.monotonic() + PATIENCE * limit
+    def build(self, task: Dict[str, Any]) -> Dict[str, Any]:
+        """Builds a model in the process.
+
+        Parameters
+        ----------
+        task : {"path", "folder", "settings", "memory", "seconds", "threads"}, see model.build_model(), and "size", that of the
+            file in bytes
+
+        Returns
+        -------
+        the report of model.build_model(), or {"error": {"name", "message"}, "has_preview"}; and "processor_seconds", of all
+        processes together
+        """
+        process, self._is_overdue = self._ensure_process(), False
+        assert process.stdin and process.stdout
+        limit = task["seconds"] or CPU_SECONDS + CPU_SECONDS_PER_MEGABYTE * task["size"] / MEGABYTE
+        self._deadline = time.monotonic() + WALL_CLOCK_FACTOR * limit
         try:
             process.stdin.write(json.dumps({**task, "limit": limit}).encode() + b"\n")
             process.stdin.flush()
             line = process.stdout.readline()
         except OSError:
-            line = b""  # it has ended: told below
+            line = b""  # the process has ended; reported below
         self._deadline = float("inf")
         if line.endswith(b"\n"):
             answer = json.loads(line)
-            if answer.pop("resident") > KEPT:
+            if answer.pop("resident") > MAX_RESIDENT_BYTES:
                 self.kill()
             return answer
         self.kill()
-        process.wait()  # or another thread has killed it
-        if self._late or process.returncode == -getattr(signal, "SIGXCPU", 24):
+        process.wait()  # another thread may have killed it
+        if self._is_overdue or process.returncode == -getattr(signal, "SIGXCPU", 24):
             return {"error": {"name": "time limit",
-                              "message": f"Reading it, or writing what was made of it, took more than {limit:g} seconds."}}
+                              "message": f"Reading the file or writing the results took more than {limit:g} seconds."}}
         return {"error": {"name": "crash", "message": f"The process that read the file {describe_exit(process.returncode)}."}}
 
-    def watch(self):
-        """To be called now and then: kills a process that waits for ever."""
+    def enforce_deadline(self) -> None:
+        """Kills a process that exceeds its wall-clock limit. Call it regularly."""
         if time.monotonic() > self._deadline:
-            self._late = True
+            self._is_overdue = True
             self.kill()
 
-    def _started(self):
+    def _ensure_process(self) -> subprocess.Popen[bytes]:
         with self._lock:
-            if self._closed:
+            if self._is_closed:
                 raise OSError(0, "The run was stopped")
             if self._process is None:
-                # Its own session: a Ctrl-C in the terminal is the run's alone. One thread: cores are shared by models.
+                # A new session: only the run receives Ctrl-C. One thread for numpy: the models share the cores.
                 self._process = subprocess.Popen(
                     [sys.executable, "-B", "-c", ENTRY, json.dumps([path or os.getcwd() for path in sys.path])],
                     stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True,
                     env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"})
             return self._process
 
-    def close(self):
-        """Ends the process; none is started any more."""
+    def close(self) -> None:
+        """Kills the process and prevents new ones."""
         with self._lock:
-            self._closed = True
+            self._is_closed = True
         self.kill()
 
-    def kill(self):
-        """Ends the process and what it has started."""
+    def kill(self) -> None:
+        """Kills the process and its children."""
         with self._lock:
             process, self._process = self._process, None
         if process is None:
@@ -91,38 +105,40 @@ class Slot:
         try:
             os.killpg(process.pid, signal.SIGKILL) if hasattr(os, "killpg") else process.kill()
         except ProcessLookupError:
-            pass  # it has ended by itself
+            pass  # it has ended
         process.wait()
 
 
 # ---- In the process ------------------------------------------------------------------------------------------------
 
 
-def main():
+def main() -> None:
+    """Builds models until standard input ends."""
     parent = os.getppid()
     answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what a reader prints must not get between the answers
-    _end_with_parent(parent)
-    from .model import make  # with numpy, once for all models
+    os.dup2(2, 1)  # what a reader prints to standard output must not mix with the answers
+    _die_with_parent(parent)
+    from .model import build_model  # imports numpy once for all models
 
-    base = _data()
+    base = _data_bytes()
     for line in sys.stdin.buffer:
         task = json.loads(line)
-        _limit(base, task)
-        before = sum(os.times()[:4])  # with that of the worker processes that have ended
+        _set_limits(base, task)
+        before = sum(os.times()[:4])  # includes worker processes that have ended
         try:
-            memory = task["memory"] and max(task["memory"] - (_data() - base), 64 * MEGABYTE)
-            answer = make(task["path"], Path(task["folder"]), task["settings"], memory=memory, seconds=task["seconds"],
-                          threads=task["threads"])
-        except Exception as error:  # whatever it is, it is this model's result
-            answer = {"error": _told(error, task), "pictured": bool(getattr(error, "pictured", False))}
+            memory = task["memory"] and max(task["memory"] - (_data_bytes() - base), 64 * MEGABYTE)
+            answer = build_model(task["path"], Path(task["folder"]), task["settings"], memory=memory, seconds=task["seconds"],
+                                 threads=task["threads"])
+        except Exception as error:  # any error is this model's result
+            answer = {"error": _error_report(error, task), "has_preview": bool(getattr(error, "has_preview", False))}
         answer["processor_seconds"] = round(sum(os.times()[:4]) - before, 2)
-        answer["resident"] = _resident()
+        answer["resident"] = memory_status("VmRSS")
         answers.write(json.dumps(answer).encode() + b"\n")
         answers.flush()
 
 
-def _told(error, task):
+def _error_report(error: Exception, task: Dict[str, Any]) -> Dict[str, str]:
+    """{"name", "message"} of an error."""
     from ..library import Error
 
     if isinstance(error, MemoryError):
@@ -134,7 +150,7 @@ def _told(error, task):
     return {"name": "defect", "message": f"{type(error).__name__}: {error}"}
 
 
-def _end_with_parent(parent):
+def _die_with_parent(parent: int) -> None:
     if sys.platform == "linux":
         import ctypes
         set_parent_death_signal = 1
@@ -143,37 +159,34 @@ def _end_with_parent(parent):
             os._exit(1)
 
 
-def _limit(base, task):
-    """Memory for data and processor time from here on, as far as the system keeps such limits."""
+def _set_limits(base: int, task: Dict[str, Any]) -> None:
+    """Limits processor time, and on Linux the data segment, from now on. Without effect on Windows."""
     try:
         import resource
     except ImportError:  # Windows
         return
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     usage = resource.getrusage(resource.RUSAGE_SELF)
-    _lower(resource, resource.RLIMIT_CPU, int(usage.ru_utime + usage.ru_stime + task["limit"]) + 1)
+    _set_soft_limit(resource, resource.RLIMIT_CPU, int(usage.ru_utime + usage.ru_stime + task["limit"]) + 1)
     if sys.platform == "linux":
-        _lower(resource, resource.RLIMIT_DATA, base + task["memory"] if task["memory"] else resource.RLIM_INFINITY)
+        _set_soft_limit(resource, resource.RLIMIT_DATA, base + task["memory"] if task["memory"] else resource.RLIM_INFINITY)
 
 
-def _lower(resource, kind, value):
-    _, most = resource.getrlimit(kind)
-    if most != resource.RLIM_INFINITY:
-        value = most if value == resource.RLIM_INFINITY else min(value, most)
-    resource.setrlimit(kind, (value, most))
+def _set_soft_limit(resource: Any, kind: int, value: int) -> None:
+    """Sets a soft limit, at most the hard one."""
+    _, hard = resource.getrlimit(kind)
+    if hard != resource.RLIM_INFINITY:
+        value = hard if value == resource.RLIM_INFINITY else min(value, hard)
+    resource.setrlimit(kind, (value, hard))
 
 
-def _data():
-    """Bytes of memory for data, as RLIMIT_DATA counts them; 0 where the system does not tell."""
-    return memory("VmData")
+def _data_bytes() -> int:
+    """Size of the data segment, as RLIMIT_DATA counts it; 0 if unknown."""
+    return memory_status("VmData")
 
 
-def _resident():
-    return memory("VmRSS")
-
-
-def memory(name):
-    """A number of bytes that Linux tells of this process; 0 where the system does not tell."""
+def memory_status(name: str) -> int:
+    """A field of /proc/self/status in bytes; 0 if unknown, outside Linux."""
     try:
         with open("/proc/self/status", encoding="ascii") as lines:
             return next(int(line.split()[1]) * 1024 for line in lines if line.startswith(name + ":"))
