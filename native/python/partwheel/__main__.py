@@ -22,6 +22,7 @@ from .batch.slot import memory_status
 from .cut import Cut, files, printing
 from .hierarchy import Hierarchy
 from .library import Error, Mode, Rung
+from .output import whole_file
 
 BUILT, NAMED_ERROR, USAGE = 0, 1, 2
 
@@ -65,7 +66,7 @@ def parse(arguments):
                        help="obj, glb: the hulls; unreal, godot: glb with the model and its hulls, named as these engines "
                             "have it; urdf, mjcf, usd: for robot simulators (default: obj)")
     for command in (build, parts, hulls):
-        command.add_argument("model", type=Path, help="a mesh file: OFF, or any other format that trimesh reads")
+        command.add_argument("model", type=Path, help="a mesh file: OFF, OBJ, or any other format that trimesh reads")
         command.add_argument("--json", action="store_true", help="print the report as JSON on one line")
         _add_build_options(command)
     batch.add_to(commands, _add_build_options)
@@ -175,7 +176,8 @@ def build(options, report):
         written = convex.write(options.output, options.model.stem, mesh, found, options.formats, options.primitives)
         report.update(hulls=len(found), files=list(map(str, written)))
     elif options.output:
-        options.output.write_bytes(hierarchy.save())
+        with whole_file(options.output):
+            options.output.write_bytes(hierarchy.save())
 
 
 def for_printer(options, mesh, cut):

@@ -65,7 +65,7 @@ def find_contents(path: Union[str, Path]) -> Tuple[str, ...]:
     """
     path = Path(path)
     patterns = PATTERNS.get(path.suffix.lower(), {})
-    text = _text(path) if patterns else b""
+    text = read_header(path) if patterns else b""
     return tuple(kind for kind in KINDS if kind in patterns and re.search(patterns[kind], text))
 
 
@@ -76,7 +76,7 @@ def describe_contents(kinds: Iterable[str]) -> str:
     return f"Not in the output, though the file has them: {listed}." if last else ""
 
 
-def _text(path: Path) -> bytes:
+def read_header(path: Path) -> bytes:
     """The part of a file that says what it has."""
     suffix = path.suffix.lower()
     if suffix == ".3mf":

@@ -1,21 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mesh files as arrays: OFF read here, every other format through trimesh (optional), nothing merged or repaired."""
+"""Mesh files as arrays: OFF and OBJ read here, other formats through trimesh (optional), nothing merged or repaired."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
-from .contents import find_contents
+from .contents import find_contents, read_header
 from .library import Error
-from .polygons import triangulate
+from .polygons import fan_or_ears, is_fan, triangulate
 from .requirements import load_module
 
 # Formats whose corners share vertices by index. All others store each triangle's corners apart (STL) or split vertices
 # along texture seams (OBJ, glTF), so theirs are welded where their coordinates are exactly equal.
 INDEXED_FORMATS = {"off", "ply"}
+# How long the units are that a 3MF file can have.
+MILLIMETERS = {"micron": 0.001, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
 
 
 class MeshFileError(Error):
@@ -57,14 +60,17 @@ def read(path: Union[str, Path]) -> Mesh:
     path = Path(path)
     with open(path, "rb"):
         pass  # trimesh takes a missing file for a format it does not know
-    mesh = _read_off(path) if path.suffix.lower() == ".off" else _read_with_trimesh(path)
-    return mesh._replace(dropped=find_contents(path))
+    read_it = {".off": _read_off, ".obj": _read_obj}.get(path.suffix.lower(), _read_with_trimesh)
+    return read_it(path)._replace(dropped=find_contents(path))
 
 
 def _read_with_trimesh(path: Path) -> Mesh:
     trimesh = load_module("trimesh", f"Reading {path.suffix or 'such'} files")
+    suffix = path.suffix.lower().lstrip(".")
+    if suffix in ("glb", "gltf") and re.search(rb'"mode"\s*:\s*6\b', read_header(path)):
+        # trimesh skips them without a word
+        raise MeshFileError(f"{path.name} has triangle fans, which can't be read. Export it with plain triangles.")
     try:
-        suffix = path.suffix.lower().lstrip(".")
         # Geometry alone: for pictures trimesh would need another package.
         options = {"fix_texture": False} if suffix == "ply" else {}  # or it splits vertices along texture seams
         scene = trimesh.load(path, process=False, force="scene", skip_materials=True, **options)
@@ -74,12 +80,19 @@ def _read_with_trimesh(path: Path) -> Mesh:
     except Exception as error:  # trimesh's readers raise whatever their parsing meets
         raise MeshFileError(f"trimesh can't read {path.name} as a mesh: {error}") from error
     if not pieces:
-        raise MeshFileError(f"{path.name} holds no triangles; only surfaces can be built.")
+        raise _no_triangles(path)
     offsets = np.cumsum([0] + [len(points) for points, _ in pieces])
     vertices = np.vstack([points for points, _ in pieces])
     triangles = np.vstack([triangles + offset for (_, triangles), offset in zip(pieces, offsets)])
+    if suffix == "3mf":  # printers and what this package writes take lengths as millimeters
+        vertices *= MILLIMETERS.get(scene.units, 1.0)
+    return _triangle_mesh(vertices, triangles, weld=suffix not in INDEXED_FORMATS)
+
+
+def _triangle_mesh(vertices: np.ndarray, triangles: np.ndarray, weld: bool) -> Mesh:
+    """A Mesh whose faces are its triangles. weld: join vertices at exactly the same place."""
     welded = 0
-    if suffix not in INDEXED_FORMATS:
+    if weld:
         unique, index = np.unique(vertices + 0.0, axis=0, return_inverse=True)  # + 0.0: -0.0 is 0.0
         welded = len(vertices) - len(unique)
         vertices, triangles = unique, index.reshape(-1)[triangles]
@@ -87,11 +100,15 @@ def _read_with_trimesh(path: Path) -> Mesh:
                 np.arange(len(triangles), dtype=np.int32), len(triangles), welded)
 
 
+def _no_triangles(path: Path) -> MeshFileError:
+    return MeshFileError(f"{path.name} holds no triangles; only surfaces can be built.")
+
+
 def _placed(scene: Any, matrix: np.ndarray, name: str) -> Optional[Tuple[np.ndarray, np.ndarray]]:
     """(points (n,3), triangles (m,3)) of a piece of the scene where the matrix has it, or None if it has no triangles.
     By hand: Scene.dump() would copy what the piece looks like as well, which fails without the package for pictures."""
     piece = scene.geometry[name]
-    triangles = piece.faces if hasattr(piece, "faces") else _of_strips(piece)
+    triangles = _of_polygons(piece) if hasattr(piece, "faces") else _of_strips(piece)
     if not len(triangles):
         return None
     points = np.asarray(piece.vertices, np.float64)
@@ -99,6 +116,21 @@ def _placed(scene: Any, matrix: np.ndarray, name: str) -> Optional[Tuple[np.ndar
         return points, triangles
     turned = np.linalg.det(matrix[:3, :3]) < 0
     return points @ matrix[:3, :3].T + matrix[:3, 3], triangles[:, ::-1] if turned else triangles
+
+
+def _of_polygons(piece: Any) -> np.ndarray:
+    """The triangles of a mesh: those of trimesh, which are fans, unless a PLY file has polygons that no fan fills."""
+    data = piece.metadata.get("_ply_raw", {}).get("face", {}).get("data")
+    names = getattr(getattr(data, "dtype", None), "names", None) or (data if isinstance(data, dict) else ())
+    name = next((name for name in ("vertex_index", "vertex_indices") if name in names), None)
+    if name is None:
+        return piece.faces
+    lists = data[name]["f1"] if getattr(getattr(data[name], "dtype", None), "names", None) else data[name]
+    points = np.asarray(piece.vertices, np.float64)
+    polygons = [np.ravel(row).tolist() for row in lists if len(row) > 2]
+    if all(is_fan(points[polygon]) for polygon in polygons if len(polygon) > 3):
+        return piece.faces
+    return np.array([triangle for polygon in polygons for triangle in fan_or_ears(points[polygon], polygon)])
 
 
 def _of_strips(cloud: Any) -> np.ndarray:
@@ -120,15 +152,41 @@ def _of_strips(cloud: Any) -> np.ndarray:
     return triangles[~flat]
 
 
+def _read_obj(path: Path) -> Mesh:
+    """trimesh counts negative indices from the end of the file, not from their face, and fills concave polygons with
+    fans."""
+    points, polygons = [], []
+    try:
+        for line in path.read_text("utf-8-sig", "replace").replace("\\\n", " ").splitlines():
+            words = line.split("#", 1)[0].split()
+            if words[:1] == ["v"]:
+                points.append([float(word) for word in words[1:4]])
+            elif words[:1] == ["f"] and len(words) > 3:
+                corners = [int(word.split("/", 1)[0]) for word in words[1:]]
+                polygons.append([corner - 1 if corner > 0 else len(points) + corner for corner in corners])
+        if not polygons:
+            raise _no_triangles(path)
+        points = np.array(points, np.float64).reshape(len(points), 3)
+        for number, polygon in enumerate(polygons, 1):
+            if not all(0 <= corner < len(points) for corner in polygon):
+                raise ValueError(f"face {number} names a vertex that does not exist")
+    except ValueError as error:
+        raise MeshFileError(f"{path.name} is not a valid OBJ file: {error}.") from error
+    return _triangle_mesh(points, np.array([triangle for polygon in polygons
+                                            for triangle in fan_or_ears(points[polygon], polygon)]), weld=True)
+
+
 def _read_off(path: Path) -> Mesh:
     """trimesh drops OFF polygons of more than four corners and forgets which triangles were one quad; we need both."""
-    text = path.read_text("utf-8", "replace")
+    text = re.sub(r"\A(\s*(?:#.*\s+)*\w*OFF)(?=\d)", r"\1 ", path.read_text("utf-8-sig", "replace"), flags=re.IGNORECASE)
     lines = [words for words in (line.split("#", 1)[0].split() for line in text.splitlines()) if words]
     try:
-        if lines[0][0].upper().lstrip("CN") != "OFF":
+        if not lines or lines[0][0].upper().lstrip("CN") != "OFF":
             raise ValueError("it does not start with OFF")
         lines[0] = lines[0][1:]
         lines = lines[0 if lines[0] else 1:]
+        if not lines or len(lines[0]) < 2:
+            raise ValueError("it does not say how many vertices and faces it has")
         vertex_count, face_count = int(lines[0][0]), int(lines[0][1])
         vertices = np.array([[float(word) for word in line[:3]] for line in lines[1:1 + vertex_count]])
         polygons = [[int(word) for word in line[1:1 + int(line[0])]]

@@ -46,6 +46,20 @@ def polygon_faults(corners: ArrayLike, begin: ArrayLike, vertex_count: int) -> F
     return Faults(*told([c_size_t] * 3, load().pw_polygon_faults, *arguments))
 
 
+def is_fan(points: np.ndarray) -> bool:
+    """Whether the fan around the first corner fills a polygon without folds. points (n,3)."""
+    normal = np.cross(points, np.roll(points, -1, axis=0)).sum(axis=0)
+    sides = points[1:] - points[0]
+    return bool((np.cross(sides[:-1], sides[1:]) @ normal >= 0).all())
+
+
+def fan_or_ears(points: np.ndarray, names: Sequence[int]) -> List[List[int]]:
+    """Triangles, as triples of names, of a nearly flat polygon: the fan around its first corner where that fills it."""
+    if len(names) == 3 or is_fan(points):
+        return [[names[0], second, third] for second, third in zip(names[1:], names[2:])]
+    return triangulate(points, names)
+
+
 def triangulate(points: np.ndarray, names: Sequence[int]) -> List[List[int]]:
     """Triangulate a nearly flat polygon by ear clipping, best-shaped ear first. O(n^3).
 

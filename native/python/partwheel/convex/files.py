@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Callable, Collection, Iterable, List, Opt
 
 import numpy as np
 
+from ..output import whole_file
 from ..requirements import load_module
 from . import simulators
 from .primitives import KINDS, fit_primitive, kind_of
@@ -76,7 +77,8 @@ def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], f
     def write_file(file_name: str, writer: Callable[..., None], *arguments: Any) -> None:
         path = folder / file_name
         path.parent.mkdir(exist_ok=True)
-        writer(path, *arguments)
+        with whole_file(path):
+            writer(path, *arguments)
         paths.append(path)
 
     if "obj" in formats:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple, Un
 
 import numpy as np
 
+from ..output import whole_file
 from ..requirements import load_module
 from .borders import parents_first, part_tree
 from .colors import colors
@@ -56,7 +57,8 @@ def write(folder: Path, name: str, mesh: Mesh, cut: Cut, formats: Sequence[str] 
 
     def write_file(file_name: str, data: Union[bytes, str]) -> None:
         path = folder / file_name
-        path.write_bytes(data if isinstance(data, bytes) else data.encode())
+        with whole_file(path):
+            path.write_bytes(data if isinstance(data, bytes) else data.encode())
         paths.append(path)
 
     if printed is None and formats:
