@@ -52,7 +52,7 @@ def of_nodes(hierarchy, of, nodes):
 
 
 def similar(shape, hierarchy, node):
-    return likeness.similar(hierarchy, likeness.measures(hierarchy, *shape[:3]), node)
+    return likeness.similar_parts(hierarchy, likeness.measure_nodes(hierarchy, *shape[:3]), node)
 
 
 @pytest.fixture(scope="module", params=[None, 3])
@@ -94,13 +94,13 @@ def test_among_another_model(six):
     """Turned, moved, or twice as large but compared where both are of one size."""
     shape, of, hierarchy = six
     there, of_there = arms((2, 2, 4, 2, 2, 2))
-    own = likeness.measures(hierarchy, *shape[:3])
+    own = likeness.measure_nodes(hierarchy, *shape[:3])
     node = arm(hierarchy, of, 3)
 
     def others(scale, matrix):
         large = moved(there, 8)._replace(vertices=scale * moved(there, 8).vertices)
         built = Hierarchy.build(*large)
-        found = likeness.similar(hierarchy, own, node, (built, likeness.measures(built, *large[:3], matrix)))
+        found = likeness.similar_parts(hierarchy, own, node, (built, likeness.measure_nodes(built, *large[:3], matrix)))
         taken = [set(built.faces(each).tolist()) for each, value in found if value >= likeness.THRESHOLD]
         whole = [set(np.flatnonzero(of_there == number).tolist()) for number in range(6)]
         return [number for number, wanted in enumerate(whole)
@@ -130,13 +130,13 @@ def test_the_whole_has_none(six):
     shape, _, hierarchy = six
     whole = int(np.flatnonzero(hierarchy.parent < 0)[0])
     assert similar(shape, hierarchy, whole) == []
-    assert likeness.mirrored(hierarchy, *shape[:3], whole) == []
+    assert likeness.mirrored_parts(hierarchy, *shape[:3], whole) == []
 
 
 def test_a_part_inside_has_none(build_shape):
     shape, hierarchy = build_shape("hand.off")
     inside = int(np.flatnonzero(hierarchy.first == hierarchy.last)[0])
-    assert similar(shape, hierarchy, inside) == [] == likeness.mirrored(hierarchy, *shape[:3], inside)
+    assert similar(shape, hierarchy, inside) == [] == likeness.mirrored_parts(hierarchy, *shape[:3], inside)
 
 
 def test_nearest_is_the_node_with_most_in_common(build_shape):
@@ -145,19 +145,19 @@ def test_nearest_is_the_node_with_most_in_common(build_shape):
     for node in random.choice(np.flatnonzero(hierarchy.last - hierarchy.first > 20), 20).tolist():
         inside = np.zeros(shape.face_count, bool)
         inside[hierarchy.faces(node)] = True
-        found, overlap = likeness.nearest(hierarchy, inside)
+        found, overlap = likeness.best_node(hierarchy, inside)
         assert overlap == 1 and set(hierarchy.faces(found).tolist()) == set(hierarchy.faces(node).tolist())
         inside ^= random.random(len(inside)) < 0.05
         faces = set(np.flatnonzero(inside).tolist())
         overlaps = [len(faces & other) / len(faces | other)
                     for other in (set(hierarchy.faces(each).tolist()) for each in range(len(hierarchy.parent)))]
-        found, overlap = likeness.nearest(hierarchy, inside)
+        found, overlap = likeness.best_node(hierarchy, inside)
         assert overlap == pytest.approx(max(overlaps)) == overlaps[found]
 
 
 def test_measures_are_those_of_each_nodes_own_faces(six):
     shape, _, hierarchy = six
-    measured = likeness.measures(hierarchy, *shape[:3])
+    measured = likeness.measure_nodes(hierarchy, *shape[:3])
     for node in np.random.default_rng(1).choice(np.flatnonzero(hierarchy.last > hierarchy.first), 30).tolist():
         corners = shape.vertices[shape.triangles[np.isin(shape.faces, hierarchy.faces(node))]]
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
@@ -178,7 +178,7 @@ def test_the_arm_on_the_other_side():
     shape, of = arms((2, 2, 3, 4, 1, 0))  # x = 1.5, the middle of the cube, is the only plane of symmetry but for y and z
     hierarchy = Hierarchy.build(*shape)
     for number, other in ((0, 1), (1, 0)):
-        (image, *_) = likeness.mirrored(hierarchy, *shape[:3], arm(hierarchy, of, number))
+        (image, *_) = likeness.mirrored_parts(hierarchy, *shape[:3], arm(hierarchy, of, number))
         assert of_nodes(hierarchy, of, [image.node]) == [other] and image.overlap > 0.9
         assert abs(image.normal[0]) > 0.999 and abs(abs(image.offset) - 1.5) < 0.02
 
@@ -186,7 +186,7 @@ def test_the_arm_on_the_other_side():
 def test_each_plane_has_an_image():
     shape, of = arms()
     hierarchy = Hierarchy.build(*shape)
-    found = likeness.mirrored(hierarchy, *shape[:3], arm(hierarchy, of, 0))
+    found = likeness.mirrored_parts(hierarchy, *shape[:3], arm(hierarchy, of, 0))
     across, middle = shape.vertices[shape.triangles[of[shape.faces] == 0]].mean(axis=(0, 1)), shape.vertices.mean(axis=0)
     assert found and 0 not in of_nodes(hierarchy, of, [image.node for image in found])
     for image in found:
@@ -207,7 +207,7 @@ def test_both_sides_of_a_figure():
         if wanted & inside:  # across the plane
             continue
         count += 1
-        images = likeness.mirrored(hierarchy, *shape[:3], int(stops[at]))
+        images = likeness.mirrored_parts(hierarchy, *shape[:3], int(stops[at]))
         got = set(hierarchy.faces(images[0].node).tolist()) if images else set()
         hits += len(got & wanted) > 0.9 * len(got | wanted)
     assert count > 10 and hits >= 0.95 * count

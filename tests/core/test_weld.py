@@ -175,8 +175,8 @@ def test_similar_parts_and_mirror_images_are_the_same(both):
     hierarchy = parts().hierarchy
     node = int(np.flatnonzero(hierarchy.score)[np.argmax(hierarchy.score[hierarchy.score > 0])])
     (expected, images), (found, found_images) = (
-        (likeness.similar(hierarchy, likeness.measures(hierarchy, *shape[:3]), node),
-         likeness.mirrored(hierarchy, *shape[:3], node)) for shape in (whole, split))
+        (likeness.similar_parts(hierarchy, likeness.measure_nodes(hierarchy, *shape[:3]), node),
+         likeness.mirrored_parts(hierarchy, *shape[:3], node)) for shape in (whole, split))
     assert [each for each, _ in found] == [each for each, _ in expected]
     np.testing.assert_allclose([each for _, each in found], [each for _, each in expected], atol=1e-6)
     assert [image.node for image in found_images] == [image.node for image in images]

@@ -40,7 +40,7 @@ class Model:
         self.area = np.bincount(self.mesh.faces, triangle_areas(self.mesh), self.mesh.face_count)
         self.sums = np.concatenate([[0], np.cumsum(self.area[self.hierarchy.order])])
         surface = self.mesh.vertices, self.mesh.triangles, self.mesh.faces
-        self.measured = likeness.measures(self.hierarchy, *surface)
+        self.measured = likeness.measure_nodes(self.hierarchy, *surface)
         self.image, self.surface, self.known = mirror_faces(self.mesh), surface, {}
 
     def overlaps(self, inside):
@@ -59,12 +59,12 @@ class Model:
 
     def similar(self, node):
         if node not in self.known:
-            found = likeness.similar(self.hierarchy, self.measured, node)
+            found = likeness.similar_parts(self.hierarchy, self.measured, node)
             self.known[node] = [other for other, value in found if value >= likeness.THRESHOLD]
         return self.known[node]
 
     def mirrored(self, node):
-        return [image.node for image in likeness.mirrored(self.hierarchy, *self.surface, node)]
+        return [image.node for image in likeness.mirrored_parts(self.hierarchy, *self.surface, node)]
 
 
 def figures(path, segmentations):

@@ -29,11 +29,11 @@ def alike(obj, hierarchy, node, objects=()):
     matrices = [np.array(each.matrix_world) for each, _ in searched]
 
     def find():
-        measured = [likeness.measures(found, *arrays.surface(each.data)[:3], matrix)
+        measured = [likeness.measure_nodes(found, *arrays.surface(each.data)[:3], matrix)
                     for (each, found), matrix in zip(searched, matrices)]
         among = [None, *((found, those) for (_, found), those in list(zip(searched, measured))[1:])]
         found = [Alike(each.name_full, *pair) for (each, _), where in zip(searched, among)
-                 for pair in likeness.similar(hierarchy, measured[0], node, where)]
+                 for pair in likeness.similar_parts(hierarchy, measured[0], node, where)]
         return sorted(found, key=lambda each: -each.likeness)
 
     asked = [(each.name_full, registry.entry_of(each.data).seen, found) for each, found in searched]
@@ -41,12 +41,12 @@ def alike(obj, hierarchy, node, objects=()):
 
 
 def images(obj, hierarchy, node):
-    """[partwheel.likeness.Image, ...], one for each plane of symmetry, the model's best first. Raises Refused for none.
+    """[partwheel.likeness.MirrorImage, ...], one for each plane of symmetry, the model's best first. Raises Refused for none.
     """
     if node == len(hierarchy.parent) - 1:
         raise Refused("The part is the whole model, which has no other side. Pick a smaller one.")
     asked = registry.entry_of(obj.data).seen, hierarchy, node
-    found = _kept("images", asked, lambda: likeness.mirrored(hierarchy, *arrays.surface(obj.data)[:3], node))
+    found = _kept("images", asked, lambda: likeness.mirrored_parts(hierarchy, *arrays.surface(obj.data)[:3], node))
     if not found:
         raise Refused("The part has no mirror image in {name}: it lies across the plane of symmetry, or the model "
                       "is not the same on both sides.", name=obj.name)

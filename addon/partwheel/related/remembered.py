@@ -9,7 +9,7 @@ import numpy as np
 from ..mesh import arrays
 from ..mesh.errors import Refused
 from ..pick import borders
-from partwheel.likeness import nearest
+from partwheel.likeness import best_node
 
 PREFIX = "part: "
 LONGEST = 50  # letters of a name: Blender cuts those of attributes at 63, and counts bytes
@@ -68,7 +68,7 @@ def node(obj, hierarchy, name):
     """(the node that is nearest to what is remembered, whether its border is in creases). The hierarchy is what
     registry.hierarchy(obj) said. Raises Refused where no node is near."""
     wanted = arrays.mask(len(hierarchy.order), faces(obj.data, name))
-    found, overlap = nearest(hierarchy, wanted)
+    found, overlap = best_node(hierarchy, wanted)
     if overlap < OVERLAP:
         raise Refused("No part of {name} as it is now is much like the one remembered as {part}. Pick the part anew, "
                       "forget this name, and remember the part under it again.", name=obj.name, part=name)

@@ -13,7 +13,7 @@ from ..pick import borders
 from ..pick.build import Beside, waited_for
 from . import composition, solids
 from partwheel import Error, Hierarchy
-from partwheel.likeness import nearest
+from partwheel.likeness import best_node
 
 MIN_OVERLAP = 0.9  # overlap of the selected faces with a part, to count as this part
 
@@ -88,7 +88,7 @@ class PartOperator(PartsOperator):
         uses_pick, pick = self.node < 0, picks.picked(obj)
         if uses_pick and not pick and _has_selected_faces(obj):
             hierarchy = registry.needed(obj)
-            self.node, overlap = nearest(hierarchy, arrays.read(obj.data.polygons, "select", bool))
+            self.node, overlap = best_node(hierarchy, arrays.read(obj.data.polygons, "select", bool))
             if overlap < MIN_OVERLAP:
                 raise Refused("What is selected is no part. Pick one with Select Part by Wheel, and confirm it.")
         hierarchy, node = picks.chosen(obj, self.node)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which parts of a model are alike, and which are each other's mirror images."""
+"""Similar parts of a model, and parts that are mirror images of each other."""
 
-from .mirrored import Image, mirrored
-from .similar import THRESHOLD, measures, nearest, similar
+from .mirrored import MirrorImage, mirrored_parts
+from .similar import THRESHOLD, NodeMeasures, best_node, measure_nodes, similar_parts
 
-__all__ = ["THRESHOLD", "Image", "measures", "mirrored", "nearest", "similar"]
+__all__ = ["THRESHOLD", "MirrorImage", "NodeMeasures", "best_node", "measure_nodes", "mirrored_parts", "similar_parts"]

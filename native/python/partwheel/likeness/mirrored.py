@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The part on the other side of a model that is its own mirror image. By numpy."""
+"""The counterpart of a part on the other side of a symmetric model. With numpy."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, List, NamedTuple
 
 import numpy as np
 
@@ -9,14 +11,22 @@ from ..compatible import sample_triangles
 from ..cut import mirror_planes
 from ..duplicates import without_duplicates
 
-POINTS, FIELD = 512, 8192  # on the part; on what lies about its mirror image
-BESIDE = 0.5  # overlap of a part's mirror image with the part itself, from which on it lies in the plane
-FOUND = 0.5  # with another node: less is none
+if TYPE_CHECKING:
+    from ..hierarchy import Hierarchy
+
+PART_SAMPLES = 512  # points on the part
+TARGET_SAMPLES = 8192  # points on the surface around its mirror image
+MAX_SELF_OVERLAP = 0.5  # of a part with its own mirror image; a part that overlaps more lies in the plane
+MIN_OVERLAP = 0.5  # of the mirror image with another node
 
 
-class Image(NamedTuple):
-    """node: the part on the other side. overlap: of that with the mirror image, by area, 0..1. normal (3,), offset: the
-    plane."""
+class MirrorImage(NamedTuple):
+    """The counterpart of a node.
+
+    node : on the other side
+    overlap : intersection over union, by area, of that node and the mirror image, 0 to 1
+    normal : (3,), offset : of the plane, normal . x = offset
+    """
 
     node: int
     overlap: float
@@ -24,46 +34,60 @@ class Image(NamedTuple):
     offset: float
 
 
-def mirrored(hierarchy, vertices, triangles, faces, node):
-    """[Image, ...] of a node, one for each plane in which the model is its own mirror image and the node has another
-    part on its other side, the model's best plane first. vertices (V,3), triangles (T,3), faces (T,) the source face of
-    each: the surface that the hierarchy is of. Raises PartwheelError."""
+def mirrored_parts(hierarchy: Hierarchy, vertices: np.ndarray, triangles: np.ndarray, faces: np.ndarray,
+                   node: int) -> List[MirrorImage]:
+    """Find the counterparts of a node.
+
+    Parameters
+    ----------
+    vertices : (V, 3), triangles : (T, 3), faces : (T,) the source face of each triangle: the surface of the hierarchy
+
+    Returns
+    -------
+    one for each mirror plane of the model with a counterpart on its other side, the best plane first
+
+    Raises
+    ------
+    PartwheelError : the surface is invalid
+    """
     triangles, faces = without_duplicates(hierarchy, vertices, triangles, faces)
     corners = np.asarray(vertices, np.float64)[np.asarray(triangles)]
-    double = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    inside = np.zeros(len(hierarchy.order), bool)
-    inside[hierarchy.faces(node)] = True
-    own = inside[faces]
-    if not own.any():
+    doubled_areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    in_node = np.zeros(len(hierarchy.order), bool)
+    in_node[hierarchy.faces(node)] = True
+    is_inside = in_node[faces]
+    if not is_inside.any():
         return []
-    points = sample_triangles(corners[own], double[own], POINTS)[0]
-    area = np.cumsum(np.concatenate([[0], np.bincount(faces, double, len(inside))[hierarchy.order]]))
-    area = area[hierarchy.last] - area[hierarchy.first]
-    found = []
+    points = sample_triangles(corners[is_inside], doubled_areas[is_inside], PART_SAMPLES)[0]
+    area = np.cumsum(np.concatenate([[0], np.bincount(faces, doubled_areas, len(in_node))[hierarchy.order]]))
+    area = area[hierarchy.last] - area[hierarchy.first]  # doubled, of each node
+    result = []
     for normal, offset in mirror_planes(vertices, triangles):
-        images = points - 2 * np.outer(points @ normal - offset, normal)
-        hits = np.bincount(_faces_at(images, corners, double, faces), minlength=len(inside))[hierarchy.order]
-        hits = np.concatenate([[0], np.cumsum(hits)]) / POINTS
-        common = np.minimum((hits[hierarchy.last] - hits[hierarchy.first]) * area[node], area)
-        overlap = common / np.maximum(area[node] + area - common, 1e-300)
-        if overlap[node] < BESIDE:
-            apart = (hierarchy.last <= hierarchy.first[node]) | (hierarchy.first >= hierarchy.last[node])
-            best = int(np.where(apart, overlap, -1).argmax())
-            if overlap[best] >= FOUND:
-                found.append(Image(best, float(overlap[best]), normal, offset))
-    return found
+        reflected = points - 2 * np.outer(points @ normal - offset, normal)
+        hits = np.bincount(_nearest_faces(reflected, corners, doubled_areas, faces), minlength=len(in_node))[hierarchy.order]
+        hits = np.concatenate([[0], np.cumsum(hits)]) / PART_SAMPLES
+        intersection = np.minimum((hits[hierarchy.last] - hits[hierarchy.first]) * area[node], area)
+        overlap = intersection / np.maximum(area[node] + area - intersection, 1e-300)
+        if overlap[node] < MAX_SELF_OVERLAP:
+            is_disjoint = (hierarchy.last <= hierarchy.first[node]) | (hierarchy.first >= hierarchy.last[node])
+            best = int(np.where(is_disjoint, overlap, -1).argmax())
+            if overlap[best] >= MIN_OVERLAP:
+                result.append(MirrorImage(best, float(overlap[best]), normal, offset))
+    return result
 
 
-def _faces_at(points, corners, weights, faces):
-    """(n,) the source face that is nearest to each point."""
+def _nearest_faces(points: np.ndarray, corners: np.ndarray, weights: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """(n,) the source face nearest to each point (n, 3): that of the nearest sample or triangle center in the points'
+    bounding box and a margin."""
     low, high = points.min(axis=0), points.max(axis=0)
     margin = np.linalg.norm(high - low) / 8
-    about = ((corners.max(axis=1) >= low - margin) & (corners.min(axis=1) <= high + margin)).all(axis=1)
-    if not about.any():
-        about[:] = True
-    corners, faces = corners[about], faces[about]
-    spread, chosen = sample_triangles(corners, weights[about], FIELD)
-    field, of = np.vstack([spread, corners.mean(axis=1)]), np.concatenate([faces[chosen], faces])
-    field, points = field - low, points - low
-    lengths = (field ** 2).sum(axis=1)
-    return of[np.concatenate([(lengths - 2 * some @ field.T).argmin(axis=1) for some in np.array_split(points, 16)])]
+    in_box = ((corners.max(axis=1) >= low - margin) & (corners.min(axis=1) <= high + margin)).all(axis=1)
+    if not in_box.any():
+        in_box[:] = True
+    corners, faces = corners[in_box], faces[in_box]
+    samples, sampled = sample_triangles(corners, weights[in_box], TARGET_SAMPLES)
+    targets, target_faces = np.vstack([samples, corners.mean(axis=1)]), np.concatenate([faces[sampled], faces])
+    targets, points = targets - low, points - low
+    squared_norms = (targets ** 2).sum(axis=1)
+    return target_faces[np.concatenate([(squared_norms - 2 * block @ targets.T).argmin(axis=1)
+                                        for block in np.array_split(points, 16)])]

@@ -1,196 +1,253 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The parts of a model that are alike: all fingers from one, all legs of a table. By numpy.
+"""Similar parts of a model: all fingers from one, all legs of a table. With numpy.
 
-Every node's faces are one slice of one array, so areas, moments and the border's size of all nodes are differences of
-running sums. What differs little from the part in these is brought onto it, turned and reflected as it fits best
-(iterated closest points, from the principal axes), and of nodes within each other the most alike is taken. It counts
-too where a node is in the whole, up to a limit, and whether people would take it for a part. Unlike partwheel.compatible,
-which fits parts of any size to a border, sizes count here and borders do not have to meet.
+The faces of each node are one slice of one array, so areas, moments and border sizes of all nodes are differences of
+prefix sums. Nodes with similar measures are aligned with the part, by rotations and reflections from the principal axes and
+by ICP; of nested nodes, the most similar one counts. The distance to the rest of the model, up to a limit, and the score
+count, too. partwheel.compatible, in contrast, fits parts of any size to a border; here sizes count, and borders need not
+match.
 """
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
 from ..compatible import sample_triangles
 from ..duplicates import without_duplicates
 
-POINTS, FINE, COARSE = 192, 768, 4  # on a surface: to align; to measure with; of how many one is enough to choose turns
-TURNS, TRIES, STEPS = 8, 3, 8  # about the longest axis; how many of all turns are refined, and in how many steps
-UNLIKE = 0.5  # mean difference of logarithms of lengths up to which a node is aligned at all
-MOST, NESTED = 120, 5  # nodes that are aligned, and of those how many in one place
-# Weights, fitted to people's segments (tests/quality/similar.py): of lengths, of the distance squared, of the surroundings,
-# of a score below PART, of one below the part's own.
-LENGTHS, ALIGNED, AROUND, LOW, LACKING = 1.5, 20.0, 2.0, 0.7, 0.35
-PART = 0.7  # score from which on a node is surely one that people take for a part
-ELSEWHERE = 0.15  # surroundings that differ more differ no more: a twin is one wherever it is
-THRESHOLD = 0.49  # of likeness, from which on parts are taken for alike
-CLOSE = 0.9  # of the points lie within the distance of two surfaces
-WHOLE = 1536  # points on the whole surface,
-FAR = np.linspace(0.02, 0.98, 25)  # and these shares of them within which distances
-HOPELESS = 0.12  # mean distance, in roots of the area, before refining: such are not refined
-DIGITS = 9
-NARROW = 0.05  # of the root of the area: the radius of a border below which it doesn't count how much
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ..hierarchy import Hierarchy
+
+# Sampling
+SAMPLES, FINE_SAMPLES = 192, 768  # points on a part: to align it, to measure distances to it
+COARSE_STEP = 4  # of the aligned points every 4th is used to choose rotations
+MODEL_SAMPLES = 1536  # points on the whole model
+# Candidates
+MAX_LOG_DIFFERENCE = 0.5  # mean difference of the logarithms of lengths: nodes that differ more are not aligned
+MAX_ALIGNED, MAX_NESTED = 120, 5  # nodes to align, and how many of them may overlap one another
+# Alignment
+ROTATION_COUNT = 8  # rotations about the longest axis
+MAX_REFINED, ICP_ITERATIONS = 3, 8  # initial rotations that ICP refines, and its iterations
+MAX_ROUGH_DISTANCE = 0.12  # mean distance before ICP, in square roots of the area: above it there is no ICP
+DISTANCE_QUANTILE = 0.9  # of the distances between two surfaces
+# likeness = exp(-(LENGTH_WEIGHT mean |log difference of lengths| + DISTANCE_WEIGHT distance^2
+#   + SURROUNDINGS_WEIGHT min(difference of surroundings, MAX_SURROUNDINGS_DIFFERENCE)
+#   + LOW_SCORE_WEIGHT max(0, PART_SCORE - score) + SCORE_WEIGHT max(0, score of the part - score)))
+# The weights were fitted to segments that people chose (tests/quality/similar.py).
+LENGTH_WEIGHT, DISTANCE_WEIGHT, SURROUNDINGS_WEIGHT, LOW_SCORE_WEIGHT, SCORE_WEIGHT = 1.5, 20.0, 2.0, 0.7, 0.35
+PART_SCORE = 0.7  # a node with this score is certainly a part
+MAX_SURROUNDINGS_DIFFERENCE = 0.15  # beyond it the position in the model does not count
+THRESHOLD = 0.49  # likeness of similar parts
+SURROUNDING_QUANTILES = np.linspace(0.02, 0.98, 25)  # of the distances from a node's center to the model's surface
+# Numerics
+DIGITS = 9  # decimals of a likeness
+MIN_RELATIVE_LENGTH = 0.05  # of lengths, in square roots of the area: shorter ones all count as this
 
 
-class Measures(NamedTuple):
-    """lengths (N,6): logarithms, of each node's area, volume, principal extents and border. middle (N,3). first, last
-    (N,): its slice of corners (T,3,3), the triangles. whole (n,3): points on all of them; size: the root of their area.
+class NodeMeasures(NamedTuple):
+    """Measures of all N nodes of a hierarchy.
+
+    lengths : (N, 6) logarithms of lengths: area, volume, three principal extents, border
+    center : (N, 3)
+    first, last : (N,) node n has the triangles corners[first[n]:last[n]]
+    corners : (T, 3, 3)
+    model_points : (n, 3) points on the whole model
+    model_size : square root of its area
     """
 
     lengths: np.ndarray
-    middle: np.ndarray
+    center: np.ndarray
     first: np.ndarray
     last: np.ndarray
     corners: np.ndarray
-    whole: np.ndarray
-    size: float
+    model_points: np.ndarray
+    model_size: float
 
 
-def measures(hierarchy, vertices, triangles, faces, matrix=np.eye(4)):
-    """The Measures of all nodes. vertices (V,3), triangles (T,3), faces (T,) the source face of each: the surface that
-    the hierarchy is of. matrix (4,4): from there to where parts are compared."""
+def measure_nodes(hierarchy: Hierarchy, vertices: ArrayLike, triangles: np.ndarray, faces: np.ndarray,
+                  matrix: ArrayLike = np.eye(4)) -> NodeMeasures:
+    """Measure all nodes of a hierarchy. O(T + N).
+
+    Parameters
+    ----------
+    vertices : (V, 3), triangles : (T, 3), faces : (T,) the source face of each triangle: the surface of the hierarchy
+    matrix : (4, 4) from the vertices to the space where parts are compared
+    """
     triangles, faces = without_duplicates(hierarchy, vertices, triangles, faces)
-    place = np.empty(len(hierarchy.order), np.int64)
-    place[hierarchy.order] = np.arange(len(place))
-    sequence = np.argsort(place[faces], kind="stable")
-    ends = np.searchsorted(place[faces][sequence], np.arange(len(place) + 1))
+    position = np.empty(len(hierarchy.order), np.int64)  # of each face in the hierarchy's order
+    position[hierarchy.order] = np.arange(len(position))
+    triangle_order = np.argsort(position[faces], kind="stable")
+    ends = np.searchsorted(position[faces][triangle_order], np.arange(len(position) + 1))
     first, last = ends[hierarchy.first], ends[hierarchy.last]
-    vertices, turn = np.asarray(vertices, np.float64), np.asarray(matrix, np.float64)[:3, :3]
-    corners = ((vertices - vertices.mean(axis=0)) @ turn.T)[np.asarray(triangles)[sequence]]
+    vertices, linear = np.asarray(vertices, np.float64), np.asarray(matrix, np.float64)[:3, :3]
+    corners = ((vertices - vertices.mean(axis=0)) @ linear.T)[np.asarray(triangles)[triangle_order]]
 
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
     areas = np.linalg.norm(normals, axis=1)
     sums = corners.sum(axis=1)
-    # Of the squares over a triangle: the corners' and their sum's, a twelfth of the area each.
+    # Integral of x x^T over a triangle: area / 12 (sum of c c^T over corners c, plus s s^T of their sum s).
     squares = (np.einsum("tki,tkj->tij", corners, corners) + sums[:, :, None] * sums[:, None]) * (areas / 12)[:, None, None]
 
-    def total(values):
-        running = np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(values, axis=0)])
-        return running[last] - running[first]
+    def node_sums(values: np.ndarray) -> np.ndarray:
+        prefix = np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(values, axis=0)])
+        return prefix[last] - prefix[first]
 
-    area = np.maximum(total(areas), 1e-300)
-    middle = total(sums * (areas / 3)[:, None]) / area[:, None]
-    moments = total(squares) / area[:, None, None] - middle[:, :, None] * middle[:, None]
-    root = np.sqrt(area)
+    area = np.maximum(node_sums(areas), 1e-300)
+    center = node_sums(sums * (areas / 3)[:, None]) / area[:, None]
+    moments = node_sums(squares) / area[:, None, None] - center[:, :, None] * center[:, None]
+    root_area = np.sqrt(area)
     extents = np.sqrt(np.maximum(np.linalg.eigvalsh(moments), 0))
-    border = np.sqrt(np.linalg.norm(total(normals), axis=1) / np.pi)
-    volume = np.cbrt(np.maximum(hierarchy.volume * abs(np.linalg.det(turn)), 0))
-    floor = NARROW * root
-    lengths = np.log(np.column_stack([root, *(np.maximum(each, floor) for each in (volume, *extents.T, border))]))
-    return Measures(lengths, middle, first, last, corners, sample_triangles(corners, areas, WHOLE)[0], np.sqrt(areas.sum()))
+    border = np.sqrt(np.linalg.norm(node_sums(normals), axis=1) / np.pi)  # radius of a disk with the border's vector area
+    volume = np.cbrt(np.maximum(hierarchy.volume * abs(np.linalg.det(linear)), 0))
+    min_length = MIN_RELATIVE_LENGTH * root_area
+    lengths = np.log(np.column_stack([root_area, *(np.maximum(length, min_length)
+                                                   for length in (volume, *extents.T, border))]))
+    return NodeMeasures(lengths, center, first, last, corners, sample_triangles(corners, areas, MODEL_SAMPLES)[0],
+                        np.sqrt(areas.sum()))
 
 
-def similar(hierarchy, measured, node, among=None):
-    """[(node, likeness), ...] beside a node: those that are most like it, apart from each other and from it, the most
-    alike first. likeness: 1 for the same shape and size, down to 0; mirror images count as the same. So all that are
-    alike from a threshold on are the list's beginning. Of a node inside, without faces, there are none.
-    among: (hierarchy, measured) of another model, whose nodes are looked at instead."""
-    if measured.first[node] == measured.last[node]:
+def similar_parts(hierarchy: Hierarchy, measures: NodeMeasures, node: int,
+                  other_model: Optional[Tuple[Hierarchy, NodeMeasures]] = None) -> List[Tuple[int, float]]:
+    """Find the parts that are most similar to a node, which they don't overlap.
+
+    Parameters
+    ----------
+    measures : of the hierarchy's nodes
+    other_model : (hierarchy, measures) of another model to search instead
+
+    Returns
+    -------
+    disjoint (node, likeness), most similar first. likeness: 1 for the same shape and size, also for mirror images, down
+    to 0. Empty for a node without faces
+    """
+    if measures.first[node] == measures.last[node]:
         return []
-    there, those = among or (hierarchy, measured)
-    unlike = abs(those.lengths - measured.lengths[node]).mean(axis=1)
-    first, last, score = there.first, there.last, there.score
-    candidates = (those.last > those.first) & (unlike < UNLIKE)
-    if not among:
-        candidates &= (last <= first[node]) | (first >= last[node])
-    near = np.flatnonzero(candidates)
-    least = PART if hierarchy.score[node] > 0 else 0  # of a part that has no score none is asked for
-    known = (LENGTHS * unlike + LOW * np.maximum(0, least - score)
-             + LACKING * np.maximum(0, hierarchy.score[node] - score))
-    chosen = []
-    for other in near[np.argsort(known[near], kind="stable")].tolist():
-        if sum(first[other] < last[each] and first[each] < last[other] for each in chosen) < NESTED:
-            chosen.append(other)
-            if len(chosen) == MOST:
+    other_hierarchy, other_measures = other_model or (hierarchy, measures)
+    length_difference = abs(other_measures.lengths - measures.lengths[node]).mean(axis=1)
+    first, last, score = other_hierarchy.first, other_hierarchy.last, other_hierarchy.score
+    is_candidate = (other_measures.last > other_measures.first) & (length_difference < MAX_LOG_DIFFERENCE)
+    if not other_model:
+        is_candidate &= (last <= first[node]) | (first >= last[node])
+    candidates = np.flatnonzero(is_candidate)
+    min_score = PART_SCORE if hierarchy.score[node] > 0 else 0  # scores don't count for a part that has none
+    partial_cost = (LENGTH_WEIGHT * length_difference + LOW_SCORE_WEIGHT * np.maximum(0, min_score - score)
+                    + SCORE_WEIGHT * np.maximum(0, hierarchy.score[node] - score))
+    aligned: List[int] = []
+    for other in candidates[np.argsort(partial_cost[candidates], kind="stable")].tolist():
+        if sum(first[other] < last[each] and first[each] < last[other] for each in aligned) < MAX_NESTED:
+            aligned.append(other)
+            if len(aligned) == MAX_ALIGNED:
                 break
-    own, found = Surface(measured, node), []
-    elsewhere = abs(_surroundings(those, chosen) - _surroundings(measured, [node])).mean(axis=1) / measured.size
-    for other, around in zip(chosen, np.minimum(elsewhere, ELSEWHERE).tolist()):
-        apart = known[other] + AROUND * around + ALIGNED * distance(own, Surface(those, other)) ** 2
-        # Products of matrices differ in their last bits with where these lie in memory: that is no part of a likeness.
-        found.append((-round(float(np.exp(-apart)), DIGITS), other))
-    kept = []
-    for likeness, other in sorted(found):
-        if all(last[other] <= first[each] or first[other] >= last[each] for each, _ in kept):
-            kept.append((other, -likeness))
-    return kept
+    surface, ranking = SampledSurface(measures, node), []
+    surroundings_difference = abs(_surroundings(other_measures, aligned)
+                                  - _surroundings(measures, [node])).mean(axis=1) / measures.model_size
+    for other, difference in zip(aligned, np.minimum(surroundings_difference, MAX_SURROUNDINGS_DIFFERENCE).tolist()):
+        cost = (partial_cost[other] + SURROUNDINGS_WEIGHT * difference
+                + DISTANCE_WEIGHT * aligned_distance(surface, SampledSurface(other_measures, other)) ** 2)
+        # The last bits of matrix products depend on memory alignment; rounding keeps the likeness independent of it.
+        ranking.append((-round(float(np.exp(-cost)), DIGITS), other))
+    result: List[Tuple[int, float]] = []
+    for negative_likeness, other in sorted(ranking):
+        if all(last[other] <= first[each] or first[other] >= last[each] for each, _ in result):
+            result.append((other, -negative_likeness))
+    return result
 
 
-def _surroundings(measured, nodes):
-    """(n,25) how far from each node's middle the whole's surface is: within which distances shares of it are."""
-    return np.quantile(np.sqrt(_squared(measured.middle[nodes], measured.whole)), FAR, axis=1).T
+def _surroundings(measures: NodeMeasures, nodes: Sequence[int]) -> np.ndarray:
+    """(n, 25) quantiles of the distances from each node's center to the surface of the whole model."""
+    return np.quantile(np.sqrt(_squared_distances(measures.center[nodes], measures.model_points)), SURROUNDING_QUANTILES,
+                       axis=1).T
 
 
-class Surface:
-    """Points on a node's surface, about their middle; fine: more of them."""
+class SampledSurface:
+    """Points on a node's surface, relative to their centroid.
 
-    def __init__(self, measured, node):
-        corners = measured.corners[measured.first[node]:measured.last[node]]
-        double = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-        self.fine = sample_triangles(corners, double, FINE)[0]
-        self.points = sample_triangles(corners, double, POINTS)[0]
-        middle = self.fine.mean(axis=0)
-        self.fine -= middle
-        self.points -= middle
-        self.size = np.sqrt(max(double.sum() / 2, 1e-300))
-        self.axes = np.linalg.eigh(self.fine.T @ self.fine)[1].T[::-1]
+    fine_points : (FINE_SAMPLES, 3)
+    points : (SAMPLES, 3)
+    size : square root of the area
+    axes : (3, 3) principal axes as rows, the longest first
+    """
+
+    def __init__(self, measures: NodeMeasures, node: int) -> None:
+        corners = measures.corners[measures.first[node]:measures.last[node]]
+        doubled_areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        self.fine_points = sample_triangles(corners, doubled_areas, FINE_SAMPLES)[0]
+        self.points = sample_triangles(corners, doubled_areas, SAMPLES)[0]
+        center = self.fine_points.mean(axis=0)
+        self.fine_points -= center
+        self.points -= center
+        self.size = np.sqrt(max(doubled_areas.sum() / 2, 1e-300))
+        self.axes = np.linalg.eigh(self.fine_points.T @ self.fine_points)[1].T[::-1]
 
 
-def distance(one, other):
-    """How far two Surfaces are from each other once one is brought onto the other: within which CLOSE of their points are,
-    relative to the other's size."""
-    turns, staying = _turns(one.axes, other.axes), other.points
-    rough = np.sqrt(_squared(one.points[::COARSE] @ turns.transpose(0, 2, 1), staying[::2]).min(axis=2)).mean(axis=1)
-    if rough.min() > HOPELESS * other.size:
+def aligned_distance(one: SampledSurface, other: SampledSurface) -> float:
+    """The DISTANCE_QUANTILE of the distances between two surfaces, averaged over both directions, after the first is
+    aligned with the other; relative to the other's size."""
+    rotations, target = _candidate_rotations(one.axes, other.axes), other.points
+    rough = np.sqrt(_squared_distances(one.points[::COARSE_STEP] @ rotations.transpose(0, 2, 1), target[::2]).min(axis=2)
+                    ).mean(axis=1)
+    if rough.min() > MAX_ROUGH_DISTANCE * other.size:
         return float(rough.min() / other.size)
     best = np.inf
-    for turn in turns[np.argsort(rough.round(DIGITS), kind="stable")[:TRIES]]:
-        turn, shift = _refined(one.points, staying, turn)
-        there = sum(np.sqrt(np.quantile(_squared(points @ turn.T + shift, onto).min(axis=axis), CLOSE))
-                    for points, onto, axis in ((one.points, other.fine, 1), (one.fine, staying, 0)))
-        best = min(best, there / 2)
+    for rotation in rotations[np.argsort(rough.round(DIGITS), kind="stable")[:MAX_REFINED]]:
+        rotation, translation = _refine_alignment(one.points, target, rotation)
+        both = sum(np.sqrt(np.quantile(_squared_distances(points @ rotation.T + translation, targets).min(axis=axis),
+                                       DISTANCE_QUANTILE))
+                   for points, targets, axis in ((one.points, other.fine_points, 1), (one.fine_points, target, 0)))
+        best = min(best, both / 2)
     return float(best / other.size)
 
 
-def _turns(axes, others):
-    """(n,3,3) that bring the axes of one to those of the other: either way round, reflected, and turned about the
-    longest."""
-    angles = np.arange(TURNS) * np.pi / TURNS
-    about = np.zeros((TURNS, 3, 3))
-    about[:, 0, 0] = 1
-    about[:, 1, 1] = about[:, 2, 2] = np.cos(angles)
-    about[:, 2, 1] = np.sin(angles)
-    about[:, 1, 2] = -about[:, 2, 1]
+def _candidate_rotations(axes: np.ndarray, other_axes: np.ndarray) -> np.ndarray:
+    """(n, 3, 3) rotations and reflections that bring principal axes to others, with all signs, and ROTATION_COUNT angles
+    about the longest axis."""
+    angles = np.arange(ROTATION_COUNT) * np.pi / ROTATION_COUNT
+    about_x = np.zeros((ROTATION_COUNT, 3, 3))
+    about_x[:, 0, 0] = 1
+    about_x[:, 1, 1] = about_x[:, 2, 2] = np.cos(angles)
+    about_x[:, 2, 1] = np.sin(angles)
+    about_x[:, 1, 2] = -about_x[:, 2, 1]
     signs = 1.0 - 2 * np.array(list(np.ndindex(2, 2, 2)))
-    return np.einsum("ia,sa,tab,bj->stij", others.T, signs, about, axes).reshape(-1, 3, 3)
+    return np.einsum("ia,sa,tab,bj->stij", other_axes.T, signs, about_x, axes).reshape(-1, 3, 3)
 
 
-def _refined(points, staying, turn):
-    """(turn (3,3), shift (3,)): from a turn to where each surface's points meet the other's."""
-    shift = np.zeros(3)
-    for _ in range(STEPS):
-        there = points @ turn.T + shift
-        squared = _squared(there, staying)
-        # Pairs from both sides, lest a small surface slide about on a large one.
-        pairs = (np.vstack([there, there[squared.argmin(axis=0)]]), np.vstack([staying[squared.argmin(axis=1)], staying]))
-        middles = [each.mean(axis=0) for each in pairs]
-        left, _, right = np.linalg.svd((pairs[1] - middles[1]).T @ (pairs[0] - middles[0]))
-        motion = left @ np.diag([1, 1, np.sign(np.linalg.det(left @ right))]) @ right
-        turn, shift = motion @ turn, motion @ (shift - middles[0]) + middles[1]
-    return turn, shift
+def _refine_alignment(points: np.ndarray, target: np.ndarray, rotation: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """(rotation (3, 3), translation (3,)) after ICP from an initial rotation."""
+    translation = np.zeros(3)
+    for _ in range(ICP_ITERATIONS):
+        moved = points @ rotation.T + translation
+        squared = _squared_distances(moved, target)
+        # Pairs in both directions, or a small surface could slide along a large one.
+        pairs = (np.vstack([moved, moved[squared.argmin(axis=0)]]), np.vstack([target[squared.argmin(axis=1)], target]))
+        centers = [each.mean(axis=0) for each in pairs]
+        left, _, right = np.linalg.svd((pairs[1] - centers[1]).T @ (pairs[0] - centers[0]))
+        step = left @ np.diag([1, 1, np.sign(np.linalg.det(left @ right))]) @ right
+        rotation, translation = step @ rotation, step @ (translation - centers[0]) + centers[1]
+    return rotation, translation
 
 
-def _squared(moving, staying):
-    """(...,n,m) distances squared."""
-    return np.maximum((moving ** 2).sum(axis=-1)[..., None] + (staying ** 2).sum(axis=-1) - 2 * moving @ staying.T, 0)
+def _squared_distances(points: np.ndarray, targets: np.ndarray) -> np.ndarray:
+    """(..., n, m) squared distances between points (..., n, 3) and targets (m, 3)."""
+    return np.maximum((points ** 2).sum(axis=-1)[..., None] + (targets ** 2).sum(axis=-1) - 2 * points @ targets.T, 0)
 
 
-def nearest(hierarchy, inside):
-    """(the node that has most in common with a set of faces, its overlap with them by their number, 0..1). inside (F,)
-    bool: the faces. Of nodes with the same faces that which people would take most likely."""
-    running = np.concatenate([[0], np.cumsum(inside[hierarchy.order])])
-    common = running[hierarchy.last] - running[hierarchy.first]
-    overlap = common / np.maximum(hierarchy.last - hierarchy.first + running[-1] - common, 1)
+def best_node(hierarchy: Hierarchy, inside: np.ndarray) -> Tuple[int, float]:
+    """Find the node with the largest overlap with a set of faces; of nodes with the same faces the one with the best score.
+
+    Parameters
+    ----------
+    inside : (F,) bool, the faces
+
+    Returns
+    -------
+    (node, intersection over union of the face counts, 0 to 1)
+    """
+    prefix = np.concatenate([[0], np.cumsum(inside[hierarchy.order])])
+    intersection = prefix[hierarchy.last] - prefix[hierarchy.first]
+    overlap = intersection / np.maximum(hierarchy.last - hierarchy.first + prefix[-1] - intersection, 1)
     best = int(np.lexsort((hierarchy.score, overlap))[-1])
     return best, float(overlap[best])
