@@ -41,9 +41,10 @@ from .compose import placement, swapping, union
 from .deform import methods
 from .deform.pen import Pen
 from .deform.region import Region
-from .cut import hulls as hulls_as_objects
-from .cut import objects as parts_as_objects
-from .cut import printed, stored, writing
+from .cut import hulls as hull_objects
+from .cut import objects as part_objects
+from .cut import print_parts as printing
+from .cut import saved_cut, writing
 from .mesh import arrays, selection
 from .mesh.errors import Refused, read_only_reason
 from .parts import builds, picks, registry
@@ -224,8 +225,8 @@ def cut(obj, parts=None, height=None, least_concavity=None):
 def kept_parts(obj):
     """(the Cut that was written last and is kept in the object's mesh, its parts' names); None if there is none."""
     built = hierarchy(obj)
-    found = stored.found(obj, built)
-    return found and (found[0], stored.names_of(obj, *found))
+    found = saved_cut.load_cut(obj, built)
+    return found and (found[0], saved_cut.complete_names(obj, *found))
 
 
 def write(obj, cut, to=(), names=None, closed=True, origins=True, explode=0.0, shell=0.0, smooth=False,
@@ -246,15 +247,15 @@ def write(obj, cut, to=(), names=None, closed=True, origins=True, explode=0.0, s
     can't be done; nothing has changed then.
     Outside Edit Mode only."""
     _mesh(obj, edited=False, changes=True)
-    if isinstance(to, str) or not set(to) <= set(writing.TO):
-        raise ValueError(f"to is to be some of {', '.join(writing.TO)}.")
+    if isinstance(to, str) or not set(to) <= set(writing.TARGETS):
+        raise ValueError(f"to is to be some of {', '.join(writing.TARGETS)}.")
     built = hierarchy(obj)
     if cut.hierarchy is not built:
         raise Refused(f"The cut is not of {obj.name} as it is now: ask for its parts again.")
     if names is not None and (len(names) != len(cut) or len(set(names)) != len(cut)):
         raise ValueError(f"There are {len(cut)} parts; as many names are needed, each another one.")
     known = None if names is None else dict(zip(cut.parts, names))
-    return writing.write(obj, cut, to, known, parts_as_objects.Options(solids.CapOptions(smooth, material), closed,
+    return writing.write(obj, cut, to, known, part_objects.ObjectOptions(solids.CapOptions(smooth, material), closed,
                                                                        origins, explode, shell), unwrap)
 
 
@@ -269,8 +270,8 @@ def print_parts(obj, cut, clearance=0.2, wall=1.2, bed=None):
     _mesh(obj, edited=False)
     if cut.hierarchy is not hierarchy(obj):
         raise Refused(f"The cut is not of {obj.name} as it is now: ask for its parts again.")
-    plan = printed.planned(bpy.context, obj, cut, writing.known_names(obj, cut), clearance, wall, bed)
-    return Printed(printed.made(obj, plan), plan.printable.pegs, plan.printable.notes)
+    plan = printing.plan_print(bpy.context, obj, cut, writing.load_names(obj, cut), clearance, wall, bed)
+    return Printed(printing.create_print_objects(obj, plan), plan.printable.pegs, plan.printable.notes)
 
 
 def convex(obj, hulls=None, error=None, max_vertices=None, engine="UNREAL", primitives=0.0):
@@ -286,10 +287,10 @@ def convex(obj, hulls=None, error=None, max_vertices=None, engine="UNREAL", prim
     far as the engine has these: UBX_, USP_, UCP_; <name>_box_00; 0: hulls alone. partwheel.Error: other objects have these
     names; nothing has changed then. Outside Edit Mode only."""
     _mesh(obj, edited=False)
-    if engine not in hulls_as_objects.NAMES:
-        raise ValueError(f"engine is to be one of {', '.join(hulls_as_objects.NAMES)}.")
+    if engine not in hull_objects.NAME_PATTERNS:
+        raise ValueError(f"engine is to be one of {', '.join(hull_objects.NAME_PATTERNS)}.")
     found = hierarchy(obj).convex_parts(hulls, error=error, max_vertices=max_vertices)
-    return hulls_as_objects.made(bpy.context, obj, found, engine, primitives)
+    return hull_objects.create_hulls(bpy.context, obj, found, engine, primitives)
 
 
 class Printed(NamedTuple):

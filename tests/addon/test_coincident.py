@@ -216,7 +216,7 @@ class Coincident(MeshTest):
     def test_seams_and_islands_are_those_of_the_model_in_one_piece(self):
         for where in ROWS:
             whole, obj, was, faces, _ = self.both(where)
-            cut, mark = Cut.into(part("api").hierarchy(whole), 6), part("cut.unwrapping").mark
+            cut, mark = Cut.into(part("api").hierarchy(whole), 6), part("cut.unwrapping").mark_seams
             corners, seams, uvs = [], [], []
             for each in (whole, obj):
                 mark(each, cut, True)

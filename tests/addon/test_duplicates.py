@@ -61,10 +61,10 @@ class Duplicates(SolidTest):
         objects = part("cut.objects")
         cut = part("api").cut(obj)
         made = part("api").write(obj, cut, {"OBJECTS"}).objects
-        note, = objects.notes(obj, cut, made, False)
+        note, = objects.difference_messages(obj, cut, made, False)
         self.assertIn("1,029 duplicate faces", note)
         bpy.data.objects.remove(made.pop())
-        self.assertIn("volumes", [*objects.notes(obj, cut, made, False)][-1])
+        self.assertIn("volumes", [*objects.difference_messages(obj, cut, made, False)][-1])
 
     def test_what_a_part_is_removed_from_keeps_its_duplicates(self):
         obj = self.house()
@@ -91,4 +91,4 @@ class Walls(SolidTest):
             made = part("api").write(obj, part("api").cut(obj, count), {"OBJECTS"}, origins=False).objects
             self.assertEqual(len(made), count)
             Duplicates.check_objects(self, obj, None, made, shapes.PRISMS_VOLUME)
-            self.assertFalse([*part("cut.objects").notes(obj, part("api").cut(obj, count), made, False)])
+            self.assertFalse([*part("cut.objects").difference_messages(obj, part("api").cut(obj, count), made, False)])

@@ -26,19 +26,19 @@ class Foreign(MeshTest):
         """Whatever is there instead of ours, names are found anew; ours are kept."""
         obj = self.add(*read_off("cross_quad"))
         fresh = self.parts(obj)
-        stored = part("cut.stored")
+        stored = part("cut.saved_cut")
         for value in VALUES:
             with self.subTest(str(value)[:40]):
-                obj.data[stored.NAMES] = value
+                obj.data[stored.NAMES_PROPERTY] = value
                 self.assertEqual(self.parts(obj), fresh)
         self.assertEqual(bpy.ops.mesh.partwheel_parts(to=set(), count=0), {"FINISHED"})
-        obj.data[stored.NAMES] = json.dumps({**json.loads(obj.data[stored.NAMES]), "0": "Stem", "77": "nobody's"})
+        obj.data[stored.NAMES_PROPERTY] = json.dumps({**json.loads(obj.data[stored.NAMES_PROPERTY]), "0": "Stem", "77": "nobody's"})
         self.assertIn("Stem", self.parts(obj))
 
     def test_numbers_of_parts(self):
         obj = self.add(*read_off("cross_quad"))
         self.parts(obj)
-        name, count = part("cut.stored").ATTRIBUTE, len(obj.data.polygons)
+        name, count = part("cut.saved_cut").ATTRIBUTE, len(obj.data.polygons)
         for values in (np.full(count, -2**31), np.arange(count) - 5, np.full(count, 2**31 - 1)):
             obj.data.attributes[name].data.foreach_set("value", values.astype(np.int32))
             self.parts(obj)

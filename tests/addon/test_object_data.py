@@ -183,7 +183,7 @@ class FailAt:
         code = frame.f_code
         if what != "call" or not code.co_filename.startswith(self.root) or code.co_filename.endswith("datablocks.py"):
             return
-        if self.count < 0 and code.co_name != "_outside_edit_mode":
+        if self.count < 0 and code.co_name not in {"_run_in_object_mode", "_write_in_object_mode"}:
             return
         if code.co_flags & inspect.CO_GENERATOR or code.co_name.startswith("<"):
             return  # where it goes on, it would fail before its own "finally"

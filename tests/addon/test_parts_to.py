@@ -396,29 +396,29 @@ class Operator(PartsCase):
     def test_states_come_back_by_the_way_they_went(self):
         _, cut = self.model("homer")
         states = part("cut.states")
-        start = states.Cutting(cut)
-        for state in (start, *(start.clicked(int(numpy.flatnonzero(cut.labels == each)[0])) for each in range(4))):
+        start = states.CutState(cut)
+        for state in (start, *(start.click(int(numpy.flatnonzero(cut.labels == each)[0])) for each in range(4))):
             for notches in (1, 2, 5, -1, -3):
                 steps = [state]
                 for _ in range(abs(notches)):
-                    steps.append(steps[-1].turned(notches // abs(notches)))
+                    steps.append(steps[-1].turn(notches // abs(notches)))
                 for step in steps[::-1][1:]:
                     if steps[-1] is not step:
-                        steps.append(steps[-1].turned(-notches // abs(notches)))
+                        steps.append(steps[-1].turn(-notches // abs(notches)))
                 self.assertEqual(steps[-1].cut, cut)
         face = int(numpy.flatnonzero(cut.labels == 2)[0])
-        one = start.clicked(face)
-        self.assertEqual((one.part, one.clicked(face).part, one.clicked(None).part), (2, None, None))
-        self.assertEqual(one.turned(-1).cut, cut.split(2))
-        self.assertEqual(one.turned(1).cut, cut.join(2))
+        one = start.click(face)
+        self.assertEqual((one.part, one.click(face).part, one.click(None).part), (2, None, None))
+        self.assertEqual(one.turn(-1).cut, cut.split(2))
+        self.assertEqual(one.turn(1).cut, cut.join(2))
         self.assertEqual(start.with_digit("1").with_digit("2").cut, cut.resize(12))
         self.assertEqual(len(start.with_digit("1").with_digit("2").without_digit().cut), 1)
         self.assertEqual(len(start.with_digit("0").cut), 1)
         other = int(numpy.flatnonzero(cut.labels == 5)[0])
-        self.assertEqual(one.merged(other, face).cut, cut.merge(5, 2))
-        smallest = start.clicked(face)
+        self.assertEqual(one.merge(other, face).cut, cut.merge(5, 2))
+        smallest = start.click(face)
         for _ in range(2000):
-            before, smallest = smallest, smallest.turned(-1)
+            before, smallest = smallest, smallest.turn(-1)
             if before is smallest:
                 break
         self.assertLess((smallest.cut.labels == smallest.part).sum(), 4)  # those of one tetrahedron

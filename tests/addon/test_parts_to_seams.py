@@ -169,18 +169,18 @@ class Seams(PartsCase):
 
         obj.data.uv_layers.new(name="first")
         before, objects = state(), part("cut.objects")
-        made = objects.made
+        made = objects.create_part_objects
 
         def fails(*_):
             self.assertEqual(len(obj.data.uv_layers), 2)
             raise ValueError("no")
 
-        objects.made = fails
+        objects.create_part_objects = fails
         try:
             with self.assertRaises(ValueError):
                 part("api").write(obj, cut, {"SEAMS", "OBJECTS"}, unwrap=True)
         finally:
-            objects.made = made
+            objects.create_part_objects = made
         self.assertEqual(state(), before)
         for number in range(7):
             obj.data.uv_layers.new(name=f"map {number}")

@@ -1,90 +1,97 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The parts of a cut as the bones of an armature that moves the object, by vertex groups of the same names, which
-layers.vertex_groups() writes. Outside Edit Mode; undo is the caller's."""
+"""The parts of a cut as the bones of an armature that moves the object, through vertex groups of the same names,
+which layers.write_vertex_groups() writes. Outside Edit Mode; undo is up to the caller."""
+
+from __future__ import annotations
 
 import bpy
+import numpy as np
 
 from ..mesh import arrays
 from ..mesh.datablocks import all_or_nothing
 from ..solid import composition
-from partwheel.cut import bones, mirror_planes, part_tree
+from partwheel.cut import Cut, bones, mirror_planes, part_tree
 
-OURS = "partwheel_bones"  # a property of armatures that were made here
+ARMATURE_PROPERTY = "partwheel_bones"  # marks armatures that this module created
 
 
 @all_or_nothing()
-def made(obj, cut, names, weights):
-    """The armature object, with a bone for each part; the one that was made before, if the object still has it: pose
-    and constraints of bones that keep their names stay. The object hangs on it. weights: of each part, as
-    layers.weights_of() gives them."""
+def create_armature(obj: bpy.types.Object, cut: Cut, names: list[str],
+                    weights: list[tuple[np.ndarray, np.ndarray]]) -> bpy.types.Object:
+    """The armature object, with a bone for each part. The object's earlier armature of this kind is reused: pose and
+    constraints of bones that keep their names stay. The object becomes its child. weights: of each part, as from
+    layers.compute_weights()."""
     surface = arrays.surface(obj.data)
     labels = cut.labels[surface.faces]
     vertices, triangles = surface.vertices, surface.triangles
-    found = bones(vertices, triangles, labels, part_tree(cut, vertices, triangles, labels), weights,
-                  mirror_planes(vertices, triangles))
-    modifier = _modifier(obj)
-    if modifier and _usable(obj, modifier.object):
-        _write(modifier.object, found, names)
+    part_bones = bones(vertices, triangles, labels, part_tree(cut, vertices, triangles, labels), weights,
+                       mirror_planes(vertices, triangles))
+    modifier = _armature_modifier(obj)
+    if modifier and _is_reusable(obj, modifier.object):
+        _write_bones(modifier.object, part_bones, names)
         return modifier.object
-    rig = _new(obj)
-    _write(rig, found, names)
-    _hang(obj, rig, modifier)
-    return rig
+    armature = _create_armature_object(obj)
+    _write_bones(armature, part_bones, names)
+    _attach(obj, armature, modifier)
+    return armature
 
 
-def _modifier(obj):
-    """The one by which an armature that was made here moves the object, or None."""
+def _armature_modifier(obj: bpy.types.Object) -> bpy.types.Modifier | None:
+    """The object's modifier with an armature that this module created, or None."""
     return next((modifier for modifier in obj.modifiers if modifier.type == "ARMATURE" and modifier.object
-                 and OURS in modifier.object.data), None)
+                 and ARMATURE_PROPERTY in modifier.object.data), None)
 
 
-def _usable(obj, rig):
-    """Whether its bones may be made anew: it is here, and moves nothing else, as after the object was duplicated."""
-    moved = [other for other in bpy.data.objects for modifier in other.modifiers
-             if modifier.type == "ARMATURE" and modifier.object == rig]
-    return moved == [obj] and not rig.library and not rig.data.library and rig.data.users == 1 and rig.visible_get()
+def _is_reusable(obj: bpy.types.Object, armature: bpy.types.Object) -> bool:
+    """Whether the armature's bones may be replaced: it is local, visible, and deforms nothing else (as after the
+    object was duplicated)."""
+    deformed = [other for other in bpy.data.objects for modifier in other.modifiers
+                if modifier.type == "ARMATURE" and modifier.object == armature]
+    is_local = not armature.library and not armature.data.library
+    return deformed == [obj] and is_local and armature.data.users == 1 and armature.visible_get()
 
 
-def _new(obj):
-    """In the object's place, also in the tree of objects."""
+def _create_armature_object(obj: bpy.types.Object) -> bpy.types.Object:
+    """An empty armature object in the object's place, with its parent."""
     composition.update_matrices()
     data = bpy.data.armatures.new(f"{obj.name} bones")
-    data[OURS] = True
-    rig = bpy.data.objects.new(data.name, data)
-    composition.target_collection(obj).objects.link(rig)
-    rig.show_in_front = True
-    rig.parent, rig.parent_type, rig.parent_bone = obj.parent, obj.parent_type, obj.parent_bone
+    data[ARMATURE_PROPERTY] = True
+    armature = bpy.data.objects.new(data.name, data)
+    composition.target_collection(obj).objects.link(armature)
+    armature.show_in_front = True
+    armature.parent, armature.parent_type, armature.parent_bone = obj.parent, obj.parent_type, obj.parent_bone
     if obj.parent_type in {"VERTEX", "VERTEX_3"}:
-        rig.parent_vertices = obj.parent_vertices
-    rig.matrix_parent_inverse = obj.matrix_parent_inverse
-    rig.matrix_world = obj.matrix_world
-    return rig
+        armature.parent_vertices = obj.parent_vertices
+    armature.matrix_parent_inverse = obj.matrix_parent_inverse
+    armature.matrix_world = obj.matrix_world
+    return armature
 
 
-def _hang(obj, rig, modifier):
-    """The object stays where it is, and keeps its own transform: that may be animated."""
-    obj.parent, obj.parent_type, obj.matrix_parent_inverse = rig, "OBJECT", obj.matrix_basis.inverted_safe()
+def _attach(obj: bpy.types.Object, armature: bpy.types.Object, modifier: bpy.types.Modifier | None) -> None:
+    """Parents the object to the armature and adds the modifier. The object stays where it is and keeps its own
+    transform, which may be animated."""
+    obj.parent, obj.parent_type, obj.matrix_parent_inverse = armature, "OBJECT", obj.matrix_basis.inverted_safe()
     modifier = modifier or obj.modifiers.new("Bones", "ARMATURE")
-    modifier.object, modifier.use_vertex_groups = rig, True
-    modifier.use_deform_preserve_volume = True  # or a joint gets thinner the further it bends
+    modifier.object, modifier.use_vertex_groups = armature, True
+    modifier.use_deform_preserve_volume = True  # otherwise joints get thinner as they bend
     composition.update_matrices()
 
 
-def _write(rig, found, names):
-    """Bones are made in Edit Mode alone."""
-    layer = bpy.context.view_layer
-    active = layer.objects.active
-    layer.objects.active = rig
+def _write_bones(armature: bpy.types.Object, part_bones: list, names: list[str]) -> None:
+    """Replaces the armature's bones, in Edit Mode, which alone can do it."""
+    view_layer = bpy.context.view_layer
+    active = view_layer.objects.active
+    view_layer.objects.active = armature
     try:
         bpy.ops.object.mode_set(mode="EDIT")
-        edited = rig.data.edit_bones
-        for bone in list(edited):
-            edited.remove(bone)
-        new = [edited.new(name) for name in names]
-        for bone, each in zip(new, found):
-            bone.head, bone.tail = each.head, each.tail
-            if each.parent >= 0:
-                bone.parent, bone.use_connect = new[each.parent], each.is_connected
+        edit_bones = armature.data.edit_bones
+        for bone in list(edit_bones):
+            edit_bones.remove(bone)
+        new_bones = [edit_bones.new(name) for name in names]
+        for bone, part_bone in zip(new_bones, part_bones):
+            bone.head, bone.tail = part_bone.head, part_bone.tail
+            if part_bone.parent >= 0:
+                bone.parent, bone.use_connect = new_bones[part_bone.parent], part_bone.is_connected
         bpy.ops.object.mode_set(mode="OBJECT")
     finally:
-        layer.objects.active = active
+        view_layer.objects.active = active

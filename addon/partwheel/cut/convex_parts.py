@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_convex: few convex hulls that contain the model and little else, as its collision."""
+"""mesh.partwheel_convex: a few convex hulls that approximate the model from outside, for collisions."""
 
 import bpy
 import numpy as np
@@ -8,6 +8,7 @@ from ..pick.build import Beside
 from ..solid.copy_part import PartsOperator
 from ..words.say import rpt_
 from . import hulls
+from partwheel import Hierarchy
 
 
 class MESH_OT_partwheel_convex(PartsOperator, Beside, bpy.types.Operator):
@@ -28,8 +29,8 @@ class MESH_OT_partwheel_convex(PartsOperator, Beside, bpy.types.Operator):
         name="Vertices", description="Of each hull, at most: physics engines take 64 or 255", default=64, min=8,
         soft_max=255)
     primitives: bpy.props.FloatProperty(
-        name="Primitives", description="Take a box, sphere, capsule or cylinder where it goes no farther than this from "
-        "the hull, a share as for Error; 0: hulls alone", default=0, min=0, max=100, subtype="PERCENTAGE")
+        name="Primitives", description="Take a box, sphere, capsule or cylinder where it goes no farther than this "
+        "from the hull, a share as for Error; 0: hulls alone", default=0, min=0, max=100, subtype="PERCENTAGE")
     engine: bpy.props.EnumProperty(
         name="For", description="How the hulls are named, or what they become",
         items=[("UNREAL", "Unreal", "Names that begin with UCX: its importer takes them as the model's collision"),
@@ -37,7 +38,7 @@ class MESH_OT_partwheel_convex(PartsOperator, Beside, bpy.types.Operator):
                ("UNITY", "Unity", "Names with collider, for children that get a convex Mesh Collider there"),
                ("RIGID_BODY", "Rigid Body", "Blender's own: the model falls and rolls, and its hulls are its shape")])
 
-    def draw(self, _context):
+    def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
         layout.row().prop(self, "by", expand=True)
@@ -45,14 +46,14 @@ class MESH_OT_partwheel_convex(PartsOperator, Beside, bpy.types.Operator):
         for name in ("vertices", "primitives", "engine"):
             layout.prop(self, name)
 
-    def run(self, context, obj, hierarchy):
-        across = float(np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)))
-        wanted = {"error": self.error / 100 * across} if self.by == "ERROR" else {"hulls": self.hulls}
-        found = hierarchy.convex_parts(**wanted, max_vertices=self.vertices)
-        made = hulls.made(context, obj, found, self.engine, self.primitives / 100 * across)
-        times = sum(each.hull_volume() for each in found) / hierarchy.summary.volume
-        self.report({"INFO"}, rpt_("{count} convex hulls around {name}, together of {times:.2f} times its volume.").format(
-            count=len(made), name=obj.name, times=times))
+    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> None:
+        extent = float(np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)))
+        limit = {"error": self.error / 100 * extent} if self.by == "ERROR" else {"hulls": self.hulls}
+        convex_parts = hierarchy.convex_parts(**limit, max_vertices=self.vertices)
+        objects = hulls.create_hulls(context, obj, convex_parts, self.engine, self.primitives / 100 * extent)
+        volume_ratio = sum(part.hull_volume() for part in convex_parts) / hierarchy.summary.volume
+        text = rpt_("{count} convex hulls around {name}, together of {times:.2f} times its volume.")
+        self.report({"INFO"}, text.format(count=len(objects), name=obj.name, times=volume_ratio))
 
 
 CLASSES = (MESH_OT_partwheel_convex,)

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Convex hulls as objects that engines, and Blender's own rigid bodies, take as a model's collision. In Object Mode;
-undo is the caller's."""
+"""Convex hulls as objects that engines, and Blender's own rigid bodies, use as a model's collision. In Object Mode;
+undo is up to the caller."""
+
+from __future__ import annotations
+
+from typing import Any
 
 import bpy
 from mathutils import Matrix
@@ -8,55 +12,60 @@ from mathutils import Matrix
 from ..mesh.datablocks import all_or_nothing, dispose
 from ..mesh.errors import Refused
 from ..solid import composition
-from partwheel import convex
+from partwheel import ConvexPart, convex
 
-# What is called how, by its kind: as the engine's importer knows it, or so that people do. Engines take no other kinds.
-NAMES = {"UNREAL": {kind: start + "_{model}_{number:02}" for kind, start in convex.UNREAL_PREFIXES.items()},
-         "GODOT": {"hull": "{model}_{number:02}-convcolonly"},
-         "UNITY": {"hull": "{model}_collider_{number:02}", "box": "{model}_box_{number:02}",
-                   "sphere": "{model}_sphere_{number:02}", "capsule": "{model}_capsule_{number:02}"},
-         "RIGID_BODY": {kind: "{model}_" + kind + "_{number:02}" for kind in ("hull", *convex.KINDS)}}
-LONGEST = bpy.types.ID.bl_rna.properties["name"].length_max  # of a name, in bytes
+# Engine -> {kind of shape: name pattern}: as its importer expects, or readable. The engine has no other kinds.
+NAME_PATTERNS = {"UNREAL": {kind: start + "_{model}_{number:02}" for kind, start in convex.UNREAL_PREFIXES.items()},
+                 "GODOT": {"hull": "{model}_{number:02}-convcolonly"},
+                 "UNITY": {"hull": "{model}_collider_{number:02}", "box": "{model}_box_{number:02}",
+                           "sphere": "{model}_sphere_{number:02}", "capsule": "{model}_capsule_{number:02}"},
+                 "RIGID_BODY": {kind: "{model}_" + kind + "_{number:02}" for kind in ("hull", *convex.KINDS)}}
+MAX_NAME_BYTES = bpy.types.ID.bl_rna.properties["name"].length_max  # bytes, with the terminating zero
 
 
 @all_or_nothing()
-def made(context, obj, hulls, engine="UNREAL", primitives=0.0):
-    """[object, ...]: a child of the object for each partwheel.ConvexPart, named as the engine has it, one of NAMES; seen
-    as wires and not rendered, in a new collection, or in that of the earlier ones, which are removed. RIGID_BODY: the
-    object is a body whose shape they are together. primitives: the length that a box, sphere, capsule or cylinder may
-    reach beyond a hull to be taken instead, as far as the engine has these; 0: hulls alone. Refused: nothing has changed."""
+def create_hulls(context: bpy.types.Context, obj: bpy.types.Object, hulls: list[ConvexPart], engine: str = "UNREAL",
+                 primitives: float = 0.0) -> list[bpy.types.Object]:
+    """A child of the object for each partwheel.ConvexPart, named for the engine, a key of NAME_PATTERNS; drawn as
+    wires, not rendered, in a new collection. Earlier hulls are replaced, and their collection is reused.
+
+    RIGID_BODY: the object becomes a rigid body whose compound shape they are. primitives: use a box, sphere, capsule
+    or cylinder, if the engine has it, where it reaches no farther than this length beyond the hull; 0: hulls only.
+    Raises Refused before any change."""
     earlier = [child for child in obj.children if child.type == "MESH" and composition.HULL_PROPERTY in child]
-    kinds = tuple(kind for kind in convex.KINDS if kind in NAMES[engine])
+    kinds = tuple(kind for kind in convex.KINDS if kind in NAME_PATTERNS[engine])
     shapes = [(primitives > 0 and convex.fit_primitive(*hull[:2], primitives, kinds)) or hull for hull in hulls]
-    names = [NAMES[engine][convex.kind_of(shape)].format(model=obj.name, number=number)
+    names = [NAME_PATTERNS[engine][convex.kind_of(shape)].format(model=obj.name, number=number)
              for number, shape in enumerate(shapes)]
-    _check(obj, names, earlier, engine)
-    home = next((each.users_collection[0] for each in earlier if each.users_collection), None)
-    home = home or composition.create_collection(obj, f"{obj.name} hulls")
-    found = [_child(obj, shape, name, home) for shape, name in zip(shapes, names)]
+    _check_names(obj, names, earlier, engine)
+    collection = next((child.users_collection[0] for child in earlier if child.users_collection), None)
+    collection = collection or composition.create_collection(obj, f"{obj.name} hulls")
+    objects = [_create_child(obj, shape, name, collection) for shape, name in zip(shapes, names)]
     if engine == "RIGID_BODY":
-        _simulated(context, obj, {child: convex.kind_of(shape) for child, shape in zip(found, shapes)})
-    for each in earlier:  # now that nothing can fail any more
-        dispose(each)
-    for each, name in zip(found, names):  # which an earlier one had
-        each.name = each.data.name = name
+        _add_rigid_bodies(context, obj, {child: convex.kind_of(shape) for child, shape in zip(objects, shapes)})
+    for child in earlier:  # nothing can fail any more
+        dispose(child)
+    for child, name in zip(objects, names):  # the earlier objects had the same names
+        child.name = child.data.name = name
     composition.update_matrices()
-    return found
+    return objects
 
 
-def _check(obj, names, earlier, engine):
+def _check_names(obj: bpy.types.Object, names: list[str], earlier: list[bpy.types.Object], engine: str) -> None:
+    """Raises Refused if the object can't be a rigid body, or a name is too long or in use."""
     if engine == "RIGID_BODY" and obj.library:
         raise Refused("{name} is linked from another file and can't be a rigid body: make it local first (Object > "
                       "Relations > Make Local).", name=obj.name)
     for name in names:
-        if len(name.encode()) >= LONGEST:
-            raise Refused("The name of {name} is too long for its hulls to be named after it: shorten it.", name=obj.name)
+        if len(name.encode()) >= MAX_NAME_BYTES:
+            raise Refused("The name of {name} is too long for its hulls to be named after it: shorten it.",
+                          name=obj.name)
         if bpy.data.objects.get(name) not in {None, *earlier}:
             raise Refused("There is another object called {name}, as a hull would be: rename it.", name=name)
 
 
-def _child(obj, shape, name, collection):
-    """A primitive lies in its own axes, so that its bounding box tells all about it."""
+def _create_child(obj: bpy.types.Object, shape: Any, name: str, collection: bpy.types.Collection) -> bpy.types.Object:
+    """A primitive is aligned with its own axes, so that its bounding box defines it."""
     primitive = convex.kind_of(shape) != "hull"
     vertices, triangles = shape.mesh() if primitive else shape[:2]
     mesh = bpy.data.meshes.new(name)
@@ -71,21 +80,20 @@ def _child(obj, shape, name, collection):
     return new
 
 
-def _simulated(context, obj, kinds):
-    """The object is a rigid body from now on, unless it was one; of its hulls, whichever shape it had. kinds: {hull: its
-    kind}."""
+def _add_rigid_bodies(context: bpy.types.Context, obj: bpy.types.Object, kinds: dict[bpy.types.Object, str]) -> None:
+    """Makes the object a rigid body with a compound shape, and each hull a part of it. kinds: {hull: its kind}."""
     scene = context.scene
     if not scene.rigidbody_world:
         bpy.ops.rigidbody.world_add()
     world = scene.rigidbody_world
     if not world.collection:
-        world.collection = bpy.data.collections.new("RigidBodyWorld")  # as Blender calls it
-    for each in (obj, *kinds):
-        if not each.rigid_body:
-            world.collection.objects.link(each)
+        world.collection = bpy.data.collections.new("RigidBodyWorld")  # Blender's own name for it
+    for child in (obj, *kinds):
+        if not child.rigid_body:
+            world.collection.objects.link(child)
     obj.rigid_body.collision_shape = "COMPOUND"
-    for each, kind in kinds.items():
-        body = each.rigid_body
-        # Blender's own margin, 0.04, makes all that is small float or sink in.
+    for child, kind in kinds.items():
+        body = child.rigid_body
+        # With Blender's default margin, 0.04, small objects float or sink in.
         body.use_margin, body.collision_margin = True, 0
         body.collision_shape = "CONVEX_HULL" if kind == "hull" else kind.upper()

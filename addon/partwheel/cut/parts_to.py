@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_parts: the whole model in parts, seen in colours, edited with wheel, clicks and drags, and written to
-face sets, vertex groups, materials, seams, objects, pieces for a printer. Nothing changes before it is confirmed."""
+"""mesh.partwheel_parts: previews a segmentation of the whole model, one color per part. Wheel, clicks and drags edit
+it; the result goes to face sets, vertex groups, materials, seams, objects, bones, or pieces for a printer. Nothing
+changes before the user confirms."""
 
 import json
 
@@ -21,11 +22,11 @@ from ..view import keys, overlay, picking
 from ..view.in_view import InView, waiting
 from ..view.seen import NO_FACE
 from ..words.say import iface_, rpt_
-from . import objects, printed, states, stored, writing
-from partwheel import Error
+from . import objects, print_parts, saved_cut, states, writing
+from partwheel import Error, Hierarchy
 from partwheel.cut import Cut
 
-USUAL = {"OBJECT": {"OBJECTS"}, "EDIT_MESH": {"VERTEX_GROUPS"}, "SCULPT": {"FACE_SETS"}}
+DEFAULT_RESULTS = {"OBJECT": {"OBJECTS"}, "EDIT_MESH": {"VERTEX_GROUPS"}, "SCULPT": {"FACE_SETS"}}
 LABELS = {"FACE_SETS": ("Face Sets", "One for each part, in place of all that there are"),
           "VERTEX_GROUPS": ("Vertex Groups", "For an armature: they fall smoothly across the borders and add up to 1"),
           "COLORS": ("Materials in Colours", "A material of its own colour for each part"),
@@ -34,8 +35,8 @@ LABELS = {"FACE_SETS": ("Face Sets", "One for each part, in place of all that th
           "OBJECTS": ("Objects", "Each part an object that hangs on the next one"),
           "BONES": ("Bones", "An armature with a bone for each part, and the vertex groups for it, ready to be posed"),
           "PRINT": ("For Printing", "Closed objects with flat cuts, pegs and sockets, checked. Needs manifold3d")}
-TO = *writing.TO, "PRINT"
-STRONG, WEAK = 0.85, 0.4  # how far the part that was clicked covers the model, and the others beside it
+RESULTS = *writing.TARGETS, "PRINT"
+ACTIVE_OPACITY, INACTIVE_OPACITY = 0.85, 0.4  # opacity of the active part, and of all others meanwhile
 
 
 class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
@@ -47,7 +48,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     to: bpy.props.EnumProperty(
         name="Make Them", description="What the parts become; none: they are only kept in the mesh",
-        items=[(name, *LABELS[name]) for name in TO], options={"ENUM_FLAG", "SKIP_SAVE"}, default=set())
+        items=[(name, *LABELS[name]) for name in RESULTS], options={"ENUM_FLAG", "SKIP_SAVE"}, default=set())
     count: bpy.props.IntProperty(
         name="Parts", description="How many; 0: those that are kept in the mesh, or as people would most likely take "
         "them", default=0, min=0, soft_max=64, max=999, options={"SKIP_SAVE"})
@@ -79,24 +80,24 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     bed: bpy.props.FloatVectorProperty(
         name="Bed (mm)", description="The printer's: parts that are larger are split further; 0: large enough",
         default=(0, 0, 0), min=0, soft_max=1000, size=3)
-    # The panel of the last operation does it again from Object Mode, where the mode before has to come back, too.
-    begun_in: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+    # Adjust Last Operation repeats the operator from Object Mode and must return to the original mode, too.
+    original_mode: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     hide: bpy.props.BoolProperty(name="Hide Original", description="Hide the object that was divided", default=True)
 
     lost_message = "{operator} stopped: the mesh is no longer as it was, or in another mode."
-    state = building = pressed = shown = None
+    state = building = pressed_face = shown_surface = None
     object_name, mode = "", ""
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.active_object
-        return (check_poll(cls, context.mode in USUAL and obj is not None and obj.type == "MESH",
+        return (check_poll(cls, context.mode in DEFAULT_RESULTS and obj is not None and obj.type == "MESH",
                            "This is for an active mesh object, in Object, Edit or Sculpt Mode.")
                 and poll_is_editable(cls, obj)
                 and check_poll(cls, not obj.use_dynamic_topology_sculpting,
                                "Dynamic topology changes the faces all the time: switch it off first."))
 
-    def draw(self, _context):
+    def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
         layout.prop(self, "count")
@@ -112,89 +113,92 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         if self.to & {"OBJECTS", "PRINT"}:
             layout.prop(self, "hide")
 
-    # ---- Without a window, and once more with other options
+    # ---- Without a window, and from Adjust Last Operation
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         obj = context.active_object
         if not self.options.is_repeat:
-            self.begun_in = obj.mode
+            self.original_mode = obj.mode
         hierarchy = waited_for(self, context, obj)
         if not hierarchy:
             return {"CANCELLED"}
         try:
-            return self._write(context, obj, self._wanted(obj, hierarchy))
+            return self._write(context, obj, self._cut_from_options(obj, hierarchy))
         except Error as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
 
-    def _wanted(self, obj, hierarchy):
-        """The cut that the options name."""
+    def _cut_from_options(self, obj: bpy.types.Object, hierarchy: Hierarchy) -> Cut:
+        """The cut that the options define. Raises Refused."""
         if not self.clusters:
-            return _first(obj, hierarchy, self.count)
+            return _initial_cut(obj, hierarchy, self.count)
         try:
             cut = Cut.from_clusters(hierarchy, json.loads(self.clusters))
         except (ValueError, TypeError, RecursionError) as error:
             raise Refused("These are no parts of {name}: {reason}", name=obj.name, reason=error) from error
         return cut.resize(self.count) if self.count else cut
 
-    def _write(self, context, obj, cut):
-        for sentence in self._losses(obj):
+    def _write(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut) -> set[str]:
+        for sentence in self._loss_messages(obj):
             self.report({"WARNING"}, sentence)
         with all_or_nothing():
-            return self._outside_edit_mode(context, obj, cut)
+            return self._write_in_object_mode(context, obj, cut)
 
-    def _losses(self, obj):
-        """Sentences on what will be lost."""
-        found = composition.loss_messages(obj) if "OBJECTS" in self.to else []
+    def _loss_messages(self, obj: bpy.types.Object) -> list[str]:
+        """Warnings about what will be lost."""
+        messages = composition.loss_messages(obj) if "OBJECTS" in self.to else []
         if "PRINT" in self.to and obj.modifiers:
-            found.append(rpt_("What is printed is the mesh of {name} itself: the effect of its modifiers is left out. Apply them "
-                              "first to print it.").format(name=obj.name))
-        return found
+            messages.append(rpt_("What is printed is the mesh of {name} itself: the effect of its modifiers is left "
+                                 "out. Apply them first to print it.").format(name=obj.name))
+        return messages
 
-    def _outside_edit_mode(self, context, obj, cut):
-        mode, before = self.begun_in, obj.mode
+    def _write_in_object_mode(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut) -> set[str]:
+        """Writes the cut in Object Mode, and returns to the original mode unless there are new objects."""
+        mode, current_mode = self.original_mode, obj.mode
         if not self.properties.is_property_set("to"):
-            self.to = USUAL[context.mode]
-        if before != "OBJECT":
+            self.to = DEFAULT_RESULTS[context.mode]
+        if current_mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
-        if before == "EDIT":
-            # Undo steps of Edit Mode hold its mesh alone: without this one, undo would leave the rest.
+        if current_mode == "EDIT":
+            # Undo steps of Edit Mode hold only its mesh: without this step, undo would leave everything else.
             bpy.ops.ed.undo_push(message="Leave Edit Mode")
-        options = objects.Options(solids.CapOptions(self.smooth, self.material), self.closed, self.origins,
-                                  self.explode, self.shell)
-        known = writing.known_names(obj, cut)
-        plan = self._planned(context, obj, cut, known) if "PRINT" in self.to else None
-        printables = printed.made(obj, plan) if plan else []
-        made = writing.write(obj, cut, self.to - {"PRINT"}, known, options, self.unwrap).objects + printables
-        if mode != "OBJECT" and not made:
+        options = objects.ObjectOptions(solids.CapOptions(self.smooth, self.material), self.closed, self.origins,
+                                        self.explode, self.shell)
+        known = writing.load_names(obj, cut)
+        plan = self._plan_print(context, obj, cut, known) if "PRINT" in self.to else None
+        print_objects = print_parts.create_print_objects(obj, plan) if plan else []
+        new_objects = writing.write(obj, cut, self.to - {"PRINT"}, known, options, self.unwrap).objects + print_objects
+        if mode != "OBJECT" and not new_objects:
             bpy.ops.object.mode_set(mode=mode)
-        if made:
-            copy_part.select_only(context, made)
+        if new_objects:
+            copy_part.select_only(context, new_objects)
             if self.hide:
                 obj.hide_set(True)
         elif "BONES" in self.to and mode == "OBJECT":
             copy_part.select_only(context, [obj.find_armature()])
         self.count, self.clusters = len(cut), json.dumps(cut.parts)
         self.report({"INFO"}, rpt_("{name} is in {count} parts now: {made}.").format(
-            name=obj.name, count=len(cut), made=self._results()))
+            name=obj.name, count=len(cut), made=self._result_names()))
         if plan and plan.printable.notes:
             self.report({"WARNING"}, " ".join(plan.printable.notes))
         if "OBJECTS" in self.to and self.closed and not plan:
-            for note in objects.notes(obj, cut, made, self.smooth):
+            for note in objects.difference_messages(obj, cut, new_objects, self.smooth):
                 self.report({"WARNING"}, note)
         return {"FINISHED"}
 
-    def _planned(self, context, obj, cut, known):
-        return printed.planned(context, obj, cut, known, self.clearance if self.pegs else None, self.wall,
+    def _plan_print(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut,
+                    known: dict) -> print_parts.PrintPlan:
+        """The plan for the printer. Raises an Error."""
+        return print_parts.plan_print(context, obj, cut, known, self.clearance if self.pegs else None, self.wall,
                                tuple(self.bed) if all(self.bed) else None)
 
     # ---- With the mouse
 
-    def on_start(self, context, _event):
+    def on_start(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         obj = context.active_object
-        self.object_name, self.mode, self.begun_in = obj.name_full, context.mode, obj.mode
+        self.object_name, self.mode, self.original_mode = obj.name_full, context.mode, obj.mode
         if not self.properties.is_property_set("to"):
-            self.to = USUAL[context.mode]
+            self.to = DEFAULT_RESULTS[context.mode]
         self.scroll = keys.Scroll(keys.SCROLL_STEP)
         hierarchy = None if builds.being_built(obj) else registry.hierarchy(obj)
         if hierarchy:
@@ -205,38 +209,39 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         self.building.watch(context)
         return {"RUNNING_MODAL"}
 
-    def _start_editing(self, context, obj, hierarchy):
-        self.state = states.Cutting(_first(obj, hierarchy, self.count))
+    def _start_editing(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> set[str]:
+        self.state = states.CutState(_initial_cut(obj, hierarchy, self.count))
         if highlight.shows(obj):
-            self.state = self.state.clicked(picks.picked(obj).face)
+            self.state = self.state.click(picks.picked(obj).face)
         self.counts = element_counts(obj.data)
         self._add_draw_handler(self._draw)
-        return self._show(context, self.state)
+        return self._set_state(context, self.state)
 
-    def on_event(self, context, event):
+    def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if self.building:
-            return self._built_on(context, event)
-        if self.shown and at_rest() and not current(mesh_identity.find_object(self.object_name), self.shown):  # another frame
-            self._show(context, self.state)
+            return self._on_build_event(context, event)
+        if self.shown_surface and at_rest() and not current(mesh_identity.find_object(self.object_name),
+                                                            self.shown_surface):  # the frame changed
+            self._set_state(context, self.state)
         if event.type in keys.SYSTEM:
             return {"PASS_THROUGH"}
         if event.type in keys.MOVES:
-            return {"RUNNING_MODAL"} if self.pressed is not None else {"PASS_THROUGH"}
+            return {"RUNNING_MODAL"} if self.pressed_face is not None else {"PASS_THROUGH"}
         over = picking.under_mouse(context, event)
         plain = not (event.alt or event.oskey or event.ctrl or event.shift)
         if event.type == "TRACKPADPAN" and over and plain:
-            return self._show(context, self.state.turned(self.scroll.notches(event.mouse_y - event.mouse_prev_y)))
+            return self._set_state(context, self.state.turn(self.scroll.notches(event.mouse_y - event.mouse_prev_y)))
         if event.type in keys.NAVIGATE.events or not plain or not over and (
                 event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE", "LEFTMOUSE"}):
             return {"PASS_THROUGH"}
         if event.type == "LEFTMOUSE":
-            return self._clicked(context, event, over)
+            return self._on_click(context, event, over)
         if event.value != "PRESS":
             return {"RUNNING_MODAL"}
-        return self._key(context, event)
+        return self._on_key(context, event)
 
-    def _built_on(self, context, event):
-        """While the parts are being found all but Esc goes to Blender itself."""
+    def _on_build_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """During the build, all events except Esc go to Blender."""
         if not self.building.step(context, event):
             return {"PASS_THROUGH"}
         hierarchy, self.building = self.building.hierarchy, None
@@ -245,102 +250,107 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             return {"CANCELLED"}
         return self._start_editing(context, obj, hierarchy)
 
-    def _clicked(self, context, event, over):
-        """A click takes a part for the wheel, one beside it none, and then all is made; a drag merges two."""
-        face = self._face(over)
+    def _on_click(self, context: bpy.types.Context, event: bpy.types.Event, over: tuple) -> set[str]:
+        """A click activates a part for the wheel, a click beside the model none, and another one confirms; a drag
+        merges two parts."""
+        face = self._face_under(over)
         if event.value in {"PRESS", "DOUBLE_CLICK"}:
-            self.pressed = face
-        if event.value != "RELEASE" or self.pressed is None:  # None: it was pressed before all this
+            self.pressed_face = face
+        if event.value != "RELEASE" or self.pressed_face is None:  # None: pressed before the start
             return {"RUNNING_MODAL"}
-        begun, self.pressed = self.pressed, None
-        if begun == face == NO_FACE and self.state.part is None:
+        pressed_face, self.pressed_face = self.pressed_face, None
+        if pressed_face == face == NO_FACE and self.state.part is None:
             return self.on_confirm(context)
-        if NO_FACE in (begun, face):
-            return self._show(context, self.state.clicked(None)) if begun == face else {"RUNNING_MODAL"}
+        if NO_FACE in (pressed_face, face):
+            return self._set_state(context, self.state.click(None)) if pressed_face == face else {"RUNNING_MODAL"}
         labels = self.state.cut.labels
-        if labels[begun] == labels[face]:
-            return self._show(context, self.state.clicked(face))
-        return self._show(context, self.state.merged(face, begun))
+        if labels[pressed_face] == labels[face]:
+            return self._set_state(context, self.state.click(face))
+        return self._set_state(context, self.state.merge(face, pressed_face))
 
-    def _face(self, over):
-        """The face of the object that is seen there, or NO_FACE."""
+    def _face_under(self, over: tuple) -> int:
+        """The object's face under the mouse, or NO_FACE."""
         _, *pixel = over
-        _, face = picking.nearest([mesh_identity.find_object(self.object_name)], lambda each: prepared(each).tree(each), *pixel)
+        _, face = picking.nearest([mesh_identity.find_object(self.object_name)],
+                                  lambda obj: prepared(obj).tree(obj), *pixel)
         return NO_FACE if face is None else face
 
-    def _key(self, context, event):
+    def _on_key(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if event.type in keys.CANCEL.events:
             return {"CANCELLED"}
         if event.type in keys.CONFIRM.events:
             return self.on_confirm(context)
         if event.type in keys.TURNS:
-            return self._show(context, self.state.turned(keys.TURNS[event.type]))
+            return self._set_state(context, self.state.turn(keys.TURNS[event.type]))
         if event.type in keys.DIGITS:
-            return self._show(context, self.state.with_digit(keys.DIGITS[event.type]))
+            return self._set_state(context, self.state.with_digit(keys.DIGITS[event.type]))
         if event.type in keys.ERASE.events:
-            return self._show(context, self.state.without_digit())
+            return self._set_state(context, self.state.without_digit())
         if event.type in keys.ANEW.events:
-            return self._show(context, states.Cutting(Cut.automatic(self.state.base.hierarchy)))
+            return self._set_state(context, states.CutState(Cut.automatic(self.state.base.hierarchy)))
         for name, key in keys.RESULTS.items():
             if event.type in key.events:
                 self.to = self.to ^ {name}
-                return self._show(context, self.state)
+                return self._set_state(context, self.state)
         return {"RUNNING_MODAL"}
 
-    def _show(self, context, state):
+    def _set_state(self, context: bpy.types.Context, state: states.CutState) -> set[str]:
+        """Shows this state in the view and in the status bar."""
         self.state = state
-        values = {"count": state.typed + "_" if state.typed else len(state.cut), "made": self._results()}
+        values = {"count": state.typed + "_" if state.typed else len(state.cut), "made": self._result_names()}
         if state.part is None:
             self._show_status(context, iface_("{count} parts: {made}").format(**values), keys.DIVIDING)
         else:
             faces = np.count_nonzero(state.cut.labels == state.part)
-            self._show_status(context, iface_("{count} parts, one of {faces:,} faces: {made}").format(faces=faces, **values),
+            self._show_status(context,
+                              iface_("{count} parts, one of {faces:,} faces: {made}").format(faces=faces, **values),
                        keys.ON_ONE)
         if not bpy.app.background:
             obj = mesh_identity.find_object(self.object_name)
-            self.shown = prepared(obj).parts(obj)
+            self.shown_surface = prepared(obj).parts(obj)
             overlay.redraw()
         return {"RUNNING_MODAL"}
 
-    def _results(self):
-        """What the parts become, in words."""
-        return ", ".join(iface_(LABELS[name][0]) for name in TO if name in self.to) or iface_("Kept in the Mesh")
+    def _result_names(self) -> str:
+        """The chosen results, for the status bar."""
+        return ", ".join(iface_(LABELS[name][0]) for name in RESULTS if name in self.to) or iface_("Kept in the Mesh")
 
-    def _draw(self):
+    def _draw(self) -> None:
         context, obj = bpy.context, mesh_identity.find_object(self.object_name)
-        if not obj or not overlay.visible(context, obj) or not current(obj, self.shown):
+        if not obj or not overlay.visible(context, obj) or not current(obj, self.shown_surface):
             return
         cut, part = self.state.cut, self.state.part
 
-        def paint():
-            opacity = overlay.CUT_OPACITY if part is None else np.where(cut.labels == part, STRONG, WEAK)
+        def paint() -> np.ndarray:
+            opacity = overlay.CUT_OPACITY if part is None else np.where(cut.labels == part, ACTIVE_OPACITY,
+                                                                        INACTIVE_OPACITY)
             return overlay.distinct(np.array(cut.keys)[cut.labels], opacity)
 
-        overlay.draw_painted(context, obj, self.shown, ("whole", cut.parts, cut.keys, part), paint)
+        overlay.draw_painted(context, obj, self.shown_surface, ("whole", cut.parts, cut.keys, part), paint)
 
-    def on_confirm(self, context):
+    def on_confirm(self, context: bpy.types.Context) -> set[str]:
         self.clusters, self.count = json.dumps(self.state.cut.parts), len(self.state.cut)
         with waiting(context):
             return self._write(context, mesh_identity.find_object(self.object_name), self.state.cut)
 
-    def can_continue(self, context):
+    def can_continue(self, context: bpy.types.Context) -> bool:
         if self.building:
             return True
         obj = context.active_object
         return (obj is not None and obj.name_full == self.object_name and context.mode == self.mode
                 and registry.known(obj.data) is self.state.base.hierarchy and element_counts(obj.data) == self.counts)
 
-    def on_cancel(self, context):
+    def on_cancel(self, context: bpy.types.Context) -> None:
         if self.building:
             self.building.abandon(context)
 
 
-def _first(obj, hierarchy, count):
-    """So many parts; 0: the cut that is kept in the mesh, or as people would most likely divide it."""
+def _initial_cut(obj: bpy.types.Object, hierarchy: Hierarchy, count: int) -> Cut:
+    """A cut into count parts; 0: the cut saved in the mesh, or the automatic segmentation."""
     if count:
         return Cut.into(hierarchy, count)
-    found = stored.found(obj, hierarchy)
-    return found[0] if found else Cut.automatic(hierarchy)
+    saved = saved_cut.load_cut(obj, hierarchy)
+    return saved[0] if saved else Cut.automatic(hierarchy)
 
 
 CLASSES = (MESH_OT_partwheel_parts,)

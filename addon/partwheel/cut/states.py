@@ -1,26 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The states while a cut is edited, and how a click, a notch, a drag or a digit leads on. No bpy here."""
+"""The states while a cut is edited, and how a click, a notch, a drag or a digit leads from one to the next. Without
+bpy."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 from partwheel.cut import Cut
 
-DIGITS = 3
+MAX_DIGITS = 3  # most digits of a typed number of parts
 
 
 @dataclass(frozen=True)
-class Cutting:
-    """A cut, some notches away from another one: those of the part with a face that was clicked, or else of the number
-    of parts. So the wheel comes back by the way that it went."""
+class CutState:
+    """A cut, some notches away from a base cut. The notches change the part with the clicked face, or else the number
+    of parts. So turning the wheel back restores the earlier cuts."""
 
     base: Cut
-    face: int = None  # the one that was clicked, if any
+    face: int | None = None  # the clicked face, if any
     level: int = 0
-    typed: str = ""  # the digits of the number of parts, as far as they have been typed
+    typed: str = ""  # the digits typed so far, of the number of parts
 
     @cached_property
-    def cut(self):
+    def cut(self) -> Cut:
+        """The current cut."""
         if self.face is None:
             return self.base.resize(len(self.base) + self.level)
         cut = self.base
@@ -30,32 +34,33 @@ class Cutting:
         return cut
 
     @property
-    def part(self):
-        """The part that was clicked, or None."""
+    def part(self) -> int | None:
+        """The part with the clicked face, or None."""
         return None if self.face is None else int(self.cut.labels[self.face])
 
-    def turned(self, notches):
-        """After this many notches: up for a larger part, or for more of them. As it is where there are no others."""
-        after = replace(self, level=self.level + notches, typed="")
-        return self if after.cut == self.cut else after
+    def turn(self, notches: int) -> CutState:
+        """The state after some notches: up for a larger part, or for more parts. The same state at the ends of the
+        range."""
+        state = replace(self, level=self.level + notches, typed="")
+        return self if state.cut == self.cut else state
 
-    def clicked(self, face):
-        """On the part with this face from now on; on none if it is the same part again, or face is None."""
-        again = face is None or self.part == self.cut.labels[face]
-        return Cutting(self.cut, None if again else face)
+    def click(self, face: int | None) -> CutState:
+        """The state after a click on this face: its part is active; none if it was active before, or face is None."""
+        is_deselected = face is None or self.part == self.cut.labels[face]
+        return CutState(self.cut, None if is_deselected else face)
 
-    def merged(self, one, other):
-        """The parts of two faces as one."""
+    def merge(self, first: int, second: int) -> CutState:
+        """The state after the parts of two faces are merged."""
         labels = self.cut.labels
-        return Cutting(self.cut.merge(int(labels[one]), int(labels[other])))
+        return CutState(self.cut.merge(int(labels[first]), int(labels[second])))
 
-    def with_digit(self, digit):
-        """So many parts. A digit too many begins a new number."""
+    def with_digit(self, digit: str) -> CutState:
+        """The state after one more digit of the number of parts. A digit too many begins a new number."""
         base = self.base if self.face is None else self.cut
-        typed = digit if len(self.typed) == DIGITS else self.typed + digit
-        return Cutting(base, None, max(int(typed), 1) - len(base), typed)
+        typed = digit if len(self.typed) == MAX_DIGITS else self.typed + digit
+        return CutState(base, None, max(int(typed), 1) - len(base), typed)
 
-    def without_digit(self):
-        """After the last digit was taken back; the parts stay when none is left."""
+    def without_digit(self) -> CutState:
+        """The state after the last digit is erased; the parts stay when no digit is left."""
         typed = self.typed[:-1]
-        return Cutting(self.base, None, int(typed) - len(self.base), typed) if typed else replace(self, typed="")
+        return CutState(self.base, None, int(typed) - len(self.base), typed) if typed else replace(self, typed="")

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The parts of a cut as objects for a 3D printer: flat cuts, pegs and sockets, with checks. Uses manifold3d if
+Blender's Python has it. Undo is up to the caller."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from ..mesh import arrays
+from ..mesh.datablocks import all_or_nothing
+from ..mesh.errors import Refused
+from ..solid import composition
+from . import saved_cut
+from partwheel.cut import Cut, printing
+
+MILLIMETERS_PER_METER = 1000  # per meter
+MAX_SCALE_DIFFERENCE = 1e-4  # relative difference of the object's scales: more would make pegs oval
+
+
+class PrintPlan(NamedTuple):
+    """printable: a printing.Printable, in millimeters. scale: millimeters per unit of the object's mesh."""
+
+    printable: printing.Printable
+    scale: float
+
+
+def plan_print(context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, known: dict, pegs: float | None = None,
+               wall: float = 1.2, bed: tuple[float, float, float] | None = None) -> PrintPlan:
+    """Computes the printable parts without changing anything. Raises an Error.
+
+    All lengths are in millimeters, by the scene's units and the object's scale.
+
+    pegs: clearance of pegs; None: no pegs, only flat cuts. wall: least wall around sockets; thinner walls get a note.
+    bed (3,): larger parts are split further; None: no limit. known: {clusters: name} of parts with a name.
+    """
+    if not importlib.util.find_spec("manifold3d"):
+        raise Refused("Printing needs the Python package manifold3d, which Blender doesn't have. To install it, run: "
+                      "{python} -m pip install manifold3d.", python=sys.executable)
+    scales = np.linalg.norm(np.array(obj.matrix_world.to_3x3()), axis=0)
+    if np.ptp(scales) > MAX_SCALE_DIFFERENCE * scales.max():
+        raise Refused("{name} is scaled differently along its axes: apply its scale first.", name=obj.name)
+    scale = float(scales.mean()) * context.scene.unit_settings.scale_length * MILLIMETERS_PER_METER
+    surface = arrays.surface(obj.data)
+    return PrintPlan(printing.prepare_parts(cut, surface.vertices, surface.triangles, surface.faces,
+                                            printing.PrintOptions(scale, pegs, wall, bed),
+                                            name_cut=lambda cut: saved_cut.complete_names(obj, cut, known)), scale)
+
+
+@all_or_nothing()
+def create_print_objects(obj: bpy.types.Object, plan: PrintPlan) -> list[bpy.types.Object]:
+    """New objects in the object's place, in a new collection: only the meshes, without modifiers, UVs and attributes,
+    which cuts would tear. The notes of the checks become the collection's property "notes"."""
+    composition.update_matrices()
+    collection = composition.create_collection(obj, f"{obj.name} for printing")
+    collection["notes"] = "\n".join(plan.printable.notes)
+    objects = []
+    for part, (vertices, triangles) in plan.printable.solids.items():
+        mesh = bpy.data.meshes.new(plan.printable.names[part])
+        mesh.from_pydata((vertices / plan.scale).tolist(), [], triangles.tolist())
+        new = composition.create_bare_object(obj, mesh, mesh.name, collection)
+        objects.append(new)
+    composition.update_matrices()
+    return objects

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A mesh's cut as saved in the .blend file: the number of its part on each face, as an attribute that Blender
+preserves through edits, and the parts' names. It can be loaded even after the hierarchy was rebuilt."""
+
+from __future__ import annotations
+
+import json
+
+import bmesh
+import bpy
+import numpy as np
+
+from ..mesh import arrays
+from partwheel import Hierarchy
+from partwheel.cut import Cut, name_parts
+
+ATTRIBUTE = "partwheel_part"  # face attribute: number of the part
+NAMES_PROPERTY = "partwheel_parts"  # mesh property: JSON, {number: name}
+NAME_PREFIX = "Part"
+MAX_NAME_BYTES = 63  # of a name in Blender
+MAX_DIGITS = 10  # of a part's number
+
+
+def save_cut(mesh: bpy.types.Mesh, labels: np.ndarray, names: list[str]) -> None:
+    """Saves labels (F,), the part of each face, and the parts' names."""
+    arrays.needed_attribute(mesh, ATTRIBUTE, "INT", "FACE").data.foreach_set("value", labels)
+    mesh[NAMES_PROPERTY] = json.dumps(dict(enumerate(names)))
+
+
+def load_cut(obj: bpy.types.Object, hierarchy: Hierarchy) -> tuple[Cut, dict] | None:
+    """(the Cut saved in the object's mesh, {clusters: name}), or None. hierarchy: of the current mesh."""
+    mesh = obj.data
+    labels = _read_labels(mesh)
+    if labels is None:
+        return None
+    saved_names = _parse_names(mesh.get(NAMES_PROPERTY))
+    cut, names = Cut.from_labels(hierarchy, labels), {}
+    for part, clusters in enumerate(cut.parts):
+        values, counts = np.unique(labels[cut.labels == part], return_counts=True)
+        if (name := saved_names.get(int(values[counts.argmax()]))) and name not in names.values():
+            names[clusters] = name
+    return cut, names
+
+
+def _parse_names(text: object) -> dict[int, str]:
+    """{number: name} of the saved property, which may hold anything if others have written it. Only names that
+    Blender accepts."""
+    try:
+        parsed = json.loads(text) if isinstance(text, str) else None
+    except (ValueError, RecursionError):
+        parsed = None
+    if not isinstance(parsed, dict):
+        return {}
+    return {int(number): name for number, name in parsed.items()
+            if isinstance(name, str) and name and name.isprintable() and len(name.encode()) <= MAX_NAME_BYTES
+            and number.isdecimal() and len(number) <= MAX_DIGITS}
+
+
+def _read_labels(mesh: bpy.types.Mesh) -> np.ndarray | None:
+    """(F,) int32, or None if there are none."""
+    if mesh.is_editmode:  # then attributes have no values in Python
+        faces = bmesh.from_edit_mesh(mesh).faces
+        layer = faces.layers.int.get(ATTRIBUTE)
+        return None if layer is None else np.array([face[layer] for face in faces], np.int32)
+    attribute = arrays.attribute(mesh, ATTRIBUTE, "INT", "FACE")
+    return arrays.read(attribute.data, "value", np.int32) if attribute else None
+
+
+def complete_names(obj: bpy.types.Object, cut: Cut, known: dict) -> list[str]:
+    """The names of a cut's parts: the known ones, {clusters: name}, and generated ones that show which parts are
+    alike, left or right."""
+    names = [known.get(clusters) for clusters in cut.parts]
+    if None not in names:
+        return names
+    surface = arrays.surface(obj.data)
+    generated = name_parts(cut, surface.vertices, surface.triangles, surface.faces, NAME_PREFIX)
+    used = set(filter(None, names))
+    for part, name in enumerate(names):
+        if name is None:
+            number, name = 0, generated[part]
+            while name in used:
+                number += 1
+                name = f"{generated[part]} ({number})"
+            names[part] = name
+            used.add(name)
+    return names
