@@ -1,6 +1,6 @@
-"""What the test tiers are made of: setting up, building, running what tests, reading what it says.
+"""Steps of the test tiers: setup, builds, test runs, results.
 
-Everything that runs writes to build/test/NAME.log; the screen shows the end of what failed.
+Each command writes to build/test/NAME.log; the end of the log of a failed command is also printed.
 """
 
 import concurrent.futures
@@ -19,12 +19,12 @@ import xml.etree.ElementTree
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 OUTPUT = ROOT / "build" / "test"
 VENV = ROOT / "build" / "venv"
-TIME_LIMIT = 4 * 3600  # seconds for any one command, so that nothing hangs for ever; many times what any takes
-SHOWN = 60  # lines of a failed command's output
+TIME_LIMIT = 4 * 3600  # seconds for one command, many times what any takes, so that nothing hangs forever
+PRINTED_LINES = 60  # of a failed command's log
 
 
 class CouldNotRun(Exception):
-    """What a tier needs could not be set up or built. The message says why."""
+    """The requirements of a tier could not be installed or built. The message says why."""
 
 
 @dataclasses.dataclass
@@ -33,8 +33,8 @@ class Result:
     failed: int = 0
     skipped: list = dataclasses.field(default_factory=list)  # "test: why" of each
     failures: list = dataclasses.field(default_factory=list)
-    times: list = dataclasses.field(default_factory=list)  # (seconds, the test) of those that tell
-    tiers: list = dataclasses.field(default_factory=list)  # a line for each, which says how it went
+    times: list = dataclasses.field(default_factory=list)  # (seconds, test) if known
+    tiers: list = dataclasses.field(default_factory=list)  # a summary line for each
 
     def __iadd__(self, other):
         self.passed += other.passed
@@ -46,11 +46,11 @@ class Result:
         return self
 
 
-def side_by_side(tests, arguments, count):
-    """The sum, in their order, of the Results of a function called with each argument, so many calls at once."""
+def run_parallel(run, arguments, count):
+    """Calls run(argument) for each argument, count calls at a time; returns the sum of the Results in the arguments' order."""
     total = Result()
     with concurrent.futures.ThreadPoolExecutor(count) as pool:
-        for result in pool.map(tests, arguments):
+        for result in pool.map(run, arguments):
             total += result
     return total
 
@@ -59,23 +59,22 @@ def side_by_side(tests, arguments, count):
 
 
 def set_up(function):
-    """Waits until this function of setup.sh has run; begins it unless begin_setting_up() did. Only its first call takes
-    anything."""
-    if function not in set_ups:
-        begin_setting_up(function)
-    set_ups[function].result()
+    """Waits until this function of setup.sh has run; starts it unless start_setup() did. It runs once only."""
+    if function not in setup_futures:
+        start_setup(function)
+    setup_futures[function].result()
 
 
-def begin_setting_up(*functions):
-    """Runs functions of setup.sh, one after another, while tests run."""
+def start_setup(*functions):
+    """Starts functions of setup.sh in a background thread, one after another."""
     for function in functions:
-        if function not in set_ups:
+        if function not in setup_futures:
             log = re.sub(r"\W+", "-", function)
-            set_ups[function] = one_at_a_time.submit(require, log, "bash", "-euc", f". scripts/setup.sh; {function}")
+            setup_futures[function] = setup_pool.submit(require, log, "bash", "-euc", f". scripts/setup.sh; {function}")
 
 
-one_at_a_time = concurrent.futures.ThreadPoolExecutor(1)
-set_ups = {}  # function of setup.sh -> its Future
+setup_pool = concurrent.futures.ThreadPoolExecutor(1)
+setup_futures = {}  # function of setup.sh -> its Future
 
 
 def build(log, preset, *targets):
@@ -84,22 +83,22 @@ def build(log, preset, *targets):
 
 
 def make_packages():
-    """The add-on for Blender 4.2 and later, and the legacy one: made once for all tiers that need them."""
+    """Builds the add-on, once for all tiers; returns the paths of the extension for Blender 4.2+ and of the legacy add-on."""
     with compiling:
-        return made_packages()
+        return _cached_packages()
 
 
 @functools.cache
-def made_packages():
+def _cached_packages():
     require("package", "scripts/package")
     return tuple(map(pathlib.Path, (OUTPUT / "package.log").read_text().splitlines()[-2:]))
 
 
-compiling = threading.Lock()  # one at a time: what was compiled once, the next finds in the compiler's cache
+compiling = threading.Lock()  # one build at a time, so that the next finds its results in the compiler cache
 
 
-def installed(venv):
-    """A folder with the package in it as its wheel has it."""
+def install_wheel(venv):
+    """Installs the wheel into a new folder; returns its path."""
     packages = OUTPUT / f"packages-{venv}"
     shutil.rmtree(packages, ignore_errors=True)
     require(venv, "/usr/bin/python3", "-m", "pip", "install", "--no-deps", "--target", packages,
@@ -108,50 +107,49 @@ def installed(venv):
 
 
 def ctest(log, preset, *options, **environment):
-    report = fresh(log, "xml")
+    report = new_report(log, "xml")
     code = run(log, ["ctest", "--preset", preset, "--parallel", str(os.cpu_count()), "--output-junit", report,
                      *options], os.environ | environment)
     return read_junit(log, report, code)
 
 
-def gtests(log):
-    """How many of GoogleTest's tests passed: ctest runs whole programs where it takes long to start one."""
-    report = OUTPUT / f"{log}.xml"  # not there where ctest was stopped
+def count_gtests(log):
+    """The number of GoogleTest's tests that passed. ctest's own count is of programs if starting them takes long."""
+    report = OUTPUT / f"{log}.xml"  # missing if ctest was stopped
     text = report.read_text(errors="replace") if report.exists() else ""
     return sum(map(int, re.findall(r"\[  PASSED  \] (\d+) test", text)))
 
 
-def pytest(log, *tests, venv="core", shared=None, **environment):
-    """shared: what pytest-xdist calls the way in which the tests are shared between as many processes as there are
-    cores; None: one process."""
-    report = fresh(log, "xml")
+def pytest(log, *tests, venv="core", dist=None, **environment):
+    """Runs pytest. dist: how pytest-xdist distributes the tests to one process per core; None: one process."""
+    report = new_report(log, "xml")
     command = [VENV / venv / "bin/python", "-m", "pytest", "-rs", "-p", "no:cacheprovider", "--capture=sys",
-               f"--junitxml={report}", *tests]  # what a dying library writes reaches the log
-    if shared:
-        command += ["--numprocesses", str(os.cpu_count()), "--dist", shared]
+               f"--junitxml={report}", *tests]  # sys, so that the log has what a crashing library prints
+    if dist:
+        command += ["--numprocesses", str(os.cpu_count()), "--dist", dist]
     code = run(log, command, os.environ | environment)
     return read_junit(log, report, code)
 
 
 def pre_commit(log):
-    """Each of its checks counts as a test."""
-    safe = {"GIT_CONFIG_COUNT": "1", "GIT_CONFIG_KEY_0": "safe.directory", "GIT_CONFIG_VALUE_0": "*"}  # whoever owns the clone
+    """Runs pre-commit; each check counts as a test."""
+    safe = {"GIT_CONFIG_COUNT": "1", "GIT_CONFIG_KEY_0": "safe.directory", "GIT_CONFIG_VALUE_0": "*"}  # for any owner of the clone
     code = run(log, [VENV / "hooks/bin/pre-commit", "run", "--all-files", "--color", "never"],
                os.environ | safe | {"PRE_COMMIT_HOME": str(ROOT / "build/deps/hooks")})
     outcomes = re.findall(r"^(.+?)\.{3,}(?:\(.*\))?(Passed|Failed)$", (OUTPUT / f"{log}.log").read_text(), re.MULTILINE)
     failures = [f"{log}: {check}" for check, outcome in outcomes if outcome == "Failed"]
-    return checked(log, code, Result(len(outcomes) - len(failures), len(failures), failures=failures))
+    return check_result(log, code, Result(len(outcomes) - len(failures), len(failures), failures=failures))
 
 
-def own_runner(log, command, environment, report):
-    """Runs tests/addon/run.py or tests/gui/run.py, which write to report {"passed": n, "failed": n, "failures": [...],
-    "seconds": {test: s}}."""
+def run_reporting(log, command, environment, report):
+    """Runs tests/addon/run.py or tests/gui/run.py, which write {"passed": n, "failed": n, "failures": [...],
+    "seconds": {test: s}} to the report."""
     report.unlink(missing_ok=True)
     code = run(log, command, environment)
     if not report.exists():
         return broken(f"{log} ended with code {code} and no result, see {log_of(log)}")
     values = json.loads(report.read_text())
-    return checked(log, code, Result(values["passed"], values["failed"],
+    return check_result(log, code, Result(values["passed"], values["failed"],
                                      failures=[f"{log}: {failure}" for failure in values["failures"]],
                                      times=[(seconds, f"{log}: {test}") for test, seconds in values["seconds"].items()]))
 
@@ -173,11 +171,11 @@ def read_junit(log, report, code):
             result.skipped.append(f"{test}: {skip.get('message', '')}")
         else:
             result.passed += 1
-    return checked(log, code, result)
+    return check_result(log, code, result)
 
 
-def checked(log, code, result):
-    """The result, if it agrees with the exit code and holds any test at all."""
+def check_result(log, code, result):
+    """The result; a failure if it contradicts the exit code or has no tests."""
     if not result.passed + result.failed:
         return broken(f"{log} ran no test, see {log_of(log)}")
     if code and not result.failed:
@@ -186,11 +184,12 @@ def checked(log, code, result):
 
 
 def broken(sentence):
-    """The result of a run that could not say which tests passed."""
+    """The result of a run without a report."""
     return Result(failed=1, failures=[sentence])
 
 
-def fresh(log, kind):
+def new_report(log, kind):
+    """The path of a report, without the old file."""
     path = OUTPUT / f"{log}.{kind}"
     path.unlink(missing_ok=True)
     return path
@@ -207,8 +206,8 @@ def require(log, *command):
 
 
 def run(log, command, environment=None):
-    """Runs a command to its end or the time limit; returns its exit code. numpy gets one thread: processes share the cores,
-    and threads of matrices of two rows that wait for each other make some tests take ten times as long."""
+    """Runs a command, at most for the time limit; returns its exit code. numpy gets one thread: the test processes share the
+    cores, and threads for tiny matrices make some tests ten times as slow."""
     environment = {**(os.environ if environment is None else environment), "OPENBLAS_NUM_THREADS": "1"}
     path = OUTPUT / f"{log}.log"
     with path.open("w") as output:
@@ -221,8 +220,8 @@ def run(log, command, environment=None):
             code = process.wait()
             output.write(f"\nstopped after {TIME_LIMIT} s\n")
     if code:
-        shown = path.read_text(errors="replace").splitlines()[-SHOWN:]
-        print(f"   {log} ended with code {code}:\n" + "".join(f"   | {line}\n" for line in shown), end="")
+        lines = path.read_text(errors="replace").splitlines()[-PRINTED_LINES:]
+        print(f"   {log} ended with code {code}:\n" + "".join(f"   | {line}\n" for line in lines), end="")
     return code
 
 

@@ -1,7 +1,7 @@
-"""The test tiers, one function each: builds what it needs, runs it, returns what passed and failed.
+"""The test tiers. Each is a function that builds what it needs, runs its tests and returns a Result.
 
-Called by scripts/test. What all of them need to be set up is set up in that order, while the first tests run. Two tiers run
-at once: each waits now and then, for a window, a link or its last test.
+scripts/test calls this. The requirements of all tiers are installed in the tiers' order while the first tests run. Two tiers
+run at a time, because each is idle now and then, waiting for a window, the linker or its last test.
 """
 
 import argparse
@@ -11,47 +11,48 @@ import shutil
 import sys
 import time
 
-from test_steps import (OUTPUT, ROOT, VENV, CouldNotRun, Result, begin_setting_up, broken, build, ctest, gtests, installed,
-                        make_packages, output_of, own_runner, pre_commit, pytest, require, set_up, side_by_side)
+from test_steps import (OUTPUT, ROOT, VENV, CouldNotRun, Result, broken, build, count_gtests, ctest, install_wheel,
+                        make_packages, output_of, pre_commit, pytest, require, run_parallel, run_reporting, set_up, start_setup)
 
-BENCHMARK = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # of which the tier quality scores a part
+BENCHMARK = ROOT.parent / "shared" / "psb" / "tune.tar.xz"  # the tier quality uses a part of it
 HAS_BENCHMARK = bool(os.environ.get("PARTWHEEL_PSB")) or BENCHMARK.exists()
 SUITES = os.environ.get("PARTWHEEL_SUITES", "sid").split()
-# The oldest Blender plays all scenarios, the newest these.
-IN_NEWEST = ("adjust", "anything", "beyond", "blender_itself", "bones", "cage", "commands", "compose_finger",
+# The scenarios that the newest Blender runs; the oldest one runs all.
+NEWEST_SCENARIOS = ("adjust", "anything", "beyond", "blender_itself", "bones", "cage", "commands", "compose_finger",
              "confirm_enter", "convex_parts", "creases", "deform", "deform_keys", "deform_more", "deform_within",
              "duplicate", "empty_space", "finds_first", "frames", "gather", "hands", "imports", "industry", "left_out",
              "limits", "linked", "menu", "modes", "move", "navigate", "open_mesh", "overlays", "panel",
              "panel_solids", "parts_to", "pick_and_click", "picked_objects", "quad_view", "recover", "related",
              "restore", "seen", "select_modes", "similar_across", "three_clicks", "tool", "tool_keys", "ways",
              "wheel_at_click", "while_building", "windows", "words")
-THREADED = "[Tt]hread|ProgressNever"  # the names of tests in which threads meet
-# What the sanitizers have seen already: native tests that build the same once more to compare or count, and shapes by formula
-# beside real models; and files of core about what the package does with numbers and texts, where the library is called as in
-# the other files, or as in the native tests: "border", "convex", "progress", "regroup", which take long.
-COMPARED = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|SameBytes|TheSameForAny|AreFew|AreBounded" \
+THREADED = "[Tt]hread|ProgressNever"  # names of tests that use threads
+# Tests that add nothing under the sanitizers. Native: tests that build the same model again to compare or count, and shapes by
+# formula, since real models run the same code.
+REDUNDANT_NATIVE = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|SameBytes|TheSameForAny|AreFew|AreBounded" \
            r"|SurfacesByFormula|OfShapesByFormula|KeepTheError"
-PACKAGES_OWN = ("bones", "border", "command_line", "compatible", "convex", "cut", "docs", "docs_commands", "layers",
-                "interpreter", "joint", "likeness", "locale", "meshes", "primitives", "printing", "progress", "regroup", "seams",
-                "shipping", "symmetry", "versions", "words", "worker")
-LIGHT = {"PARTWHEEL_TEST_LIGHT": "1"}  # fewer models that take the same code, smaller sizes
-GATE_BPY = ("5.0", "4.2")  # the newest and the oldest; the first one runs the tests that are for one Blender only
-# Click and wheel in each mode, parts to objects, an import, and the whole job.
+# Core: files about Python code, whose calls of the library other files make, too; and "border", "convex", "progress", "regroup",
+# which take long and whose calls the native tests make.
+REDUNDANT_CORE = ("bones", "border", "command_line", "compatible", "convex", "cut", "docs", "docs_commands", "layers",
+                  "interpreter", "joint", "likeness", "locale", "meshes", "primitives", "printing", "progress", "regroup", "seams",
+                  "shipping", "symmetry", "versions", "words", "worker")
+LIGHT = {"PARTWHEEL_TEST_LIGHT": "1"}  # fewer and smaller models that run the same code
+GATE_BPY = ("5.0", "4.2")  # the newest and the oldest; the first also runs the tests for a single Blender
+# Click and wheel in each mode, parts to objects, an import, and a complete session.
 GATE_SCENARIOS = ("tool", "modes", "picked_objects", "parts_to", "imports", "three_clicks")
 TEN_MODELS = "tests/quality/test_floors.py::test_ten_models_of_the_benchmark"
-AT_ONCE = 2  # tiers
-SLOWEST = 10  # tests that are named at the end
+PARALLEL_TIERS = 2
+SLOWEST_TESTS = 10  # number of tests listed at the end
 
-PACKAGES = ("setup_build", "setup_package")  # what make_packages() needs
-WINDOWS = (*PACKAGES, "setup_core", "setup_blender", "setup_display")  # what in_windows() needs
+PACKAGES = ("setup_build", "setup_package")  # required by make_packages()
+WINDOWS = (*PACKAGES, "setup_core", "setup_blender", "setup_display")  # required by run_scenarios()
 
 
-def needs(*functions, begins=()):
-    """What of setup.sh a tier waits for; and what is begun likewise, but asked after by the tier itself."""
-    def noted(tier):
-        tier.needs, tier.begins = functions, (*functions, *begins)
+def needs(*functions, optional=()):
+    """Declares the functions of setup.sh that a tier requires, and those that are started, too, but awaited by the tier itself."""
+    def decorate(tier):
+        tier.needs, tier.setup = functions, (*functions, *optional)
         return tier
-    return noted
+    return decorate
 
 
 @needs("setup_build")
@@ -63,26 +64,26 @@ def native(**environment):
 
 @needs("setup_build", "setup_core")
 def sanitizers():
-    """Native and core tests again, watched by AddressSanitizer and UndefinedBehaviorSanitizer: all but what is the same
-    code on the same models once more. The latter in a host program whose numbers have a comma."""
+    """Native and core tests, without redundant ones, under AddressSanitizer and UndefinedBehaviorSanitizer; the core tests in
+    a host program with a decimal comma."""
     build("sanitizers", "asan")
-    result = ctest("sanitizers-native", "asan", "--exclude-regex", COMPARED)
-    tests = [path for path in sorted((ROOT / "tests/core").glob("test_*.py")) if path.stem[5:] not in PACKAGES_OWN]
-    result += pytest("sanitizers-core", *tests, shared="loadfile", LD_PRELOAD=runtimes(), ASAN_OPTIONS="detect_leaks=0",
+    result = ctest("sanitizers-native", "asan", "--exclude-regex", REDUNDANT_NATIVE)
+    tests = [path for path in sorted((ROOT / "tests/core").glob("test_*.py")) if path.stem[5:] not in REDUNDANT_CORE]
+    result += pytest("sanitizers-core", *tests, dist="loadfile", LD_PRELOAD=sanitizer_runtimes(), ASAN_OPTIONS="detect_leaks=0",
                      UBSAN_OPTIONS="print_stacktrace=1", PARTWHEEL_TEST_COMMA="1",
                      PARTWHEEL_LIBRARY=str(ROOT / "build/asan/libpartwheel.so"), **LIGHT)
     return result
 
 
-def runtimes():
-    """Of the sanitizers. Python isn't linked with them, so they are loaded before it; its own leaks are not looked at."""
+def sanitizer_runtimes():
+    """The libraries to preload into Python, which isn't linked with the sanitizers."""
     return " ".join(output_of("clang++", f"-print-file-name={name}")
                     for name in ("libclang_rt.asan-x86_64.so", "libstdc++.so"))
 
 
 @needs("setup_build")
 def threads():
-    """The native tests that use threads, watched by ThreadSanitizer."""
+    """The native tests that use threads, under ThreadSanitizer."""
     programs = [path.stem for path in sorted((ROOT / "tests" / "native").glob("*_test.cpp"))
                 if re.search(THREADED, path.stem + "".join(re.findall(r"^TEST.*", path.read_text(), re.MULTILINE)))]
     build("threads", "tsan", *programs)
@@ -91,17 +92,17 @@ def threads():
 
 @needs("setup_build", "setup_core")
 def fuzz():
-    """The fuzzers of the C API's three entrances, for a hundred inputs each, watched by the sanitizers."""
-    build("fuzz", "asan", "mesh_fuzzer", "saved_fuzzer", "surface_fuzzer")  # and the release, which makes the seeds
-    return pytest("fuzz", "tests/fuzz", shared="worksteal")
+    """The fuzzers of the C API's three entry points, with a hundred inputs each, under the sanitizers."""
+    build("fuzz", "asan", "mesh_fuzzer", "saved_fuzzer", "surface_fuzzer")  # and the release build, which generates the seeds
+    return pytest("fuzz", "tests/fuzz", dist="worksteal")
 
 
 @needs("setup_build", "setup_core")
 def determinism():
-    """The same bits as shipped, in one thread or three, and from another compiler with the sanitizers."""
+    """Bit-identical results with one and three threads, and from another compiler with the sanitizers."""
     for preset in ("release", "asan"):
         build("determinism", preset, "partwheel")
-    return pytest("determinism", "tests/determinism", PARTWHEEL_RUNTIMES=runtimes())
+    return pytest("determinism", "tests/determinism", PARTWHEEL_RUNTIMES=sanitizer_runtimes())
 
 
 @needs(*PACKAGES, "setup_core")
@@ -109,29 +110,29 @@ def core(**environment):
     """The Python package as installed from its wheel, and the installed library, without Blender."""
     build("core", "release", "partwheel", "partwheel_checks")
     make_packages()
-    return pytest("core", "tests/core", shared="loadfile", PARTWHEEL_PACKAGES=installed("core"), **environment)
+    return pytest("core", "tests/core", dist="loadfile", PARTWHEEL_PACKAGES=install_wheel("core"), **environment)
 
 
 @needs(*PACKAGES, "setup_batch")
 def batch():
     """partwheel batch as installed from the wheel: hostile files, kills, Ctrl-C, its report in a browser."""
     make_packages()
-    return pytest("batch", "tests/batch", venv="batch", PARTWHEEL_PACKAGES=installed("batch"))
+    return pytest("batch", "tests/batch", venv="batch", PARTWHEEL_PACKAGES=install_wheel("batch"))
 
 
-@needs("setup_build", "setup_core", "setup_blender")  # whose primitives are among the models
+@needs("setup_build", "setup_core", "setup_blender")  # Blender's primitives are among the models
 def reliability():
-    """Every model there is: built, or a sheet and named so, and no crash; a table in build/test."""
+    """Every available model: it is built or recognized as a sheet, and nothing crashes. Writes a table to build/test."""
     build("reliability", "release", "partwheel")
-    return pytest("reliability", "tests/reliability", shared="loadfile")
+    return pytest("reliability", "tests/reliability", dist="loadfile")
 
 
 @needs("setup_build", "setup_core", *(["setup_psb"] if HAS_BENCHMARK else []))
 def quality():
-    """How well parts are selected: 24 models of the benchmark where it is, and mirror images, against floors."""
+    """The quality of selected parts: 24 models of the benchmark, if it is available, and mirror images, against minimum scores."""
     build("quality", "release", "partwheel")
     build("quality", "bench", "quality_trace")
-    return pytest("quality", "tests/quality", "--deselect", TEN_MODELS, shared="loadfile")
+    return pytest("quality", "tests/quality", "--deselect", TEN_MODELS, dist="loadfile")
 
 
 @needs(*PACKAGES, "setup_core", "setup_blender", "setup_bpy")
@@ -140,10 +141,10 @@ def addon():
     extension, legacy = make_packages()
     versions = output_of("bash", "-c", ". scripts/setup.sh && echo $bpy_versions").split()
     blender = ["blender", "-b", "-noaudio", "--factory-startup", "--python-exit-code", "9", "--python"]
-    # The longest first: the oldest and the newest run all tests.
+    # The longest runs first: the oldest and the newest version run all tests.
     runs = [lambda: in_blender("blender", blender, legacy),
             *(lambda version=version: in_bpy(version, extension) for version in reversed(versions))]
-    return side_by_side(lambda run: run(), runs, os.cpu_count())
+    return run_parallel(lambda run: run(), runs, os.cpu_count())
 
 
 def in_bpy(version, package):
@@ -152,59 +153,61 @@ def in_bpy(version, package):
 
 def in_blender(name, interpreter, package):
     """The tests of the add-on in one Blender."""
-    home = OUTPUT / "home" / name  # a new one, so that nothing installed before is there
+    home = OUTPUT / "home" / name  # empty, so that no installed add-on is found
     shutil.rmtree(home, ignore_errors=True)
     home.mkdir(parents=True)
     clean = {"PATH": os.environ["PATH"], "HOME": str(home), "LANG": "C.UTF-8"}
     clean |= {name: value for name, value in os.environ.items()
               if name in {"PARTWHEEL_UNITES", "PARTWHEEL_UNITES_SEED", "PARTWHEEL_EVENTS"}}
     report = OUTPUT / f"addon-{name}.json"
-    return own_runner(f"addon-{name}", [*interpreter, "tests/addon/run.py", "--", package, report], clean, report)
+    return run_reporting(f"addon-{name}", [*interpreter, "tests/addon/run.py", "--", package, report], clean, report)
 
 
 @needs(*WINDOWS)
 def gui():
-    """Blender's own window under Xvfb, driven by mouse and key events, in the distribution's Blender."""
-    return in_windows("gui")
+    """Scenarios in a window of the distribution's Blender under Xvfb, driven by mouse and key events."""
+    return run_scenarios("gui")
 
 
-def in_windows(log, *scenarios):
+def run_scenarios(log, *scenarios):
+    """Runs the scenarios, by default all, in the distribution's Blender."""
     _, legacy = make_packages()
     report = OUTPUT / f"{log}.json"
-    return own_runner(log, [VENV / "core/bin/python", "tests/gui/run.py", legacy, report, *scenarios], dict(os.environ), report)
+    return run_reporting(log, [VENV / "core/bin/python", "tests/gui/run.py", legacy, report, *scenarios], dict(os.environ), report)
 
 
-@needs(*WINDOWS, begins=[f"setup_newest {suite}" for suite in SUITES])
+@needs(*WINDOWS, optional=[f"setup_newest {suite}" for suite in SUITES])
 def newest():
-    """More of it in the newest Blender that Debian has, which moves; where that can't be had, in the distribution's."""
+    """More scenarios in the newest Blender that Debian has; if it can't be installed, in the distribution's."""
     result = Result()
     for suite in SUITES:
-        result += in_suite(suite)
+        result += run_in_suite(suite)
     if not result.passed + result.failed:
-        result += in_windows("newest", *IN_NEWEST)
+        result += run_scenarios("newest", *NEWEST_SCENARIOS)
     return result
 
 
-def in_suite(suite):
-    """In another Debian's Blender."""
+def run_in_suite(suite):
+    """Runs the scenarios in the Blender of another Debian release."""
     extension, _ = make_packages()
     log = f"newest-{suite}"
-    if not has_suite(suite):
-        return Result(skipped=[f"newest: {name}: there is no Blender of Debian {suite}" for name in IN_NEWEST])
-    inside = ROOT / f"build/deps/blender-{suite}"
-    room = inside / "partwheel"  # nothing is mounted: what the scenarios need is copied
-    shutil.rmtree(room, ignore_errors=True)
+    if not install_suite(suite):
+        return Result(skipped=[f"newest: {name}: there is no Blender of Debian {suite}" for name in NEWEST_SCENARIOS])
+    chroot = ROOT / f"build/deps/blender-{suite}"
+    folder = chroot / "partwheel"  # a copy of the files that the scenarios need, since nothing is mounted
+    shutil.rmtree(folder, ignore_errors=True)
     for tests in ("tests/gui", "tests/faults"):
-        shutil.copytree(ROOT / tests, room / tests)
-    shutil.copytree(ROOT / "build/deps/meshes", room / "build/deps/meshes")
-    shutil.copy(extension, room)
+        shutil.copytree(ROOT / tests, folder / tests)
+    shutil.copytree(ROOT / "build/deps/meshes", folder / "build/deps/meshes")
+    shutil.copy(extension, folder)
     clean = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "LANG": "C.UTF-8"}
-    command = ["chroot", inside, "python3", "/partwheel/tests/gui/run.py", f"/partwheel/{extension.name}",
-               "/partwheel/result.json", *IN_NEWEST]
-    return own_runner(log, command, clean, room / "result.json")
+    command = ["chroot", chroot, "python3", "/partwheel/tests/gui/run.py", f"/partwheel/{extension.name}",
+               "/partwheel/result.json", *NEWEST_SCENARIOS]
+    return run_reporting(log, command, clean, folder / "result.json")
 
 
-def has_suite(suite):
+def install_suite(suite):
+    """Installs another Debian release; returns whether that worked."""
     try:
         set_up(f"setup_newest {suite}")
     except CouldNotRun as reason:
@@ -234,35 +237,35 @@ def gate_core():
 @needs(*PACKAGES, *(f"setup_bpy {version}" for version in GATE_BPY))
 def gate_addon():
     """The add-on as installed from the zip, without a window, in the newest and the oldest bpy."""
-    return side_by_side(lambda version: in_bpy(version, make_packages()[0]), GATE_BPY, os.cpu_count())
+    return run_parallel(lambda version: in_bpy(version, make_packages()[0]), GATE_BPY, os.cpu_count())
 
 
 @needs(*WINDOWS)
 def gate_gui():
     """Six scenarios in the distribution's Blender, driven by mouse and key events."""
-    return in_windows("gui", *GATE_SCENARIOS)
+    return run_scenarios("gui", *GATE_SCENARIOS)
 
 
 @needs(*quality.needs)
 def gate_quality():
-    """How well parts are selected, on ten models."""
+    """The quality of selected parts, on ten models."""
     build("gate_quality", "release", "partwheel")
     return pytest("gate_quality", TEN_MODELS)
 
 
-@needs(*PACKAGES, "setup_core", "setup_bpy", "setup_workflows", begins=["setup_newest sid"])
+@needs(*PACKAGES, "setup_core", "setup_bpy", "setup_workflows", optional=["setup_newest sid"])
 def ship():
-    """The packages for all platforms, made, run where they can be, and installed as strangers do; and the native tests of
-    this machine and of the two that are for others, by wine and qemu. An hour of compiling: only when it is named."""
+    """The packages for all platforms: built, run as far as possible, and installed as users do; and the native tests of this
+    platform and of two others, by wine and qemu. Compiles for an hour, so it must be named."""
     require("ship-package", "scripts/package", "all")
     print((OUTPUT / "ship-package.log").read_text().split("distribution\n")[-1], end="")
-    has_suite("sid")
+    install_suite("sid")
     result = pytest("ship", "tests/ship")
-    for preset in ("release", "windows-x64", "linux-arm64"):  # the first: how long this machine takes of itself
+    for preset in ("release", "windows-x64", "linux-arm64"):  # the first, for comparison of times
         build(f"ship-{preset}", preset)
         began = time.monotonic()
         native = ctest(f"ship-{preset}", preset, "--test-output-truncation", "head")
-        print(f"   {preset}: {gtests(f'ship-{preset}')} native tests passed in {time.monotonic() - began:.0f} s")
+        print(f"   {preset}: {count_gtests(f'ship-{preset}')} native tests passed in {time.monotonic() - began:.0f} s")
         result += native
     return result
 
@@ -282,8 +285,8 @@ def set_up_and_run(tests):
 
 
 def run(name):
-    """A tier's Result, told when it is there."""
-    print(f"== {name}: {TIERS[name].__doc__}\n", end="")  # in one piece, beside another tier's
+    """Runs a tier, prints and returns its Result."""
+    print(f"== {name}: {TIERS[name].__doc__}\n", end="")  # one write, since another tier prints, too
     began = time.monotonic()
     try:
         result = set_up_and_run(TIERS[name])
@@ -291,13 +294,13 @@ def run(name):
         result = broken(f"{name} could not run: {reason}")
     skipped = f", {len(result.skipped)} skipped" if result.skipped else ""
     result.tiers = [f"{name:<12}{result.passed} passed, {result.failed} failed{skipped}, {time.monotonic() - began:.0f} s"]
-    told = [*(f"FAILED {failure}" for failure in result.failures), *result.tiers]
-    print("".join(f"   {line}\n" for line in told), end="")
+    lines = [*(f"FAILED {failure}" for failure in result.failures), *result.tiers]
+    print("".join(f"   {line}\n" for line in lines), end="")
     return result
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="scripts/test", description="Runs the gate, all tiers, or the tiers named.")
+    parser = argparse.ArgumentParser(prog="scripts/test", description="Runs the gate, all tiers, or the given tiers.")
     parser.add_argument("tier", nargs="*", metavar="all | TIER", help=" ".join(TIERS))
     names = parser.parse_args().tier or list(GATE)
     if names == ["all"]:
@@ -307,10 +310,10 @@ def main():
             parser.error(f"there is no tier {name}: {', '.join(TIERS)}")
 
     OUTPUT.mkdir(parents=True, exist_ok=True)
-    begin_setting_up(*(function for name in names for function in TIERS[name].begins))
-    total = side_by_side(run, names, AT_ONCE)
+    start_setup(*(function for name in names for function in TIERS[name].setup))
+    total = run_parallel(run, names, PARALLEL_TIERS)
     print("== the slowest tests")
-    for seconds, test in sorted(total.times, reverse=True)[:SLOWEST]:
+    for seconds, test in sorted(total.times, reverse=True)[:SLOWEST_TESTS]:
         print(f"   {seconds:6.1f} s  {test}")
     if total.skipped:
         print("== skipped")

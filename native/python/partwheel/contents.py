@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a mesh file has beside its surface: partwheel reads the surface alone, so no output has the rest, and says so."""
+"""Detects what a mesh file contains besides its surface. Partwheel reads the surface only, so no output has the rest."""
 
 import os
 import re
@@ -7,10 +7,10 @@ import zipfile
 from pathlib import Path
 from typing import Dict, Iterable, Tuple, Union
 
-# What can be lost, in the order in which messages list it. Normals are not among it: they follow from the surface.
+# What can be lost, in the order of messages. Not normals: they follow from the surface.
 KINDS = ("texture coordinates", "textures", "materials", "colors", "names", "skeletons", "animations", "shape keys")
 
-# Format -> kind -> what the text of such a file has then. By patterns, so that no damaged file can raise an error here.
+# Format -> kind -> a pattern that the file then contains. Patterns, unlike parsers, accept damaged files.
 GLTF = {
     "texture coordinates": rb'"TEXCOORD_\d', "textures": rb'"(?:textures|images)"\s*:\s*\[\s*\{',
     "materials": rb'"materials"\s*:\s*\[\s*\{', "colors": rb'"COLOR_\d', "names": rb'"name"\s*:\s*"[^"]',
@@ -49,7 +49,7 @@ PATTERNS: Dict[str, Dict[str, bytes]] = {
 
 
 def find_contents(path: Union[str, Path]) -> Tuple[str, ...]:
-    """What a file has beside its surface.
+    """Finds what a file contains besides its surface.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def find_contents(path: Union[str, Path]) -> Tuple[str, ...]:
 
     Returns
     -------
-    those of KINDS that it has; empty for a format that is not in PATTERNS
+    the kinds of KINDS that it has; empty for a format without PATTERNS
 
     Raises
     ------
@@ -70,20 +70,20 @@ def find_contents(path: Union[str, Path]) -> Tuple[str, ...]:
 
 
 def describe_contents(kinds: Iterable[str]) -> str:
-    """A sentence that says what is not in the output; empty if there is nothing."""
+    """A sentence about what is missing in the output; empty if nothing is."""
     *others, last = kinds or [""]
     listed = f"{', '.join(others)} and {last}" if others else last
     return f"Not in the output, though the file has them: {listed}." if last else ""
 
 
 def read_header(path: Path) -> bytes:
-    """The part of a file that says what it has."""
+    """The part of a file in which to search."""
     suffix = path.suffix.lower()
     if suffix == ".3mf":
         with zipfile.ZipFile(path) as archive:
             return b"\n".join(archive.read(name) for name in archive.namelist() if name.lower().endswith(".model"))
     with open(path, "rb") as file:
-        if suffix == ".glb":  # a header of 12 bytes, then the chunk of JSON: its length, its type, itself
+        if suffix == ".glb":  # 12 bytes of header, then the JSON chunk: length, type, data
             head = file.read(20)
             return file.read(int.from_bytes(head[12:16], "little"))
         if suffix == ".stl":
@@ -95,9 +95,9 @@ def read_header(path: Path) -> bytes:
 
 
 def _materials(path: Path, text: bytes) -> bytes:
-    """The material files of an OBJ that are there."""
-    found = b""
+    """The content of an OBJ's existing material files."""
+    materials = b""
     for name in re.findall(rb"(?m)^[ \t]*mtllib[ \t]+(.+?)\s*$", text):
-        beside = path.parent / os.path.basename(name.decode("utf-8", "replace"))
-        found += b"\n" + beside.read_bytes() if beside.is_file() else b""
-    return found
+        library = path.parent / os.path.basename(name.decode("utf-8", "replace"))
+        materials += b"\n" + library.read_bytes() if library.is_file() else b""
+    return materials

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mesh files as arrays: OFF and OBJ read here, other formats through trimesh (optional), nothing merged or repaired."""
+"""Reads mesh files as arrays, without repairs: OFF and OBJ itself, other formats through trimesh (optional)."""
 
 from __future__ import annotations
 
@@ -14,23 +14,29 @@ from .library import Error
 from .polygons import fan_or_ears, is_fan, triangulate
 from .requirements import load_module
 
-# Formats whose corners share vertices by index. All others store each triangle's corners apart (STL) or split vertices
-# along texture seams (OBJ, glTF), so theirs are welded where their coordinates are exactly equal.
+# Formats in which triangles share vertices by index. The others store the corners of each triangle separately (STL) or split
+# vertices along texture seams (OBJ, glTF); for these, vertices with identical coordinates are welded.
 INDEXED_FORMATS = {"off", "ply"}
-# How long the units are that a 3MF file can have.
+# The units of 3MF files.
 MILLIMETERS = {"micron": 0.001, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
 
 
 class MeshFileError(Error):
-    """A file that can't be read as a mesh; str() says why. name: "mesh file", beside the library's error names."""
+    """A file can't be read as a mesh; str() says why. name: "mesh file", which is no name of the library's errors."""
 
     name = "mesh file"
 
 
 class Mesh(NamedTuple):
-    """vertices (V,3) float64, triangles (T,3) int32, faces (T,) int32 the polygon of each triangle, face_count.
-    welded: how many vertices were exact copies of another and were joined with it; 0 for formats with indices. dropped:
-    what else the file has, of contents.KINDS, and no output will have."""
+    """A triangulated surface.
+
+    vertices : (V, 3) float64
+    triangles : (T, 3) int32
+    faces : (T,) int32, the polygon of each triangle
+    face_count : number of polygons
+    welded : number of vertices removed because another one has identical coordinates; 0 for formats with indices
+    dropped : what else the file has, of contents.KINDS; no output has it
+    """
 
     vertices: np.ndarray
     triangles: np.ndarray
@@ -45,7 +51,7 @@ def read(path: Union[str, Path]) -> Mesh:
 
     Parameters
     ----------
-    path : an OFF file, or one of any other format that trimesh reads
+    path : an OFF or OBJ file, or one of any other format that trimesh reads
 
     Returns
     -------
@@ -54,46 +60,46 @@ def read(path: Union[str, Path]) -> Mesh:
     Raises
     ------
     MeshFileError : the file holds no mesh, or a damaged one
-    RequirementError : trimesh, which reads all formats but OFF, is not installed
+    RequirementError : trimesh, which reads all formats but OFF and OBJ, is not installed
     OSError : the file can't be opened
     """
     path = Path(path)
     with open(path, "rb"):
-        pass  # trimesh takes a missing file for a format it does not know
-    read_it = {".off": _read_off, ".obj": _read_obj}.get(path.suffix.lower(), _read_with_trimesh)
-    return read_it(path)._replace(dropped=find_contents(path))
+        pass  # raises OSError; trimesh would report an unknown format
+    reader = {".off": _read_off, ".obj": _read_obj}.get(path.suffix.lower(), _read_with_trimesh)
+    return reader(path)._replace(dropped=find_contents(path))
 
 
 def _read_with_trimesh(path: Path) -> Mesh:
     trimesh = load_module("trimesh", f"Reading {path.suffix or 'such'} files")
     suffix = path.suffix.lower().lstrip(".")
     if suffix in ("glb", "gltf") and re.search(rb'"mode"\s*:\s*6\b', read_header(path)):
-        # trimesh skips them without a word
+        # trimesh skips them silently
         raise MeshFileError(f"{path.name} has triangle fans, which can't be read. Export it with plain triangles.")
     try:
-        # Geometry alone: for pictures trimesh would need another package.
-        options = {"fix_texture": False} if suffix == "ply" else {}  # or it splits vertices along texture seams
+        # skip_materials: images would require another package.
+        options = {"fix_texture": False} if suffix == "ply" else {}  # True would split vertices along texture seams
         scene = trimesh.load(path, process=False, force="scene", skip_materials=True, **options)
-        pieces = [piece for node in scene.graph.nodes_geometry if (piece := _placed(scene, *scene.graph[node]))]
+        pieces = [piece for node in scene.graph.nodes_geometry if (piece := _transformed_piece(scene, *scene.graph[node]))]
     except MemoryError:
-        raise  # it says nothing about the file
-    except Exception as error:  # trimesh's readers raise whatever their parsing meets
+        raise  # not an error of the file
+    except Exception as error:  # trimesh's readers raise many types
         raise MeshFileError(f"trimesh can't read {path.name} as a mesh: {error}") from error
     if not pieces:
         raise _no_triangles(path)
     offsets = np.cumsum([0] + [len(points) for points, _ in pieces])
     vertices = np.vstack([points for points, _ in pieces])
     triangles = np.vstack([triangles + offset for (_, triangles), offset in zip(pieces, offsets)])
-    if suffix == "3mf":  # printers and what this package writes take lengths as millimeters
+    if suffix == "3mf":  # 3D printers and this package's output use millimeters
         vertices *= MILLIMETERS.get(scene.units, 1.0)
     return _triangle_mesh(vertices, triangles, weld=suffix not in INDEXED_FORMATS)
 
 
 def _triangle_mesh(vertices: np.ndarray, triangles: np.ndarray, weld: bool) -> Mesh:
-    """A Mesh whose faces are its triangles. weld: join vertices at exactly the same place."""
+    """A Mesh whose faces are its triangles. weld: weld vertices with identical coordinates."""
     welded = 0
     if weld:
-        unique, index = np.unique(vertices + 0.0, axis=0, return_inverse=True)  # + 0.0: -0.0 is 0.0
+        unique, index = np.unique(vertices + 0.0, axis=0, return_inverse=True)  # + 0.0 turns -0.0 into 0.0
         welded = len(vertices) - len(unique)
         vertices, triangles = unique, index.reshape(-1)[triangles]
     return Mesh(np.ascontiguousarray(vertices), np.ascontiguousarray(triangles, np.int32),
@@ -101,25 +107,27 @@ def _triangle_mesh(vertices: np.ndarray, triangles: np.ndarray, weld: bool) -> M
 
 
 def _no_triangles(path: Path) -> MeshFileError:
-    return MeshFileError(f"{path.name} holds no triangles; only surfaces can be built.")
+    return MeshFileError(f"{path.name} has no triangles.")
 
 
-def _placed(scene: Any, matrix: np.ndarray, name: str) -> Optional[Tuple[np.ndarray, np.ndarray]]:
-    """(points (n,3), triangles (m,3)) of a piece of the scene where the matrix has it, or None if it has no triangles.
-    By hand: Scene.dump() would copy what the piece looks like as well, which fails without the package for pictures."""
+def _transformed_piece(scene: Any, matrix: np.ndarray, name: str) -> Optional[Tuple[np.ndarray, np.ndarray]]:
+    """(points (n, 3), triangles (m, 3)) of a geometry of the scene after the transform (4, 4); None without triangles.
+
+    Not Scene.dump(), which copies materials, too, and fails without the package for images."""
     piece = scene.geometry[name]
-    triangles = _of_polygons(piece) if hasattr(piece, "faces") else _of_strips(piece)
+    triangles = _piece_triangles(piece) if hasattr(piece, "faces") else _strip_triangles(piece)
     if not len(triangles):
         return None
     points = np.asarray(piece.vertices, np.float64)
     if (matrix == np.eye(4)).all():
         return points, triangles
-    turned = np.linalg.det(matrix[:3, :3]) < 0
-    return points @ matrix[:3, :3].T + matrix[:3, 3], triangles[:, ::-1] if turned else triangles
+    is_mirrored = np.linalg.det(matrix[:3, :3]) < 0
+    return points @ matrix[:3, :3].T + matrix[:3, 3], triangles[:, ::-1] if is_mirrored else triangles
 
 
-def _of_polygons(piece: Any) -> np.ndarray:
-    """The triangles of a mesh: those of trimesh, which are fans, unless a PLY file has polygons that no fan fills."""
+def _piece_triangles(piece: Any) -> np.ndarray:
+    """(m, 3) triangles of a trimesh mesh. trimesh splits polygons into fans; if a polygon of a PLY file has no valid fan, all
+    polygons of the file are triangulated again."""
     data = piece.metadata.get("_ply_raw", {}).get("face", {}).get("data")
     names = getattr(getattr(data, "dtype", None), "names", None) or (data if isinstance(data, dict) else ())
     name = next((name for name in ("vertex_index", "vertex_indices") if name in names), None)
@@ -133,9 +141,9 @@ def _of_polygons(piece: Any) -> np.ndarray:
     return np.array([triangle for polygon in polygons for triangle in fan_or_ears(points[polygon], polygon)])
 
 
-def _of_strips(cloud: Any) -> np.ndarray:
-    """The triangles of a PLY file's element "tristrips", which trimesh reads but takes for no surface: each corner
-    makes one with the two before it, every other one turned; -1 begins anew."""
+def _strip_triangles(cloud: Any) -> np.ndarray:
+    """(m, 3) triangles of the element "tristrips" of a PLY file, which trimesh reads as a point cloud. Each corner forms a
+    triangle with the two before it, with alternating orientation; -1 starts a new strip."""
     strips = cloud.metadata.get("_ply_raw", {}).get("tristrips", {}).get("data")
     if strips is None:
         return np.zeros((0, 3), int)
@@ -144,17 +152,17 @@ def _of_strips(cloud: Any) -> np.ndarray:
     for row in lists["f1"] if lists.dtype.names else lists:
         for strip in np.split(row, np.flatnonzero(row < 0)):
             strip = strip[strip >= 0]
-            found = np.column_stack([strip[:-2], strip[1:-1], strip[2:]])
-            found[1::2, :2] = found[1::2, 1::-1]
-            triangles.append(found)
+            corners = np.column_stack([strip[:-2], strip[1:-1], strip[2:]])
+            corners[1::2, :2] = corners[1::2, 1::-1]
+            triangles.append(corners)
     triangles = np.vstack(triangles)
-    flat = (triangles == np.roll(triangles, 1, axis=1)).any(axis=1)  # these only steer the strip
-    return triangles[~flat]
+    is_degenerate = (triangles == np.roll(triangles, 1, axis=1)).any(axis=1)  # connects parts of the strip
+    return triangles[~is_degenerate]
 
 
 def _read_obj(path: Path) -> Mesh:
-    """trimesh counts negative indices from the end of the file, not from their face, and fills concave polygons with
-    fans."""
+    """Reads an OBJ file. trimesh would count negative indices from the end of the file rather than from their face, and
+    triangulate concave polygons as fans."""
     points, polygons = [], []
     try:
         for line in path.read_text("utf-8-sig", "replace").replace("\\\n", " ").splitlines():
@@ -177,7 +185,7 @@ def _read_obj(path: Path) -> Mesh:
 
 
 def _read_off(path: Path) -> Mesh:
-    """trimesh drops OFF polygons of more than four corners and forgets which triangles were one quad; we need both."""
+    """Reads an OFF file. trimesh would drop polygons with more than four corners and forget which triangles form a quad."""
     text = re.sub(r"\A(\s*(?:#.*\s+)*\w*OFF)(?=\d)", r"\1 ", path.read_text("utf-8-sig", "replace"), flags=re.IGNORECASE)
     lines = [words for words in (line.split("#", 1)[0].split() for line in text.splitlines()) if words]
     try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Optional packages and programs: which of them a run of the command line needs, checked before it reads any model."""
+"""Optional packages and programs that a command needs; checked before it reads any model."""
 
 import importlib
 import shutil
@@ -18,11 +18,11 @@ WRITERS = {"glb": ("trimesh",), "stl": ("trimesh",), "ply": ("trimesh",), "3mf":
            "unreal": ("trimesh",), "godot": ("trimesh",)}  # other formats need numpy alone
 PRINTING, PREVIEWS, RAY = ("manifold3d",), ("trimesh", "embreex", "PIL"), ("ray", "fsspec")
 
-Need = Tuple[str, str]  # (what needs it, to begin a sentence with; a module's name)
+Need = Tuple[str, str]  # (the use, as the subject of a sentence; the module)
 
 
 class RequirementError(Error):
-    """An optional package or program is missing; str() says what needs it and how to install it."""
+    """An optional package or program is missing; str() says what needs it, and how to install it."""
 
     name = "package"
 
@@ -33,7 +33,7 @@ def load_module(name: str, use: str) -> ModuleType:
     Parameters
     ----------
     name : the module, a key of EXTRAS
-    use : what needs it, as "Writing glb files"
+    use : what needs it, such as "Writing glb files"
 
     Raises
     ------
@@ -46,11 +46,11 @@ def load_module(name: str, use: str) -> ModuleType:
 
 
 def check(needs: Iterable[Need]) -> None:
-    """Makes sure that all these can be imported.
+    """Checks that all modules can be imported.
 
     Raises
     ------
-    RequirementError : names everything that is missing, a sentence for each use
+    RequirementError : lists all missing packages, one sentence per use
     """
     missing: Dict[str, List[str]] = {}
     causes: Dict[str, Any] = {}
@@ -66,16 +66,16 @@ def check(needs: Iterable[Need]) -> None:
 
 
 def check_command(options: Any, paths: Iterable[str]) -> List[Need]:
-    """Checks what a command of partwheel needs for the chosen options and the files it is to read.
+    """Checks the requirements of a command for its options and input files.
 
     Parameters
     ----------
-    options : what __main__.parse() gives
-    paths : names of the files to be read
+    options : see __main__.parse()
+    paths : the input files
 
     Returns
     -------
-    what was checked, for check() on another machine
+    the requirements, for check() on another machine
 
     Raises
     ------
@@ -85,35 +85,35 @@ def check_command(options: Any, paths: Iterable[str]) -> List[Need]:
     if options.command == "batch" and ".blend" in suffixes and not shutil.which("blender"):
         raise RequirementError("Reading .blend files needs Blender, and there is no program blender on the PATH. Install "
                                "it, or leave these files out.")
-    needs = [*_needs_of_reading(suffixes, options.command), *_needs_of_writing(options)]
+    needs = [*_reading_needs(suffixes, options.command), *_writing_needs(options)]
     check(needs)
     return needs
 
 
 def check_ray() -> None:
-    """Checks what a run on a Ray cluster needs, whose files can't be listed without it. Raises RequirementError."""
-    check(_all("Running on Ray", RAY))
+    """Checks the requirements of a run on a Ray cluster. Raises RequirementError."""
+    check(_needs("Running on Ray", RAY))
 
 
-def _needs_of_reading(suffixes: Iterable[str], command: str) -> Iterator[Need]:
+def _reading_needs(suffixes: Iterable[str], command: str) -> Iterator[Need]:
     for suffix in suffixes:
         if suffix != ".blend" or command != "batch":
-            yield from _all(f"Reading {suffix or 'such'} files", READERS.get(suffix, ("trimesh",)))
+            yield from _needs(f"Reading {suffix or 'such'} files", READERS.get(suffix, ("trimesh",)))
 
 
-def _needs_of_writing(options: Any) -> Iterator[Need]:
-    for form in getattr(options, "formats", None) or ():
-        yield from _all(f"Writing {form} files", WRITERS.get(form, ()))
+def _writing_needs(options: Any) -> Iterator[Need]:
+    for name in getattr(options, "formats", None) or ():
+        yield from _needs(f"Writing {name} files", WRITERS.get(name, ()))
     if getattr(options, "printing", False):
-        yield from _all("Making parts ready for a 3D printer", PRINTING)
-    made = getattr(options, "make", ())
-    if "objects" in made:
-        yield from _all("Writing objects.glb", WRITERS["glb"])
-    if "preview" in made:
-        yield from _all("Drawing previews", PREVIEWS)
+        yield from _needs("Making parts ready for a 3D printer", PRINTING)
+    outputs = getattr(options, "make", ())
+    if "objects" in outputs:
+        yield from _needs("Writing objects.glb", WRITERS["glb"])
+    if "preview" in outputs:
+        yield from _needs("Drawing previews", PREVIEWS)
 
 
-def _all(use: str, names: Iterable[str]) -> Iterator[Need]:
+def _needs(use: str, names: Iterable[str]) -> Iterator[Need]:
     return ((use, name) for name in names)
 
 
