@@ -369,7 +369,7 @@ def compatible(obj, node, other):
     clearly another part than those before. score: 1 for the same shape, down to 0. The node is None for the other
     object itself, if it is a part that was copied as a solid. other may be obj: then parts beside the node.
     partwheel.Error: the node is the whole, or has no border; or the other has no parts. Outside Edit Mode only."""
-    return [(offer.node, offer.score) for offer in _place(obj, node, other).offers([other])]
+    return [(offer.node, offer.score) for offer in _place(obj, node, other).find_candidates([other])]
 
 
 def swap(obj, node, other, other_node=None, scale=1.0, angle=0.0, depth=0.0, mirror=False, blend=0.0,
@@ -384,7 +384,7 @@ def swap(obj, node, other, other_node=None, scale=1.0, angle=0.0, depth=0.0, mir
     """
     _mesh(obj, changes=True)
     place = _place(obj, node, other, snap)
-    offer = place.offers([other])[0] if other_node is None else place.offer(other, operator.index(other_node))
+    offer = place.find_candidates([other])[0] if other_node is None else place.find_candidate(other, operator.index(other_node))
     place.swap(offer, swapping.Adjustment(scale, angle, depth, mirror), blend)
     return offer.node
 
@@ -473,9 +473,9 @@ def _place(obj, node, other, snap=False):
     for each in (obj, other):
         _mesh(each, edited=False)
     built, node = _node(obj, node)
-    if placement.caps(other.data) is None:
+    if placement.cap_faces(other.data) is None:
         hierarchy(other)
-    return swapping.Place(obj, built, node, snap)
+    return swapping.SwapTarget(obj, built, node, snap)
 
 
 def _bounds(built, parts, height, least_concavity):

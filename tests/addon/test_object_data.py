@@ -407,7 +407,7 @@ class ObjectData(SolidTest):
         obj, _, _ = self.rich(animated=False)
         target = self.add(*common.BOX, "target")
         bpy.context.view_layer.update()
-        copy = part("compose.placement").mirrored(obj, target)
+        copy = part("compose.placement").create_mirror_copy(obj, target)
         bpy.context.view_layer.update()
         but = {"location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale"}
         before, now = told(obj, but), told(copy, but)

@@ -32,17 +32,17 @@ class Place(SolidTest):
         _, _, _, copy = self.copied()
         copy.matrix_world = Matrix.Rotation(1, 4, (1, 2, 3)) @ Matrix.Scale(0.5, 4)
         bpy.context.view_layer.update()
-        before = placement.border(copy)
+        before = placement.find_cap_loop(copy)
         for normal in ((0, 0, 1), (0, 0, -1), (1, 1, 0)):
-            self.place(copy, location=(1, 2, 3), normal=normal, scale=1, depth=-placement.SINK)
-            after = placement.border(copy)
+            self.place(copy, location=(1, 2, 3), normal=normal, scale=1, depth=-placement.SINK_FRACTION)
+            after = placement.find_cap_loop(copy)
             self.near(after.center, (1, 2, 3))
             self.near(after.normal, -Vector(normal).normalized())
             self.assertAlmostEqual(after.radius / before.radius, 1, places=4)
         self.place(copy, location=(1, 2, 3), normal=(0, 0, 1), scale=3, angle=1.0, depth=0.5)
-        after = placement.border(copy)
+        after = placement.find_cap_loop(copy)
         self.assertAlmostEqual(after.radius / before.radius, 3, places=3)
-        self.near(after.center, (1, 2, 3 - 3 * before.radius * (0.5 + placement.SINK)))
+        self.near(after.center, (1, 2, 3 - 3 * before.radius * (0.5 + placement.SINK_FRACTION)))
 
     def test_matrices_are_made_up_to_date_first(self):
         """Blender 5 has none when it repeats an operator after undo; scripts that moved an object have old ones."""
@@ -53,19 +53,19 @@ class Place(SolidTest):
         results = []
         for update in (True, False):
             self.reset(copy)
-            placement.put_back(copy, where)
+            placement.restore_transform(copy, where)
             if update:
                 bpy.context.view_layer.update()
             placement.place(copy, None, pose)
             results.append(copy.matrix_world.copy())
         for one, other in zip(*results):
             self.near(one, other)
-        placement.put_back(obj, where)
+        placement.restore_transform(obj, where)
         again = composition.create_part_object(obj, hierarchy, node)
         bpy.context.view_layer.update()
         self.near(again.location, (5, 6, 7))
         self.reset(obj)
-        placement.put_back(obj, where)
+        placement.restore_transform(obj, where)
         for each in composition.split_into_objects(obj, hierarchy, hierarchy.cut_parts(3)):
             self.near(each.matrix_world.translation, (5, 6, 7))
 
@@ -81,12 +81,12 @@ class Place(SolidTest):
             copy.location, copy.rotation_euler, copy.scale = (0.1, 0.2, 0.3), (7, 2, -9), (-1, 2, -3)
             copy.rotation_quaternion, copy.rotation_axis_angle = (0.8, 0.6, 0, 0), (9, 0, 0.6, 0.8)
             bpy.context.view_layer.update()
-            before, transform = copy.matrix_world.copy(), placement.own_transform(copy)
+            before, transform = copy.matrix_world.copy(), placement.local_transform(copy)
             self.place(copy, location=(1, 2, 3), normal=(0, 1, 1), angle=1)
-            self.assertNotEqual(placement.own_transform(copy), transform)
-            placement.put_back(copy, transform)
+            self.assertNotEqual(placement.local_transform(copy), transform)
+            placement.restore_transform(copy, transform)
             bpy.context.view_layer.update()
-            self.assertEqual(placement.own_transform(copy), transform)
+            self.assertEqual(placement.local_transform(copy), transform)
             self.assertEqual([tuple(row) for row in copy.matrix_world], [tuple(row) for row in before])
 
     def test_angle_turns_about_the_normal(self):
@@ -102,14 +102,14 @@ class Place(SolidTest):
         obj, hierarchy, node, copy = self.copied()
         whole = volume(obj.data)
         self.run_on(obj, bpy.ops.mesh.partwheel_remove, node=node)
-        where = placement.border(copy)
+        where = placement.find_cap_loop(copy)
         copy.matrix_world = Matrix.Translation((5, 6, 7)) @ Matrix.Rotation(2, 4, (1, 0, 1)) @ Matrix.Scale(0.3, 4)
         bpy.context.view_layer.update()
         self.place(copy, target=obj.name, location=where.center, normal=(0, 0, 1), fit=True)
-        fitted = placement.border(copy)
+        fitted = placement.find_cap_loop(copy)
         self.assertAlmostEqual(fitted.radius / where.radius, 1, places=3)
         self.near(fitted.normal, where.normal, 3)
-        self.assertLess(Vector(fitted.center - where.center).length, 1.1 * placement.SINK * where.radius)
+        self.assertLess(Vector(fitted.center - where.center).length, 1.1 * placement.SINK_FRACTION * where.radius)
         self.ready(obj, copy)
         self.assertEqual(bpy.ops.object.partwheel_unite(), {"FINISHED"})
         self.assertSolid(obj.data)
@@ -148,7 +148,7 @@ class Place(SolidTest):
         self.assertSolid(obj.data)
         self.assertAlmostEqual((volume(copy.data) + volume(obj.data)) / whole, 1, places=4)
         rest, size = volume(obj.data), volume(copy.data)
-        where = part("compose.placement").border(copy).center
+        where = part("compose.placement").find_cap_loop(copy).center
         self.assertIsNone(api.place(copy, where, target=obj, fit=True))
         api.unite(obj, [copy])
         self.assertSolid(obj.data)
@@ -163,7 +163,7 @@ class Place(SolidTest):
     def test_a_part_without_caps_stands_on_its_underside(self):
         bpy.ops.mesh.primitive_cube_add()
         cube = bpy.context.active_object
-        self.place(cube, location=(0, 0, 0), normal=(0, 0, 1), depth=-part("compose.placement").SINK)
+        self.place(cube, location=(0, 0, 0), normal=(0, 0, 1), depth=-part("compose.placement").SINK_FRACTION)
         self.assertAlmostEqual(min((cube.matrix_world @ v.co).z for v in cube.data.vertices), 0, places=5)
 
     def test_a_linked_target_is_not_taken_for_a_local_one_of_its_name(self):
@@ -175,6 +175,6 @@ class Place(SolidTest):
         before = set(bpy.data.objects)
         self.place(copy, target=linked.name_full, location=(7, 0, 0), normal=(1, 0, 0), mirror=True)
         (mirrored,) = set(bpy.data.objects) - before
-        (x, y, z), image = (part("compose.placement").border(each).center for each in (copy, mirrored))
+        (x, y, z), image = (part("compose.placement").find_cap_loop(each).center for each in (copy, mirrored))
         self.near((x, y, z), (7, 0, 0), places=1)
         self.near(image, (2 * 3 - x, y, z))

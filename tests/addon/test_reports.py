@@ -15,8 +15,7 @@ class Reports(MeshTest):
 
     def objects(self, obj):
         part("api").build(obj)
-        cut = part("api").cut(obj, 2), part("api").parts(obj, 2)
-        return part("api").write(obj, cut[1], {"OBJECTS"})[1]
+        return part("api").write(obj, part("api").cut(obj, 2), {"OBJECTS"}).objects
 
     # MMD-Blender/blender_mmd_tools 171, teamneoneko/Cats-Blender-Plugin 64
     def test_parts_to_objects_a_second_time(self):
@@ -35,7 +34,7 @@ class Reports(MeshTest):
         for each in self.objects(obj):
             self.assertEqual([slot and slot.name for slot in each.data.materials], [None, "second", None])
             self.assertEqual(sorted(polygon.material_index for polygon in each.data.polygons), [1] * 3 + [2] * 3)
-        part("api").write(obj, part("api").parts(obj, 2), {"SEAMS"})
+        part("api").write(obj, part("api").cut(obj, 2), {"SEAMS"})
         self.assertEqual([polygon.material_index for polygon in obj.data.polygons], [1, 2] * 6)
 
     # mattedicksoncom/blender-xatlas 13, ksami/QRemeshify 2, Roblox/roblox-blender-plugin 67
@@ -97,7 +96,7 @@ class Reports(MeshTest):
     def test_locked_and_empty_vertex_groups_stay(self):
         obj = self.two_boxes()
         part("api").build(obj)
-        cut = part("api").parts(obj, 2)
+        cut = part("api").cut(obj, 2)
         mine, empty = obj.vertex_groups.new(name="mine"), obj.vertex_groups.new(name="empty")
         mine.add([0], 0.25, "REPLACE")
         mine.lock_weight = empty.lock_weight = True
@@ -114,7 +113,7 @@ class Reports(MeshTest):
         obj = self.add(points, [(4, 3, 2, 1, 0), *((i, (i + 1) % 5, (i + 1) % 5 + 5, i + 5) for i in range(5)),
                                 *((i + 5, (i + 1) % 5 + 5, 10) for i in range(5))])
         part("api").build(obj)
-        part("api").write(obj, part("api").parts(obj, 1), {"SEAMS"}, unwrap=True)
+        part("api").write(obj, part("api").cut(obj, 1), {"SEAMS"}, unwrap=True)
         uv = numpy.empty(2 * len(obj.data.loops))
         obj.data.uv_layers.active.data.foreach_get("uv", uv)
         self.assertTrue(numpy.isfinite(uv).all() and numpy.ptp(uv) > 0.1)

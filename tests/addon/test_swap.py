@@ -55,11 +55,11 @@ class Swap(SolidTest):
         model, hierarchy = self.built("hand")
         twin = self.twin(model, MOTION)
         for node in {limb(model, hierarchy, 0, end) for end in (-1, 1)}:
-            place = swapping.Place(model, hierarchy, node)
-            first = place.offers([twin])[0]
+            place = swapping.SwapTarget(model, hierarchy, node)
+            first = place.find_candidates([twin])[0]
             self.assertEqual(first.node, node)
             self.assertGreater(first.score, 0.99)
-            copy = place.stand_in(first, swapping.Adjustment(depth=-part("compose.placement").SINK))
+            copy = place.create_stand_in(first, swapping.Adjustment(depth=-part("compose.placement").SINK_FRACTION))
             self.assertIdentity(copy.matrix_world, 1e-4 * max(model.dimensions))
 
     def test_mirror_image_of_a_reflected_twin(self):
@@ -67,11 +67,11 @@ class Swap(SolidTest):
         model, hierarchy = self.built("hand")
         twin = self.twin(model, MOTION @ Matrix.Scale(-1, 4, (1, 0, 0)))
         node = limb(model, hierarchy, 0, 1)
-        place = swapping.Place(model, hierarchy, node)
-        offer = place.offer(twin, node)
+        place = swapping.SwapTarget(model, hierarchy, node)
+        offer = place.find_candidate(twin, node)
         plain, mirrored = (package("compatible").fit(place.shape, offer.shape, mirror) for mirror in (False, True))
         self.assertLess(mirrored.distance, 0.1 * plain.distance)
-        copy = place.stand_in(offer, swapping.Adjustment(depth=-part("compose.placement").SINK, mirror=True))
+        copy = place.create_stand_in(offer, swapping.Adjustment(depth=-part("compose.placement").SINK_FRACTION, mirror=True))
         self.assertIdentity(copy.matrix_world, 1e-4 * max(model.dimensions))
         swapping.dispose(copy)
         whole = volume(model.data)
@@ -87,10 +87,10 @@ class Swap(SolidTest):
         before = arrays(giver.data)[0].tolist()
         for axis, end in ((0, -1), (0, 1)):
             node = limb(model, hierarchy, axis, end)
-            place = swapping.Place(model, hierarchy, node)
-            for offer in place.offers([giver])[:2]:
-                rest = bpy.data.objects.new("rest", place.rest())
-                new = place.stand_in(offer)
+            place = swapping.SwapTarget(model, hierarchy, node)
+            for offer in place.find_candidates([giver])[:2]:
+                rest = bpy.data.objects.new("rest", place.create_rest_mesh())
+                new = place.create_stand_in(offer)
                 bpy.context.view_layer.update()
                 pairs.append((triangles(rest), triangles(new)))
                 bpy.data.objects.remove(rest)
@@ -113,15 +113,15 @@ class Swap(SolidTest):
         model, hierarchy, giver, others = self.both("hand", "homer")
         node = next(node for node in self.nodes(hierarchy, 40)[::-1]
                     if set(api.faces(model, node).tolist()) != set(api.faces(model, node, snap=True).tolist()))
-        places = {snap: swapping.Place(model, hierarchy, node, snap) for snap in (False, True)}
-        offer = places[True].offers([giver])[0]
+        places = {snap: swapping.SwapTarget(model, hierarchy, node, snap) for snap in (False, True)}
+        offer = places[True].find_candidates([giver])[0]
         pairs = []
         for snap, place in places.items():
-            rest = place.rest()
+            rest = place.create_rest_mesh()
             expected = self.link(bpy.data.objects.new("expected", model.data.copy()))
             self.run_on(expected, bpy.ops.mesh.partwheel_remove, node=node, snap=snap)
             self.assertEqual(arrays(rest)[1], arrays(expected.data)[1])
-            new = place.stand_in(offer)
+            new = place.create_stand_in(offer)
             copy = api.copy_part(giver, offer.node, snap=snap)
             self.assertEqual(arrays(new.data)[1], arrays(copy.data)[1])
             bpy.context.view_layer.update()
@@ -226,12 +226,12 @@ class Swap(SolidTest):
     def test_nothing_changes_where_the_union_fails(self):
         model, hierarchy, giver, _ = self.both("hand", "homer")
         union, before = part("compose.union"), self.everything()
-        ways, union.WAYS = union.WAYS, ()
+        ways, union.SOLVERS = union.SOLVERS, ()
         try:
             with self.assertRaises(part("mesh.errors").Refused):
                 part("api").swap(model, limb(model, hierarchy, 0, 1), giver)
         finally:
-            union.WAYS = ways
+            union.SOLVERS = ways
         self.assertEqual(self.everything(), before)
 
     @only_in("oldest", "newest")

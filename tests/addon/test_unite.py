@@ -253,7 +253,7 @@ class Unite(SolidTest):
             other = self.cube().data
             other.transform(matrix @ Matrix.Scale(0.5, 4))
             for meshes in ((base, other), (other, base)):
-                wrong = union._implausible(meshes, [volume(mesh) for mesh in meshes], cut.data)
+                wrong = union._volume_defect(meshes, [volume(mesh) for mesh in meshes], cut.data)
                 self.assertEqual(wrong, "one of them was left out" if left_out else None)
 
     def everything(self, target):

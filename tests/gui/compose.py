@@ -89,7 +89,7 @@ def choose(stage, menu, up):
 
 def place_over(stage, part, target, fit=False, mirror=False):
     """Places the part over the target's border with the mouse."""
-    where = module("compose.placement").border(target)
+    where = module("compose.placement").find_cap_loop(target)
     start = part.matrix_world.copy()
     before = places(target), target.matrix_world.copy()
     activate(stage, part)
@@ -112,7 +112,7 @@ def place_over(stage, part, target, fit=False, mirror=False):
     if fit:
         stage.mouse.key("F")
         yield from stage.settle()
-        fitted = module("compose.placement").border(part)
+        fitted = module("compose.placement").find_cap_loop(part)
         stage.check(abs(fitted.radius / where.radius - 1) < 0.01, "it has the border's size")
         stage.check(numpy.linalg.norm(fitted.center - where.center) < 0.1 * where.radius, "it is at the border")
     if mirror:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""object.partwheel_place: the active part follows the mouse over the surfaces in the view, its border onto them."""
+"""object.partwheel_place: the active part follows the mouse over the surfaces in the view and sits on them with its
+border."""
 
 import bpy
 from mathutils import Vector
@@ -22,7 +23,7 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
     bl_label = "Place Part"
     bl_options = {"REGISTER", "UNDO"}
     lost_message = "{operator} stopped: the part is no longer the active object."
-    transform = None  # its own, before
+    transform = None  # the part's transform before
 
     target: bpy.props.StringProperty(name="Onto", description="The object that the part is placed on")
     location: bpy.props.FloatVectorProperty(name="Location", description="Where its border goes", subtype="TRANSLATION")
@@ -37,12 +38,12 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
         options={"SKIP_SAVE"})
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.active_object
         return check_poll(cls, context.mode == "OBJECT" and obj is not None and obj.type == "MESH",
                           "In Object Mode, make the part to be placed the active object.")
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         part = context.active_object
         target = mesh_identity.resolve_object(self.target)
         if (self.fit or self.mirror) and (target is None or target.type != "MESH"):
@@ -59,73 +60,74 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
             mirrored.select_set(True)
         return {"FINISHED"}
 
-    def _pose(self):
+    def _pose(self) -> placement.Pose:
         return placement.Pose(Vector(self.location), Vector(self.normal), self.scale, self.angle, self.depth, self.fit)
 
     # ---- With the mouse --------------------------------------------------------------------------------------------
 
-    def on_start(self, context, event):
+    def on_start(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         part = context.active_object
-        self.part_name, self.transform = part.name_full, placement.own_transform(part)
-        self.start, self.own = part.matrix_world.copy(), placement.anchor(part)
+        self.part_name, self.transform = part.name_full, placement.local_transform(part)
+        self.start_matrix, self.part_loop = part.matrix_world.copy(), placement.anchor_loop(part)
         self.target, self.scale = "", 1
-        self._call_before_saving(self._put_back)
+        self._call_before_saving(self._restore_transform)
         self._show_status(context, iface_("Move the mouse over a surface"), keys.PLACING)
-        self._moved(context, event)
+        self._on_mouse_move(context, event)
         return {"RUNNING_MODAL"}
 
-    def can_continue(self, context):
+    def can_continue(self, context: bpy.types.Context) -> bool:
         part = context.active_object
         return part is not None and part.name_full == self.part_name and context.mode == "OBJECT"
 
-    def _moved(self, context, event):
+    def _on_mouse_move(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
         hit = self._surface_under(context, event)
         if hit:
             self.location, self.normal, self.target = hit
             self._show(context)
 
-    def _changed(self, event, _sign):
+    def _on_other_key(self, event: bpy.types.Event, _sign: int) -> bool:
         if event.type not in keys.FIT.events or not self.target:
             return False
         self.fit, self.scale = not self.fit, 1
         return True
 
-    def on_confirm(self, context):
+    def on_confirm(self, context: bpy.types.Context) -> set[str]:
         if not self.target:
             self._show_status(context, iface_("There is no surface under the mouse yet"), keys.PLACING)
             return {"RUNNING_MODAL"}
         if self.mirror:
             composition.update_matrices()
-            placement.mirrored(context.active_object, mesh_identity.find_object(self.target)).select_set(True)
+            placement.create_mirror_copy(context.active_object, mesh_identity.find_object(self.target)).select_set(True)
         return {"FINISHED"}
 
-    def on_cancel(self, _context):
-        self._put_back()
+    def on_cancel(self, _context: bpy.types.Context) -> None:
+        self._restore_transform()
 
-    def _put_back(self):
+    def _restore_transform(self) -> None:
         part = self.transform and mesh_identity.find_object(self.part_name)
         if part:
-            placement.put_back(part, self.transform)
+            placement.restore_transform(part, self.transform)
 
-    def _surface_under(self, context, event):
-        """(location, normal towards the eye, object's full name) of what is under the mouse behind the part itself."""
+    def _surface_under(self, context: bpy.types.Context, event: bpy.types.Event) -> tuple | None:
+        """(location, normal towards the viewer, the object's full name) of the surface under the mouse, behind the
+        part; None if there is none."""
         view = under_mouse(context, event)
-        found = view and surface_under(context, *view,
-                                       lambda obj: obj.type == "MESH" and obj.name_full != self.part_name)
-        return found and (found.location, found.normal, found.obj.name_full)
+        hit = view and surface_under(context, *view,
+                                     lambda obj: obj.type == "MESH" and obj.name_full != self.part_name)
+        return hit and (hit.location, hit.normal, hit.obj.name_full)
 
-    def _show(self, context):
+    def _show(self, context: bpy.types.Context) -> None:
         if not self.target:
             return
         target = mesh_identity.find_object(self.target)
         try:
-            placement.put(context.active_object, self.start, self.own, target, self._pose())
+            placement.move_to_pose(context.active_object, self.start_matrix, self.part_loop, target, self._pose())
         except Refused as error:
             self.fit = False
-            placement.put(context.active_object, self.start, self.own, target, self._pose())
+            placement.move_to_pose(context.active_object, self.start_matrix, self.part_loop, target, self._pose())
             self._show_status(context, str(error), keys.PLACING)
             return
-        state = [iface_("Onto {name}").format(name=target.name), self._adjustments()]
+        state = [iface_("Onto {name}").format(name=target.name), self._adjustment_text()]
         state += [iface_("fitted")] * self.fit + [iface_("with mirror copy")] * self.mirror
         self._show_status(context, ", ".join(state), keys.PLACING)
 

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a part goes: its border onto a point of a surface, turned to the surface's normal, or onto another border."""
+"""Computes where a part goes: its border to a point of a surface, turned to the surface normal, or onto another
+border."""
+
+from __future__ import annotations
 
 from typing import NamedTuple
 
+import bpy
 import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 
@@ -14,55 +18,58 @@ from ..mesh.errors import Refused
 from ..solid.solids import CAP_ATTRIBUTE
 
 _CHANNELS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
-SINK = 0.05  # of its border's radius that a part is sunk in: solids that only touch don't unite
+# Radii of the border by which a part sinks into the surface: solids that only touch can't be united.
+SINK_FRACTION = 0.05
 
 
-def caps(mesh):
-    """(F,) bool: the faces that close a mesh where it was cut; None if nothing is marked so."""
+def cap_faces(mesh: bpy.types.Mesh) -> np.ndarray | None:
+    """(F,) bool: the faces that close cuts of a mesh; None without the cap attribute."""
     layer = arrays.attribute(mesh, CAP_ATTRIBUTE, "BOOLEAN", "FACE")
     return arrays.read(layer.data, "value", bool) if layer else None
 
 
-def border(obj, near=None):
-    """Where a part was cut off, or where one was removed, in the world: the compatible.CapLoop that is the largest group
-    of the object's caps that touch, or the nearest to a point; None if its mesh has no caps."""
-    marks = caps(obj.data)
-    if marks is None or not marks.any():
+def find_cap_loop(obj: bpy.types.Object, near: Vector | None = None) -> compatible.CapLoop | None:
+    """The compatible.CapLoop of the object, in the world, where it was cut or a part was removed: of the largest
+    connected group of caps, or the one nearest to a point; None without caps."""
+    is_cap = cap_faces(obj.data)
+    if is_cap is None or not is_cap.any():
         return None
     triangles, polygons = arrays.triangles(obj.data)
-    places = arrays.read(obj.data.vertices, "co", np.float32, 3).astype(float)
-    found = compatible.cap_loops(places, triangles[marks[polygons]], np.array(obj.matrix_world))
-    if not found:
+    positions = arrays.read(obj.data.vertices, "co", np.float32, 3).astype(float)
+    loops = compatible.cap_loops(positions, triangles[is_cap[polygons]], np.array(obj.matrix_world))
+    if not loops:
         return None
-    return found[0] if near is None else min(found, key=lambda each: (Vector(each.center) - near).length)
+    return loops[0] if near is None else min(loops, key=lambda loop: (Vector(loop.center) - near).length)
 
 
-def anchor(obj):
-    """The Border that is placed: the object's own, or for one without caps its underside."""
-    found = border(obj)
-    if found:
-        return found
+def anchor_loop(obj: bpy.types.Object) -> compatible.CapLoop:
+    """The CapLoop by which an object is placed: its own, or one at the underside of an object without caps."""
+    loop = find_cap_loop(obj)
+    if loop:
+        return loop
     corners = [obj.matrix_world @ Vector(corner) for corner in obj.bound_box]
     down = -obj.matrix_world.to_3x3().col[2].normalized()
     lowest = max(corner.dot(down) for corner in corners)
-    middle = sum(corners, Vector()) / 8
-    radius = max((corner - middle).length for corner in corners) / 2
-    return compatible.CapLoop(middle + down * (lowest - middle.dot(down)), down, radius)
+    center = sum(corners, Vector()) / 8
+    radius = max((corner - center).length for corner in corners) / 2
+    return compatible.CapLoop(center + down * (lowest - center.dot(down)), down, radius)
 
 
-def matrix(start, own, location, normal, scale=1.0, angle=0.0, depth=0.0):
-    """The matrix_world that brings an object from the matrix start, at which its Border was own, onto a surface: the
-    border's middle to location, its normal against the surface's. scale: times the size it had. angle: about the
-    normal, in radians. depth: how far it is sunk in, times the border's radius, beyond what unites well."""
+def placement_matrix(start: Matrix, part_loop: compatible.CapLoop, location: Vector, normal: Vector, scale: float = 1.0,
+                     angle: float = 0.0, depth: float = 0.0) -> Matrix:
+    """The matrix_world that brings an object onto a surface: the center of its loop to location, the loop's normal
+    against the surface normal. start: the object's matrix for which part_loop holds. scale: factor of the size.
+    angle: around the normal, in radians. depth: radii of the border, beyond SINK_FRACTION."""
     normal = normal.normalized()
-    turn = Quaternion(normal, angle) @ Vector(own.normal).rotation_difference(-normal)
-    sunk = location - normal * ((SINK + depth) * own.radius * scale)
-    return (Matrix.Translation(sunk) @ turn.to_matrix().to_4x4() @ Matrix.Scale(scale, 4)
-            @ Matrix.Translation(-Vector(own.center)) @ start)
+    rotation = Quaternion(normal, angle) @ Vector(part_loop.normal).rotation_difference(-normal)
+    target = location - normal * ((SINK_FRACTION + depth) * part_loop.radius * scale)
+    return (Matrix.Translation(target) @ rotation.to_matrix().to_4x4() @ Matrix.Scale(scale, 4)
+            @ Matrix.Translation(-Vector(part_loop.center)) @ start)
 
 
 class Pose(NamedTuple):
-    """Where a part goes, as matrix() takes it; fit: onto the target's border nearest to location, and of its size."""
+    """Where a part goes, see placement_matrix(). fit: onto the target's border nearest to location, and with its
+    size."""
 
     location: Vector
     normal: Vector
@@ -72,46 +79,48 @@ class Pose(NamedTuple):
     fit: bool = False
 
 
-def put(part, start, own, target, pose):
-    """Moves the part, at whose matrix start its Border was own. Raises Refused where there is no border to fit."""
+def move_to_pose(part: bpy.types.Object, start: Matrix, part_loop: compatible.CapLoop, target: bpy.types.Object | None,
+                 pose: Pose) -> None:
+    """Moves the part, whose loop was part_loop at the matrix start. Raises Refused if there is no border to fit."""
     location, normal, scale = pose.location, pose.normal, pose.scale
     if pose.fit:
-        found = border(target, location)
-        if not found:
+        target_loop = find_cap_loop(target, location)
+        if not target_loop:
             raise Refused("{name} has no border to fit: no part was removed from it.", name=target.name)
-        location, normal = Vector(found.center), Vector(found.normal)
-        scale *= found.radius / own.radius
-    part.matrix_world = matrix(start, own, location, normal, scale, pose.angle, pose.depth)
+        location, normal = Vector(target_loop.center), Vector(target_loop.normal)
+        scale *= target_loop.radius / part_loop.radius
+    part.matrix_world = placement_matrix(start, part_loop, location, normal, scale, pose.angle, pose.depth)
 
 
-def own_transform(obj):
-    """Its own location, rotation and scale, for put_back()."""
+def local_transform(obj: bpy.types.Object) -> dict[str, tuple[float, ...]]:
+    """The object's location, rotation and scale, for restore_transform()."""
     return {channel: tuple(getattr(obj, channel)) for channel in _CHANNELS}
 
 
-def put_back(obj, transform):
-    """Puts the object back exactly: a matrix keeps neither full turns nor which axes are mirrored, nor the last bit."""
+def restore_transform(obj: bpy.types.Object, transform: dict[str, tuple[float, ...]]) -> None:
+    """Restores the object's transform exactly. A matrix would lose full turns, mirrored axes and the last bit."""
     for channel, values in transform.items():
         setattr(obj, channel, values)
 
 
-def place(part, target, pose, mirror=False):
-    """Moves the part. The mirror image, if that is wanted, else None."""
+def place(part: bpy.types.Object, target: bpy.types.Object | None, pose: Pose,
+          mirror: bool = False) -> bpy.types.Object | None:
+    """Moves the part. Returns its mirror copy with mirror, else None."""
     update_matrices()
-    put(part, part.matrix_world.copy(), anchor(part), target, pose)
+    move_to_pose(part, part.matrix_world.copy(), anchor_loop(part), target, pose)
     update_matrices()
-    return mirrored(part, target) if mirror else None
+    return create_mirror_copy(part, target) if mirror else None
 
 
 @all_or_nothing()
-def mirrored(part, target):
-    """A new object: the part's mirror image across the target's own YZ plane. Its mesh is mirrored, not its matrix."""
+def create_mirror_copy(part: bpy.types.Object, target: bpy.types.Object) -> bpy.types.Object:
+    """A new object: the part mirrored across the target's YZ plane. The mesh is mirrored, not the matrix."""
     mesh = part.data.copy()
     flip = Matrix.Scale(-1, 4, (1, 0, 0))
     new = create_object_like(part, mesh, part.name)
-    across = target.matrix_world @ flip @ target.matrix_world.inverted()
-    # A mirror image of a mirror image is a turn: the matrix stays free of reflection.
+    reflection = target.matrix_world @ flip @ target.matrix_world.inverted()
+    # Two reflections make a rotation: the matrix contains no reflection.
     mesh.transform(flip, shape_keys=True)
     mesh.flip_normals()
-    new.matrix_world = across @ part.matrix_world @ flip
+    new.matrix_world = reflection @ part.matrix_world @ flip
     return new

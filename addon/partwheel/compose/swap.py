@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_swap: the picked part is exchanged for a compatible one of another object. The wheel goes through what
-is offered; meanwhile one sees what would be left of the object, and the part offered stands in its place."""
+"""mesh.partwheel_swap: exchanges the picked part for a compatible one of another object. The wheel goes through the
+candidates; a preview shows the rest of the object and the candidate in the part's place."""
 
 import bpy
 
@@ -9,7 +9,7 @@ from ..solid import composition
 from ..pick.build import waited_for
 from ..view import keys, previews
 from . import swapping
-from partwheel import Error
+from partwheel import Error, Hierarchy
 from ..mesh.errors import Refused
 from ..mesh.poll import poll_is_editable
 from ..solid.copy_part import PartOperator
@@ -25,7 +25,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
     bl_idname = "mesh.partwheel_swap"
     bl_label = "Swap with Compatible Part"
     lost_message = "{operator} stopped: the object is no longer the active one."
-    was_edited, preview, taken = False, None, keys.OFFER.events
+    was_edited, preview, ctrl_size_events = False, None, keys.OFFER.events
     removes_faces = True
 
     other: bpy.props.StringProperty(
@@ -49,37 +49,38 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
         name="Find Parts", description="Find the parts of the new mesh at once, in a process of its own", default=True)
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return super().poll(context) and poll_is_editable(cls, context.active_object)
 
-    def run(self, context, obj, hierarchy):
-        place = swapping.Place(obj, hierarchy, self.node, self.snap)
-        self._swap(place, self._chosen(context, place, obj))
+    def run(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> None:
+        swap_target = swapping.SwapTarget(obj, hierarchy, self.node, self.snap)
+        self._swap(swap_target, self._candidate_from_options(context, swap_target, obj))
 
-    def _chosen(self, context, place, obj):
-        """The Offer that the options name."""
+    def _candidate_from_options(self, context: bpy.types.Context, swap_target: swapping.SwapTarget,
+                                obj: bpy.types.Object) -> swapping.Candidate:
+        """The Candidate that the options define. Raises Refused."""
         other = mesh_identity.resolve_object(self.other) if self.other else None
         if self.other and (other is None or other.type != "MESH"):
             raise Refused("There is no mesh object {name}.", name=self.other)
         if other and (self.whole or self.other_node >= 0):
-            return place.offer(other, None if self.whole else self.other_node)
-        return place.offers([other] if other else swapping.sources(context, obj))[0]
+            return swap_target.find_candidate(other, None if self.whole else self.other_node)
+        return swap_target.find_candidates([other] if other else swapping.sources(context, obj))[0]
 
-    def _swap(self, place, offer):
-        self.other, self.whole = offer.name, offer.node is None
-        self.other_node = -1 if self.whole else offer.node
-        for sentence in composition.bound_modifier_messages(mesh_identity.find_object(place.name)):
+    def _swap(self, swap_target: swapping.SwapTarget, candidate: swapping.Candidate) -> None:
+        self.other, self.whole = candidate.name, candidate.node is None
+        self.other_node = -1 if self.whole else candidate.node
+        for sentence in composition.bound_modifier_messages(mesh_identity.find_object(swap_target.name)):
             self.report({"WARNING"}, sentence)
-        place.swap(offer, self._adjustment(), self.blend)
+        swap_target.swap(candidate, self._adjustment(), self.blend)
         if self.build:
             find_parts(self)
 
-    def _adjustment(self):
+    def _adjustment(self) -> swapping.Adjustment:
         return swapping.Adjustment(self.scale, self.angle, self.depth, self.mirror)
 
     # ---- With the wheel --------------------------------------------------------------------------------------------
 
-    def on_start(self, context, _event):
+    def on_start(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         obj = context.active_object
         with waiting(context):
             self.check(obj)
@@ -91,79 +92,82 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
             self.was_edited = obj.mode == "EDIT"
             if self.was_edited:
                 bpy.ops.object.mode_set(mode="OBJECT")
-            self.place = swapping.Place(obj, hierarchy, self.node, self.snap)
-            self.offers, self.index = self.place.offers(others), 0
-            self.preview = Preview(self.place)
+            self.swap_target = swapping.SwapTarget(obj, hierarchy, self.node, self.snap)
+            self.candidates, self.index = self.swap_target.find_candidates(others), 0
+            self.preview = SwapPreview(self.swap_target)
             self._call_before_saving(previews.end)
             self._show(context)
         return {"RUNNING_MODAL"}
 
-    def can_continue(self, context):
-        active = context.view_layer.objects.active  # none while it is hidden, in some versions
-        obj = mesh_identity.find_object(self.place.name)
+    def can_continue(self, context: bpy.types.Context) -> bool:
+        active = context.view_layer.objects.active  # None while it is hidden, in some versions
+        obj = mesh_identity.find_object(self.swap_target.name)
         return (obj is not None and context.view_layer.objects.get(obj.name) == obj and active in (None, obj)
                 and context.mode == "OBJECT")
 
-    def on_event(self, context, event):
-        if not self.preview.there():  # a file was saved meanwhile, or a step undone
+    def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if not self.preview.exists():  # after saving or undo
             self._show(context)
         return Adjusting.on_event(self, context, event)
 
-    def _changed(self, event, sign):
+    def _on_other_key(self, event: bpy.types.Event, sign: int) -> bool:
         if event.type in keys.OFFER.events:
-            self.index = min(max(self.index + sign, 0), len(self.offers) - 1)
+            self.index = min(max(self.index + sign, 0), len(self.candidates) - 1)
         return event.type in keys.OFFER.events
 
-    def _show(self, context, problem=""):
-        offer = self.offers[self.index]
-        self.preview.show(offer, self._adjustment())
+    def _show(self, context: bpy.types.Context, problem: str = "") -> None:
+        candidate = self.candidates[self.index]
+        self.preview.show(candidate, self._adjustment())
         state = [iface_("{name}, part {number} of {count}, {likeness:.0%} alike").format(
-            name=offer.name, number=self.index + 1, count=len(self.offers), likeness=offer.score), self._adjustments()]
+            name=candidate.name, number=self.index + 1, count=len(self.candidates), likeness=candidate.score),
+                 self._adjustment_text()]
         self._show_status(context, problem or ", ".join(state + [iface_("mirrored")] * self.mirror), keys.SWAPPING)
 
-    def on_confirm(self, context):
+    def on_confirm(self, context: bpy.types.Context) -> set[str]:
         previews.end()
         if self.was_edited:
-            # Undo steps of Edit Mode hold its mesh alone.
+            # Undo steps of Edit Mode hold only its mesh.
             bpy.ops.ed.undo_push(message="Leave Edit Mode")
         try:
-            self._swap(self.place, self.offers[self.index])
-        except Error as error:  # another part may do
+            self._swap(self.swap_target, self.candidates[self.index])
+        except Error as error:  # another candidate may work
             self.report({"ERROR"}, str(error))
             self._show(context, str(error))
             return {"RUNNING_MODAL"}
         return {"FINISHED"}
 
-    def on_cancel(self, context):
+    def on_cancel(self, context: bpy.types.Context) -> None:
         previews.end()
         if self.was_edited and context.active_object and context.active_object.mode == "OBJECT":
             bpy.ops.object.mode_set(mode="EDIT")
 
 
-class Preview:
-    """In place of the object one with what is left of it without the part; and beside it the parts offered so far, of
-    which one is seen. The object itself is hidden and not touched."""
+class SwapPreview:
+    """Replaces the object in the view by a preview of the rest without the part, and shows one candidate at a time.
+    The object itself is hidden and unchanged."""
 
-    def __init__(self, place):
-        self.place, self.rest, self.shown = place, "", {}
+    def __init__(self, swap_target: swapping.SwapTarget) -> None:
+        self.swap_target, self.rest, self.shown = swap_target, "", {}
 
-    def there(self):
+    def exists(self) -> bool:
+        """Whether the preview's objects still exist."""
         return self.rest in bpy.data.objects
 
-    def show(self, offer, adjustment):
-        if not self.there():
-            self._create()
-        wanted = offer.name, offer.node
-        for each, name in self.shown.items():
-            bpy.data.objects[name].hide_viewport = each != wanted
-        if wanted in self.shown:
-            self.place.put(bpy.data.objects[self.shown[wanted]], offer, adjustment)
+    def show(self, candidate: swapping.Candidate, adjustment: swapping.Adjustment) -> None:
+        """Shows this candidate."""
+        if not self.exists():
+            self._create_rest()
+        key = candidate.name, candidate.node
+        for shown_key, name in self.shown.items():
+            bpy.data.objects[name].hide_viewport = shown_key != key
+        if key in self.shown:
+            self.swap_target.move_stand_in(bpy.data.objects[self.shown[key]], candidate, adjustment)
         else:
-            self.shown[wanted] = previews.show(self.place.stand_in(offer, adjustment)).name
+            self.shown[key] = previews.show(self.swap_target.create_stand_in(candidate, adjustment)).name
 
-    def _create(self):
-        obj = mesh_identity.find_object(self.place.name)
-        mesh = self.place.rest()
+    def _create_rest(self) -> None:
+        obj = mesh_identity.find_object(self.swap_target.name)
+        mesh = self.swap_target.create_rest_mesh()
         rest = obj.copy()  # with its modifiers and materials
         rest.data = mesh
         composition.target_collection(obj).objects.link(rest)

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Closed meshes united into one by Blender's Boolean. What it gives is never trusted: it is checked, and the next
-solver is tried."""
+"""Unites closed meshes into one by Blender's Boolean. Each result is checked; if it is wrong, the next solver is
+tried."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import bpy
 import numpy as np
@@ -17,72 +21,75 @@ from partwheel import RayTarget, polygon_faults
 from ..mesh.errors import Refused
 from ..words.say import rpt_
 
-# (solver, whether it also unites what overlaps within one mesh), in the order tried. Blenders before 4.5 have no
-# MANIFOLD; some later ones have it and do nothing.
-WAYS = (("MANIFOLD", False), ("EXACT", False), ("EXACT", True))
-SAMPLES = 200  # vertices that are looked at to see whether a mesh lies inside another
-RAY = Vector((0.5377, 0.3141, 0.7823)).normalized()  # no model is likely to be built along it
-SUSPICIOUS = 0.1  # of the smaller volume: with more of it inside the other, what is missing is looked for
-MISSING = 0.05  # of the samples: a few may lie in faces of the other
-NEAR_CORNER = 1e-5  # a share: what is so near to a vertex is taken for it
-TOLERANCE = 1e-5  # of the sum of the volumes: coordinates are of 24 bits
+# (solver, whether it also resolves overlaps within one mesh), in order of preference. MANIFOLD exists since Blender
+# 4.5; some builds list it without implementing it.
+SOLVERS = (("MANIFOLD", False), ("EXACT", False), ("EXACT", True))
+N_SAMPLES = 200  # vertices of a mesh that are tested
+RAY_DIRECTION = Vector((0.5377, 0.3141, 0.7823)).normalized()  # in no likely direction of modeling
+CHECKED_OVERLAP_FRACTION = 0.1  # of the smaller volume: with a larger overlap, missing surface is searched for
+MAX_MISSING_FRACTION = 0.05  # of the samples: a few may lie on faces of the other mesh
+CORNER_TOLERANCE = 1e-5  # barycentric: points so near to a vertex count as this vertex
+RELATIVE_TOLERANCE = 1e-5  # relative, of volumes and lengths: coordinates are 32-bit floats
 
 
 @all_or_nothing()
-def unite(target, others, blend=0.0, instead=None):
-    """Makes the target's mesh the union of it, as it is without modifiers, and of the other objects, with theirs. The
-    others stay. blend: the width of a smooth transition on either side of each seam, times the seam's radius. instead:
-    a mesh to be taken for the target's own. What is left of the target's surface keeps its shape keys. Returns the solver
-    that did it. Raises Refused before anything has changed."""
-    slots, keyed = [], instead or target.data
+def unite(target: bpy.types.Object, others: list[bpy.types.Object], blend: float = 0.0,
+          base_mesh: bpy.types.Mesh | None = None) -> str:
+    """Makes the target's mesh the union of itself, without modifiers, and of the other objects, with theirs. The
+    others stay.
+
+    blend: width of a smooth transition on either side of each seam, in radii of the seam. base_mesh: replaces the
+    target's own mesh. Remaining surface of the target keeps its shape keys. Returns the solver's name. Raises Refused
+    before any change."""
+    slots, keyed_mesh = [], base_mesh or target.data
     solids.check_no_multires(target)
-    base = _input(target, instead or target.data, slots)
+    base = _copy_with_slots(target, base_mesh or target.data, slots)
     try:
         if blend > 0:
-            seams.mark(base, 0)
-        for side, other in enumerate(others, 1):
-            operand = _evaluated(other, slots, target)
+            seams.mark_solid(base, 0)
+        for solid, other in enumerate(others, 1):
+            operand = _create_operand(other, slots, target)
             try:
                 if blend > 0:
-                    seams.mark(operand, side)
+                    seams.mark_solid(operand, solid)
                 operand.transform(target.matrix_world.inverted() @ other.matrix_world)
                 if target.matrix_world.is_negative != other.matrix_world.is_negative:
                     operand.flip_normals()
-                result, solver = _united(base, operand, target.name, other.name, slots)
+                result, solver = _unite_pair(base, operand, target.name, other.name, slots)
             finally:
                 bpy.data.meshes.remove(operand)
             bpy.data.meshes.remove(base)
             base = result
-        offsets = _key_offsets(keyed, base)
+        offsets = _key_offsets(keyed_mesh, base)
         if blend > 0:
-            seams.blend(base, blend)
-            seams.unmark(base)
+            seams.blend_seams(base, blend)
+            seams.remove_marks(base)
     except Exception:
         bpy.data.meshes.remove(base)
         raise
     with composition.preserve_hooks(target):
-        _replace(target, base, slots, offsets)
+        _replace_mesh(target, base, slots, offsets)
     return solver
 
 
-def losses(target, others):
-    """Sentences on what of these objects a union can't keep, to be said beforehand."""
-    found = composition.bound_modifier_messages(target)
-    keyed = [obj.name for obj in others if obj.data.shape_keys]
-    if keyed:
-        found.append(rpt_("The shape keys of {names} can't be kept: the parts stay as they are now. The shape keys of {target} "
-                          "move its own surface only.").format(names=", ".join(keyed), target=target.name))
-    return found
+def loss_messages(target: bpy.types.Object, others: list[bpy.types.Object]) -> list[str]:
+    """Warnings about what a union of these objects will lose."""
+    messages = composition.bound_modifier_messages(target)
+    keyed_names = [obj.name for obj in others if obj.data.shape_keys]
+    if keyed_names:
+        messages.append(rpt_("The shape keys of {names} can't be kept: the parts stay as they are now. The "
+                             "shape keys of {target} move its own surface only.").format(
+                                 names=", ".join(keyed_names), target=target.name))
+    return messages
 
 
-def problem(mesh):
-    """What keeps the mesh from being a closed, manifold, oriented surface, as the end of a sentence; None if nothing
-    does."""
+def find_defect(mesh: bpy.types.Mesh) -> str | None:
+    """What keeps the mesh from being a closed, manifold, oriented surface, as a clause; None if nothing does."""
     if not len(mesh.polygons):
         return rpt_("it has no faces")
     begin, _ = arrays.polygon_sizes(mesh)
     faults = polygon_faults(arrays.read(mesh.loops, "vertex_index", np.int32), begin, len(mesh.vertices))
-    open_edges = faults.open_edges or abs(len(mesh.edges) - len(mesh.loops) // 2)  # or edges that no face has
+    open_edges = faults.open_edges or abs(len(mesh.edges) - len(mesh.loops) // 2)  # or edges without faces
     if open_edges:
         return rpt_("{count} edges have not just two faces").format(count=open_edges)
     if faults.inconsistent_edges:
@@ -93,143 +100,148 @@ def problem(mesh):
     return None
 
 
-def volume(mesh):
-    """That the mesh encloses, in its own unit cubed."""
-    corners = arrays.read(mesh.vertices, "co", np.float32, 3).astype(float)
-    if not len(corners):
+def mesh_volume(mesh: bpy.types.Mesh) -> float:
+    """The volume that the mesh encloses, in its own unit cubed."""
+    positions = arrays.read(mesh.vertices, "co", np.float32, 3).astype(float)
+    if not len(positions):
         return 0.0
-    corners -= corners.mean(axis=0)
-    a, b, c = (corners[each] for each in arrays.triangles(mesh)[0].T)
+    positions -= positions.mean(axis=0)
+    a, b, c = (positions[column] for column in arrays.triangles(mesh)[0].T)
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
-def _evaluated(obj, slots, target):
-    """A copy of the object's mesh with its modifiers, but for those that the target has too: they act on the union."""
+def _create_operand(obj: bpy.types.Object, slots: list, target: bpy.types.Object) -> bpy.types.Mesh:
+    """A copy of the object's mesh with its modifiers, except those that the target has too: these act on the union."""
     shared = [modifier.name for modifier in obj.modifiers
-              if any(_settings(modifier) == _settings(other) for other in target.modifiers)]
+              if any(_modifier_settings(modifier) == _modifier_settings(other) for other in target.modifiers)]
     if shared:
-        with _without(obj, shared) as double:
-            return _evaluated(double, slots, double)
+        with _copy_without_modifiers(obj, shared) as copy:
+            return _create_operand(copy, slots, copy)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     mesh = bpy.data.meshes.new_from_object(obj.evaluated_get(depsgraph), preserve_all_data_layers=True,
                                            depsgraph=depsgraph)
     try:
-        return _input(obj, mesh, slots)
+        return _copy_with_slots(obj, mesh, slots)
     finally:
         bpy.data.meshes.remove(mesh)
 
 
-def _settings(modifier):
-    """Of a modifier, to be compared."""
-    names = (each.identifier for each in modifier.bl_rna.properties if not each.is_readonly)
+def _modifier_settings(modifier: bpy.types.Modifier) -> dict[str, Any]:
+    """{property: value} of a modifier, for comparisons."""
+    names = (property.identifier for property in modifier.bl_rna.properties if not property.is_readonly)
     values = ((name, getattr(modifier, name)) for name in names if name not in {"is_active", "show_expanded"})
     return {name: value[:] if hasattr(value, "foreach_get") else value for name, value in values}
 
 
 @contextmanager
-def _without(obj, modifiers):
-    """A double of the object for a while, without the modifiers of these names."""
-    double = obj.copy()
+def _copy_without_modifiers(obj: bpy.types.Object, modifiers: list[str]) -> Iterator[bpy.types.Object]:
+    """A temporary copy of the object without the modifiers of these names."""
+    copy = obj.copy()
     try:
-        bpy.context.scene.collection.objects.link(double)
+        bpy.context.scene.collection.objects.link(copy)
         for name in modifiers:
-            double.modifiers.remove(double.modifiers[name])
-        yield double
+            copy.modifiers.remove(copy.modifiers[name])
+        yield copy
     finally:
-        bpy.data.objects.remove(double)
+        bpy.data.objects.remove(copy)
 
 
-def _input(obj, mesh, slots):
-    """A copy of the mesh with its materials numbered by slots, a list of all materials, which grows."""
-    wrong = problem(mesh)
-    if wrong:
-        raise Refused("{name} is no solid: {reason}. Repair it, or copy its part anew.", name=obj.name, reason=wrong)
+def _copy_with_slots(obj: bpy.types.Object, mesh: bpy.types.Mesh, slots: list) -> bpy.types.Mesh:
+    """A copy of the mesh with material indices into slots, a list of all materials, which grows. Raises Refused."""
+    defect = find_defect(mesh)
+    if defect:
+        raise Refused("{name} is no solid: {reason}. Repair it, or copy its part anew.", name=obj.name, reason=defect)
     own = [slot.material for slot in obj.material_slots] or [None]
     for material in own:
         if material not in slots:
             slots.append(material)
     indices = arrays.material_indices(mesh)
-    numbers = np.array([slots.index(material) for material in own], np.int32)
+    slot_numbers = np.array([slots.index(material) for material in own], np.int32)
     copy = mesh.copy()
     copy.materials.clear()
-    arrays.set_material_indices(copy, numbers[np.minimum(indices, len(own) - 1)])
-    if copy.shape_keys:  # see _key_offsets()
+    arrays.set_material_indices(copy, slot_numbers[np.minimum(indices, len(own) - 1)])
+    if copy.shape_keys:  # restored by _key_offsets()
         pieces.clear_keys(copy)
     return copy
 
 
-def _united(base, operand, base_name, operand_name, slots):
-    """(new mesh, solver)"""
-    known = {item.identifier for item in bpy.types.BooleanModifier.bl_rna.properties["solver"].enum_items}
-    volumes = volume(base), volume(operand)
-    for name, measured in zip((base_name, operand_name), volumes):
-        if measured <= 0:
-            raise Refused("{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).", name=name)
+def _unite_pair(base: bpy.types.Mesh, operand: bpy.types.Mesh, base_name: str, operand_name: str,
+                slots: list) -> tuple[bpy.types.Mesh, str]:
+    """(new mesh, solver). Raises Refused if no solver works."""
+    available = {item.identifier for item in bpy.types.BooleanModifier.bl_rna.properties["solver"].enum_items}
+    volumes = mesh_volume(base), mesh_volume(operand)
+    for name, own_volume in zip((base_name, operand_name), volumes):
+        if own_volume <= 0:
+            raise Refused("{name} is no solid: it is inside out. Turn its faces outwards (Recalculate Outside).",
+                          name=name)
     reasons = []
-    for solver, within in WAYS:
-        if solver not in known:
+    for solver, self_overlap in SOLVERS:
+        if solver not in available:
             continue
-        result = _boolean(base, operand, solver, within, slots)
-        wrong = problem(result)
-        if wrong and _set_apart(result):
-            wrong = problem(result)
-        wrong = wrong or _implausible((base, operand), volumes, result)
-        if not wrong:
+        result = _apply_boolean(base, operand, solver, self_overlap, slots)
+        defect = find_defect(result)
+        if defect and _split_pinches(result):
+            defect = find_defect(result)
+        defect = defect or _volume_defect((base, operand), volumes, result)
+        if not defect:
             return result, solver
-        told = rpt_("by {solver} within: {reason}") if within else rpt_("by {solver}: {reason}")
-        reasons.append(told.format(solver=solver.title(), reason=wrong))
+        text = rpt_("by {solver} within: {reason}") if self_overlap else rpt_("by {solver}: {reason}")
+        reasons.append(text.format(solver=solver.title(), reason=defect))
         bpy.data.meshes.remove(result)
-    raise Refused("{one} and {other} can't be united ({reasons}). Move one of them a little: faces that lie in each other "
-                  "are the usual cause.", one=base_name, other=operand_name, reasons="; ".join(reasons))
+    raise Refused("{one} and {other} can't be united ({reasons}). Move one of them a little: faces that lie in "
+                  "each other are the usual cause.", one=base_name, other=operand_name, reasons="; ".join(reasons))
 
 
-def _left_out(one, other, result):
-    """The share of the vertices of one mesh that lie outside of the other, by the parity of crossings along a ray, and are
+def _missing_fraction(mesh: bpy.types.Mesh, other: bpy.types.Mesh, result: bpy.types.Mesh) -> float:
+    """The fraction of one mesh's vertices that lie outside the other (by the parity of crossings along a ray) and are
     missing from the surface of the result."""
-    places = arrays.read(result.vertices, "co", np.float32, 3)
-    surface = BVHTree.FromPolygons(places.tolist(), arrays.triangles(result)[0].tolist())
-    near = TOLERANCE * float(np.linalg.norm(np.ptp(places, axis=0)))
+    positions = arrays.read(result.vertices, "co", np.float32, 3)
+    surface = BVHTree.FromPolygons(positions.tolist(), arrays.triangles(result)[0].tolist())
+    tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(positions, axis=0)))
     target = RayTarget(arrays.read(other.vertices, "co", np.float32, 3), arrays.triangles(other)[0])
-    step = max(len(one.vertices) // SAMPLES, 1)
-    return np.mean([surface.find_nearest(vertex.co)[3] > near and not _crossings(target, vertex.co) % 2
-                    for vertex in list(one.vertices)[::step]])
+    step = max(len(mesh.vertices) // N_SAMPLES, 1)
+    return np.mean([surface.find_nearest(vertex.co)[3] > tolerance and not _count_crossings(target, vertex.co) % 2
+                    for vertex in list(mesh.vertices)[::step]])
 
 
-def _crossings(target, place):
-    count, hit = 0, target.first_hit(place, RAY)
+def _count_crossings(target: RayTarget, position: Vector) -> int:
+    """How often the ray from this point crosses the target."""
+    count, hit = 0, target.first_hit(position, RAY_DIRECTION)
     while hit:
         count += 1
-        hit = target.first_hit(place, RAY, hit[1] * (1 + 1e-6))
+        hit = target.first_hit(position, RAY_DIRECTION, hit[1] * (1 + 1e-6))
     return count
 
 
-def _set_apart(mesh):
-    """Where the solids only touch, and vertices of one place were joined into one. Whether it could."""
+def _split_pinches(mesh: bpy.types.Mesh) -> bool:
+    """Splits where solids only touch and the Boolean merged their vertices. Returns whether the mesh is manifold."""
     with pieces.edited(mesh) as bm:
         bm.normal_update()
-        done = pinches.set_apart(bm)
+        done = pinches.split_pinches(bm)
         if done:
             bm.to_mesh(mesh)
         return done
 
 
-def _implausible(meshes, volumes, result):
-    """What is wrong with a union's volume, by inclusion and exclusion: it is at least the larger volume and at most the
-    sum. It is the larger only if the other lies within, though faces of the one that is left may have been cut; and where
-    it says that much of the smaller one lies within, not much of either may be missing."""
-    united = volume(result)
-    slack = TOLERANCE * sum(volumes)
-    if not max(volumes) - slack <= united <= sum(volumes) + slack:
+def _volume_defect(meshes: tuple[bpy.types.Mesh, bpy.types.Mesh], volumes: tuple[float, float],
+                   result: bpy.types.Mesh) -> str | None:
+    """What is wrong with a union's volume, as a clause, or None. max(Va, Vb) <= V <= Va + Vb must hold. V = max(Va,
+    Vb) only if the other solid lies inside (though faces of the result may be cut); and if V says that much of the
+    smaller solid lies inside, little of either surface may be missing."""
+    united = mesh_volume(result)
+    tolerance = RELATIVE_TOLERANCE * sum(volumes)
+    if not max(volumes) - tolerance <= united <= sum(volumes) + tolerance:
         return rpt_("its volume would be {share:.0%} of that of the two").format(share=united / sum(volumes))
-    if sum(volumes) - united > SUSPICIOUS * min(volumes):
-        allowed = 0 if united <= max(volumes) + min(slack, min(volumes) / 2) else MISSING
-        if max(_left_out(*meshes, result), _left_out(*meshes[::-1], result)) > allowed:
+    if sum(volumes) - united > CHECKED_OVERLAP_FRACTION * min(volumes):
+        allowed = 0 if united <= max(volumes) + min(tolerance, min(volumes) / 2) else MAX_MISSING_FRACTION
+        if max(_missing_fraction(*meshes, result), _missing_fraction(*meshes[::-1], result)) > allowed:
             return rpt_("one of them was left out")
     return None
 
 
-def _boolean(base, operand, solver, within, slots):
-    """The result of Blender's modifier, on objects in a scene of their own."""
+def _apply_boolean(base: bpy.types.Mesh, operand: bpy.types.Mesh, solver: str, self_overlap: bool,
+                   slots: list) -> bpy.types.Mesh:
+    """The result of Blender's Boolean modifier, on objects in a scene of their own."""
     objects = [bpy.data.objects.new(mesh.name, mesh) for mesh in (base, operand)]
     try:
         for obj in objects:
@@ -240,7 +252,7 @@ def _boolean(base, operand, solver, within, slots):
             arrays.set_material_indices(obj.data, indices)
         modifier = objects[0].modifiers.new("union", "BOOLEAN")
         modifier.operation, modifier.object, modifier.solver = "UNION", objects[1], solver
-        if within:
+        if self_overlap:
             modifier.use_self = True
         with apart.scene_apart(*objects) as layer:
             depsgraph = apart.depsgraph(layer)
@@ -251,44 +263,46 @@ def _boolean(base, operand, solver, within, slots):
             bpy.data.objects.remove(obj)
 
 
-def _key_offsets(mesh, result):
-    """{key: (V,3) how far it moves each vertex of a result}, {} if the mesh has no shape keys. What lies on the mesh's surface
-    goes as that does there, the rest stays."""
+def _key_offsets(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> dict[str, np.ndarray]:
+    """{key: (V, 3) its offset of each vertex of a result}; {} without shape keys. Vertices on the mesh's surface
+    interpolate its offsets, others stay."""
     if not mesh.shape_keys:
         return {}
-    own, triangles = arrays.read(mesh.vertices, "co", np.float32, 3), arrays.triangles(mesh)[0]
-    places = arrays.read(result.vertices, "co", np.float32, 3)
-    tree = BVHTree.FromPolygons(own.tolist(), triangles.tolist(), all_triangles=True)
-    near = TOLERANCE * float(np.linalg.norm(np.ptp(own, axis=0)))
-    hits = [tree.find_nearest(place, near) for place in places.tolist()]
-    on = np.array([hit[2] is not None for hit in hits], bool)
+    mesh_positions, triangles = arrays.read(mesh.vertices, "co", np.float32, 3), arrays.triangles(mesh)[0]
+    positions = arrays.read(result.vertices, "co", np.float32, 3)
+    tree = BVHTree.FromPolygons(mesh_positions.tolist(), triangles.tolist(), all_triangles=True)
+    tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(mesh_positions, axis=0)))
+    hits = [tree.find_nearest(position, tolerance) for position in positions.tolist()]
+    is_on_mesh = np.array([hit[2] is not None for hit in hits], bool)
     corners = triangles[[hit[2] for hit in hits if hit[2] is not None]]
-    weights = _barycentric(np.array([hit[0] for hit in hits if hit[2] is not None]).reshape(-1, 3), own[corners].astype(float))
-    found, reference = {}, arrays.read(mesh.shape_keys.reference_key.data, "co", np.float32, 3)
+    weights = _barycentric_weights(np.array([hit[0] for hit in hits if hit[2] is not None]).reshape(-1, 3),
+                                   mesh_positions[corners].astype(float))
+    offsets_by_key, reference = {}, arrays.read(mesh.shape_keys.reference_key.data, "co", np.float32, 3)
     for key in mesh.shape_keys.key_blocks:
         offsets = arrays.read(key.data, "co", np.float32, 3) - reference
-        found[key.name] = np.zeros_like(places)
-        found[key.name][on] = np.einsum("ij,ijk->ik", weights, offsets[corners])
-    return found
+        offsets_by_key[key.name] = np.zeros_like(positions)
+        offsets_by_key[key.name][is_on_mesh] = np.einsum("ij,ijk->ik", weights, offsets[corners])
+    return offsets_by_key
 
 
-def _barycentric(places, corners):
-    """(n,3) the weights of the corners (n,3,3) of triangles at places (n,3) in them."""
-    sides = corners[:, 1:] - corners[:, :1]
-    products = np.einsum("ijk,ilk->ijl", sides, sides)
-    along = np.einsum("ijk,ik->ij", sides, places - corners[:, 0])
-    flat = np.linalg.det(products) <= 0
-    products[flat], along[flat] = np.eye(2), 0
-    two = np.linalg.solve(products, along[..., None])[..., 0]
-    found = np.clip(np.concatenate([1 - two.sum(axis=1, keepdims=True), two], axis=1), 0, 1)
-    return np.where((found > 1 - NEAR_CORNER).any(axis=1, keepdims=True), found > 0.5, found)
+def _barycentric_weights(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """(n, 3) barycentric coordinates of points (n, 3) in triangles with corners (n, 3, 3)."""
+    edges = corners[:, 1:] - corners[:, :1]
+    products = np.einsum("ijk,ilk->ijl", edges, edges)
+    along = np.einsum("ijk,ik->ij", edges, points - corners[:, 0])
+    is_degenerate = np.linalg.det(products) <= 0
+    products[is_degenerate], along[is_degenerate] = np.eye(2), 0
+    last_two = np.linalg.solve(products, along[..., None])[..., 0]
+    weights = np.clip(np.concatenate([1 - last_two.sum(axis=1, keepdims=True), last_two], axis=1), 0, 1)
+    return np.where((weights > 1 - CORNER_TOLERANCE).any(axis=1, keepdims=True), weights > 0.5, weights)
 
 
-def _replace(target, result, slots, offsets):
-    """Makes the result the target's mesh: name, settings, properties and users are those of the one before, and its shape
-    keys, by offsets, see _key_offsets()."""
+def _replace_mesh(target: bpy.types.Object, result: bpy.types.Mesh, slots: list,
+                  offsets: dict[str, np.ndarray]) -> None:
+    """Replaces the target's geometry by the result; name, settings, properties and users stay. Shape keys come from
+    offsets, see _key_offsets()."""
     if slots == [None]:
-        result.materials.clear()  # it was none
+        result.materials.clear()  # there was none
     old = target.data
     normals = arrays.custom_normals(result)
     if old.users > 1 + old.use_fake_user:
@@ -296,8 +310,8 @@ def _replace(target, result, slots, offsets):
     old.materials.clear()
     for material in result.materials:
         old.materials.append(material)
-    places = arrays.read(result.vertices, "co", np.float32, 3)
-    pieces.replace_geometry(old, result, {key: places + offset for key, offset in offsets.items()})
+    positions = arrays.read(result.vertices, "co", np.float32, 3)
+    pieces.replace_geometry(old, result, {key: positions + offset for key, offset in offsets.items()})
     if normals is not None:
         arrays.set_custom_normals(old, normals)
     old.update()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""object.partwheel_unite: placed parts and the object they were placed on become one closed mesh."""
+"""object.partwheel_unite: unites placed parts and the object they were placed on into one closed mesh."""
 
 import bpy
 
@@ -10,15 +10,15 @@ from ..mesh.datablocks import dispose
 from ..mesh.poll import check_poll, poll_is_editable
 from ..words.say import rpt_
 
-NO_OTHERS = "Select the parts, and then the mesh object that they are to become part of, in Object Mode."
+NOTHING_TO_UNITE = "Select the parts, and then the mesh object that they are to become part of, in Object Mode."
 
 
-def find_parts(operator):
-    """Has the parts of the active object found, whose mesh is a union that this operator made."""
+def find_parts(operator: bpy.types.Operator) -> None:
+    """Starts a search for the parts of the active object, whose mesh the operator has just united."""
     try:
-        builds.drop_outdated()  # of the union before, when the last operation is repeated with other options
+        builds.drop_outdated()  # of the earlier union, when Adjust Last Operation repeats the operator
         bpy.ops.mesh.partwheel_find("INVOKE_DEFAULT")
-    except Exception as error:  # any: they are united all the same
+    except Exception as error:  # any: the union is done anyway
         operator.report({"WARNING"}, str(error))
 
 
@@ -38,22 +38,23 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
     keep: bpy.props.BoolProperty(name="Keep Parts", description="Leave the other objects as they are", default=False)
 
     @classmethod
-    def poll(cls, context):
-        # Not that others are selected: afterwards they are gone, and Blender polls before it repeats an operator.
+    def poll(cls, context: bpy.types.Context) -> bool:
+        # Not whether others are selected: afterwards they are gone, and Blender polls before it repeats an operator.
         target = context.active_object
         return check_poll(cls, context.mode == "OBJECT" and target is not None and target.type == "MESH",
-                          NO_OTHERS) and poll_is_editable(cls, target)
+                          NOTHING_TO_UNITE) and poll_is_editable(cls, target)
 
     @staticmethod
-    def others(context):
+    def selected_others(context: bpy.types.Context) -> list[bpy.types.Object]:
+        """The selected mesh objects except the active one."""
         return [obj for obj in context.selected_objects if obj != context.active_object and obj.type == "MESH"]
 
-    def execute(self, context):
-        target, others = context.active_object, self.others(context)
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        target, others = context.active_object, self.selected_others(context)
         if not others:
-            self.report({"ERROR"}, rpt_(NO_OTHERS))
+            self.report({"ERROR"}, rpt_(NOTHING_TO_UNITE))
             return {"CANCELLED"}
-        for sentence in union.losses(target, others):
+        for sentence in union.loss_messages(target, others):
             self.report({"WARNING"}, sentence)
         try:
             solver = union.unite(target, others, self.blend)
