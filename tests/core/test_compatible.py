@@ -18,7 +18,7 @@ def similarity(seed):
 
 
 def shapes(hierarchy, matrix=np.eye(4)):
-    """{node: Shape} of all parts that would be offered."""
+    """{node: PartShape} of all parts that would be offered."""
     size = np.linalg.norm(np.ptp(hierarchy.vertices, axis=0)) / 2 * np.cbrt(abs(np.linalg.det(matrix[:3, :3])))
     made = {node: compatible.part_shape(hierarchy, node, hierarchy.vertices, matrix, size)
             for node in compatible.candidate_nodes(hierarchy)}

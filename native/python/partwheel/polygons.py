@@ -47,34 +47,44 @@ def polygon_faults(corners: ArrayLike, begin: ArrayLike, vertex_count: int) -> F
 
 
 def is_fan(points: np.ndarray) -> bool:
-    """Whether the fan around the first corner fills a polygon without folds. points (n,3)."""
+    """Whether the fan around the first corner of a polygon covers it without folds. points : (n, 3)"""
     normal = np.cross(points, np.roll(points, -1, axis=0)).sum(axis=0)
     sides = points[1:] - points[0]
     return bool((np.cross(sides[:-1], sides[1:]) @ normal >= 0).all())
 
 
-def fan_or_ears(points: np.ndarray, names: Sequence[int]) -> List[List[int]]:
-    """Triangles, as triples of names, of a nearly flat polygon: the fan around its first corner where that fills it."""
-    if len(names) == 3 or is_fan(points):
-        return [[names[0], second, third] for second, third in zip(names[1:], names[2:])]
-    return triangulate(points, names)
+def fan_or_ears(points: np.ndarray, indices: Sequence[int]) -> List[List[int]]:
+    """Triangulate a nearly flat polygon by the fan around its first corner if that covers it, else by triangulate().
+
+    Parameters
+    ----------
+    points : (n, 3) float, the corners in order
+    indices : (n,) the vertex of each corner
+
+    Returns
+    -------
+    n - 2 triangles, as triples of indices
+    """
+    if len(indices) == 3 or is_fan(points):
+        return [[indices[0], second, third] for second, third in zip(indices[1:], indices[2:])]
+    return triangulate(points, indices)
 
 
-def triangulate(points: np.ndarray, names: Sequence[int]) -> List[List[int]]:
+def triangulate(points: np.ndarray, indices: Sequence[int]) -> List[List[int]]:
     """Triangulate a nearly flat polygon by ear clipping, best-shaped ear first. O(n^3).
 
     Parameters
     ----------
     points : (n, 3) float, the corners in order
-    names : (n,) the indices that the triangles refer to the corners by
+    indices : (n,) the vertex of each corner
 
     Returns
     -------
-    n - 2 triples of names. A polygon that crosses itself and has no ear gives a fan
+    n - 2 triangles, as triples of indices. A polygon that crosses itself and has no ear gives a fan
     """
     next_points = np.roll(points, -1, axis=0)
     normal = np.cross(points, next_points).sum(axis=0)  # Newell: also right for concave polygons
-    ring, triangles = list(range(len(names))), []
+    ring, triangles = list(range(len(indices))), []
     while len(ring) > 3:
         best, best_quality = 1, 0.0
         for i in range(len(ring)):
@@ -88,8 +98,8 @@ def triangulate(points: np.ndarray, names: Sequence[int]) -> List[List[int]]:
             inside = [np.cross(side, rest - start) @ normal >= 0 for side, start in zip(sides, (a, b, c))]
             if not np.logical_and.reduce(inside).any():
                 best, best_quality = i, quality
-        triangles.append([names[ring[(best + k) % len(ring)]] for k in (-1, 0, 1)])
+        triangles.append([indices[ring[(best + k) % len(ring)]] for k in (-1, 0, 1)])
         del ring[best]
     if len(ring) == 3:
-        triangles.append([names[corner] for corner in ring])
+        triangles.append([indices[corner] for corner in ring])
     return triangles
