@@ -58,7 +58,7 @@ from partwheel.deform import MAX_ITERATIONS
 from partwheel.joint import REACH
 from partwheel.likeness import THRESHOLD
 
-Build, State = builds.Build, registry.State
+Build, State = builds.QueuedBuild, registry.State
 NAME = f"{partwheel.__name__}.api"  # by which scripts import this module
 
 
@@ -74,8 +74,8 @@ def start_build(obj, quality=0.0, open_surfaces=False, mode=None, cpu_limit=None
     seconds of processor time. memory_limit: bytes, kept on Linux only. exactly: find the parts of a large mesh on all of
     its triangles, not on a coarser copy. None: as the add-on's preferences have it."""
     _mesh(obj)
-    return builds.build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode, cpu_limit=cpu_limit,
-                        memory_limit=memory_limit, exactly=exactly)
+    return builds.request_build(obj, quality=quality, open_surfaces=open_surfaces, mode=mode, cpu_limit=cpu_limit,
+                                memory_limit=memory_limit, exactly=exactly)
 
 
 def build(obj, quality=0.0, open_surfaces=False, mode=None, cpu_limit=None, memory_limit=None, progress=None,
@@ -87,7 +87,7 @@ def build(obj, quality=0.0, open_surfaces=False, mode=None, cpu_limit=None, memo
 def hierarchy(obj):
     """The Hierarchy of the object's mesh as it is now, built if there is none."""
     _mesh(obj)
-    return registry.hierarchy(obj) or builds.build(obj).result()
+    return registry.get_hierarchy(obj) or builds.request_build(obj).result()
 
 
 def state(obj):
@@ -95,15 +95,15 @@ def state(obj):
     refused, at its first use; FITS; MOVED, usable, but vertices have moved since; CHANGED, not usable, the next
     function that needs one builds anew. Builds nothing."""
     _mesh(obj)
-    if registry.state(obj.data)[0] != State.UNOPENED:
-        registry.hierarchy(obj)  # looks at the mesh itself, for what Blender has not told of yet
-    return registry.state(obj.data)[0]
+    if registry.get_state(obj.data)[0] != State.UNOPENED:
+        registry.get_hierarchy(obj)  # looks at the mesh itself, for what Blender has not told of yet
+    return registry.get_state(obj.data)[0]
 
 
 def clear(obj):
     """Lets the hierarchy of the object's mesh go, also one that came with the file. The mesh stays as it is."""
     _mesh(obj)
-    picks.forget(obj)
+    picks.forget_parts(obj)
 
 
 # ---- Parts
@@ -131,11 +131,11 @@ def part(obj, face, level=0, size=None, snap=False):
     (negative: down; held at both ends). size: not from where a click lands, but from the largest stop of at most this
     share of the whole's area, 0..1, or else the smallest stop. snap: for its faces. PartwheelError: no such face."""
     built = hierarchy(obj)
-    picked = states.pick(built, operator.index(face))
+    picked = states.pick_face(built, operator.index(face))
     if size is not None:
         picked = picked.at(sum(built.area[stop] <= size * built.area[-1] for stop in picked.stops) - 1)
     node = picked.turned(level).node
-    return Part(node, picked.face, picked.stops, picked.start, borders.faces(obj, built, node, snap),
+    return Part(node, picked.face, picked.stops, picked.start, borders.get_part_faces(obj, built, node, snap),
                 float(built.area[node]), int(built.parent[node]) if built.parent[node] >= 0 else None,
                 tuple(numpy.flatnonzero(built.parent == node).tolist()))
 
@@ -149,7 +149,7 @@ def path(obj, face):
 def faces(obj, node, snap=False):
     """(n,) the faces of a node: indices of the mesh's polygons, in no certain order, read-only."""
     built, node = _node(obj, node)
-    return borders.faces(obj, built, node, snap)
+    return borders.get_part_faces(obj, built, node, snap)
 
 
 def select(obj, node=None, faces=None, extend=False, deselect=False, snap=False):
@@ -162,10 +162,10 @@ def select(obj, node=None, faces=None, extend=False, deselect=False, snap=False)
     face = None
     if node is not None:
         built, number = _node(obj, node)
-        chosen = borders.faces(obj, built, number, snap)
+        chosen = borders.get_part_faces(obj, built, number, snap)
         face = node.face if isinstance(node, Part) else int(chosen[0]) if len(chosen) else None
     else:
-        chosen, count = numpy.array(faces, int).ravel(), len(arrays.up_to_date(obj).polygons)
+        chosen, count = numpy.array(faces, int).ravel(), len(arrays.update_mesh(obj).polygons)
         if len(chosen) and not 0 <= chosen.min() <= chosen.max() < count:
             raise ValueError(f"{obj.name} has the faces 0 to {count - 1}; others were to be selected.")
     if obj.mode == "EDIT":

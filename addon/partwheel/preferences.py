@@ -64,7 +64,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         for name in ("parts", "exactly", "on_import", "save_with_file", "memory_share", "cpu_limit", "python", "wheel"):
             column.prop(self, name)
         draw_overlays(column)
-        key = pie_key()
+        key = find_pie_key()
         if key:
             column.prop(key, "type", text="Pie Menu", full_event=True)
 
@@ -72,7 +72,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
 PIE = "VIEW3D_MT_PIE_partwheel"
 
 
-def pie_key():
+def find_pie_key():
     """The user's KeyMapItem for the pie menu, which has no key until the user gives it one; None without a window."""
     configuration = bpy.context.window_manager.keyconfigs.user
     keymap = configuration and configuration.keymaps.get("Mesh")
@@ -80,13 +80,13 @@ def pie_key():
                  and item.properties.name == PIE), None)
 
 
-OVERLAYS = ("show_part", "show_next", "show_hull", "show_cut", "show_steps")
+OVERLAY_SETTINGS = ("show_part", "show_next", "show_hull", "show_cut", "show_steps")
 
 
 def draw_overlays(layout):
     """The settings of what is drawn over the model."""
     column = layout.column(heading="Overlay")
-    for name in OVERLAYS:
+    for name in OVERLAY_SETTINGS:
         column.prop(preferences(), name)
 
 

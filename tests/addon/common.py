@@ -86,8 +86,8 @@ class MeshTest(unittest.TestCase):
         for data in (bpy.data.objects, bpy.data.meshes, bpy.data.libraries):
             for item in list(data):
                 data.remove(item)
-        part("parts.files").after_loading()
-        part("view.status").Line.lines.clear()
+        part("parts.files").on_load()
+        part("view.status").StatusLine.lines.clear()
         bpy.context.tool_settings.mesh_select_mode = (False, False, True)
 
     def tearDown(self):
@@ -159,7 +159,7 @@ class WritesBack:
         bpy.app.handlers.depsgraph_update_post.remove(self._told)
 
     def _told(self, _scene, depsgraph):
-        self.count += part("mesh.arrays").writing_back and any(
+        self.count += part("mesh.arrays").is_writing_back and any(
             isinstance(update.id, bpy.types.Mesh) and update.is_updated_geometry for update in depsgraph.updates)
 
 

@@ -13,7 +13,7 @@ from common import BOX, MeshTest, package, part, read_off, selected
 
 def places(obj):
     """(V,3), in either mode."""
-    return np.array([vertex.co[:] for vertex in part("mesh.arrays").up_to_date(obj).vertices])
+    return np.array([vertex.co[:] for vertex in part("mesh.arrays").update_mesh(obj).vertices])
 
 
 class Api(MeshTest):
@@ -25,12 +25,12 @@ class Api(MeshTest):
         """The node that it selects, which is the one picked last then, by this face."""
         found = self.api.part(obj, face, level)
         self.api.select(obj, found, **options)
-        picked = part("parts.picks").picked(obj)
+        picked = part("parts.picks").get_pick(obj)
         self.assertEqual((picked.node, picked.face), (found.node, face))
         return found.node
 
     def chosen(self, obj):
-        return {polygon.index for polygon in part("mesh.arrays").up_to_date(obj).polygons if polygon.select}
+        return {polygon.index for polygon in part("mesh.arrays").update_mesh(obj).polygons if polygon.select}
 
     def in_both_modes(self, obj):
         for mode in ("OBJECT", "EDIT"):
@@ -114,7 +114,7 @@ class Api(MeshTest):
                 self.api.build(obj, **limit)
             self.assertIn(raised.exception.name, (name, "worker"))  # a worker that can't even begin with so little
         self.assertEqual(self.api.state(obj), self.api.State.NONE)
-        self.assertFalse(part("parts.builds").running())
+        self.assertFalse(part("parts.builds").has_builds())
         edited = self.api.start_build(obj)
         bm = self.edit(obj)
         bmesh.ops.delete(bm, geom=list(bm.faces)[:1], context="FACES_ONLY")
@@ -201,7 +201,7 @@ class Api(MeshTest):
             self.assertEqual(self.chosen(obj), {0, 5, 9})
             self.api.select(obj, faces=[])
             self.assertEqual(self.chosen(obj), set())
-            self.assertEqual(part("parts.picks").picked(obj).node, found.node)  # stays
+            self.assertEqual(part("parts.picks").get_pick(obj).node, found.node)  # stays
 
     def test_a_deformation_tells_how_far_it_is_and_can_be_stopped(self):
         obj, turn = self.add(*read_off("hand")), np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]])
@@ -304,7 +304,7 @@ class Api(MeshTest):
         obj = self.add(*read_off("hand"))
         expected = self.hierarchy(obj)
         built = self.api.build(obj)
-        self.assertIs(part("parts.registry").hierarchy(obj), built)
+        self.assertIs(part("parts.registry").get_hierarchy(obj), built)
         self.assertTrue((built.parent == expected.parent).all())
         self.assertEqual(self.api.path(obj, 700).tolist(), expected.path(700).tolist())
         for node in expected.path(700).tolist():
@@ -312,7 +312,7 @@ class Api(MeshTest):
 
     def test_mode_of_the_preferences_unless_a_script_names_one(self):
         obj, preferences = self.add(*read_off("hand")), part("preferences").preferences()
-        expected = {mode: package().Hierarchy.build(*part("mesh.arrays").surface(obj.data), mode=mode).parent.tolist()
+        expected = {mode: package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), mode=mode).parent.tolist()
                     for mode in package().Mode}
         self.assertNotEqual(*expected.values())
         for mode in package().Mode:
@@ -333,7 +333,7 @@ class Api(MeshTest):
             self.edit(obj)
             bpy.ops.mesh.partwheel_select(face_index=700, level=level)
             expected = selected(obj)
-            node = part("parts.picks").picked(obj).node
+            node = part("parts.picks").get_pick(obj).node
             bpy.ops.mesh.select_all(action="DESELECT")
             self.assertEqual(self.click(obj, 700, level), node)
             self.assertEqual(selected(obj), expected)
@@ -412,7 +412,7 @@ class Api(MeshTest):
             self.api.part(obj, 6)
         with self.assertRaises(error):
             self.api.faces(obj, 10**6)
-        self.assertIsNone(part("parts.picks").picked(obj))
+        self.assertIsNone(part("parts.picks").get_pick(obj))
 
 
 class PickedLast(MeshTest):
@@ -422,9 +422,9 @@ class PickedLast(MeshTest):
 
     def expect(self, pick):
         """What picked() says; has_pick() must say the same."""
-        found = part("parts.picks").picked(self.obj)
+        found = part("parts.picks").get_pick(self.obj)
         self.assertEqual(found and (found.face, found.node), pick)
-        self.assertEqual(part("parts.picks").picked_as_told(self.obj) is not None, pick is not None)
+        self.assertEqual(part("parts.picks").get_pick_for_poll(self.obj) is not None, pick is not None)
 
     def pick(self, face, level=0):
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=face, level=level), {"FINISHED"})
@@ -437,7 +437,7 @@ class PickedLast(MeshTest):
         self.edit(self.obj)
         first = self.pick(700, 1)
         self.expect(first)
-        self.assertIs(part("parts.picks").picked(self.obj).hierarchy, part("parts.registry").hierarchy(self.obj))
+        self.assertIs(part("parts.picks").get_pick(self.obj).hierarchy, part("parts.registry").get_hierarchy(self.obj))
         self.expect(self.pick(100))
         bpy.ops.object.mode_set(mode="OBJECT")
         other = self.obj
@@ -456,7 +456,7 @@ class PickedLast(MeshTest):
 
     def test_a_changed_mesh_or_another_hierarchy_has_none(self):
         for change in (lambda: bmesh.ops.delete(self.bm, geom=self.bm.faces[:1], context="FACES_ONLY"),
-                       bpy.ops.mesh.partwheel_build, bpy.ops.mesh.partwheel_clear, part("parts.files").after_loading):
+                       bpy.ops.mesh.partwheel_build, bpy.ops.mesh.partwheel_clear, part("parts.files").on_load):
             self.setUp()
             self.h = self.hierarchy(self.obj)
             self.bm = self.edit(self.obj)

@@ -20,7 +20,7 @@ def contents(mesh):
 
 class Build(MeshTest):
     def kept(self, obj):
-        return part("parts.registry").hierarchy(obj)
+        return part("parts.registry").get_hierarchy(obj)
 
     def check_arrays(self, obj):
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})

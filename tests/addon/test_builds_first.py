@@ -46,7 +46,7 @@ class First(MeshTest):
     def test_without_a_selection_nothing_is_found_in_vain(self):
         with self.assertRaisesRegex(RuntimeError, "No part is picked"):
             bpy.ops.mesh.partwheel_copy()
-        self.assertIsNone(self.registry.known(self.obj.data))
+        self.assertIsNone(self.registry.find_hierarchy(self.obj.data))
 
     def test_split(self):
         self.assertEqual(bpy.ops.mesh.partwheel_split(parts=3), {"FINISHED"})
@@ -58,7 +58,7 @@ class First(MeshTest):
             obj.select_set(chosen)
         bpy.context.view_layer.objects.active = self.obj
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        self.assertEqual([self.registry.known(obj.data) is None for obj in (self.obj, other, beside)],
+        self.assertEqual([self.registry.find_hierarchy(obj.data) is None for obj in (self.obj, other, beside)],
                          [False, False, True])
 
     def begin(self, name, **options):
@@ -79,7 +79,7 @@ class First(MeshTest):
     def test_escape_ends_it(self):
         tool, context = self.begin("MESH_OT_partwheel_split", parts=3)
         self.assertEqual(tool.modal(context, event("ESC")), {"CANCELLED"})
-        self.assertFalse(part("parts.builds").running())
+        self.assertFalse(part("parts.builds").has_builds())
         self.assertEqual((len(bpy.data.objects), context.timers), (1, []))
 
 
@@ -97,7 +97,7 @@ class Imported(MeshTest):
         self.assertEqual(len(lacking), 2)
         self.assertEqual({each.data for each in lacking}, {obj.data, other.data})
         self.assertEqual(bpy.ops.mesh.partwheel_imported(), {"FINISHED"})
-        known = part("parts.registry").known
+        known = part("parts.registry").find_hierarchy
         self.assertEqual([known(each.data) is None for each in (obj, other, beside)], [False, False, True])
         self.assertEqual(part("ui.on_import").lacking(bpy.context.view_layer), [])
 
@@ -105,4 +105,4 @@ class Imported(MeshTest):
         sheet = self.add([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])
         sheet.select_set(True)
         self.assertEqual(bpy.ops.mesh.partwheel_imported(), {"CANCELLED"})
-        self.assertIsNone(part("parts.registry").known(sheet.data))
+        self.assertIsNone(part("parts.registry").find_hierarchy(sheet.data))

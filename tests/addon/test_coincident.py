@@ -204,7 +204,7 @@ class Coincident(MeshTest):
             for each in (whole, obj):
                 writers.WRITERS["MASK"](each, faces, 1, False, False)
                 values = numpy.zeros(len(each.data.vertices), numpy.float32)
-                writers.mask(each.data).foreach_get("value", values)
+                writers.find_mask(each.data).foreach_get("value", values)
                 writers.WRITERS["VERTEX_GROUP"](each, faces, 1, False, False)
                 grouped = numpy.array([len(vertex.groups) for vertex in each.data.vertices])
                 numpy.testing.assert_array_equal(values, grouped)

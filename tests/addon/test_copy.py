@@ -192,7 +192,7 @@ class Copy(SolidTest):
         for rungs, rung, broken in ((2, "repaired", polygons[5:]), (2, "repaired", polygons + polygons[:1]),
                                     (4, "points", [polygon for i, polygon in enumerate(polygons) if i % 7])):
             obj = self.add(vertices, broken)
-            hierarchy = package().Hierarchy.build(*part("mesh.arrays").surface(obj.data), rungs=rungs)
+            hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), rungs=rungs)
             self.assertEqual(hierarchy.summary.rung, rung)
             for node in self.nodes(hierarchy):
                 copy = part("solid.solids").create_mesh(obj, hierarchy, int(hierarchy.tet_first[node]),
@@ -219,7 +219,7 @@ class Copy(SolidTest):
         ):
             obj = self.add(places, broken, name)
             obj.data.uv_layers.new(name="uv").data.foreach_set("uv", rng.random(6 * len(broken)))
-            hierarchy = package().Hierarchy.build(*part("mesh.arrays").surface(obj.data), rungs=3)
+            hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), rungs=3)
             self.assertEqual(hierarchy.summary.rung, "repaired")
             at = {frozenset(tuple(obj.data.vertices[v].co) for v in polygon.vertices): polygon
                   for polygon in obj.data.polygons}
@@ -254,7 +254,7 @@ class Copy(SolidTest):
         apart = numpy.linalg.norm(centers[:, None] - holes, axis=2).min(axis=1)
         kept = [polygon for polygon, far in zip(polygons, apart > 0.03 * numpy.ptp(places, axis=0).max()) if far]
         obj = self.add(vertices, kept)
-        hierarchy = package().Hierarchy.build(*part("mesh.arrays").surface(obj.data), rungs=4)
+        hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), rungs=4)
         share = hierarchy.area / hierarchy.area[-1]
         return obj, hierarchy, rng.permutation(numpy.flatnonzero((share > 0.01) & (share < 0.8))).tolist()
 
@@ -333,7 +333,7 @@ class Copy(SolidTest):
         obj, hierarchy = self.built()
         self.edit(obj)
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=10, level=2), {"FINISHED"})
-        node = part("parts.picks").picked(obj).node
+        node = part("parts.picks").get_pick(obj).node
         copy = self.run_on(obj, bpy.ops.mesh.partwheel_copy)
         self.assertEqual((bpy.context.mode, bpy.context.selected_objects), ("OBJECT", [copy]))
         self.assertEqual((~caps(copy.data)).sum(), len(hierarchy.faces(node)))
@@ -419,7 +419,7 @@ class Remove(SolidTest):
     def test_holes_of_a_broken_mesh_stay_and_the_new_one_is_closed(self):
         vertices, polygons = read_off("hand")
         obj = self.add(vertices, polygons[3:])
-        hierarchy = package().Hierarchy.build(*part("mesh.arrays").surface(obj.data), rungs=3)
+        hierarchy = package().Hierarchy.build(*part("mesh.arrays").read_surface(obj.data), rungs=3)
         self.assertEqual(hierarchy.summary.rung, "repaired")
 
         def open_edges(mesh):

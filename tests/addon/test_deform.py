@@ -72,7 +72,7 @@ class Deform(MeshTest):
         self.assertNotEqual(set(snapped), set(faces))
         before = edited(obj)
         move = shift(0.1 * numpy.ptp(before, axis=0).max(), 0, 0)
-        start = part("pick.states").pick(part("api").hierarchy(obj), SNAPPED)
+        start = part("pick.states").pick_face(part("api").hierarchy(obj), SNAPPED)
         level = start.stops.index(node) - start.start
         for picked, arguments, chosen in ((True, {}, snapped), (False, {}, faces), (True, {"snap": False}, faces),
                                           (False, {"snap": True}, snapped)):
@@ -101,8 +101,8 @@ class Deform(MeshTest):
         self.assertFalse(moved[numpy.setdiff1d(numpy.arange(len(before)), free)].any())
         self.assertGreater(moved[free].mean(), 0.9)
         numpy.testing.assert_allclose(after[tip] - before[tip], move[:3, 3], atol=1e-5 * size)
-        self.assertIsNotNone(part("parts.registry").hierarchy(obj))
-        self.assertEqual(part("parts.registry").state(obj.data)[0], part("parts.registry").State.MOVED)
+        self.assertIsNotNone(part("parts.registry").get_hierarchy(obj))
+        self.assertEqual(part("parts.registry").get_state(obj.data)[0], part("parts.registry").State.MOVED)
         bpy.ops.object.mode_set(mode="OBJECT")
         numpy.testing.assert_array_equal(stored(obj.data.vertices), after.astype(numpy.float32))
 
@@ -280,7 +280,7 @@ class Deform(MeshTest):
     def test_refusals_change_nothing(self):
         obj, node, faces, free, tip = self.hand()
         before = edited(obj)
-        hierarchy = part("parts.registry").hierarchy(obj)
+        hierarchy = part("parts.registry").get_hierarchy(obj)
         root = len(hierarchy.parent) - 1
         here = handle(tip, shift(0.1, 0, 0))
         self.assertIn("no handle", self.refusal())
@@ -401,7 +401,7 @@ class Deform(MeshTest):
         self.assertGreater(len(narrow.limb), len(wide.limb))
         self.assertLess(len(narrow.moving), len(wide.moving))
         before = edited(obj)
-        root = len(part("parts.registry").hierarchy(obj).parent) - 1
+        root = len(part("parts.registry").get_hierarchy(obj).parent) - 1
         self.assertIn("whole mesh", self.refusal(method="JOINT", node=root, handles=[handle(tip, shift(1, 0, 0))]))
         with self.assertRaises(ValueError):
             part("api").bend(obj, root, numpy.eye(3))
@@ -460,7 +460,7 @@ class Deform(MeshTest):
 
     def test_in_the_background(self):
         """What runs there can be asked to end; what went wrong is raised when it is fetched."""
-        background = part("view.background").Background
+        background = part("view.background").BackgroundTask
         task = background(lambda stop: stop.wait())
         self.assertTrue(task.running())
         task.abandon()

@@ -96,7 +96,7 @@ class Faults(SolidTest):
             meshes[mesh.name] = (mesh.users, np.array([vertex.co for vertex in verts]).tobytes(),
                                  bytes(face.select for face in faces))
         return dict(handlers=handlers, counts=counts, objects=objects, meshes=meshes, mode=bpy.context.mode,
-                    active=bpy.context.view_layer.objects.active.name, running=part("parts.builds").running())
+                    active=bpy.context.view_layer.objects.active.name, running=part("parts.builds").has_builds())
 
     def compare(self, now, before, where):
         for name, value in before.items():
@@ -222,7 +222,7 @@ class Faults(SolidTest):
 
     def test_build(self):
         obj = self.add(*read_off("hand"))
-        part("parts.files").after_loading()
+        part("parts.files").on_load()
         self.assertEqual(obj.mode, "OBJECT")
         cls = part("pick.build").MESH_OT_partwheel_build
         self.throw_everywhere(cls, [self.begins("A"), self.sends("TIMER"), self.sends("ESC")])

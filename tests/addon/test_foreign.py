@@ -53,14 +53,14 @@ class Foreign(MeshTest):
         stored, registry = part("parts.stored"), part("parts.registry")
         obj = self.add(*read_off("cross_quad"))
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        entry = registry.entry_of(obj.data)
+        entry = registry.find_entry(obj.data)
         packed = stored.pack(entry.built, entry.hierarchy)
         cut_off = [packed[:size] for size in (1, 7, 8, 12, 44, 59, 60, 61, len(packed) // 2, len(packed) - 1)]
         for value in (*VALUES, *cut_off, packed + b"\1", packed[::-1]):
             registry.forget(obj.data)
             obj.data[stored.PROPERTY] = value
-            part("parts.files").after_loading()
-            self.assertIsNone(registry.hierarchy(obj))
+            part("parts.files").on_load()
+            self.assertIsNone(registry.get_hierarchy(obj))
             self.assertEqual(bpy.ops.mesh.partwheel_select.poll(), False)
             self.assertEqual(bpy.ops.mesh.partwheel_clear.poll(), False)
         self.assertNotIn(stored.PROPERTY, obj.data)
@@ -74,7 +74,7 @@ class Foreign(MeshTest):
         for value in VALUES:
             for each in (light, empty, mesh):
                 each[mark] = value if each is not mesh or not isinstance(value, int) else "x"
-            part("view.previews").end()
+            part("view.previews").remove_previews()
             self.assertEqual(len(bpy.data.objects), 3)
         self.assertEqual([each for each in bpy.data.objects if mark in each], [])
 
@@ -96,6 +96,6 @@ class Foreign(MeshTest):
                 values = np.zeros(len(layer.data), np.int32)
                 layer.data.foreach_get("value", values)
                 self.assertEqual(len(set(values.tolist())), 3)
-                self.assertEqual(bpy.ops.mesh.partwheel_copy(node=part("parts.registry").hierarchy(obj).parent[0]), {"FINISHED"})
+                self.assertEqual(bpy.ops.mesh.partwheel_copy(node=part("parts.registry").get_hierarchy(obj).parent[0]), {"FINISHED"})
                 bpy.data.objects.remove(bpy.context.active_object)
                 bpy.context.view_layer.objects.active = obj

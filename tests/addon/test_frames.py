@@ -78,13 +78,13 @@ class Frames(MeshTest):
     def check(self, what):
         """What hovering, picking and the overlay use is what Blender shows, and a ray meets it there and not elsewhere."""
         shown = evaluated(self.obj)
-        prepared = part("pick.prepared").prepared(self.obj)
+        prepared = part("pick.view_cache").get_view_cache(self.obj)
         np.testing.assert_allclose(prepared._seen.positions, shown, atol=1e-5, err_msg=what)
         target, middle = prepared.tree(self.obj)._target, (shown.min(axis=0) + shown.max(axis=0)) / 2
         self.assertIsNotNone(target.first_hit(middle + [0, 0, 10 * self.far], [0, 0, -1]), what)
         self.assertIsNone(target.first_hit(middle + [self.far, 0, 10 * self.far], [0, 0, -1]), what)
-        if part("parts.registry").hierarchy(self.obj):
-            self.assertTrue(part("pick.prepared").current(self.obj, prepared.parts(self.obj)))
+        if part("parts.registry").get_hierarchy(self.obj):
+            self.assertTrue(part("pick.view_cache").is_current(self.obj, prepared.parts(self.obj)))
 
     def test_each_way_of_animating(self):
         for way in self.WAYS:
@@ -118,7 +118,7 @@ class Frames(MeshTest):
         """A frame makes nothing anew of meshes that it does not move, nor of the hierarchy of those that it does."""
         still = self.add(*read_off("hand"), "still")
         self.by_shape_key()
-        prepared, edits = part("pick.prepared").prepared, part("parts.changes").edits
+        prepared, edits = part("pick.view_cache").get_view_cache, part("parts.changes").geometry_revision
         kept, moved = prepared(still), prepared(self.obj)
         before = edits(self.obj.data)
         bpy.context.scene.frame_set(9)
@@ -129,11 +129,11 @@ class Frames(MeshTest):
     def test_the_parts_stay_usable(self):
         self.by_armature()
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        hierarchy = part("parts.registry").hierarchy(self.obj)
+        hierarchy = part("parts.registry").get_hierarchy(self.obj)
         for frame in (9, 1):
             bpy.context.scene.frame_set(frame)
             self.check(f"frame {frame}")
-            self.assertIs(part("parts.registry").hierarchy(self.obj), hierarchy)
+            self.assertIs(part("parts.registry").get_hierarchy(self.obj), hierarchy)
 
     def test_other_changes_of_what_is_seen(self):
         """Each of them without a new frame; the armature's own mode shows its rest position."""

@@ -53,8 +53,8 @@ class Isolation(MeshTest):
     def unharmed(self, obj, before):
         self.assertEqual(obj.mode, "EDIT")
         self.assertTrue(flags(obj) == before, "the selection has changed")  # assertEqual() would tell how, for minutes
-        self.assertFalse(part("parts.builds").running())
-        self.assertIsNone(part("parts.registry").hierarchy(obj))
+        self.assertFalse(part("parts.builds").has_builds())
+        self.assertIsNone(part("parts.registry").get_hierarchy(obj))
         self.assertEqual([thread.name for thread in threading.enumerate() if thread.name.startswith("partwheel-")], [])
 
     @only_in("newest")
@@ -87,8 +87,8 @@ class Isolation(MeshTest):
         except RuntimeError as refused:
             self.assertIn("No parts for", str(refused))
         else:
-            self.assertEqual(len(part("parts.registry").hierarchy(obj).order), len(obj.data.polygons))
-            part("parts.picks").forget(obj)
+            self.assertEqual(len(part("parts.registry").get_hierarchy(obj).order), len(obj.data.polygons))
+            part("parts.picks").forget_parts(obj)
         self.unharmed(obj, before)
 
     @only_in("newest")
@@ -132,7 +132,7 @@ class Isolation(MeshTest):
                         with contextlib.suppress(ProcessLookupError):  # it may just have ended
                             os.kill(killed[-1], number)
 
-            build, original = part("parts.builds").Build, part("parts.builds").Build.__init__
+            build, original = part("parts.builds").QueuedBuild, part("parts.builds").QueuedBuild.__init__
 
             def begin(self, *arguments, **options):
                 original(self, *arguments, **options)
@@ -153,7 +153,7 @@ class Isolation(MeshTest):
         self.refusal(bpy.ops.mesh.partwheel_build)
         package("worker.job").ENTRY = self.sound
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=3), {"FINISHED"})
-        self.assertEqual(len(part("parts.registry").hierarchy(obj).order), len(obj.data.polygons))
+        self.assertEqual(len(part("parts.registry").get_hierarchy(obj).order), len(obj.data.polygons))
 
     @only_in("oldest", "newest")
     def test_a_hostile_path(self):
@@ -186,6 +186,6 @@ class Isolation(MeshTest):
         self.addCleanup(os.environ.pop, "PARTWHEEL_LIBRARY")
         obj = self.add(*read_off("cross_quad"))
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
-        self.assertEqual(len(part("parts.registry").hierarchy(obj).order), len(obj.data.polygons))
+        self.assertEqual(len(part("parts.registry").get_hierarchy(obj).order), len(obj.data.polygons))
         loaded = package("library").load.__wrapped__()._name  # once more, as the first time
         self.assertNotEqual(Path(loaded).resolve(), Path(self.library).resolve())

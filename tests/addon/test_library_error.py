@@ -110,22 +110,22 @@ class OtherVersions(MeshTest):
         obj = self.add(*read_off("hand"))
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         stored, registry = part("parts.stored"), part("parts.registry")
-        packed = bytearray(stored.pack(registry.entry_of(obj.data).built, registry.known(obj.data)))
+        packed = bytearray(stored.pack(registry.find_entry(obj.data).built, registry.find_hierarchy(obj.data)))
         packed[8:12] = struct.pack("<I", version)
         bpy.ops.mesh.partwheel_clear()
         obj.data[stored.PROPERTY] = bytes(packed)
-        self.assertEqual(registry.state(obj.data)[0], registry.State.UNOPENED)
+        self.assertEqual(registry.get_state(obj.data)[0], registry.State.UNOPENED)
         log, reports = io.StringIO(), []
         with contextlib.redirect_stdout(log):
-            self.assertIsNone(registry.hierarchy(obj))
+            self.assertIsNone(registry.get_hierarchy(obj))
 
             class Operator:
                 @staticmethod
                 def report(kind, text):
                     reports.append((*kind, text))
-            building = part("pick.build").start(Operator, obj)
+            building = part("pick.build").start_build(Operator, obj)
             building.wait(bpy.context)
-        self.assertIsNotNone(registry.known(obj.data))
+        self.assertIsNotNone(registry.find_hierarchy(obj.data))
         return log.getvalue(), reports
 
     def test_older_ones_are_found_anew_and_nothing_is_said(self):
@@ -140,4 +140,4 @@ class OtherVersions(MeshTest):
 
     def test_it_is_said_once(self):
         self.opened(part("parts.stored").VERSION + 1)
-        self.assertEqual(dict(part("parts.stored").newer), {})
+        self.assertEqual(dict(part("parts.stored").from_newer_version), {})

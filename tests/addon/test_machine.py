@@ -82,12 +82,12 @@ class RandomEvents(ToolTest):
         self.send("ESC")
         bpy.context.preferences.edit.undo_steps = 256
         # Of the two ways to deselect, both are to be met, though the mesh is small.
-        self.addCleanup(setattr, part("mesh.selection"), "ALL_OFF", part("mesh.selection").ALL_OFF)
-        part("mesh.selection").ALL_OFF = 100
+        self.addCleanup(setattr, part("mesh.selection"), "DESELECT_ALL_COST", part("mesh.selection").DESELECT_ALL_COST)
+        part("mesh.selection").DESELECT_ALL_COST = 100
         self.spots = self.find_spots(12)
         bpy.ops.ed.undo_push(message="start")
         stops = {face: self.h.wheel(face) for _, face in self.spots}
-        creases, every = package().Creases(*part("mesh.arrays").surface(self.obj.data)), np.arange(2390)
+        creases, every = package().Creases(*part("mesh.arrays").read_surface(self.obj.data)), np.arange(2390)
         sets = {node: self.h.faces(node) for path, _ in stops.values() for node in path.tolist()}
         snapped = {node: np.flatnonzero(creases.snap(np.isin(every, faces))) for node, faces in sets.items()}
         self.model = Model(lambda face: (*([frozenset(each[node].tolist()) for node in stops[face][0].tolist()]
@@ -107,7 +107,7 @@ class RandomEvents(ToolTest):
     def find_spots(self, count):
         """[(pixel, face)] that are safe to click."""
         _, _, region, region_view = view()
-        tree, found = part("view.picking").FaceTree(self.obj), []
+        tree, found = part("view.picking").FaceRayCaster(self.obj), []
         for polygon in random.Random(7).sample(list(self.obj.data.polygons), 800):
             pixel = location_3d_to_region_2d(region, region_view, self.obj.matrix_world @ polygon.center)
             pixel = [int(value) for value in pixel]

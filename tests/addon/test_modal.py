@@ -112,7 +112,7 @@ class Tool:
 
 def prepared(tool, context, answer):
     """The answer of a tool that answered so, once it has made what it needs slice by slice."""
-    while answer == {"RUNNING_MODAL"} and isinstance(getattr(tool, "state", None), part("pick.states").Begun):
+    while answer == {"RUNNING_MODAL"} and isinstance(getattr(tool, "state", None), part("pick.states").Preparing):
         answer = tool.modal(context, event("TIMER"))
     return answer
 
@@ -137,7 +137,7 @@ class ToolTest(MeshTest):
         """A pixel with a face of the object under it, with so many stops above the start: (point, face index)."""
         obj = obj or self.obj
         _, _, region, region_view = view()
-        tree = part("view.picking").FaceTree(obj)
+        tree = part("view.picking").FaceRayCaster(obj)
         bm = bmesh.from_edit_mesh(obj.data)
         for face in bm.faces:
             if obj == self.obj:
@@ -166,7 +166,7 @@ class Modal(ToolTest):
         self.start()
         self.send("ESC")
         point, face = self.centre()
-        advance = part("pick.prepared").advance
+        advance = part("pick.view_cache").prepare_next_slice
 
         def click():
             self.tool, self.context = Tool(tool=True), FakeContext()
@@ -285,7 +285,7 @@ class Modal(ToolTest):
         edge = next(edge for edge in bm.edges if edge.calc_face_angle() < 0.1)
         self.assertTrue(bmesh.ops.rotate_edges(bm, edges=[edge])["edges"])
         self.send("LEFTMOUSE", point)
-        self.assertTrue(part("parts.builds").running())
+        self.assertTrue(part("parts.builds").has_builds())
         self.send("ESC")
 
     def test_cancel_restores(self):
@@ -363,7 +363,7 @@ class Modal(ToolTest):
                 self.assertEqual((flags(self.obj), flags(other)), before)
         self.assertEqual(bpy.context.edit_object, other)
         self.assertEqual(selected(self.obj), set())
-        self.assertEqual(part("parts.picks").picked(other).node, stops[start])
+        self.assertEqual(part("parts.picks").get_pick(other).node, stops[start])
 
     def test_an_error_inside_restores_reports_and_ends(self):
         self.start()
@@ -383,7 +383,7 @@ class Modal(ToolTest):
         point, face = self.centre()
         self.send("LEFTMOUSE", point)
         stops, start = self.h.wheel(face)
-        creases = package().Creases(*part("mesh.arrays").surface(self.obj.data))
+        creases = package().Creases(*part("mesh.arrays").read_surface(self.obj.data))
 
         def snapped(level):
             return set(np.flatnonzero(creases.snap(np.isin(np.arange(2390), self.h.faces(stops[start + level])))))
@@ -402,7 +402,7 @@ class Modal(ToolTest):
         self.send("E", point, shift=True, ctrl=True)
         self.assertEqual(self.send("RET"), {"FINISHED"})
         self.assertEqual((self.tool.face_index, self.tool.level, self.tool.snap), (face, 1, True))
-        self.assertTrue(part("parts.picks").picked(self.obj).snap)
+        self.assertTrue(part("parts.picks").get_pick(self.obj).snap)
         bpy.ops.mesh.select_all(action="DESELECT")
         bpy.ops.mesh.partwheel_select("EXEC_DEFAULT", face_index=face, level=1, snap=True)
         self.assertEqual(selected(self.obj), snapped(1))
@@ -555,7 +555,7 @@ class HeldWorkers(ToolTest):
         super().setUp()
         self.gate = Gate(package("worker.job"))
         self.addCleanup(self.gate.remove)
-        self.addCleanup(part("parts.files").after_loading)
+        self.addCleanup(part("parts.files").on_load)
 
 
 class WhileBuilding(HeldWorkers):
@@ -565,12 +565,12 @@ class WhileBuilding(HeldWorkers):
         """Starts the tool over a face of a mesh without a hierarchy, or beside the mesh."""
         self.start(name, build=False)
         self.send("ESC")
-        part("parts.files").after_loading()
+        part("parts.files").on_load()
         self.tool, self.context = Tool(), FakeContext()
         point, self.face = self.centre() if over else ((1, 1), None)
         self.before = flags(self.obj)
         self.assertEqual(self.tool.invoke(self.context, event("W", point, ctrl=True)), {"RUNNING_MODAL"})
-        self.assertTrue(part("parts.builds").running())
+        self.assertTrue(part("parts.builds").has_builds())
         self.assertEqual((len(self.context.handlers), len(self.context.timers)), (1, 1))
         self.assertIn("Esc", self.context.status[-1])
         self.job = self.tool.building.build.job
@@ -582,7 +582,7 @@ class WhileBuilding(HeldWorkers):
         return self.send("TIMER")
 
     def nothing_runs(self):
-        self.assertFalse(part("parts.builds").running())
+        self.assertFalse(part("parts.builds").has_builds())
         self.assertEqual(self.context.timers, [])
         self.assertIsNone(self.context.status[-1])
         self.assertFalse(alive(self.job.process_id))
@@ -599,7 +599,7 @@ class WhileBuilding(HeldWorkers):
         self.obj.matrix_world = Matrix.Translation((0, 0, 500)) @ self.obj.matrix_world  # as if the view had turned
         bpy.context.view_layer.update()
         self.assertEqual(self.build_on(), {"RUNNING_MODAL"})
-        self.assertEqual((self.context.timers, part("parts.builds").running()), ([], False))
+        self.assertEqual((self.context.timers, part("parts.builds").has_builds()), ([], False))
         self.expect(self.face, 0)
         self.send("WHEELUPMOUSE")
         self.expect(self.face, 1)
@@ -610,7 +610,7 @@ class WhileBuilding(HeldWorkers):
         self.begin("homer")
         self.send("ESC")
         point, _ = self.centre()
-        part("pick.prepared")._kept.clear()
+        part("pick.view_cache")._caches.clear()
         self.tool, self.context = Tool(), FakeContext()
         bmesh.update_edit_mesh(self.obj.data)
         with WritesBack() as writes:
@@ -646,7 +646,7 @@ class WhileBuilding(HeldWorkers):
         self.nothing_runs()
         self.assertEqual(flags(self.obj), self.before)
         self.assertIn("Cancelled", self.tool.reports[-1][1])
-        self.assertIsNone(part("parts.registry").hierarchy(self.obj))
+        self.assertIsNone(part("parts.registry").get_hierarchy(self.obj))
 
     def test_edited_meanwhile(self):
         self.begin()
@@ -656,7 +656,7 @@ class WhileBuilding(HeldWorkers):
         self.nothing_runs()
         self.assertEqual(self.tool.reports[-1][0], {"WARNING"})
         self.assertIn("edited", self.tool.reports[-1][1])
-        self.assertIsNone(part("parts.registry").hierarchy(self.obj))
+        self.assertIsNone(part("parts.registry").get_hierarchy(self.obj))
 
     def test_moved_meanwhile(self):
         self.begin()
@@ -665,16 +665,16 @@ class WhileBuilding(HeldWorkers):
         bm.verts[0].co.x += 0.01
         self.assertEqual(self.build_on(), {"RUNNING_MODAL"})
         self.expect(self.face, 0)
-        self.assertEqual(part("parts.registry").state(self.obj.data)[0], part("parts.registry").State.MOVED)
+        self.assertEqual(part("parts.registry").get_state(self.obj.data)[0], part("parts.registry").State.MOVED)
 
     def test_an_operator_that_makes_the_mesh_anew_wants_no_build_of_the_former(self):
         self.begin()
-        part("parts.builds").drop_outdated()
-        self.assertTrue(part("parts.builds").running())
+        part("parts.builds").cancel_outdated()
+        self.assertTrue(part("parts.builds").has_builds())
         bm = bmesh.from_edit_mesh(self.obj.data)
         bm.verts.ensure_lookup_table()
         bm.verts[0].co.x += 0.01  # as a union with a wider blend has the same polygons, elsewhere
-        part("parts.builds").drop_outdated()
+        part("parts.builds").cancel_outdated()
         self.assertEqual(self.build_on(), {"CANCELLED"})
         self.nothing_runs()
 
@@ -706,7 +706,7 @@ class WhileBuilding(HeldWorkers):
         self.assertEqual(self.build_on(), {"CANCELLED"})
         self.nothing_runs()
         self.assertEqual(self.tool.reports[-1][0], {"INFO"})
-        self.assertIsNotNone(part("parts.registry").hierarchy(self.obj))
+        self.assertIsNotNone(part("parts.registry").get_hierarchy(self.obj))
 
     def test_deleted_meanwhile(self):
         self.begin()
@@ -742,7 +742,7 @@ class WhileBuilding(HeldWorkers):
         self.tool.cancel(self.context)
         self.nothing_runs()
         self.assertIn("Cancelled", self.tool.reports[-1][1])
-        self.assertIsNone(part("parts.registry").hierarchy(self.obj))
+        self.assertIsNone(part("parts.registry").get_hierarchy(self.obj))
 
     def test_disabling_the_add_on_kills_the_worker(self):
         self.begin()
@@ -757,12 +757,12 @@ class WhileBuilding(HeldWorkers):
         bpy.ops.object.mode_set(mode="OBJECT")
         bpy.ops.wm.read_homefile(app_template="", use_empty=False)
         until(lambda: not alive(self.job.process_id))
-        self.assertFalse(part("parts.builds").running())
+        self.assertFalse(part("parts.builds").has_builds())
 
     def test_the_build_operator(self):
         self.start(build=False)
         self.send("ESC")
-        part("parts.files").after_loading()
+        part("parts.files").on_load()
         for over, answer in (("ESC", {"CANCELLED"}), ("TIMER", {"FINISHED"})):
             self.tool, self.context = Tool("build", quality=1.4), FakeContext()
             self.assertEqual(self.tool.invoke(self.context, event("A")), {"RUNNING_MODAL"})
@@ -770,7 +770,7 @@ class WhileBuilding(HeldWorkers):
             self.assertEqual(self.send("LEFTMOUSE"), {"PASS_THROUGH"})
             self.assertEqual(self.build_on() if over == "TIMER" else self.send(over), answer)
             self.nothing_runs()
-            self.assertEqual(part("parts.registry").hierarchy(self.obj) is None, over == "ESC")
+            self.assertEqual(part("parts.registry").get_hierarchy(self.obj) is None, over == "ESC")
 
 
 @only_in("newest")
@@ -862,8 +862,8 @@ class ManyMeshes(HeldWorkers):
         self.assertEqual((self.tick(first), self.tick(second)), ({"CANCELLED"}, {"RUNNING_MODAL"}))
         self.assertEqual((selected(hand), selected(homer)), (set(), second.meant))
         for obj in (hand, homer):
-            self.assertEqual(part("parts.registry").hierarchy(obj).save(), self.hierarchies[obj].save())
-        self.assertFalse(part("parts.builds").running())
+            self.assertEqual(part("parts.registry").get_hierarchy(obj).save(), self.hierarchies[obj].save())
+        self.assertFalse(part("parts.builds").has_builds())
 
     def test_escape_takes_the_one_that_waits_out_of_the_queue(self):
         hand, homer = self.show_two()
@@ -874,9 +874,9 @@ class ManyMeshes(HeldWorkers):
         self.assertEqual(self.tick(first), {"PASS_THROUGH"})
         self.until_built(first)
         self.tick(first)
-        self.assertIsNotNone(part("parts.registry").hierarchy(hand))
-        self.assertIsNone(part("parts.registry").hierarchy(homer))
-        self.assertFalse(part("parts.builds").running())
+        self.assertIsNotNone(part("parts.registry").get_hierarchy(hand))
+        self.assertIsNone(part("parts.registry").get_hierarchy(homer))
+        self.assertFalse(part("parts.builds").has_builds())
 
     def test_escape_lets_the_next_one_begin(self):
         hand, homer = self.show_two()
@@ -905,7 +905,7 @@ class ManyMeshes(HeldWorkers):
         first, _ = self.click(hand)
         bpy.ops.mesh.select_all(action="SELECT")
         bpy.ops.mesh.subdivide()
-        second = part("parts.builds").build(hand)
+        second = part("parts.builds").request_build(hand)
         self.assertIsNot(second, first.building.build)
         self.assertEqual(self.tick(first), {"CANCELLED"})
         self.assertTrue(second.job)
@@ -920,8 +920,8 @@ class ManyMeshes(HeldWorkers):
 
     def test_a_click_while_parts_are_found_anew_waits_for_them(self):
         _, homer = self.show_two(built=["homer"])
-        old = part("parts.registry").hierarchy(homer)
-        part("parts.builds").build(homer, quality=1.4)
+        old = part("parts.registry").get_hierarchy(homer)
+        part("parts.builds").request_build(homer, quality=1.4)
         tool, answer = self.click(homer)
         self.assertEqual((answer, selected(homer)), ({"RUNNING_MODAL"}, set()))
         self.until_built(tool)
@@ -944,9 +944,9 @@ class ManyMeshes(HeldWorkers):
         self.gate.open()
         finer = part("api").build(hand, quality=1.4)
         self.assertEqual(self.tick(tool), {"CANCELLED"})
-        self.assertIs(part("parts.registry").hierarchy(hand), finer)
+        self.assertIs(part("parts.registry").get_hierarchy(hand), finer)
         self.assertGreater(len(finer.tetrahedra), len(self.hierarchies[hand].tetrahedra))
-        self.assertFalse(part("parts.builds").running())
+        self.assertFalse(part("parts.builds").has_builds())
 
     # ---- Esc, and the answer in the same moment
 
@@ -958,9 +958,9 @@ class ManyMeshes(HeldWorkers):
         self.until_built(tool)
         self.assertEqual(self.tick(tool, "ESC"), {"CANCELLED"})
         self.assertEqual(flags(hand), before)
-        self.assertIsNone(part("parts.registry").hierarchy(hand))  # just as when Esc came a moment earlier
+        self.assertIsNone(part("parts.registry").get_hierarchy(hand))  # just as when Esc came a moment earlier
         self.assertIn("Cancelled", tool.reports[-1][1])
-        self.assertFalse(part("parts.builds").running())
+        self.assertFalse(part("parts.builds").has_builds())
 
     def test_escape_right_after_the_answer(self):
         """The part is selected, though not drawn yet."""
@@ -972,7 +972,7 @@ class ManyMeshes(HeldWorkers):
         self.assertEqual(selected(hand), tool.meant)
         self.assertEqual(self.tick(tool, "ESC"), {"CANCELLED"})
         self.assertEqual(flags(hand), before)
-        self.assertFalse(part("parts.builds").running())
+        self.assertFalse(part("parts.builds").has_builds())
 
     def test_escape_while_a_script_has_had_the_answer(self):
         hand, _ = self.show_two()
@@ -1023,7 +1023,7 @@ class Pick(MeshTest):
                 bm.faces.ensure_lookup_table()
                 hidden = set()
                 for _ in range(2):
-                    tree, shown, hits = part("view.picking").FaceTree(obj), self.triangles(obj, hidden), 0
+                    tree, shown, hits = part("view.picking").FaceRayCaster(obj), self.triangles(obj, hidden), 0
                     for x in range(1, 6):
                         for y in range(1, 6):
                             point = region.width * x // 6, region.height * y // 6
@@ -1047,7 +1047,7 @@ class Pick(MeshTest):
 
     def test_what_lies_over_the_view_is_not_the_view(self):
         window, area, region, _ = view()
-        find = part("view.picking").view_under
+        find = part("view.picking").find_view_at
         inside = region.x + region.width // 2, region.y + region.height // 2
         self.assertEqual(find(window, *inside)[1].type, "WINDOW")
         header = next(region for region in area.regions if region.type == "HEADER")

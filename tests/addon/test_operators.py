@@ -150,6 +150,6 @@ class Operators(MeshTest):
         context = type("Context", (), {"window_manager": manager, "active_object": obj})()
         self.assertEqual(bpy.types.MESH_OT_partwheel_clear.invoke(None, context, None), {"RUNNING_MODAL"})
         self.assertEqual(len(asked), 1)
-        self.assertIsNotNone(part("parts.registry").known(obj.data))
+        self.assertIsNotNone(part("parts.registry").find_hierarchy(obj.data))
         self.assertEqual(bpy.ops.mesh.partwheel_clear(), {"FINISHED"})
-        self.assertIsNone(part("parts.registry").known(obj.data))
+        self.assertIsNone(part("parts.registry").find_hierarchy(obj.data))

@@ -15,8 +15,8 @@ class Tints(MeshTest):
         self.obj = self.add(*read_off("homer"))
         self.h = part("api").build(self.obj)
         self.overlay = part("view.overlay")
-        self.colors = self.overlay.colors()
-        self.parts = self.overlay.Parts(part("view.seen").seen(self.obj), self.h)
+        self.colors = self.overlay.get_theme_colors()
+        self.parts = self.overlay.PartTriangles(part("view.visible_surface").compute_visible_surface(self.obj), self.h)
         self.obj.data.calc_loop_triangles()
         self.face_of = {frozenset(each.vertices): each.polygon_index for each in self.obj.data.loop_triangles}
 
@@ -29,11 +29,11 @@ class Tints(MeshTest):
                 if not layer.width:
                     found[layer.color] = sorted(found.get(layer.color, []) + layer.drawn[1])
 
-        self.replace(self.overlay.layers, "draw", draw)
-        self.replace(self.overlay.layers, "lines", lambda _positions, edges: (None, edges))
+        self.replace(self.overlay.layers, "draw_layers", draw)
+        self.replace(self.overlay.layers, "create_line_batch", lambda _positions, edges: (None, edges))
         self.replace(self.parts, "batch", lambda piece: (None, self.faces(self.parts.triangles[slice(*piece)])))
         self.replace(self.parts, "of_faces", lambda _name, faces: (None, sorted(faces.tolist())))
-        self.overlay.draw_held(bpy.context, self.obj, self.parts, *what)
+        self.overlay.draw_picked_part(bpy.context, self.obj, self.parts, *what)
         return found
 
     def replace(self, owner, name, value):
@@ -79,7 +79,7 @@ class Tints(MeshTest):
         layers, rng = part("view.layers"), np.random.default_rng(1)
         for corners, number in ((4, 1), (5, 9), (9, 40), (30, 40), (3, 0)):
             triangles = np.array([rng.permutation(corners)[:3] for _ in range(number)], np.int32).reshape(-1, 3)
-            *_, beyond = layers.beyond(triangles)
+            *_, beyond = layers.find_neighbor_triangles(triangles)
             self.assertEqual(beyond.shape, (number, 3))
             of_edge = {}
             for triangle in range(number):
@@ -91,7 +91,7 @@ class Tints(MeshTest):
                 self.assertEqual(sorted(led_to), sorted(mine) if len(mine) > 1 else [number])
                 self.assertTrue(len(mine) == 1 or all(one != other for one, other in own))
             mine = rng.permutation(number)[:number // 2]
-            own_edges = [frozenset(edge) for edge in layers.border(triangles, beyond, mine).tolist()]
+            own_edges = [frozenset(edge) for edge in layers.find_border_edges(triangles, beyond, mine).tolist()]
             self.assertLessEqual({edge for edge, own in of_edge.items() if len({each for each, _ in own} & {*mine}) == 1},
                                  set(own_edges))
 
@@ -100,7 +100,7 @@ class Tints(MeshTest):
         before = tuple(view.object_selected)
         self.addCleanup(setattr, view, "object_selected", before)
         view.object_selected = (0.1, 0.2, 0.9)
-        self.assertLess(np.abs(np.array(self.overlay.colors().part[:3]) - (0.1, 0.2, 0.9)).max(), 0.01)
+        self.assertLess(np.abs(np.array(self.overlay.get_theme_colors().part[:3]) - (0.1, 0.2, 0.9)).max(), 0.01)
 
 
 class State:
@@ -131,7 +131,7 @@ class Drawing(MeshTest):
                                             ("MATERIAL", True, "LESS_EQUAL", "NONE"), ("WIREFRAME", False, "ALWAYS", "BACK")):
             drawn.clear()
             shading = types.SimpleNamespace(type=solid, show_xray=xray)
-            layers.draw(types.SimpleNamespace(
+            layers.draw_layers(types.SimpleNamespace(
                 region_data=view, region=types.SimpleNamespace(width=100, height=50),
                 space_data=types.SimpleNamespace(shading=shading)), self.add(*BOX), both)
             self.assertEqual(drawn, [{"blend": "ALPHA", "depth_test": depth, "depth_mask": False, "face_culling": each}

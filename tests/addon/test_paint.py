@@ -52,7 +52,7 @@ class Paint(MeshTest):
         rest = set(range(2390)) - first - second
         self.assertEqual(len({found[index] for index in rest}), 1)
         self.assertEqual(len(set(found)), 3)
-        self.assertEqual(part("parts.picks").picked(self.obj).face, 1100)
+        self.assertEqual(part("parts.picks").get_pick(self.obj).face, 1100)
 
     def test_mask(self):
         self.begin("SCULPT")
@@ -76,7 +76,7 @@ class Paint(MeshTest):
         self.assertEqual(self.group(0), self.vertices[0])
         self.paint(1100)
         self.assertEqual([self.group(index) for index in range(len(self.obj.vertex_groups))], self.vertices)
-        node = part("parts.picks").picked(self.obj).node
+        node = part("parts.picks").get_pick(self.obj).node
         self.assertEqual(self.obj.vertex_groups.active.name, f"Part {node}")
         self.paint(extend=True)
         self.assertEqual(self.group(1), self.vertices[0] | self.vertices[1])
@@ -143,7 +143,7 @@ class Paint(MeshTest):
         other = self.add(*BOX, "other")
         bpy.context.view_layer.objects.active = self.obj
         self.assertEqual(pick(), first)
-        self.assertEqual((self.obj.select_get(), other.select_get(), picks.picked(self.obj).face), (True, False, 900))
+        self.assertEqual((self.obj.select_get(), other.select_get(), picks.get_pick(self.obj).face), (True, False, 900))
         self.assertEqual(pick(1100, extend=True), first | second)
         self.assertEqual(self.obj.data.polygons.active, 1100)
         self.assertEqual(pick(deselect=True), second)
@@ -166,9 +166,9 @@ class Paint(MeshTest):
                 bpy.ops.ed.undo_push(message="Pick")
             bpy.ops.ed.undo()
             obj = bpy.context.view_layer.objects.active
-            self.assertEqual(picks.picked(obj).face, 900)
+            self.assertEqual(picks.get_pick(obj).face, 900)
             bpy.ops.ed.redo()
-            self.assertEqual(picks.picked(bpy.context.view_layer.objects.active).face, 1100)
+            self.assertEqual(picks.get_pick(bpy.context.view_layer.objects.active).face, 1100)
 
     @only_in("oldest", "newest")
     def test_masks_of_multires_levels_leave_nothing_hidden(self):

@@ -39,9 +39,9 @@ class PartsCase(SolidTest):
         registry = part("parts.registry")
         if name not in _saved:
             _saved[name] = part("api").build(obj)
-        now = part("mesh.arrays").fingerprint(obj.data)
+        now = part("mesh.arrays").compute_fingerprint(obj.data)
         counts = len(obj.data.vertices), len(obj.data.polygons)
-        registry.keep(obj.data, registry.Entry(now, counts, _saved[name]), now)
+        registry.store(obj.data, registry.HierarchyEntry(now, counts, _saved[name]), now)
         self.assertEqual(_saved[name].summary.rung, RUNGS[name])
         return obj, part("api").cut(obj)
 

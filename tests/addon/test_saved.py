@@ -22,10 +22,10 @@ class Saved(MeshTest):
         self.State = part("parts.registry").State
 
     def state(self, obj):
-        return part("parts.registry").state(obj.data)[0]
+        return part("parts.registry").get_state(obj.data)[0]
 
     def kept(self, obj):
-        return part("parts.registry").hierarchy(obj)
+        return part("parts.registry").get_hierarchy(obj)
 
     def built(self, name="hand"):
         obj = self.add(*(BOX if name == "box" else read_off(name)))
@@ -61,9 +61,9 @@ class Saved(MeshTest):
         self.save()
         obj = self.open()
         self.edit(obj)
-        original = part("parts.builds").Build
-        self.addCleanup(setattr, part("parts.builds"), "Build", original)
-        part("parts.builds").Build = None
+        original = part("parts.builds").QueuedBuild
+        self.addCleanup(setattr, part("parts.builds"), "QueuedBuild", original)
+        part("parts.builds").QueuedBuild = None
         self.assertEqual(bpy.ops.mesh.partwheel_select(face_index=700), {"FINISHED"})
 
     def test_saved_in_edit_mode_and_again_unopened(self):
@@ -181,7 +181,7 @@ class Saved(MeshTest):
         other versions see test_trouble.py."""
         obj = self.built("cross_quad")
         stored = part("parts.stored")
-        packed = stored.pack(part("mesh.arrays").fingerprint(obj.data), self.kept(obj))
+        packed = stored.pack(part("mesh.arrays").compute_fingerprint(obj.data), self.kept(obj))
         self.assertEqual(len(stored.unpack(packed)[1].order), len(obj.data.polygons))
         part("parts.registry")._entries.clear()
         changed = change(packed)
@@ -234,7 +234,7 @@ class Saved(MeshTest):
         stored = part("parts.stored")
         part("parts.registry")._entries.clear()
         part("parts.registry")._retired.clear()
-        obj.data[stored.PROPERTY] = stored.pack(part("mesh.arrays").fingerprint(obj.data), hierarchy)
+        obj.data[stored.PROPERTY] = stored.pack(part("mesh.arrays").compute_fingerprint(obj.data), hierarchy)
         place = obj.data.vertices[0].co.copy()
         if moved:
             obj.data.vertices[0].co.x += 0.01

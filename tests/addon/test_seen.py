@@ -62,7 +62,7 @@ class Seen(MeshTest):
                     obj.modifiers[0].uv_smooth = "NONE"
                     bpy.context.view_layer.update()
                 places, triangles, tags = self.numbers(obj)
-                found = part("view.seen").seen(obj)
+                found = part("view.visible_surface").compute_visible_surface(obj)
                 np.testing.assert_array_equal(found.positions, places)
                 np.testing.assert_array_equal(found.triangles, triangles)
                 self.assertGreater((tags >= 0).mean(), 0.85)
@@ -74,7 +74,7 @@ class Seen(MeshTest):
         remesh = obj.modifiers.new("remesh", "REMESH")
         remesh.mode, remesh.voxel_size = "VOXEL", 0.1
         bpy.context.view_layer.update()
-        found = part("view.seen").seen(obj)
+        found = part("view.visible_surface").compute_visible_surface(obj)
         self.assertGreater(len(found.faces), 1000)
         self.assertTrue((found.faces >= 0).all())
         places = found.positions[found.triangles].mean(axis=1) - [0, 0, 100]
@@ -100,7 +100,7 @@ class Seen(MeshTest):
 
     def test_what_belongs_to_no_face_says_so(self):
         obj = self.replaced()
-        self.assertEqual(set(part("view.seen").seen(obj).faces), {part("view.seen").NO_FACE})
+        self.assertEqual(set(part("view.visible_surface").compute_visible_surface(obj).faces), {part("view.visible_surface").NO_FACE})
         bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
         show(obj)
         tool = Tool("paint", write="AUTO")
@@ -123,13 +123,13 @@ class Seen(MeshTest):
         for mode in ("WEIGHT_PAINT", "SCULPT", "OBJECT"):
             bpy.ops.object.mode_set(mode=mode)
             before = self.everything(obj)
-            self.assertGreater(len(part("view.seen").seen(obj).faces), 1000)
+            self.assertGreater(len(part("view.visible_surface").compute_visible_surface(obj).faces), 1000)
             self.assertEqual(self.everything(obj), before)
             self.looked_at_once(obj)
 
     def looked_at_once(self, obj):
         """To look is no change, upon which it would be looked at again, and so on for ever."""
-        prepared = part("pick.prepared").prepared
+        prepared = part("pick.view_cache").get_view_cache
         made = prepared(obj)
         bpy.context.view_layer.update()
         self.assertIs(prepared(obj), made)
@@ -154,7 +154,7 @@ class Seen(MeshTest):
         known = set(scene.objects)
         bpy.app.handlers.depsgraph_update_post.append(tell)
         self.addCleanup(bpy.app.handlers.depsgraph_update_post.remove, tell)
-        part("view.seen").seen(subsurf)
+        part("view.visible_surface").compute_visible_surface(subsurf)
         subsurf.modifiers.clear()
         part("compose.union").unite(target, [subsurf], 0)
         bpy.context.view_layer.objects.active = seamed
@@ -175,20 +175,20 @@ class Seen(MeshTest):
         scene.frame_set(7, subframe=0.25)
         self.addCleanup(scene.frame_set, 1)
         places, _, tags = self.numbers(obj)
-        found = part("view.seen").seen(obj)
+        found = part("view.visible_surface").compute_visible_surface(obj)
         np.testing.assert_array_equal(found.positions, places)
         np.testing.assert_array_equal(found.faces[tags >= 0], tags[tags >= 0])
-        with part("view.seen")._double(obj) as (double, layer):
-            mesh = double.evaluated_get(part("mesh.apart").depsgraph(layer)).to_mesh()
+        with part("view.visible_surface")._temporary_copy(obj) as (double, layer):
+            mesh = double.evaluated_get(part("mesh.temporary_scene").update_depsgraph(layer)).to_mesh()
             np.testing.assert_array_equal(positions(mesh), places)
 
     def test_strokes_are_seen_at_once(self):
         """Without modifiers they go into the mesh, and nothing else need know of them."""
         obj = self.sphere()
         bpy.ops.object.mode_set(mode="SCULPT")
-        part("view.seen").seen(obj)
+        part("view.visible_surface").compute_visible_surface(obj)
         obj.data.vertices.foreach_set("co", 2 * positions(obj.data).ravel())
-        np.testing.assert_array_equal(part("view.seen").seen(obj).positions, positions(obj.data))
+        np.testing.assert_array_equal(part("view.visible_surface").compute_visible_surface(obj).positions, positions(obj.data))
 
     def test_multires_as_it_is_sculpted(self):
         obj = self.modified("MULTIRES")
@@ -206,7 +206,7 @@ class Seen(MeshTest):
         for multires.sculpt_levels in (1, 2):
             bpy.ops.object.mode_set(mode="SCULPT")
             bpy.context.view_layer.update()
-            found = part("view.seen").seen(obj)
+            found = part("view.visible_surface").compute_visible_surface(obj)
             places, triangles, tags = expected[multires.sculpt_levels]
             np.testing.assert_allclose(found.positions, places, atol=1e-6)
             np.testing.assert_array_equal(found.triangles, triangles)
@@ -220,9 +220,9 @@ class Seen(MeshTest):
         obj.data.polygons.foreach_set("hide", hidden)
         obj.data.update()
         bpy.context.view_layer.update()
-        self.assertTrue(hidden[part("view.seen").seen(obj).faces].any())
+        self.assertTrue(hidden[part("view.visible_surface").compute_visible_surface(obj).faces].any())
         bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
-        self.assertFalse(hidden[part("view.seen").seen(obj).faces].any())
+        self.assertFalse(hidden[part("view.visible_surface").compute_visible_surface(obj).faces].any())
 
     # ---- Picking and drawing
 
@@ -251,7 +251,7 @@ class Seen(MeshTest):
 
     def test_a_posed_hand_is_picked_and_drawn_where_it_is(self):
         obj, h, bones = self.posed()
-        prepared = part("pick.prepared").prepared
+        prepared = part("pick.view_cache").get_view_cache
         evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
         places = positions(evaluated.to_mesh()).copy()
         self.assertGreater(np.abs(places - positions(obj.data)).max(), 1)
@@ -287,13 +287,13 @@ class Seen(MeshTest):
             modifier.show_viewport, modifier.show_in_editmode, modifier.show_on_cage = shown
             bpy.context.view_layer.update()
             places = own + [0, 0, all(shown)]
-            cage = part("mesh.arrays").cage_positions(obj)
+            cage = part("mesh.arrays").read_cage_positions(obj)
             if all(shown):
                 np.testing.assert_allclose(cage, places, atol=1e-6)
             else:
                 self.assertIsNone(cage)
             region, region_view = camera(obj, True)
-            tree = part("view.picking").FaceTree(obj)
+            tree = part("view.picking").FaceRayCaster(obj)
             right = 0
             for face in obj.data.polygons:
                 middle = Vector(places[list(face.vertices)].mean(axis=0))
@@ -306,22 +306,22 @@ class Seen(MeshTest):
         """The face picked at the pixel of a face's middle."""
         middle = obj.matrix_world @ Vector(places[list(obj.data.polygons[face].vertices)].mean(axis=0))
         point = location_3d_to_region_2d(region, region_view, middle)
-        found = part("pick.prepared").prepared(obj).tree(obj).under(obj.matrix_world, region, region_view, point)
+        found = part("pick.view_cache").get_view_cache(obj).tree(obj).under(obj.matrix_world, region, region_view, point)
         return found and found[0]
 
     def test_kept_where_other_polygons_are_shown(self):
         """The double that is made for that must not count as a change."""
         obj = self.modified("SUBSURF", levels=2)
         bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
-        made = part("pick.prepared").prepared(obj)
+        made = part("pick.view_cache").get_view_cache(obj)
         bpy.context.view_layer.update()
-        self.assertIs(part("pick.prepared").prepared(obj), made)
+        self.assertIs(part("pick.view_cache").get_view_cache(obj), made)
 
     def test_two_objects_with_one_mesh(self):
         """Each is picked where its own modifiers show it."""
         obj = self.modified("DISPLACE", strength=100, direction="Z", mid_level=0)
         twin = self.link(bpy.data.objects.new("twin", obj.data))
-        heights = [part("pick.prepared").prepared(each)._seen.positions[:, 2].mean() for each in (obj, twin, obj)]
+        heights = [part("pick.view_cache").get_view_cache(each)._seen.positions[:, 2].mean() for each in (obj, twin, obj)]
         np.testing.assert_allclose(heights, [100, 0, 100], atol=1e-3)
 
 
@@ -348,7 +348,7 @@ class Views(MeshTest):
 
     def found(self, **more):
         context = FakeContext()
-        return part("view.picking").surface_under(context, self.area, self.region, self.region_view,
+        return part("view.picking").find_surface_under(context, self.area, self.region, self.region_view,
                                              (self.region.width // 2, self.region.height // 2), **more)
 
     def alone(self, obj):

@@ -45,8 +45,8 @@ class Select(MeshTest):
 
     def always_all_off(self):
         """For this test most is deselected at once also in small meshes, where one by one would be quicker."""
-        self.addCleanup(setattr, part("mesh.selection"), "ALL_OFF", part("mesh.selection").ALL_OFF)
-        part("mesh.selection").ALL_OFF = 0
+        self.addCleanup(setattr, part("mesh.selection"), "DESELECT_ALL_COST", part("mesh.selection").DESELECT_ALL_COST)
+        part("mesh.selection").DESELECT_ALL_COST = 0
 
     def test_other_objects_in_edit_mode_keep_what_they_should(self):
         self.always_all_off()
@@ -219,7 +219,7 @@ class Select(MeshTest):
         partly = [distance for index, distance in enumerate(moved) if index not in chosen and 0.01 < distance < 0.99]
         self.assertGreater(len(partly), 10)
         self.assertTrue(any(distance < 1e-6 for distance in moved))
-        self.assertIsNotNone(part("parts.registry").hierarchy(obj))  # only positions changed
+        self.assertIsNotNone(part("parts.registry").get_hierarchy(obj))  # only positions changed
 
     def test_duplicate_takes_the_part_over(self):
         obj = self.add(*read_off("hand"))
@@ -229,4 +229,4 @@ class Select(MeshTest):
         bpy.ops.mesh.duplicate_move(TRANSFORM_OT_translate={"value": (0, 0, 1)})
         bm = bmesh.from_edit_mesh(obj.data)
         self.assertEqual((len(bm.faces), len(selected(obj))), (2390 + count, count))
-        self.assertIsNone(part("parts.registry").hierarchy(obj))
+        self.assertIsNone(part("parts.registry").get_hierarchy(obj))

@@ -13,13 +13,13 @@ class Staleness(MeshTest):
 
     def kept(self, obj):
         """The hierarchy in use, after a check that it is the very one that a build would give."""
-        h = part("parts.registry").hierarchy(obj)
+        h = part("parts.registry").get_hierarchy(obj)
         if h:
             self.assertEqual(h.save(), self.hierarchy(obj).save())
         return h
 
     def state(self, obj):
-        return part("parts.registry").state(obj.data)[0]
+        return part("parts.registry").get_state(obj.data)[0]
 
     def built(self, name="cross_quad"):
         obj = self.add(*(BOX if name == "box" else read_off(name)))
@@ -37,7 +37,7 @@ class Staleness(MeshTest):
         obj.data.update()
         bpy.context.view_layer.update()
         self.assertEqual(self.state(obj), self.State.MOVED)
-        self.assertIs(part("parts.registry").hierarchy(obj), first)
+        self.assertIs(part("parts.registry").get_hierarchy(obj), first)
         self.assertEqual(self.state(obj), self.State.MOVED)
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         self.assertEqual(self.state(obj), self.State.FITS)
@@ -49,7 +49,7 @@ class Staleness(MeshTest):
         bm = self.edit(obj)
         bm.verts.ensure_lookup_table()
         bm.verts[0].co.x += 0.01
-        self.assertIs(part("parts.registry").hierarchy(obj), first)
+        self.assertIs(part("parts.registry").get_hierarchy(obj), first)
         self.assertEqual(self.state(obj), self.State.MOVED)
         bm.verts[0].co.x += 0.01
         bpy.ops.object.mode_set(mode="OBJECT")
@@ -60,31 +60,31 @@ class Staleness(MeshTest):
         """
         obj = self.built()
         bm = self.edit(obj)
-        prepared = part("pick.prepared").prepared
-        part("parts.registry").hierarchy(obj)
+        prepared = part("pick.view_cache").get_view_cache
+        part("parts.registry").get_hierarchy(obj)
         first, revision = prepared(obj), part("parts.changes").revision(obj.data)
-        part("parts.registry").hierarchy(obj)
+        part("parts.registry").get_hierarchy(obj)
         self.assertEqual(part("parts.changes").revision(obj.data), revision)
         self.assertIs(prepared(obj), first)
         bm.verts.ensure_lookup_table()
         bm.verts[0].co.x += 0.01
         bmesh.update_edit_mesh(obj.data)
-        part("parts.registry").hierarchy(obj)
+        part("parts.registry").get_hierarchy(obj)
         self.assertNotEqual(part("parts.changes").revision(obj.data), revision)
         self.assertIsNot(prepared(obj), first)
 
     def test_a_step_reads_the_mesh_once(self):
         obj = self.built("hand")
         self.edit(obj)
-        registry, one_reading = part("parts.registry"), part("mesh.arrays").one_reading
+        registry, one_reading = part("parts.registry"), part("mesh.arrays").use_snapshot
 
         def asked():
             with WritesBack() as writes:
-                registry.hierarchy(obj)
-                part("parts.builds").being_built(obj)
-                part("pick.prepared").prepared(obj).hierarchy(obj)
+                registry.get_hierarchy(obj)
+                part("parts.builds").is_being_built(obj)
+                part("pick.view_cache").get_view_cache(obj).hierarchy(obj)
                 part("mesh.selection").Selection(obj)
-                registry.hierarchy(obj)
+                registry.get_hierarchy(obj)
             return writes.count
 
         with one_reading():
@@ -105,27 +105,27 @@ class Staleness(MeshTest):
         def moved():
             bm.verts[0].co.x += 0.01
 
-        with arrays.one_reading():
-            seen = [arrays.present(obj)]
+        with arrays.use_snapshot():
+            seen = [arrays.current_fingerprint(obj)]
             moved()
-            self.assertEqual(arrays.present(obj), seen[0])  # nobody said so
+            self.assertEqual(arrays.current_fingerprint(obj), seen[0])  # nobody said so
             bmesh.update_edit_mesh(obj.data)
             bpy.context.view_layer.update()
-            seen.append(arrays.present(obj))
+            seen.append(arrays.current_fingerprint(obj))
             moved()
-            arrays.changed()
-            seen.append(arrays.present(obj))
+            arrays.invalidate_snapshot()
+            seen.append(arrays.current_fingerprint(obj))
             moved()
-        seen.append(arrays.present(obj))
+        seen.append(arrays.current_fingerprint(obj))
         self.assertEqual(len(set(seen)), 4)
         self.assertEqual(len({each.topology for each in seen}), 1)
-        with arrays.one_reading():
-            arrays.present(obj)
+        with arrays.use_snapshot():
+            arrays.current_fingerprint(obj)
             edge = next(edge for edge in bm.edges if edge.calc_face_angle() < 0.1)
             self.assertTrue(bmesh.ops.rotate_edges(bm, edges=[edge])["edges"])
             bmesh.update_edit_mesh(obj.data)
             bpy.context.view_layer.update()
-            self.assertIsNone(part("parts.registry").hierarchy(obj))
+            self.assertIsNone(part("parts.registry").get_hierarchy(obj))
 
     def test_undo_in_a_step_is_seen(self):
         obj = self.built("hand")
@@ -136,17 +136,17 @@ class Staleness(MeshTest):
         bpy.ops.transform.translate(value=(1, 0, 0))
         bpy.ops.ed.undo_push(message="moved")
         arrays = part("mesh.arrays")
-        with arrays.one_reading():
-            moved = arrays.present(obj)
+        with arrays.use_snapshot():
+            moved = arrays.current_fingerprint(obj)
             bpy.ops.ed.undo()
             obj = bpy.data.objects[name]
-            self.assertNotEqual(arrays.present(obj), moved)
+            self.assertNotEqual(arrays.current_fingerprint(obj), moved)
 
     def test_what_a_step_selects_is_seen(self):
         obj = self.built("hand")
         self.edit(obj)
         Selection = part("mesh.selection").Selection
-        with part("mesh.arrays").one_reading():
+        with part("mesh.arrays").use_snapshot():
             first = Selection(obj)
             first.select(obj, [3, 4, 5])
             second = Selection(obj)

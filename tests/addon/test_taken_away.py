@@ -56,14 +56,14 @@ class TakenAway(MeshTest):
         other = [face for face in range(len(self.obj.data.polygons)) if face not in first][:len(first) - 1] + [700]
         self.choose(other, 700)
         self.pick(1100)
-        second = part("parts.picks").picked(self.obj)
+        second = part("parts.picks").get_pick(self.obj)
         self.undo()
         self.assertEqual(selected(self.obj), set(other))
-        self.assertEqual(part("parts.picks").picked(self.obj), second)
+        self.assertEqual(part("parts.picks").get_pick(self.obj), second)
         self.refused()
         self.undo()
         self.assertEqual(selected(self.obj), first)
-        self.assertEqual(part("parts.picks").picked(self.obj).face, 700)
+        self.assertEqual(part("parts.picks").get_pick(self.obj).face, 700)
         self.removed(first)
 
     def test_in_object_mode_too(self):
@@ -75,7 +75,7 @@ class TakenAway(MeshTest):
         next(face for face in self.obj.data.polygons if not face.select).select = True
         self.refused()
         self.undo()
-        self.assertEqual(part("parts.picks").picked(self.obj).face, 700)
+        self.assertEqual(part("parts.picks").get_pick(self.obj).face, 700)
         self.removed([face.index for face in self.obj.data.polygons if face.select])
 
     def test_more_or_less_than_the_part(self):
@@ -91,7 +91,7 @@ class TakenAway(MeshTest):
         self.pick(1100, extend=True)
         self.refused()
         self.choose(first | {1100}, 700)
-        part("parts.picks").drop(self.obj)  # by its selection alone it would pass for the part
+        part("parts.picks").clear_pick(self.obj)  # by its selection alone it would pass for the part
         self.refused()
         self.choose(first, 700)
         self.removed(first)
@@ -102,7 +102,7 @@ class TakenAway(MeshTest):
                 self.setUp()
                 self.begin(kinds)
                 self.pick(700)
-                self.removed(part("parts.registry").hierarchy(self.obj).faces(part("parts.picks").picked(self.obj).node).tolist())
+                self.removed(part("parts.registry").get_hierarchy(self.obj).faces(part("parts.picks").get_pick(self.obj).node).tolist())
 
     def test_a_border_in_creases_and_hidden_faces(self):
         self.begin()
@@ -121,5 +121,5 @@ class TakenAway(MeshTest):
         self.begin()
         self.pick(700)
         self.choose({}, 700)
-        node = part("parts.picks").picked(self.obj).node
+        node = part("parts.picks").get_pick(self.obj).node
         self.assertEqual(bpy.ops.mesh.partwheel_remove(node=node), {"FINISHED"})

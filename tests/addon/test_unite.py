@@ -67,7 +67,7 @@ class Unite(SolidTest):
                 made.append(part("solid.solids").create_mesh(obj, hierarchy, int(hierarchy.tet_first[node]),
                                                 int(hierarchy.tet_last[node])))
             made.append(obj.data)
-        return [mesh for mesh in made if len({*edge_components(part("mesh.arrays").edge_vertices(mesh)).tolist()}) == 1]
+        return [mesh for mesh in made if len({*edge_components(part("mesh.arrays").read_edge_vertices(mesh)).tolist()}) == 1]
 
     @only_in("oldest", "newest")
     def test_random_placements(self):
@@ -149,7 +149,7 @@ class Unite(SolidTest):
         target = self.cube()
         self.place(target, self.cube().data.copy(), Matrix.Translation((1, 0.9, 0.8)))
         self.assertEqual(bpy.ops.object.partwheel_unite(), {"FINISHED"})
-        self.assertEqual(len(part("parts.registry").hierarchy(target).order), len(target.data.polygons))
+        self.assertEqual(len(part("parts.registry").get_hierarchy(target).order), len(target.data.polygons))
 
     def test_undo_brings_the_parts_back_too(self):
         target = self.cube()
@@ -159,16 +159,16 @@ class Unite(SolidTest):
         bpy.ops.ed.undo_push(message="before")
         name = target.name
         self.assertEqual(bpy.ops.object.partwheel_unite("EXEC_DEFAULT", True), {"FINISHED"})
-        united = part("parts.registry").hierarchy(bpy.data.objects[name])
+        united = part("parts.registry").get_hierarchy(bpy.data.objects[name])
         self.assertIsNot(united, hierarchy)
         bpy.ops.ed.undo()
         target = bpy.data.objects[name]
         self.assertEqual(len(target.data.polygons), 6)
-        self.assertEqual(part("parts.registry").state(target.data)[0], part("parts.registry").State.FITS)
-        self.assertIs(part("parts.registry").hierarchy(target), hierarchy)
-        self.assertIs(part("parts.picks").picked(target).hierarchy, hierarchy)
+        self.assertEqual(part("parts.registry").get_state(target.data)[0], part("parts.registry").State.FITS)
+        self.assertIs(part("parts.registry").get_hierarchy(target), hierarchy)
+        self.assertIs(part("parts.picks").get_pick(target).hierarchy, hierarchy)
         bpy.ops.ed.redo()
-        self.assertIs(part("parts.registry").hierarchy(bpy.data.objects[name]), united)
+        self.assertIs(part("parts.registry").get_hierarchy(bpy.data.objects[name]), united)
 
     def test_what_belongs_to_the_mesh_stays(self):
         """Its settings and properties, whoever else uses it; a fake user, which only the very same mesh can keep."""
@@ -345,7 +345,7 @@ class Blend(SolidTest):
 
         mesh = self.united(0.3, prepare=upwards).data
         if mesh.has_custom_normals:  # Blender's Boolean keeps them in some versions
-            normals = part("mesh.arrays").custom_normals(mesh)
+            normals = part("mesh.arrays").read_custom_normals(mesh)
             far = numpy.array([mesh.vertices[loop.vertex_index].co.x < 0 for loop in mesh.loops])
             self.assertTrue(numpy.allclose(normals[far], (0, 0.6, 0.8), atol=1e-2))
 

@@ -41,7 +41,7 @@ class Words(MeshTest):
             with self.subTest(language):
                 self.speak(language)
                 said = part("words.say")
-                self.assertEqual(said.label_of(bpy.types.MESH_OT_partwheel_select), label)
+                self.assertEqual(said.get_operator_label(bpy.types.MESH_OT_partwheel_select), label)
                 self.assertEqual(said.iface_("Select Part by Wheel"), label)
                 with self.assertRaisesRegex(RuntimeError, reason):
                     bpy.ops.mesh.partwheel_deform()
@@ -55,12 +55,12 @@ class Words(MeshTest):
             return
         self.speak("de_DE")
         with self.assertRaises(part("mesh.errors").Refused) as refused:
-            part("parts.registry").needed(obj)
+            part("parts.registry").require_hierarchy(obj)
         self.assertEqual(str(refused.exception), "{name} hat keine Teile für sein Mesh, wie es jetzt ist. Erst Teile finden.")
 
     def test_errors_with_numbers(self):
         """A limit that a build has met: each sentence is looked up before its numbers are in it."""
-        job, told = package("worker.job"), part("words.say").told
+        job, told = package("worker.job"), part("words.say").translate_error
         error = job.WorkerError("memory", job.OUT_OF_MEMORY, job.MEMORY_LIMIT, job.MESH_UNCHANGED, job.HINT_LESS_MEMORY, size=8)
         self.assertIn("It may use 8.0 GiB.", str(error))
         self.assertEqual(told(error), str(error))
@@ -72,7 +72,7 @@ class Words(MeshTest):
 
     def test_errors_of_a_worker_that_crashed(self):
         """How it ended is in the sentence, and in the same language."""
-        job, told, describe_exit = package("worker.job"), part("words.say").told, package("worker.exit_status").describe_exit
+        job, told, describe_exit = package("worker.job"), part("words.say").translate_error, package("worker.exit_status").describe_exit
         interpreter = package("worker.interpreter")
         none = interpreter.NoInterpreter({"/a/{python}": describe_exit(3), "/b": describe_exit(-9)}).text
         refused = package().PartwheelError(package().Status.EMPTY, "The mesh has no faces. Choose a mesh object that has some.")
@@ -115,6 +115,6 @@ class Words(MeshTest):
         units.system = "METRIC"
 
     def test_shares_are_never_in_powers_of_ten(self):
-        percent = part("words.say").percent
+        percent = part("words.say").format_percent
         self.assertEqual([percent(share) for share in (0, 1.2e-5, 0.0004, 0.001, 0.25, 1)],
                          ["0.0%", "< 0.1%", "< 0.1%", "0.1%", "25.0%", "100.0%"])

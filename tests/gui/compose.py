@@ -132,7 +132,7 @@ def unite(stage, target, *parts):
     yield from stage.until("the parts are gone", lambda: len(bpy.data.objects) == before - len(parts))
     stage.check(closed(target), "the union is closed")
     yield from stage.until("its parts are found beside that",
-                           lambda: stage.registry.state(target.data)[0] == stage.registry.State.FITS)
+                           lambda: stage.registry.get_state(target.data)[0] == stage.registry.State.FITS)
     last = bpy.data.window_managers[0].operators[-1]
     stage.check(last.bl_idname == "OBJECT_OT_partwheel_unite", "uniting is the last operation, with its panel")
 

@@ -150,7 +150,7 @@ class Stage:
         yield "some time has passed", lambda: counts.own >= counts.TICKS
         self.check(counts.others == 0, "no timer runs")
         self.check(not self._drawing, lambda: f"nothing is drawn by the add-on ({self._drawing})")
-        self.check(not self.builds.running(), "nothing is being built")
+        self.check(not self.builds.has_builds(), "nothing is being built")
         bar = bpy.types.STATUSBAR_HT_header
         self.check(bar.draw == getattr(bar, "_draw_orig", bar.draw), "the status bar is Blender's own")
         package = self.registry.__name__.rpartition(".parts.")[0]
@@ -297,12 +297,12 @@ class Stage:
 
     def held(self):
         """The faces of the part that is shown as held, or None."""
-        what = self.part("view.overlay").shown._what
+        what = self.part("view.overlay").pick_overlay._what
         return what and frozenset(what[1].hierarchy.faces(what[2]).tolist())
 
     def drawn_things(self):
         """How many handlers of the add-on draw in the 3D views."""
-        return int(self.part("view.overlay").shown.on)
+        return int(self.part("view.overlay").pick_overlay.on)
 
     # ---- Setting the scene ----------------------------------------------------------------------------------------
 
@@ -329,7 +329,7 @@ class Stage:
             if build:
                 bpy.ops.mesh.partwheel_build()
             else:
-                self.part("parts.files").after_loading()  # or the parts of the same model, opened before, would serve
+                self.part("parts.files").on_load()  # or the parts of the same model, opened before, would serve
         self.view_3d.view_rotation = model.matrix_world.to_quaternion() @ Quaternion(VIEWS[name])
         self.view_3d.view_perspective = "PERSP"
         self.view_3d.view_location = model.matrix_world @ Vector((low + high) / 2)
@@ -487,7 +487,7 @@ class Stage:
         self.check(self.drawn_things() == 0, "the overlay is gone")
         bar = bpy.types.STATUSBAR_HT_header
         self.check(bar.draw == getattr(bar, "_draw_orig", bar.draw), "the status bar is Blender's own again")
-        self.check(not self.builds.running(), "nothing is being built")
+        self.check(not self.builds.has_builds(), "nothing is being built")
         selection, distance = self.selection(), self.view_3d.view_distance
         self.mouse.wheel(1)
         yield from self.until("the wheel zooms again", lambda: self.view_3d.view_distance < distance)

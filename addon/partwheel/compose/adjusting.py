@@ -20,7 +20,7 @@ class Adjusting(InView):
 
     They define _show(context), which shows the current state; on_confirm(context), which returns the result of the
     operator; and _on_other_key(event, sign), which handles keys not listed here and returns whether it changed
-    anything. sign: as in keys.TURNS."""
+    anything. sign: as in keys.WHEEL_STEPS."""
 
     angle: bpy.props.FloatProperty(
         name="Turn", description="About the border's normal", subtype="ANGLE", default=0, options={"SKIP_SAVE"})
@@ -42,7 +42,7 @@ class Adjusting(InView):
                 return {"CANCELLED"}
             if event.type in CONFIRM:
                 return self.on_confirm(context)
-            if self._adjust(event, keys.TURNS.get(event.type, 0)):
+            if self._adjust(event, keys.WHEEL_STEPS.get(event.type, 0)):
                 self._show(context)
         return {"RUNNING_MODAL"}
 

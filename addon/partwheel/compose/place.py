@@ -11,7 +11,7 @@ from ..mesh.poll import check_poll
 from ..solid import composition
 from ..view import keys
 from . import placement
-from ..view.picking import surface_under, under_mouse
+from ..view.picking import find_surface_under, find_view_under_mouse
 from ..words.say import iface_, rpt_
 from .adjusting import Adjusting
 
@@ -111,9 +111,9 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
     def _surface_under(self, context: bpy.types.Context, event: bpy.types.Event) -> tuple | None:
         """(location, normal towards the viewer, the object's full name) of the surface under the mouse, behind the
         part; None if there is none."""
-        view = under_mouse(context, event)
-        hit = view and surface_under(context, *view,
-                                     lambda obj: obj.type == "MESH" and obj.name_full != self.part_name)
+        view = find_view_under_mouse(context, event)
+        hit = view and find_surface_under(context, *view,
+                                          lambda obj: obj.type == "MESH" and obj.name_full != self.part_name)
         return hit and (hit.location, hit.normal, hit.obj.name_full)
 
     def _show(self, context: bpy.types.Context) -> None:

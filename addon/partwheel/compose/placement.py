@@ -11,7 +11,7 @@ import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 
 from ..mesh import arrays
-from ..mesh.datablocks import all_or_nothing
+from ..mesh.datablocks import rollback_on_error
 from ..solid.composition import create_object_like, update_matrices
 from partwheel import compatible
 from ..mesh.errors import Refused
@@ -24,7 +24,7 @@ SINK_FRACTION = 0.05
 
 def cap_faces(mesh: bpy.types.Mesh) -> np.ndarray | None:
     """(F,) bool: the faces that close cuts of a mesh; None without the cap attribute."""
-    layer = arrays.attribute(mesh, CAP_ATTRIBUTE, "BOOLEAN", "FACE")
+    layer = arrays.find_attribute(mesh, CAP_ATTRIBUTE, "BOOLEAN", "FACE")
     return arrays.read(layer.data, "value", bool) if layer else None
 
 
@@ -34,7 +34,7 @@ def find_cap_loop(obj: bpy.types.Object, near: Vector | None = None) -> compatib
     is_cap = cap_faces(obj.data)
     if is_cap is None or not is_cap.any():
         return None
-    triangles, polygons = arrays.triangles(obj.data)
+    triangles, polygons = arrays.read_triangles(obj.data)
     positions = arrays.read(obj.data.vertices, "co", np.float32, 3).astype(float)
     loops = compatible.cap_loops(positions, triangles[is_cap[polygons]], np.array(obj.matrix_world))
     if not loops:
@@ -112,7 +112,7 @@ def place(part: bpy.types.Object, target: bpy.types.Object | None, pose: Pose,
     return create_mirror_copy(part, target) if mirror else None
 
 
-@all_or_nothing()
+@rollback_on_error()
 def create_mirror_copy(part: bpy.types.Object, target: bpy.types.Object) -> bpy.types.Object:
     """A new object: the part mirrored across the target's YZ plane. The mesh is mirrored, not the matrix."""
     mesh = part.data.copy()

@@ -35,13 +35,13 @@ def blend_seams(mesh: bpy.types.Mesh, width: float) -> bool:
     is_free = blend_band(mesh, width)
     if not is_free.any():
         return False
-    normals = arrays.custom_normals(mesh)
+    normals = arrays.read_custom_normals(mesh)
     vertices = arrays.read(mesh.vertices, "co", np.float32, 3)
-    positions = fair_vertices(vertices, arrays.edge_vertices(mesh), is_free)
+    positions = fair_vertices(vertices, arrays.read_edge_vertices(mesh), is_free)
     arrays.write(mesh.vertices, "co", np.where(is_free[:, None], positions, vertices).astype(np.float32))
     if normals is not None:
         normals[is_free[arrays.read(mesh.loops, "vertex_index", np.int32)]] = 0
-        arrays.set_custom_normals(mesh, normals)
+        arrays.write_custom_normals(mesh, normals)
     mesh.update()
     return True
 
@@ -49,9 +49,9 @@ def blend_seams(mesh: bpy.types.Mesh, width: float) -> bool:
 def blend_band(mesh: bpy.types.Mesh, width: float) -> np.ndarray:
     """(V,) bool: the vertices that blend_seams() moves."""
     vertices = arrays.read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
-    triangles, _ = arrays.triangles(mesh)
+    triangles, _ = arrays.read_triangles(mesh)
     face_solids = arrays.read(mesh.attributes[SOLID_ATTRIBUTE].data, "value", np.int32)
-    corner_solids = np.repeat(face_solids, arrays.polygon_sizes(mesh)[1])
+    corner_solids = np.repeat(face_solids, arrays.read_polygon_sizes(mesh)[1])
     vertex_solids = np.zeros(len(vertices), np.int32)
     vertex_solids[arrays.read(mesh.loops, "vertex_index", np.int32)] = corner_solids
     is_free = np.zeros(len(vertices), bool)
@@ -77,7 +77,7 @@ def blend_band(mesh: bpy.types.Mesh, width: float) -> np.ndarray:
 
 def _seam_vertices(mesh: bpy.types.Mesh, corner_solids: np.ndarray) -> list[np.ndarray]:
     """The vertices of each seam, a connected component of the edges between faces of different solids."""
-    edges = arrays.edge_vertices(mesh)
+    edges = arrays.read_edge_vertices(mesh)
     loop_edges = arrays.read(mesh.loops, "edge_index", np.int32)
     low = np.full(len(edges), np.iinfo(np.int32).max, np.int32)
     high = np.full(len(edges), -1, np.int32)

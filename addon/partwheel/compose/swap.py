@@ -6,14 +6,14 @@ import bpy
 
 from ..mesh import mesh_identity
 from ..solid import composition
-from ..pick.build import waited_for
+from ..pick.build import build_and_wait
 from ..view import keys, previews
 from . import swapping
 from partwheel import Error, Hierarchy
 from ..mesh.errors import Refused
 from ..mesh.poll import poll_is_editable
 from ..solid.copy_part import PartOperator
-from ..view.in_view import waiting
+from ..view.in_view import show_wait_cursor
 from ..words.say import iface_
 from .adjusting import Adjusting
 from .unite import find_parts
@@ -82,9 +82,9 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
 
     def on_start(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         obj = context.active_object
-        with waiting(context):
+        with show_wait_cursor(context):
             self.check(obj)
-            if not waited_for(self, context, obj):
+            if not build_and_wait(self, context, obj):
                 return {"CANCELLED"}
             hierarchy = self.require_hierarchy(obj)
             other = mesh_identity.resolve_object(self.other)
@@ -95,7 +95,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
             self.swap_target = swapping.SwapTarget(obj, hierarchy, self.node, self.snap)
             self.candidates, self.index = self.swap_target.find_candidates(others), 0
             self.preview = SwapPreview(self.swap_target)
-            self._call_before_saving(previews.end)
+            self._call_before_saving(previews.remove_previews)
             self._show(context)
         return {"RUNNING_MODAL"}
 
@@ -124,7 +124,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
         self._show_status(context, problem or ", ".join(state + [iface_("mirrored")] * self.mirror), keys.SWAPPING)
 
     def on_confirm(self, context: bpy.types.Context) -> set[str]:
-        previews.end()
+        previews.remove_previews()
         if self.was_edited:
             # Undo steps of Edit Mode hold only its mesh.
             bpy.ops.ed.undo_push(message="Leave Edit Mode")
@@ -137,7 +137,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
         return {"FINISHED"}
 
     def on_cancel(self, context: bpy.types.Context) -> None:
-        previews.end()
+        previews.remove_previews()
         if self.was_edited and context.active_object and context.active_object.mode == "OBJECT":
             bpy.ops.object.mode_set(mode="EDIT")
 
@@ -163,7 +163,7 @@ class SwapPreview:
         if key in self.shown:
             self.swap_target.move_stand_in(bpy.data.objects[self.shown[key]], candidate, adjustment)
         else:
-            self.shown[key] = previews.show(self.swap_target.create_stand_in(candidate, adjustment)).name
+            self.shown[key] = previews.mark_preview(self.swap_target.create_stand_in(candidate, adjustment)).name
 
     def _create_rest(self) -> None:
         obj = mesh_identity.find_object(self.swap_target.name)
@@ -171,8 +171,8 @@ class SwapPreview:
         rest = obj.copy()  # with its modifiers and materials
         rest.data = mesh
         composition.target_collection(obj).objects.link(rest)
-        self.rest, self.shown = previews.show(rest).name, {}
-        previews.hide(obj)
+        self.rest, self.shown = previews.mark_preview(rest).name, {}
+        previews.hide_original(obj)
 
 
 CLASSES = (MESH_OT_partwheel_swap,)

@@ -11,7 +11,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from ..mesh import arrays
-from ..mesh.datablocks import all_or_nothing, dispose
+from ..mesh.datablocks import rollback_on_error, remove_object
 from ..parts import registry
 from ..solid import composition
 from . import placement, union
@@ -84,7 +84,7 @@ class SwapTarget:
 
     def find_candidate(self, other: bpy.types.Object, node: int | None = None) -> Candidate:
         """The Candidate for this node of an object, or for the object itself. Raises Refused or PartwheelError."""
-        hierarchy = registry.hierarchy(other)
+        hierarchy = registry.get_hierarchy(other)
         if node is None:
             shape = _whole_shape(other)
         elif hierarchy and 0 <= node < len(hierarchy.parent):
@@ -102,7 +102,7 @@ class SwapTarget:
         """A new mesh: the object's without the part, closed. Raises Refused or PartwheelError."""
         return composition.create_rest_mesh(find_object(self.name), self.hierarchy, self.node, self.snap)
 
-    @all_or_nothing()
+    @rollback_on_error()
     def create_stand_in(self, candidate: Candidate, adjustment: Adjustment = Adjustment()) -> bpy.types.Object:
         """A new object with the candidate's mesh in the part's place. It has no modifiers: those of the part's object
         act on it afterwards."""
@@ -143,20 +143,20 @@ class SwapTarget:
                                                 candidate.node, snap=True) or candidate.shape
         return self._cut_shapes[key]
 
-    @all_or_nothing()
+    @rollback_on_error()
     def swap(self, candidate: Candidate, adjustment: Adjustment = Adjustment(), blend: float = 0.0) -> str:
         """Removes the part from the object's mesh and unites the rest with the candidate. Returns the solver's name.
         blend: as for union.unite(). Raises an Error before any change."""
         rest, new = self.create_rest_mesh(), self.create_stand_in(candidate, adjustment)
         solver = union.unite(find_object(self.name), [new], blend, rest)
         bpy.data.meshes.remove(rest)
-        dispose(new)
+        remove_object(new)
         return solver
 
 
 def _candidate_hierarchy(candidate: Candidate) -> Hierarchy:
     """The hierarchy of the candidate's object. Raises Refused."""
-    hierarchy = registry.hierarchy(find_object(candidate.name))
+    hierarchy = registry.get_hierarchy(find_object(candidate.name))
     if not hierarchy or candidate.node >= len(hierarchy.parent):
         raise Refused("{name} was changed and has other parts now. Start again.", name=candidate.name)
     return hierarchy
@@ -176,7 +176,7 @@ def _is_same_part(hierarchy: Hierarchy, first: int | None, second: int | None) -
 def _part_shapes(obj: bpy.types.Object) -> tuple[Hierarchy | None, list[tuple]] | None:
     """(hierarchy or None, [(node or None, PartShape), ...]) of an object; None if it has no parts and is not a part
     itself."""
-    hierarchy, whole_shape = registry.hierarchy(obj), _whole_shape(obj)
+    hierarchy, whole_shape = registry.get_hierarchy(obj), _whole_shape(obj)
     if not hierarchy and not whole_shape:
         return None
     parts = [(None, whole_shape)] if whole_shape else []
@@ -189,7 +189,7 @@ def _node_shapes(obj: bpy.types.Object, hierarchy: Hierarchy, nodes: list[int],
     with borders in creases."""
     positions = np.array(hierarchy.vertices)
     has_source = hierarchy.source >= 0
-    positions[has_source] = arrays.read(arrays.up_to_date(obj).vertices, "co", np.float32,
+    positions[has_source] = arrays.read(arrays.update_mesh(obj).vertices, "co", np.float32,
                                         3)[hierarchy.source[has_source]]
     matrix = np.array(obj.matrix_world)
     size = _half_diagonal(positions, matrix)
@@ -210,7 +210,7 @@ def _whole_shape(obj: bpy.types.Object) -> compatible.PartShape | None:
     caps = placement.cap_faces(mesh)
     if obj.mode == "EDIT" or caps is None or not caps.any() or union.find_defect(mesh):
         return None
-    triangles, polygons = arrays.triangles(mesh)
+    triangles, polygons = arrays.read_triangles(mesh)
     positions, matrix = arrays.read(mesh.vertices, "co", np.float32, 3).astype(float), np.array(obj.matrix_world)
     shape = compatible.PartShape(positions, triangles, caps[polygons], matrix, _half_diagonal(positions, matrix))
     return shape if shape.is_usable else None

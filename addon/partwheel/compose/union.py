@@ -13,8 +13,8 @@ import numpy as np
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from ..mesh import apart, arrays, pieces
-from ..mesh.datablocks import all_or_nothing
+from ..mesh import temporary_scene, arrays, assembly
+from ..mesh.datablocks import rollback_on_error
 from ..solid import composition, solids
 from . import pinches, seams
 from partwheel import RayTarget, polygon_faults
@@ -32,7 +32,7 @@ CORNER_TOLERANCE = 1e-5  # barycentric: points so near to a vertex count as this
 RELATIVE_TOLERANCE = 1e-5  # relative, of volumes and lengths: coordinates are 32-bit floats
 
 
-@all_or_nothing()
+@rollback_on_error()
 def unite(target: bpy.types.Object, others: list[bpy.types.Object], blend: float = 0.0,
           base_mesh: bpy.types.Mesh | None = None) -> str:
     """Makes the target's mesh the union of itself, without modifiers, and of the other objects, with theirs. The
@@ -87,7 +87,7 @@ def find_defect(mesh: bpy.types.Mesh) -> str | None:
     """What keeps the mesh from being a closed, manifold, oriented surface, as a clause; None if nothing does."""
     if not len(mesh.polygons):
         return rpt_("it has no faces")
-    begin, _ = arrays.polygon_sizes(mesh)
+    begin, _ = arrays.read_polygon_sizes(mesh)
     faults = polygon_faults(arrays.read(mesh.loops, "vertex_index", np.int32), begin, len(mesh.vertices))
     open_edges = faults.open_edges or abs(len(mesh.edges) - len(mesh.loops) // 2)  # or edges without faces
     if open_edges:
@@ -106,7 +106,7 @@ def mesh_volume(mesh: bpy.types.Mesh) -> float:
     if not len(positions):
         return 0.0
     positions -= positions.mean(axis=0)
-    a, b, c = (positions[column] for column in arrays.triangles(mesh)[0].T)
+    a, b, c = (positions[column] for column in arrays.read_triangles(mesh)[0].T)
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
@@ -155,13 +155,13 @@ def _copy_with_slots(obj: bpy.types.Object, mesh: bpy.types.Mesh, slots: list) -
     for material in own:
         if material not in slots:
             slots.append(material)
-    indices = arrays.material_indices(mesh)
+    indices = arrays.read_material_indices(mesh)
     slot_numbers = np.array([slots.index(material) for material in own], np.int32)
     copy = mesh.copy()
     copy.materials.clear()
-    arrays.set_material_indices(copy, slot_numbers[np.minimum(indices, len(own) - 1)])
+    arrays.write_material_indices(copy, slot_numbers[np.minimum(indices, len(own) - 1)])
     if copy.shape_keys:  # restored by _key_offsets()
-        pieces.clear_keys(copy)
+        assembly.clear_shape_keys(copy)
     return copy
 
 
@@ -196,9 +196,9 @@ def _missing_fraction(mesh: bpy.types.Mesh, other: bpy.types.Mesh, result: bpy.t
     """The fraction of one mesh's vertices that lie outside the other (by the parity of crossings along a ray) and are
     missing from the surface of the result."""
     positions = arrays.read(result.vertices, "co", np.float32, 3)
-    surface = BVHTree.FromPolygons(positions.tolist(), arrays.triangles(result)[0].tolist())
+    surface = BVHTree.FromPolygons(positions.tolist(), arrays.read_triangles(result)[0].tolist())
     tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(positions, axis=0)))
-    target = RayTarget(arrays.read(other.vertices, "co", np.float32, 3), arrays.triangles(other)[0])
+    target = RayTarget(arrays.read(other.vertices, "co", np.float32, 3), arrays.read_triangles(other)[0])
     step = max(len(mesh.vertices) // N_SAMPLES, 1)
     return np.mean([surface.find_nearest(vertex.co)[3] > tolerance and not _count_crossings(target, vertex.co) % 2
                     for vertex in list(mesh.vertices)[::step]])
@@ -215,7 +215,7 @@ def _count_crossings(target: RayTarget, position: Vector) -> int:
 
 def _split_pinches(mesh: bpy.types.Mesh) -> bool:
     """Splits where solids only touch and the Boolean merged their vertices. Returns whether the mesh is manifold."""
-    with pieces.edited(mesh) as bm:
+    with assembly.edit_as_bmesh(mesh) as bm:
         bm.normal_update()
         done = pinches.split_pinches(bm)
         if done:
@@ -245,17 +245,17 @@ def _apply_boolean(base: bpy.types.Mesh, operand: bpy.types.Mesh, solver: str, s
     objects = [bpy.data.objects.new(mesh.name, mesh) for mesh in (base, operand)]
     try:
         for obj in objects:
-            indices = arrays.material_indices(obj.data)
+            indices = arrays.read_material_indices(obj.data)
             obj.data.materials.clear()
             for material in slots:
                 obj.data.materials.append(material)
-            arrays.set_material_indices(obj.data, indices)
+            arrays.write_material_indices(obj.data, indices)
         modifier = objects[0].modifiers.new("union", "BOOLEAN")
         modifier.operation, modifier.object, modifier.solver = "UNION", objects[1], solver
         if self_overlap:
             modifier.use_self = True
-        with apart.scene_apart(*objects) as layer:
-            depsgraph = apart.depsgraph(layer)
+        with temporary_scene.create_temporary_scene(*objects) as layer:
+            depsgraph = temporary_scene.update_depsgraph(layer)
             return bpy.data.meshes.new_from_object(objects[0].evaluated_get(depsgraph), preserve_all_data_layers=True,
                                                    depsgraph=depsgraph)
     finally:
@@ -268,7 +268,7 @@ def _key_offsets(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> dict[str, np.n
     interpolate its offsets, others stay."""
     if not mesh.shape_keys:
         return {}
-    mesh_positions, triangles = arrays.read(mesh.vertices, "co", np.float32, 3), arrays.triangles(mesh)[0]
+    mesh_positions, triangles = arrays.read(mesh.vertices, "co", np.float32, 3), arrays.read_triangles(mesh)[0]
     positions = arrays.read(result.vertices, "co", np.float32, 3)
     tree = BVHTree.FromPolygons(mesh_positions.tolist(), triangles.tolist(), all_triangles=True)
     tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(mesh_positions, axis=0)))
@@ -304,15 +304,15 @@ def _replace_mesh(target: bpy.types.Object, result: bpy.types.Mesh, slots: list,
     if slots == [None]:
         result.materials.clear()  # there was none
     old = target.data
-    normals = arrays.custom_normals(result)
+    normals = arrays.read_custom_normals(result)
     if old.users > 1 + old.use_fake_user:
         target.data = old = old.copy()
     old.materials.clear()
     for material in result.materials:
         old.materials.append(material)
     positions = arrays.read(result.vertices, "co", np.float32, 3)
-    pieces.replace_geometry(old, result, {key: positions + offset for key, offset in offsets.items()})
+    assembly.replace_geometry(old, result, {key: positions + offset for key, offset in offsets.items()})
     if normals is not None:
-        arrays.set_custom_normals(old, normals)
+        arrays.write_custom_normals(old, normals)
     old.update()
     bpy.data.meshes.remove(result)

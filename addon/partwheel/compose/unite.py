@@ -6,7 +6,7 @@ import bpy
 from ..parts import builds
 from . import union
 from partwheel import Error
-from ..mesh.datablocks import dispose
+from ..mesh.datablocks import remove_object
 from ..mesh.poll import check_poll, poll_is_editable
 from ..words.say import rpt_
 
@@ -16,7 +16,7 @@ NOTHING_TO_UNITE = "Select the parts, and then the mesh object that they are to 
 def find_parts(operator: bpy.types.Operator) -> None:
     """Starts a search for the parts of the active object, whose mesh the operator has just united."""
     try:
-        builds.drop_outdated()  # of the earlier union, when Adjust Last Operation repeats the operator
+        builds.cancel_outdated()  # of the earlier union, when Adjust Last Operation repeats the operator
         bpy.ops.mesh.partwheel_find("INVOKE_DEFAULT")
     except Exception as error:  # any: the union is done anyway
         operator.report({"WARNING"}, str(error))
@@ -63,7 +63,7 @@ class OBJECT_OT_partwheel_unite(bpy.types.Operator):
             return {"CANCELLED"}
         if not self.keep:
             for other in others:
-                dispose(other)
+                remove_object(other)
         if self.build:
             find_parts(self)
         self.report({"INFO"}, rpt_("{name} is one closed mesh now, of {count:,} faces (solver {solver}).").format(

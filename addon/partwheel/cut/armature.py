@@ -8,20 +8,20 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays
-from ..mesh.datablocks import all_or_nothing
+from ..mesh.datablocks import rollback_on_error
 from ..solid import composition
 from partwheel.cut import Cut, bones, mirror_planes, part_tree
 
 ARMATURE_PROPERTY = "partwheel_bones"  # marks armatures that this module created
 
 
-@all_or_nothing()
+@rollback_on_error()
 def create_armature(obj: bpy.types.Object, cut: Cut, names: list[str],
                     weights: list[tuple[np.ndarray, np.ndarray]]) -> bpy.types.Object:
     """The armature object, with a bone for each part. The object's earlier armature of this kind is reused: pose and
     constraints of bones that keep their names stay. The object becomes its child. weights: of each part, as from
     layers.compute_weights()."""
-    surface = arrays.surface(obj.data)
+    surface = arrays.read_surface(obj.data)
     labels = cut.labels[surface.faces]
     vertices, triangles = surface.vertices, surface.triangles
     part_bones = bones(vertices, triangles, labels, part_tree(cut, vertices, triangles, labels), weights,

@@ -4,14 +4,14 @@
 import bpy
 import numpy as np
 
-from ..pick.build import Beside
+from ..pick.build import BuildsFirst
 from ..solid.copy_part import PartsOperator
 from ..words.say import rpt_
 from . import hulls
 from partwheel import Hierarchy
 
 
-class MESH_OT_partwheel_convex(PartsOperator, Beside, bpy.types.Operator):
+class MESH_OT_partwheel_convex(PartsOperator, BuildsFirst, bpy.types.Operator):
     """Make few convex hulls that contain the model and little else: children of it, as engines want its collision"""
 
     bl_idname = "mesh.partwheel_convex"

@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 from mathutils import Matrix
 
-from ..mesh.datablocks import all_or_nothing, dispose
+from ..mesh.datablocks import rollback_on_error, remove_object
 from ..mesh.errors import Refused
 from ..solid import composition
 from partwheel import ConvexPart, convex
@@ -23,7 +23,7 @@ NAME_PATTERNS = {"UNREAL": {kind: start + "_{model}_{number:02}" for kind, start
 MAX_NAME_BYTES = bpy.types.ID.bl_rna.properties["name"].length_max  # bytes, with the terminating zero
 
 
-@all_or_nothing()
+@rollback_on_error()
 def create_hulls(context: bpy.types.Context, obj: bpy.types.Object, hulls: list[ConvexPart], engine: str = "UNREAL",
                  primitives: float = 0.0) -> list[bpy.types.Object]:
     """A child of the object for each partwheel.ConvexPart, named for the engine, a key of NAME_PATTERNS; drawn as
@@ -44,7 +44,7 @@ def create_hulls(context: bpy.types.Context, obj: bpy.types.Object, hulls: list[
     if engine == "RIGID_BODY":
         _add_rigid_bodies(context, obj, {child: convex.kind_of(shape) for child, shape in zip(objects, shapes)})
     for child in earlier:  # nothing can fail any more
-        dispose(child)
+        remove_object(child)
     for child, name in zip(objects, names):  # the earlier objects had the same names
         child.name = child.data.name = name
     composition.update_matrices()

@@ -15,13 +15,13 @@ from partwheel.cut import Cut, colors, skin_weights
 def write_face_sets(obj: bpy.types.Object, cut: Cut, _names: list[str]) -> None:
     """One face set for each part; replaces all earlier ones."""
     mesh = obj.data
-    arrays.needed_attribute(mesh, FACE_SET, "INT", "FACE").data.foreach_set("value", cut.labels + 1)
+    arrays.ensure_attribute(mesh, FACE_SET, "INT", "FACE").data.foreach_set("value", cut.labels + 1)
 
 
 def compute_weights(obj: bpy.types.Object, cut: Cut) -> list[tuple[np.ndarray, np.ndarray]]:
     """(vertices, weights) of each part: 1 inside, a smooth falloff across borders. The weights of each vertex add up
     to 1."""
-    surface = arrays.surface(obj.data)
+    surface = arrays.read_surface(obj.data)
     return skin_weights(surface.vertices, surface.triangles, cut.labels[surface.faces], len(cut))
 
 
@@ -51,19 +51,19 @@ def write_colored_materials(obj: bpy.types.Object, cut: Cut, names: list[str]) -
     mesh.materials.clear()
     for name, color in zip(names, colors(cut.keys)):
         mesh.materials.append(_colored_material(f"{obj.name} {name}", color))
-    arrays.set_material_indices(mesh, cut.labels)
+    arrays.write_material_indices(mesh, cut.labels)
 
 
 def write_material_slots(obj: bpy.types.Object, cut: Cut, _names: list[str]) -> None:
     """The mesh's own materials with a slot for each part, or several where a part has several materials."""
     mesh = obj.data
     old_materials = list(mesh.materials) or [None]
-    indices = np.clip(arrays.material_indices(mesh), 0, len(old_materials) - 1)
+    indices = np.clip(arrays.read_material_indices(mesh), 0, len(old_materials) - 1)
     slots, index = np.unique(np.column_stack([cut.labels, indices]), axis=0, return_inverse=True)
     mesh.materials.clear()
     for _, material in slots.tolist():
         mesh.materials.append(old_materials[material])
-    arrays.set_material_indices(mesh, index.ravel().astype(np.int32))
+    arrays.write_material_indices(mesh, index.ravel().astype(np.int32))
 
 
 def _colored_material(name: str, color: np.ndarray) -> bpy.types.Material:

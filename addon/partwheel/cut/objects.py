@@ -11,8 +11,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ..mesh import arrays, pieces
-from ..mesh.datablocks import all_or_nothing
+from ..mesh import arrays, assembly
+from ..mesh.datablocks import rollback_on_error
 from ..mesh.errors import Refused
 from ..solid import composition, fitting, solids
 from ..words.say import rpt_
@@ -50,14 +50,14 @@ class ObjectOptions(NamedTuple):
     shell: float = 0.0
 
 
-@all_or_nothing()
+@rollback_on_error()
 def create_part_objects(obj: bpy.types.Object, cut: Cut, names: list[str],
                         options: ObjectOptions = ObjectOptions()) -> list[bpy.types.Object]:
     """One object for each part that is not empty, in a new collection; the object itself stays. The root part gets
     the object's parent, the other parts become children of their parent part. If animation, constraints or an
     armature parent move the object, they move each part instead: all parts are siblings with the object's origin."""
     composition.update_matrices()
-    mesh = arrays.up_to_date(obj)
+    mesh = arrays.update_mesh(obj)
     links, origins, centers = _part_links(mesh, cut)
     meshes = _closed_meshes(obj, cut, options.caps) if options.closed else [
         _open_mesh(mesh, cut, part) for part in range(len(cut))]
@@ -126,7 +126,7 @@ def difference_messages(obj: bpy.types.Object, cut: Cut, objects: list[bpy.types
 
 def _mesh_volume(mesh: bpy.types.Mesh) -> float:
     """Volume that a closed mesh encloses."""
-    corners, _ = arrays.triangles(mesh)
+    corners, _ = arrays.read_triangles(mesh)
     points = arrays.read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
     a, b, c = (points - points.mean(axis=0))[corners].transpose(1, 0, 2)
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
@@ -172,17 +172,17 @@ def _closed_meshes(obj: bpy.types.Object, cut: Cut, options: solids.CapOptions) 
 def _open_mesh(mesh: bpy.types.Mesh, cut: Cut, part: int) -> bpy.types.Mesh:
     """A mesh of the part's polygons only."""
     plan = fitting.plan_of_faces(mesh, cut.hierarchy, 0, 1, cut.labels == part, standalone=True)
-    new, loops = pieces.assembled(mesh, plan, f"{mesh.name} part", False), plan.loops.first
-    normals = arrays.custom_normals(mesh)
+    new, loops = assembly.assemble_mesh(mesh, plan, f"{mesh.name} part", False), plan.loops.first
+    normals = arrays.read_custom_normals(mesh)
     if normals is not None:
-        arrays.set_custom_normals(new, normals[loops])
+        arrays.write_custom_normals(new, normals[loops])
     return new
 
 
 def _part_links(mesh: bpy.types.Mesh, cut: Cut) -> tuple[list, list[Vector], list[Vector]]:
     """(the parts' links to their parents; origins: the center of the border, or of the bounding box; the bounding
     boxes' centers)"""
-    surface = arrays.surface(mesh)
+    surface = arrays.read_surface(mesh)
     labels = cut.labels[surface.faces]
     low, high = (np.array([reduce(surface.vertices[surface.triangles[labels == part]], axis=(0, 1))
                            for part in range(len(cut))]) for reduce in (np.min, np.max))

@@ -10,17 +10,17 @@ import numpy as np
 
 from ..mesh import mesh_identity
 from ..mesh.mesh_identity import element_counts
-from ..mesh.datablocks import all_or_nothing
+from ..mesh.datablocks import rollback_on_error
 from ..mesh.errors import Refused
 from ..mesh.poll import check_poll, poll_is_editable
 from ..parts import builds, picks, registry
-from ..pick.build import start, waited_for
+from ..pick.build import start_build, build_and_wait
 from ..pick.hover import highlight
-from ..pick.prepared import at_rest, current, prepared
+from ..pick.view_cache import is_at_rest, is_current, get_view_cache
 from ..solid import composition, copy_part, solids
 from ..view import keys, overlay, picking
-from ..view.in_view import InView, waiting
-from ..view.seen import NO_FACE
+from ..view.in_view import InView, show_wait_cursor
+from ..view.visible_surface import NO_FACE
 from ..words.say import iface_, rpt_
 from . import objects, print_parts, saved_cut, states, writing
 from partwheel import Error, Hierarchy
@@ -119,7 +119,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         obj = context.active_object
         if not self.options.is_repeat:
             self.original_mode = obj.mode
-        hierarchy = waited_for(self, context, obj)
+        hierarchy = build_and_wait(self, context, obj)
         if not hierarchy:
             return {"CANCELLED"}
         try:
@@ -141,7 +141,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     def _write(self, context: bpy.types.Context, obj: bpy.types.Object, cut: Cut) -> set[str]:
         for sentence in self._loss_messages(obj):
             self.report({"WARNING"}, sentence)
-        with all_or_nothing():
+        with rollback_on_error():
             return self._write_in_object_mode(context, obj, cut)
 
     def _loss_messages(self, obj: bpy.types.Object) -> list[str]:
@@ -199,11 +199,11 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         self.object_name, self.mode, self.original_mode = obj.name_full, context.mode, obj.mode
         if not self.properties.is_property_set("to"):
             self.to = DEFAULT_RESULTS[context.mode]
-        self.scroll = keys.Scroll(keys.SCROLL_STEP)
-        hierarchy = None if builds.being_built(obj) else registry.hierarchy(obj)
+        self.scroll = keys.NotchCounter(keys.SCROLL_STEP)
+        hierarchy = None if builds.is_being_built(obj) else registry.get_hierarchy(obj)
         if hierarchy:
             return self._start_editing(context, obj, hierarchy)
-        self.building = start(self, obj)
+        self.building = start_build(self, obj)
         if not self.building:
             return {"CANCELLED"}
         self.building.watch(context)
@@ -212,7 +212,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     def _start_editing(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> set[str]:
         self.state = states.CutState(_initial_cut(obj, hierarchy, self.count))
         if highlight.shows(obj):
-            self.state = self.state.click(picks.picked(obj).face)
+            self.state = self.state.click(picks.get_pick(obj).face)
         self.counts = element_counts(obj.data)
         self._add_draw_handler(self._draw)
         return self._set_state(context, self.state)
@@ -220,14 +220,14 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if self.building:
             return self._on_build_event(context, event)
-        if self.shown_surface and at_rest() and not current(mesh_identity.find_object(self.object_name),
-                                                            self.shown_surface):  # the frame changed
+        if self.shown_surface and is_at_rest() and not is_current(mesh_identity.find_object(self.object_name),
+                                                                  self.shown_surface):  # the frame changed
             self._set_state(context, self.state)
         if event.type in keys.SYSTEM:
             return {"PASS_THROUGH"}
         if event.type in keys.MOVES:
             return {"RUNNING_MODAL"} if self.pressed_face is not None else {"PASS_THROUGH"}
-        over = picking.under_mouse(context, event)
+        over = picking.find_view_under_mouse(context, event)
         plain = not (event.alt or event.oskey or event.ctrl or event.shift)
         if event.type == "TRACKPADPAN" and over and plain:
             return self._set_state(context, self.state.turn(self.scroll.notches(event.mouse_y - event.mouse_prev_y)))
@@ -271,8 +271,8 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
     def _face_under(self, over: tuple) -> int:
         """The object's face under the mouse, or NO_FACE."""
         _, *pixel = over
-        _, face = picking.nearest([mesh_identity.find_object(self.object_name)],
-                                  lambda obj: prepared(obj).tree(obj), *pixel)
+        _, face = picking.find_nearest_face([mesh_identity.find_object(self.object_name)],
+                                            lambda obj: get_view_cache(obj).tree(obj), *pixel)
         return NO_FACE if face is None else face
 
     def _on_key(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -280,15 +280,15 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             return {"CANCELLED"}
         if event.type in keys.CONFIRM.events:
             return self.on_confirm(context)
-        if event.type in keys.TURNS:
-            return self._set_state(context, self.state.turn(keys.TURNS[event.type]))
+        if event.type in keys.WHEEL_STEPS:
+            return self._set_state(context, self.state.turn(keys.WHEEL_STEPS[event.type]))
         if event.type in keys.DIGITS:
             return self._set_state(context, self.state.with_digit(keys.DIGITS[event.type]))
         if event.type in keys.ERASE.events:
             return self._set_state(context, self.state.without_digit())
-        if event.type in keys.ANEW.events:
+        if event.type in keys.AUTOMATIC.events:
             return self._set_state(context, states.CutState(Cut.automatic(self.state.base.hierarchy)))
-        for name, key in keys.RESULTS.items():
+        for name, key in keys.CUT_RESULTS.items():
             if event.type in key.events:
                 self.to = self.to ^ {name}
                 return self._set_state(context, self.state)
@@ -299,16 +299,16 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         self.state = state
         values = {"count": state.typed + "_" if state.typed else len(state.cut), "made": self._result_names()}
         if state.part is None:
-            self._show_status(context, iface_("{count} parts: {made}").format(**values), keys.DIVIDING)
+            self._show_status(context, iface_("{count} parts: {made}").format(**values), keys.CUTTING)
         else:
             faces = np.count_nonzero(state.cut.labels == state.part)
             self._show_status(context,
                               iface_("{count} parts, one of {faces:,} faces: {made}").format(faces=faces, **values),
-                       keys.ON_ONE)
+                       keys.CUTTING_ONE_PART)
         if not bpy.app.background:
             obj = mesh_identity.find_object(self.object_name)
-            self.shown_surface = prepared(obj).parts(obj)
-            overlay.redraw()
+            self.shown_surface = get_view_cache(obj).parts(obj)
+            overlay.redraw_views()
         return {"RUNNING_MODAL"}
 
     def _result_names(self) -> str:
@@ -317,20 +317,20 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     def _draw(self) -> None:
         context, obj = bpy.context, mesh_identity.find_object(self.object_name)
-        if not obj or not overlay.visible(context, obj) or not current(obj, self.shown_surface):
+        if not obj or not overlay.is_visible(context, obj) or not is_current(obj, self.shown_surface):
             return
         cut, part = self.state.cut, self.state.part
 
         def paint() -> np.ndarray:
             opacity = overlay.CUT_OPACITY if part is None else np.where(cut.labels == part, ACTIVE_OPACITY,
                                                                         INACTIVE_OPACITY)
-            return overlay.distinct(np.array(cut.keys)[cut.labels], opacity)
+            return overlay.make_distinct_colors(np.array(cut.keys)[cut.labels], opacity)
 
         overlay.draw_painted(context, obj, self.shown_surface, ("whole", cut.parts, cut.keys, part), paint)
 
     def on_confirm(self, context: bpy.types.Context) -> set[str]:
         self.clusters, self.count = json.dumps(self.state.cut.parts), len(self.state.cut)
-        with waiting(context):
+        with show_wait_cursor(context):
             return self._write(context, mesh_identity.find_object(self.object_name), self.state.cut)
 
     def can_continue(self, context: bpy.types.Context) -> bool:
@@ -338,7 +338,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
             return True
         obj = context.active_object
         return (obj is not None and obj.name_full == self.object_name and context.mode == self.mode
-                and registry.known(obj.data) is self.state.base.hierarchy and element_counts(obj.data) == self.counts)
+                and registry.find_hierarchy(obj.data) is self.state.base.hierarchy and element_counts(obj.data) == self.counts)
 
     def on_cancel(self, context: bpy.types.Context) -> None:
         if self.building:

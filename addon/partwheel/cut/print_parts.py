@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 
 from ..mesh import arrays
-from ..mesh.datablocks import all_or_nothing
+from ..mesh.datablocks import rollback_on_error
 from ..mesh.errors import Refused
 from ..solid import composition
 from . import saved_cut
@@ -45,13 +45,13 @@ def plan_print(context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, know
     if np.ptp(scales) > MAX_SCALE_DIFFERENCE * scales.max():
         raise Refused("{name} is scaled differently along its axes: apply its scale first.", name=obj.name)
     scale = float(scales.mean()) * context.scene.unit_settings.scale_length * MILLIMETERS_PER_METER
-    surface = arrays.surface(obj.data)
+    surface = arrays.read_surface(obj.data)
     return PrintPlan(printing.prepare_parts(cut, surface.vertices, surface.triangles, surface.faces,
                                             printing.PrintOptions(scale, pegs, wall, bed),
                                             name_cut=lambda cut: saved_cut.complete_names(obj, cut, known)), scale)
 
 
-@all_or_nothing()
+@rollback_on_error()
 def create_print_objects(obj: bpy.types.Object, plan: PrintPlan) -> list[bpy.types.Object]:
     """New objects in the object's place, in a new collection: only the meshes, without modifiers, UVs and attributes,
     which cuts would tear. The notes of the checks become the collection's property "notes"."""

@@ -23,7 +23,7 @@ MAX_DIGITS = 10  # of a part's number
 
 def save_cut(mesh: bpy.types.Mesh, labels: np.ndarray, names: list[str]) -> None:
     """Saves labels (F,), the part of each face, and the parts' names."""
-    arrays.needed_attribute(mesh, ATTRIBUTE, "INT", "FACE").data.foreach_set("value", labels)
+    arrays.ensure_attribute(mesh, ATTRIBUTE, "INT", "FACE").data.foreach_set("value", labels)
     mesh[NAMES_PROPERTY] = json.dumps(dict(enumerate(names)))
 
 
@@ -62,7 +62,7 @@ def _read_labels(mesh: bpy.types.Mesh) -> np.ndarray | None:
         faces = bmesh.from_edit_mesh(mesh).faces
         layer = faces.layers.int.get(ATTRIBUTE)
         return None if layer is None else np.array([face[layer] for face in faces], np.int32)
-    attribute = arrays.attribute(mesh, ATTRIBUTE, "INT", "FACE")
+    attribute = arrays.find_attribute(mesh, ATTRIBUTE, "INT", "FACE")
     return arrays.read(attribute.data, "value", np.int32) if attribute else None
 
 
@@ -72,7 +72,7 @@ def complete_names(obj: bpy.types.Object, cut: Cut, known: dict) -> list[str]:
     names = [known.get(clusters) for clusters in cut.parts]
     if None not in names:
         return names
-    surface = arrays.surface(obj.data)
+    surface = arrays.read_surface(obj.data)
     generated = name_parts(cut, surface.vertices, surface.triangles, surface.faces, NAME_PREFIX)
     used = set(filter(None, names))
     for part, name in enumerate(names):

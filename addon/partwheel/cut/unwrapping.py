@@ -8,7 +8,7 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 
-from ..mesh import apart, arrays
+from ..mesh import temporary_scene, arrays
 from ..mesh.errors import Refused
 from partwheel.cut import Cut, seams, unwrap_cut
 from partwheel.weld import is_welding, weld_coincident_vertices
@@ -28,7 +28,7 @@ def mark_seams(obj: bpy.types.Object, cut: Cut, unwrap: bool) -> Callable[[], No
         raise Refused("{name} has {count} UV maps, no more are possible: remove one.", name=obj.name, count=MAX_UV_MAPS)
     old_seams = arrays.read(mesh.edges, "use_seam", bool)
     new_name, old_active, old_uvs = None, mesh.uv_layers.active_index, None
-    surface = arrays.surface(mesh)
+    surface = arrays.read_surface(mesh)
     if not unwrap:
         _set_seams(mesh, seams(*surface, cut))
     else:
@@ -65,11 +65,11 @@ def mark_seams(obj: bpy.types.Object, cut: Cut, unwrap: bool) -> Callable[[], No
 
 def _set_seams(mesh: bpy.types.Mesh, seam_edges: np.ndarray) -> None:
     """Seams at the edges with these vertices (n, 2), and nowhere else."""
-    ends, count = np.sort(arrays.edge_vertices(mesh), axis=1).astype(np.int64), len(mesh.vertices)
+    ends, count = np.sort(arrays.read_edge_vertices(mesh), axis=1).astype(np.int64), len(mesh.vertices)
     mesh.edges.foreach_set("use_seam", np.isin(ends @ [count, 1], np.asarray(seam_edges, np.int64) @ [count, 1]))
 
 
-def _corner_loops(mesh: bpy.types.Mesh, surface: arrays.Surface) -> np.ndarray:
+def _corner_loops(mesh: bpy.types.Mesh, surface: arrays.MeshSurface) -> np.ndarray:
     """(T, 3) the loop of each corner of a surface's triangles."""
     count, vertices = len(mesh.vertices), arrays.read(mesh.loops, "vertex_index", np.int32)
     faces = np.repeat(np.arange(len(mesh.polygons)), arrays.read(mesh.polygons, "loop_total", np.int32))
@@ -82,10 +82,10 @@ def _weld_mesh(mesh: bpy.types.Mesh, old_to_new: np.ndarray) -> None:
     """Welds coincident vertices, so that the surface is connected there; not if a polygon would contain a vertex
     twice. The order of polygons and loops stays; superfluous edges become loose."""
     corners = old_to_new[arrays.read(mesh.loops, "vertex_index", np.int32)].astype(np.int32)
-    polygon = np.repeat(np.arange(len(mesh.polygons)), arrays.polygon_sizes(mesh)[1])
+    polygon = np.repeat(np.arange(len(mesh.polygons)), arrays.read_polygon_sizes(mesh)[1])
     if not is_welding(old_to_new) or len(np.unique(polygon * len(old_to_new) + corners)) < len(corners):
         return
-    old_ends = arrays.edge_vertices(mesh)
+    old_ends = arrays.read_edge_vertices(mesh)
     ends = old_to_new[old_ends].astype(np.int32)
     _, first, number = np.unique(np.sort(ends, axis=1), axis=0, return_index=True, return_inverse=True)
     edges = first[number.ravel()][arrays.read(mesh.loops, "edge_index", np.int32)].astype(np.int32)
@@ -105,7 +105,7 @@ def _unwrap_copy(source: bpy.types.Object, old_to_new: np.ndarray) -> np.ndarray
         while copy.uv_layers:
             copy.uv_layers.remove(copy.uv_layers[0])
         copy.uv_layers.new()
-        with apart.scene_apart(obj) as layer:
+        with temporary_scene.create_temporary_scene(obj) as layer:
             layer.objects.active = obj
             context = {"scene": layer.id_data, "view_layer": layer, "object": obj, "active_object": obj}
             with bpy.context.temp_override(**context, edit_object=None, mode="OBJECT"):

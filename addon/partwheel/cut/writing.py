@@ -9,7 +9,7 @@ from typing import NamedTuple
 import bpy
 
 from ..mesh import arrays
-from ..mesh.datablocks import all_or_nothing
+from ..mesh.datablocks import rollback_on_error
 from . import armature, layers, objects, saved_cut, unwrapping
 from partwheel.cut import Cut
 
@@ -32,13 +32,13 @@ def load_names(obj: bpy.types.Object, cut: Cut) -> dict:
     return saved[1] if saved else {}
 
 
-@all_or_nothing()
+@rollback_on_error()
 def write(obj: bpy.types.Object, cut: Cut, to: Iterable[str] = (), known: dict | None = None,
           options: objects.ObjectOptions = objects.ObjectOptions(), unwrap: bool = False) -> WriteResult:
     """Saves the cut in the object's mesh and writes it to some of TARGETS. known: {clusters: name} of parts with a
     name; None: those saved in the mesh. options: of objects. unwrap: along the seams. Outside Edit Mode. If it raises
     an Error, nothing has changed."""
-    arrays.up_to_date(obj)
+    arrays.update_mesh(obj)
     to = {*to, "VERTEX_GROUPS"} if "BONES" in to else to
     if known is None:
         known = load_names(obj, cut)

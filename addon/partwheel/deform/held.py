@@ -12,8 +12,8 @@ from partwheel import Error, PartwheelError
 from ..mesh.mesh_identity import element_counts
 from ..mesh.errors import Refused
 from ..view import overlay
-from ..view.background import Background
-from ..view.picking import FaceTree
+from ..view.background import BackgroundTask
+from ..view.picking import FaceRayCaster
 from ..words.say import iface_
 from . import gizmo
 from .methods import METHODS
@@ -168,7 +168,7 @@ class Held:
 
     def _start(self, function):
         self.abandon()
-        self.task = Background(function)
+        self.task = BackgroundTask(function)
 
     def abandon(self):
         """What is done in the background is of no use any more."""
@@ -224,7 +224,7 @@ class Held:
         self.shown = self.shape.points()
         pen = self._put(obj)
         (pen.write if done else pen.draft)(obj, self.shown)
-        overlay.redraw()
+        overlay.redraw_views()
 
     def _put(self, obj):
         if self._pen is None or self._pen.region is not self.region:
@@ -242,7 +242,7 @@ class Held:
 
     def vertex_under(self, obj, region, view, point):
         """The vertex of the part that a view's region shows at a point of it, or None."""
-        hit = FaceTree(obj).under(obj.matrix_world, region, view, point)
+        hit = FaceRayCaster(obj).under(obj.matrix_world, region, view, point)
         if not hit or hit[0] not in self.faces:
             return None
         face, distance = hit

@@ -12,8 +12,8 @@ from ..mesh.poll import check_poll
 from ..parts import picks, registry
 from ..pick import borders
 from ..view import keys
-from ..view.in_view import InView, waiting
-from ..view.picking import under_mouse, view_of
+from ..view.in_view import InView, show_wait_cursor
+from ..view.picking import find_view_under_mouse, get_region_view
 from ..words.say import iface_
 from . import gizmo
 from .held import Handle, Held, deform
@@ -72,7 +72,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     def poll(cls, context):
         obj = context.edit_object
         return (check_poll(cls, context.mode == "EDIT_MESH" and obj, "Parts are deformed in Edit Mode of a mesh.")
-                and check_poll(cls, registry.state(obj.data)[0] in registry.USABLE, picks.NO_PICK))
+                and check_poll(cls, registry.get_state(obj.data)[0] in registry.USABLE, picks.NO_PICK))
 
     def draw(self, _context):
         self.layout.prop(self, "method")
@@ -100,18 +100,18 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
 
     def _faces(self, obj):
         """The part's faces. Raises Refused."""
-        hierarchy, node = picks.chosen(obj, self.node)
+        hierarchy, node = picks.resolve_node(obj, self.node)
         if self.node < 0 and not self.properties.is_property_set("snap"):
-            self.snap = picks.picked(obj).snap
+            self.snap = picks.get_pick(obj).snap
         self.node = node
-        return borders.faces(obj, hierarchy, self.node, self.snap)
+        return borders.get_part_faces(obj, hierarchy, self.node, self.snap)
 
     # ---- With the mouse --------------------------------------------------------------------------------------------
 
     def on_start(self, context, event):
         obj = context.edit_object
-        with waiting(context):
-            faces, picked = self._faces(obj), picks.picked(obj)
+        with show_wait_cursor(context):
+            faces, picked = self._faces(obj), picks.get_pick(obj)
             self.held = Held(obj, faces, self.method, self.rings, self.reach, picked and picked.face)
         self._exit_stack.callback(self.held.abandon)
         self.confirmed = self.recompute = False
@@ -158,7 +158,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         return None
 
     def _clicked(self, context, event):
-        view, obj = under_mouse(context, event), context.edit_object
+        view, obj = find_view_under_mouse(context, event), context.edit_object
         if not view:
             return {"PASS_THROUGH"}
         grabbed = gizmo.under(self.held.pivot(obj), *self._view(context, event))
@@ -179,7 +179,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         movement, obj = self.movement, context.edit_object
         if event.type == "INBETWEEN_MOUSEMOVE":  # there is a later one: not worth a step
             self._track(context, event)
-        elif event.type in keys.MOVES | keys.STEPS.events | keys.FINE.events:
+        elif event.type in keys.MOVES | keys.SNAP_STEPS.events | keys.PRECISE.events:
             self._follow(context, event)
         elif movement.dragging and (event.type, event.value) == ("LEFTMOUSE", "RELEASE"):
             self.movement = None
@@ -221,7 +221,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
         region = context.region
         if region.type != "WINDOW":
             region = next(each for each in context.area.regions if each.type == "WINDOW")
-        return region, view_of(context.area, region), (event.mouse_x - region.x, event.mouse_y - region.y)
+        return region, get_region_view(context.area, region), (event.mouse_x - region.x, event.mouse_y - region.y)
 
     def _track(self, context, event):
         """The movement is told where the mouse is."""

@@ -30,7 +30,7 @@ class MESH_OT_partwheel_move(picks.NeedsPick, bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     def invoke(self, context, _event):
-        if not picks.picked(context.edit_object):
+        if not picks.get_pick(context.edit_object):
             self.report({"ERROR"}, rpt_(picks.NO_PICK))
             return {"CANCELLED"}
         global _waiting
@@ -47,13 +47,13 @@ class MESH_OT_partwheel_move(picks.NeedsPick, bpy.types.Operator):
 
 def falloff(obj):
     """What Blender's tool is told, the size in the world's unit."""
-    split = is_welding(weld_coincident_vertices(arrays.edited_positions(obj), arrays.triangles(obj.data)[0]))
+    split = is_welding(weld_coincident_vertices(arrays.read_edited_positions(obj), arrays.read_triangles(obj.data)[0]))
     return {"use_proportional_edit": True, "use_proportional_connected": not split, "proportional_size": _reach(obj)}
 
 
 def _reach(obj):
     area = arrays.read(obj.data.polygons, "area", np.float32)
-    part = registry.hierarchy(obj).faces(picks.picked(obj).node)
+    part = registry.get_hierarchy(obj).faces(picks.get_pick(obj).node)
     return REACH * float(np.sqrt(area[part].sum())) * obj.matrix_world.median_scale
 
 

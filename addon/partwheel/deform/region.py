@@ -41,23 +41,23 @@ class Region:
 
     def __init__(self, obj, faces, rings=0, mirror=False, reach=None):
         """Raises Refused."""
-        surface = arrays.surface(arrays.up_to_date(obj))
-        mesh, points = obj.data, arrays.edited_positions(obj)
+        surface = arrays.read_surface(arrays.update_mesh(obj))
+        mesh, points = obj.data, arrays.read_edited_positions(obj)
         count = len(points)
         self.old_to_new, welded = weld_surface(points, surface.triangles)
-        inside = arrays.mask(surface.face_count, faces)
+        inside = arrays.make_mask(surface.face_count, faces)
         for _ in range(rings):
-            reached = arrays.mask(count, welded[inside[surface.faces]])
+            reached = arrays.make_mask(count, welded[inside[surface.faces]])
             inside[surface.faces[reached[welded].any(axis=1)]] = True
         within = inside[surface.faces]
-        member, border = (arrays.mask(count, welded[side]) for side in (within, ~within))
+        member, border = (arrays.make_mask(count, welded[side]) for side in (within, ~within))
         free, limb = member & ~border, np.zeros(count, bool)
         hinge = None if reach is None else find_joint(points.astype(np.float64), welded, within)
         if hinge and free.any():
             roles = hinge.roles(reach)
             free, limb = roles != FIXED, roles == 0
             member = free
-        free &= arrays.mask(count, self.old_to_new[~arrays.read(mesh.vertices, "hide", bool)])
+        free &= arrays.make_mask(count, self.old_to_new[~arrays.read(mesh.vertices, "hide", bool)])
         near = member[welded].any(axis=1)
         self.vertices, triangles = np.unique(welded[near], return_inverse=True)
         self.triangles = triangles.reshape(-1, 3).astype(np.int32)
@@ -83,16 +83,16 @@ class Region:
         images, self._sources = self._with_coincident(self._sources, images)
         self.moving = np.concatenate([own, images])
         self.before = points[self.moving]
-        moves = arrays.mask(count, self.moving)
-        changes = arrays.mask(len(inside), surface.faces[moves[surface.triangles].any(axis=1)])
+        moves = arrays.make_mask(count, self.moving)
+        changes = arrays.make_mask(len(inside), surface.faces[moves[surface.triangles].any(axis=1)])
         shaded_smooth = arrays.read(mesh.polygons, "use_smooth", bool)
         self.flat_faces = np.flatnonzero(changes & ~shaded_smooth)
         smooth = surface.triangles[(changes & shaded_smooth)[surface.faces]]
         self.shaded, triangles = np.unique(surface.triangles[near], return_inverse=True)
         self.shaded_triangles = triangles.reshape(-1, 3).astype(np.int32)
-        self.smooth = arrays.mask(count, smooth)[self.shaded]
+        self.smooth = arrays.make_mask(count, smooth)[self.shaded]
         self.of_shaded = np.searchsorted(self.vertices, self.old_to_new[self.shaded])
-        self.polygons = bool((arrays.polygon_sizes(mesh)[1][changes] > 3).any())
+        self.polygons = bool((arrays.read_polygon_sizes(mesh)[1][changes] > 3).any())
 
     def _partners(self, points):
         """(partner (n,): of each vertex the one of the region across the x axis, -1 where there is none; the region's

@@ -15,14 +15,14 @@ from partwheel.weld import weld_coincident_vertices
 from .mesh_identity import mesh_key
 
 # Modifiers whose mesh begins with the vertices of the one that they are given, moved or not.
-KEEPING = {"ARRAY", "MIRROR", "MULTIRES", "SOLIDIFY", "SUBSURF",
-           "ARMATURE", "CAST", "CORRECTIVE_SMOOTH", "CURVE", "DISPLACE", "HOOK", "LAPLACIANDEFORM", "LAPLACIANSMOOTH",
-           "LATTICE", "MESH_DEFORM", "SHRINKWRAP", "SIMPLE_DEFORM", "SMOOTH", "SURFACE_DEFORM", "WARP", "WAVE"}
+VERTEX_PRESERVING_MODIFIERS = {"ARRAY", "MIRROR", "MULTIRES", "SOLIDIFY", "SUBSURF",
+                               "ARMATURE", "CAST", "CORRECTIVE_SMOOTH", "CURVE", "DISPLACE", "HOOK", "LAPLACIANDEFORM", "LAPLACIANSMOOTH",
+                               "LATTICE", "MESH_DEFORM", "SHRINKWRAP", "SIMPLE_DEFORM", "SMOOTH", "SURFACE_DEFORM", "WARP", "WAVE"}
 # A triangle's doubled area by the square of its longest side; below this it is taken for one without area.
-THIN = 1e-9
+DEGENERATE_RATIO = 1e-9
 
 
-class Surface(NamedTuple):
+class MeshSurface(NamedTuple):
     """What Hierarchy.build() takes: vertices (V,3), triangles (T,3), faces (T,) the polygon of each triangle."""
 
     vertices: np.ndarray
@@ -31,14 +31,14 @@ class Surface(NamedTuple):
     face_count: int
 
 
-writing_back = False  # while Blender tells of a change of geometry that is none: edits were written back into a mesh
-# Within one_reading(): the meshes that are up to date, by key and mode: the Fingerprint of each, or None before that is
+is_writing_back = False  # while Blender tells of a change of geometry that is none: edits were written back into a mesh
+# Within use_snapshot(): the meshes that are up to date, by key and mode: the Fingerprint of each, or None before that is
 # asked for.
 _reading = None
 
 
 @contextlib.contextmanager
-def one_reading():
+def use_snapshot():
     """Within it Blender writes its edits back into each mesh only once, half a second for a million faces, and the mesh
     is hashed only once, for all who ask. For a step of the add-on's, in which nobody else runs: what changes a mesh
     meanwhile says changed(), as parts.changes does for all that Blender tells of."""
@@ -50,18 +50,18 @@ def one_reading():
         _reading = before
 
 
-def changed():
+def invalidate_snapshot():
     """What was read is not to be used any more, for a mesh, or what is selected in it, is another."""
     if _reading:
         _reading.clear()
 
 
-def written_back(obj):
-    """Within one_reading(): up_to_date(obj) was asked for in an earlier step, and nothing of its geometry has changed since."""
+def mark_up_to_date(obj):
+    """Within use_snapshot(): update_mesh(obj) was asked for in an earlier step, and nothing of its geometry has changed since."""
     _reading[mesh_key(obj.data), obj.mode] = None
 
 
-def up_to_date(obj):
+def update_mesh(obj):
     """The object's mesh; in Edit Mode after Blender wrote the edits back into it. Same order of elements in both. Not to
     be called while Blender draws."""
     if obj.mode == "EDIT" and not (_reading and (mesh_key(obj.data), obj.mode) in _reading):
@@ -71,22 +71,22 @@ def up_to_date(obj):
     return obj.data
 
 
-def strokes_up_to_date(obj):
+def flush_sculpt_strokes(obj):
     """In Sculpt Mode the strokes on a multires modifier's levels are in the mesh then. Not to be called while Blender draws."""
     if obj.mode == "SCULPT":
         _write_back(bpy.ops.ed.flush_edits)
 
 
 def _write_back(write):
-    global writing_back
+    global is_writing_back
     layer = bpy.context.view_layer
     layer.update()  # what was edited before is told of first
-    writing_back = True
+    is_writing_back = True
     try:
         write()
         layer.update()
     finally:
-        writing_back = False
+        is_writing_back = False
 
 
 # What Blender keeps as a layer, most of it since 4.0, and copies from there a hundred times faster: (its name, its field, its
@@ -102,7 +102,7 @@ _UNSIGNED = {"vertex_index", "edge_index", "vertices", "loop_start", "loop_total
 def read(collection, attribute, dtype, width=1):
     """One attribute of all elements: (n,) or (n, width)."""
     values = np.empty(len(collection) * width, dtype)
-    layer, field = _layer(collection, attribute)
+    layer, field = _find_layer(collection, attribute)
     if layer:
         layer.data.foreach_get(field, values)
     else:
@@ -113,21 +113,21 @@ def read(collection, attribute, dtype, width=1):
 def write(collection, attribute, values):
     """Sets one attribute of all elements: values (n,) or (n, width), int32 where they are numbers of elements."""
     values = np.ascontiguousarray(values).ravel()
-    layer, field = _layer(collection, attribute)
+    layer, field = _find_layer(collection, attribute)
     if layer:
         layer.data.foreach_set(field, values)
     else:
         collection.foreach_set(attribute, values.view(np.uint32) if attribute in _UNSIGNED else values)
 
 
-def mask(count, indices):
+def make_mask(count, indices):
     """(count,) bool: True at these indices, an array or a list of any shape."""
     result = np.zeros(count, bool)
     result[np.asarray(indices, np.int64)] = True
     return result
 
 
-def _layer(collection, attribute):
+def _find_layer(collection, attribute):
     """(what Blender keeps this attribute as, its field), or (None, "")."""
     if attribute not in _LAYERS or not isinstance(collection.data, bpy.types.Mesh):
         return None, ""
@@ -138,58 +138,58 @@ def _layer(collection, attribute):
     return (layer, field) if fits else (None, "")
 
 
-def edge_vertices(mesh):
+def read_edge_vertices(mesh):
     """(E,2)"""
     return read(mesh.edges, "vertices", np.int32, 2)
 
 
-def polygon_sizes(mesh):
+def read_polygon_sizes(mesh):
     """((F,) the first corner of each polygon, (F,) how many it has)"""
     begin = read(mesh.polygons, "loop_start", np.int32)
     return begin, np.diff(begin, append=np.int32(len(mesh.loops)))
 
 
-def of_faces(mesh, chosen, elements="vertices", index="vertex_index"):
+def mask_elements_of_faces(mesh, chosen, elements="vertices", index="vertex_index"):
     """(V,) or (E,) bool: the mesh's vertices or edges that faces have; chosen (F,) bool: which."""
-    corners = np.repeat(chosen, polygon_sizes(mesh)[1])
-    return mask(len(getattr(mesh, elements)), read(mesh.loops, index, np.int32)[corners])
+    corners = np.repeat(chosen, read_polygon_sizes(mesh)[1])
+    return make_mask(len(getattr(mesh, elements)), read(mesh.loops, index, np.int32)[corners])
 
 
-def with_coincident(mesh, chosen):
+def add_coincident_vertices(mesh, chosen):
     """(V,) bool: the vertices chosen (V,) bool, and those that are welded with them (partwheel.weld)."""
-    old_to_new = weld_coincident_vertices(read(mesh.vertices, "co", np.float32, 3), triangles(mesh)[0])
-    return mask(len(chosen), old_to_new[chosen])[old_to_new]
+    old_to_new = weld_coincident_vertices(read(mesh.vertices, "co", np.float32, 3), read_triangles(mesh)[0])
+    return make_mask(len(chosen), old_to_new[chosen])[old_to_new]
 
 
-def attribute(mesh, name, kind, domain):
+def find_attribute(mesh, name, kind, domain):
     """The mesh's attribute of this name, data type and domain, or None: others may have given the name to another one."""
     found = mesh.attributes.get(name)
     return found if found and (found.data_type, found.domain) == (kind, domain) else None
 
 
-def needed_attribute(mesh, name, kind, domain):
+def ensure_attribute(mesh, name, kind, domain):
     """The same, made in place of whatever has its name."""
-    found = attribute(mesh, name, kind, domain)
+    found = find_attribute(mesh, name, kind, domain)
     if not found and name in mesh.attributes:
         mesh.attributes.remove(mesh.attributes[name])
     return found or mesh.attributes.new(name, kind, domain)
 
 
-def material_indices(mesh):
+def read_material_indices(mesh):
     """(F,)"""
-    layer = attribute(mesh, "material_index", "INT", "FACE")
+    layer = find_attribute(mesh, "material_index", "INT", "FACE")
     return read(layer.data, "value", np.int32) if layer else np.zeros(len(mesh.polygons), np.int32)
 
 
-def set_material_indices(mesh, indices):
-    if indices.any() or attribute(mesh, "material_index", "INT", "FACE"):
-        needed_attribute(mesh, "material_index", "INT", "FACE").data.foreach_set("value", indices)
+def write_material_indices(mesh, indices):
+    if indices.any() or find_attribute(mesh, "material_index", "INT", "FACE"):
+        ensure_attribute(mesh, "material_index", "INT", "FACE").data.foreach_set("value", indices)
 
 
-def triangles(mesh):
+def read_triangles(mesh):
     """((T,3) the vertices of Blender's triangles, (T,) the polygon of each)"""
     if len(mesh.loops) == 3 * len(mesh.polygons):
-        begin, sizes = polygon_sizes(mesh)
+        begin, sizes = read_polygon_sizes(mesh)
         if (sizes == 3).all():
             return read(mesh.loops, "vertex_index", np.int32).reshape(-1, 3), np.arange(len(begin), dtype=np.int32)
     mesh.calc_loop_triangles()
@@ -197,21 +197,21 @@ def triangles(mesh):
             read(mesh.loop_triangles, "polygon_index", np.int32))
 
 
-def surface(mesh):
+def read_surface(mesh):
     """The mesh's surface as Blender triangulates it, save for polygons of which it makes triangles without area (three
     corners on a line do that). With shape keys it is the basis, whichever key is shown."""
     vertices = read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
-    corner_vertices, faces = triangles(mesh)
-    thin = np.unique(faces[_thin(vertices, corner_vertices)]) if len(faces) > len(mesh.polygons) else faces[:0]
-    again = [(face, triangle) for face in thin.tolist() for triangle in _triangulated(mesh.polygons[face], vertices)]
+    corner_vertices, faces = read_triangles(mesh)
+    thin = np.unique(faces[_is_degenerate(vertices, corner_vertices)]) if len(faces) > len(mesh.polygons) else faces[:0]
+    again = [(face, triangle) for face in thin.tolist() for triangle in _triangulate_polygon(mesh.polygons[face], vertices)]
     if again:
         kept = ~np.isin(faces, thin)
         corner_vertices = np.vstack([corner_vertices[kept], np.array([triangle for _, triangle in again], np.int32)])
         faces = np.concatenate([faces[kept], np.array([face for face, _ in again], np.int32)])
-    return Surface(vertices, corner_vertices, faces, len(mesh.polygons))
+    return MeshSurface(vertices, corner_vertices, faces, len(mesh.polygons))
 
 
-def _thin(vertices, triangles):
+def _is_degenerate(vertices, triangles):
     """(T,) whether a triangle has no area to speak of. Coordinate by coordinate: numpy's own cross product takes four times
     as long, which millions of them are held up by."""
     ends = [vertices[:, k][triangles] for k in range(3)]
@@ -219,15 +219,15 @@ def _thin(vertices, triangles):
     bc = [far - near for near, far in zip(ab, ac)]
     normal = [ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2], ab[0] * ac[1] - ab[1] * ac[0]]
     squared = [sum(each * each for each in side) for side in (normal, ab, ac, bc)]
-    return np.sqrt(squared[0]) <= THIN * np.maximum(np.maximum(squared[1], squared[2]), squared[3])
+    return np.sqrt(squared[0]) <= DEGENERATE_RATIO * np.maximum(np.maximum(squared[1], squared[2]), squared[3])
 
 
-def _triangulated(polygon, vertices):
+def _triangulate_polygon(polygon, vertices):
     corners = list(polygon.vertices)
     return triangulate(vertices[corners], corners)
 
 
-def custom_normals(mesh):
+def read_custom_normals(mesh):
     """(L,3) of each loop, if the mesh has normals set by hand; else None."""
     if not mesh.has_custom_normals:
         return None
@@ -239,7 +239,7 @@ def custom_normals(mesh):
     return normals
 
 
-def set_custom_normals(mesh, normals):
+def write_custom_normals(mesh, normals):
     """normals (L,3): of each loop; 0, 0, 0: as Blender computes it."""
     if hasattr(mesh, "use_auto_smooth"):  # before Blender 4.1
         mesh.use_auto_smooth = True
@@ -254,42 +254,42 @@ class Fingerprint(NamedTuple):
     positions: bytes
 
 
-def fingerprint(mesh):
+def compute_fingerprint(mesh):
     topology = hashlib.blake2b(np.int64(len(mesh.vertices)).tobytes(), digest_size=16)
-    topology.update(polygon_sizes(mesh)[1])
+    topology.update(read_polygon_sizes(mesh)[1])
     topology.update(read(mesh.loops, "vertex_index", np.int32))
     positions = hashlib.blake2b(read(mesh.vertices, "co", np.float32, 3), digest_size=16)
     return Fingerprint(topology.digest(), positions.digest())
 
 
-def present(obj):
+def current_fingerprint(obj):
     """The Fingerprint of the object's mesh, brought up to date."""
-    mesh = up_to_date(obj)
+    mesh = update_mesh(obj)
     reading = {} if _reading is None else _reading
     name = mesh_key(mesh), obj.mode
-    reading[name] = reading.get(name) or fingerprint(mesh)
+    reading[name] = reading.get(name) or compute_fingerprint(mesh)
     return reading[name]
 
 
-def on_cage(obj):
+def find_cage_modifiers(obj):
     """The object's modifiers that act in Edit Mode, if any of them is shown on the cage, else none."""
     acting = [each for each in obj.modifiers if each.show_viewport and each.show_in_editmode]
     return acting if any(each.show_on_cage for each in acting) else []
 
 
-def cage_positions(obj):
+def read_cage_positions(obj):
     """(V,3) float32: where modifiers on the cage show the vertices in Edit Mode, in the object's own space; None
     without such modifiers, or if it can't be told. Not to be called while Blender draws.
 
     Blender lets nobody ask for the cage, so this is the mesh after all modifiers; those after the cage move it little.
     """
-    modifiers = on_cage(obj) if obj.mode == "EDIT" else []
+    modifiers = find_cage_modifiers(obj) if obj.mode == "EDIT" else []
     if not modifiers:
         return None
     evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
     mesh, count = evaluated.to_mesh(), len(bmesh.from_edit_mesh(obj.data).verts)
     try:
-        keeping = len(mesh.vertices) >= count and all(each.type in KEEPING for each in modifiers)
+        keeping = len(mesh.vertices) >= count and all(each.type in VERTEX_PRESERVING_MODIFIERS for each in modifiers)
         if not keeping and len(mesh.vertices) != count:
             return None
         return read(mesh.vertices, "co", np.float32, 3)[:count]
@@ -297,15 +297,15 @@ def cage_positions(obj):
         evaluated.to_mesh_clear()
 
 
-def edited_positions(obj):
+def read_edited_positions(obj):
     """(V,3) float32: the vertices that an edit of the object moves, in its own space: those of the active shape key, if
     it has one. The mesh must be up to date."""
     key = obj.active_shape_key
     return read(key.data if key else obj.data.vertices, "co", np.float32, 3)
 
 
-def shown_positions(obj):
+def read_displayed_positions(obj):
     """(V,3) float32: where the vertices are shown in Edit Mode, in the object's own space: of the shape key that is
     edited, or of the cage. The mesh must be up to date. Not to be called while Blender draws."""
-    cage = cage_positions(obj)
-    return edited_positions(obj) if cage is None else cage
+    cage = read_cage_positions(obj)
+    return read_edited_positions(obj) if cage is None else cage

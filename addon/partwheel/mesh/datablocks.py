@@ -12,10 +12,10 @@ _NOT_SETTINGS = {"action", "action_slot", "action_slot_handle", "last_slot_ident
 
 
 @contextmanager
-def all_or_nothing():
+def rollback_on_error():
     """If an error leaves the block, each data-block that was made in it is removed again, and what was selected, active and
     in which mode is so again. What was there before must not change until nothing can fail any more."""
-    before = {block.as_pointer() for block in _blocks()}  # what is there stays at its place
+    before = {block.as_pointer() for block in _iter_blocks()}  # what is there stays at its place
     layer = bpy.context.view_layer
     active, mode = layer.objects.active, bpy.context.mode
     object_mode = active.mode if active else "OBJECT"
@@ -27,7 +27,7 @@ def all_or_nothing():
             bpy.ops.object.mode_set(mode="OBJECT")
         used = {obj.data for obj in bpy.data.objects if obj.as_pointer() in before}  # by what stays
         used |= {mesh.shape_keys for mesh in used if isinstance(mesh, bpy.types.Mesh)}
-        bpy.data.batch_remove([block for block in _blocks() if block.as_pointer() not in before and block not in used])
+        bpy.data.batch_remove([block for block in _iter_blocks() if block.as_pointer() not in before and block not in used])
         layer.update()
         for obj in layer.objects:
             obj.select_set(obj in selected)
@@ -37,11 +37,11 @@ def all_or_nothing():
         raise
 
 
-def _blocks():
+def _iter_blocks():
     return (block for kind in KINDS for block in getattr(bpy.data, kind))
 
 
-def dispose(obj):
+def remove_object(obj):
     """Removes an object, and its mesh with its shape keys if nothing else has it."""
     mesh = obj.data
     bpy.data.objects.remove(obj)
@@ -68,26 +68,26 @@ def copy_animation(source, target):
     new = target.animation_data_create()
     for driver in old.drivers:
         new.drivers.from_existing(src_driver=driver)
-    _share_action(old, new)
+    _assign_action(old, new)
     copy_settings(old, new, _NOT_SETTINGS)
     for track in old.nla_tracks:
         other = new.nla_tracks.new()
         for strip in track.strips:
             if strip.action:
                 made = other.strips.new(strip.name, int(strip.frame_start), strip.action)
-                _share_action(strip, made)
+                _assign_action(strip, made)
                 copy_settings(strip, made, _NOT_SETTINGS)
         copy_settings(track, other, {"is_solo"})
 
 
-def _share_action(old, new):
+def _assign_action(old, new):
     """Both an AnimData or an NlaStrip."""
     new.action = old.action
     if getattr(old, "action_slot", None):  # from Blender 4.4 on
         new.action_slot = old.action_slot
 
 
-def own_actions(block):
+def copy_actions(block):
     """Gives a copied data-block actions of its own, if the preferences say so of duplicates, as Blender's Separate does."""
     data = block.animation_data
     if not data or data.use_tweak_mode or not bpy.context.preferences.edit.use_duplicate_action:

@@ -17,10 +17,10 @@ KINDS = ("VERT", "EDGE", "FACE")
 ELEMENTS = {"VERT": "vertices", "EDGE": "edges", "FACE": "polygons"}
 LOOP_INDEX = {"VERT": "vertex_index", "EDGE": "edge_index"}
 # In units of the time to select a face: to deselect one (Blender looks at all its neighbours), and to deselect all.
-OFF, ALL_OFF = 2, 6000
+DESELECT_COST, DESELECT_ALL_COST = 2, 6000
 
 
-def _sequence(bm, kind):
+def _get_sequence(bm, kind):
     sequence = {"VERT": bm.verts, "EDGE": bm.edges, "FACE": bm.faces}[kind]
     sequence.ensure_lookup_table()
     return sequence
@@ -35,18 +35,18 @@ class Selection:
 
     def __init__(self, obj, mesh=None):
         """mesh: the object's, if that is known to be up to date."""
-        mesh = mesh or arrays.up_to_date(obj)
+        mesh = mesh or arrays.update_mesh(obj)
         bm = self._edited(obj)
         for kind in KINDS:
-            _sequence(bm, kind).index_update()
-        self.before = {kind: _selected(mesh, kind) for kind in KINDS}
+            _get_sequence(bm, kind).index_update()
+        self.before = {kind: _read_selected(mesh, kind) for kind in KINDS}
         # list(): with Python 3.13 the history of Blender 4.3 is not to be gone through in a comprehension.
-        self.history = [(_kind_of(element), element.index) for element in list(bm.select_history)]
+        self.history = [(_element_kind(element), element.index) for element in list(bm.select_history)]
         self.active_face = bm.faces.active.index if bm.faces.active else None
         self.visible = ~arrays.read(mesh.polygons, "hide", bool)
         self.kind = next(kind for kind in KINDS if kind in bm.select_mode)
         if self.kind != "FACE":
-            corners = arrays.polygon_sizes(mesh)[1]
+            corners = arrays.read_polygon_sizes(mesh)[1]
             self.loop_face = np.repeat(np.arange(len(mesh.polygons)), corners)
             self.loop_element = arrays.read(mesh.loops, LOOP_INDEX[self.kind], np.int32)
         self.now = self.before[self.kind]
@@ -69,32 +69,32 @@ class Selection:
         """Selects these faces (an array of indices), hidden ones left out, and nothing else; with extend also what was
         selected before; with deselect only what was selected before and is not in these faces. active: the index of
         the face to make the active one."""
-        target = chosen = arrays.mask(len(self.visible), faces) & self.visible
+        target = chosen = arrays.make_mask(len(self.visible), faces) & self.visible
         if self.kind != "FACE":
-            target = arrays.mask(len(self.now), self.loop_element[chosen[self.loop_face]])
+            target = arrays.make_mask(len(self.now), self.loop_element[chosen[self.loop_face]])
         if deselect:
             target = self.before[self.kind] & ~target
         elif extend:
             target |= self.before[self.kind]
         bm = self._edited(obj)
-        arrays.changed()
+        arrays.invalidate_snapshot()
         removed, kept = self.now & ~target, self.now & target
-        if _alone(obj) and OFF * np.count_nonzero(removed) > ALL_OFF + np.count_nonzero(kept):
+        if _is_only_edited_object(obj) and DESELECT_COST * np.count_nonzero(removed) > DESELECT_ALL_COST + np.count_nonzero(kept):
             bpy.ops.mesh.select_all(action="DESELECT")
-            _set(_sequence(bm, self.kind), target, True)
+            _set_selected(_get_sequence(bm, self.kind), target, True)
         else:
-            _set(_sequence(bm, self.kind), removed, False)
-            _set(_sequence(bm, self.kind), target & ~self.now, True)
+            _set_selected(_get_sequence(bm, self.kind), removed, False)
+            _set_selected(_get_sequence(bm, self.kind), target & ~self.now, True)
         self.now = target
         if self.kind != "FACE":  # a face takes its edges and vertices along
             bm.select_flush_mode()
         if active is not None:
-            face = _sequence(bm, "FACE")[active]
+            face = _get_sequence(bm, "FACE")[active]
             bm.faces.active = face
             bm.select_history.clear()
             if self.kind == "FACE" and face.select:
                 bm.select_history.add(face)
-        _redraw(obj)
+        _tag_selection_changed(obj)
 
     def touched(self, obj, anew):
         """(n,) the faces that have an element whose selection somebody else has changed since; anew: that is selected
@@ -102,34 +102,34 @@ class Selection:
         now = arrays.read(getattr(obj.data, ELEMENTS[self.kind]), "select", bool)
         changed = now if anew else now != self.before[self.kind]
         if self.kind != "FACE":
-            changed = arrays.mask(len(self.visible), self.loop_face[changed[self.loop_element]])
+            changed = arrays.make_mask(len(self.visible), self.loop_face[changed[self.loop_element]])
         return np.flatnonzero(changed & self.visible)
 
     def restore(self, obj):
         """Everything as it was: vertices, edges, faces, the active face and the history of picks."""
         bm = self._edited(obj)
-        mesh = arrays.up_to_date(obj)
-        arrays.changed()
+        mesh = arrays.update_mesh(obj)
+        arrays.invalidate_snapshot()
         # Blender hands a change of a face or an edge on to its vertices: so first all off, then on from fine to coarse.
         for kind in reversed(KINDS):
-            elements = _sequence(bm, kind)
+            elements = _get_sequence(bm, kind)
             now = arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool)
             for index in np.flatnonzero(now & ~self.before[kind]).tolist():
                 elements[index].select = False
         for kind in KINDS:
-            elements = _sequence(bm, kind)
+            elements = _get_sequence(bm, kind)
             for index in np.flatnonzero(self.before[kind]).tolist():
                 elements[index].select = True
         bm.select_flush_mode()  # also counts the selected elements anew
         bm.select_history.clear()
         for kind, index in self.history:
-            bm.select_history.add(_sequence(bm, kind)[index])
-        bm.faces.active = None if self.active_face is None else _sequence(bm, "FACE")[self.active_face]
+            bm.select_history.add(_get_sequence(bm, kind)[index])
+        bm.faces.active = None if self.active_face is None else _get_sequence(bm, "FACE")[self.active_face]
         self.now = self.before[self.kind]
-        _redraw(obj)
+        _tag_selection_changed(obj)
 
 
-def _selected(mesh, kind):
+def _read_selected(mesh, kind):
     """(n,) bool: which elements of the mesh are selected. That none is is known at once."""
     elements = getattr(mesh, ELEMENTS[kind])
     if not (mesh.total_vert_sel or mesh.total_edge_sel or mesh.total_face_sel):
@@ -137,12 +137,12 @@ def _selected(mesh, kind):
     return arrays.read(elements, "select", bool)
 
 
-def _alone(obj):
+def _is_only_edited_object(obj):
     """Whether what Blender's operators do to all that is being edited, they do to this object only."""
     return list(bpy.context.objects_in_mode_unique_data) == [obj]
 
 
-def _set(elements, which, value):
+def _set_selected(elements, which, value):
     """Selects or deselects the elements where which is True. Without a loop of Python's own, for there may be many."""
     indices = np.flatnonzero(which).tolist()
     if indices:
@@ -150,11 +150,11 @@ def _set(elements, which, value):
         deque(map(select_set, map(elements.__getitem__, indices), repeat(value)), maxlen=0)
 
 
-def _kind_of(element):
+def _element_kind(element):
     return {bmesh.types.BMVert: "VERT", bmesh.types.BMEdge: "EDGE", bmesh.types.BMFace: "FACE"}[type(element)]
 
 
-def _redraw(obj):
+def _tag_selection_changed(obj):
     """Tells Blender that the selection of a mesh in Edit Mode has changed."""
     if obj == bpy.context.view_layer.objects.active:
         # The setting's update function says "selection" and no more; the call below says "geometry", upon which Blender
@@ -200,7 +200,7 @@ class Selections:
 
     def touched(self, obj, anew):
         """See Selection.touched()."""
-        arrays.up_to_date(obj)
+        arrays.update_mesh(obj)
         return self._each[obj.name_full].touched(obj, anew)
 
     def restore(self):
@@ -208,18 +208,18 @@ class Selections:
             each.restore(obj)
 
 
-def is_selected(mesh, faces, kind):
+def is_exact_selection(mesh, faces, kind):
     """Whether these faces, but for hidden ones, are selected and nothing else is: as vertices, edges or faces, kind. The mesh
     must be up to date."""
-    chosen = arrays.mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
+    chosen = arrays.make_mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
     if kind != "FACE":
-        chosen = arrays.of_faces(mesh, chosen, ELEMENTS[kind], LOOP_INDEX[kind])
+        chosen = arrays.mask_elements_of_faces(mesh, chosen, ELEMENTS[kind], LOOP_INDEX[kind])
     return np.array_equal(arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool), chosen)
 
 
-def chosen_outside_edit_mode(mesh, faces, extend=False, deselect=False):
+def predict_face_selection(mesh, faces, extend=False, deselect=False):
     """(F,) bool: what would be selected, as Selection.select() has it, in a mesh that is not in Edit Mode."""
-    chosen = arrays.mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
+    chosen = arrays.make_mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
     if not (extend or deselect):
         return chosen  # what was selected need not be read
     before = arrays.read(mesh.polygons, "select", bool)
@@ -228,10 +228,10 @@ def chosen_outside_edit_mode(mesh, faces, extend=False, deselect=False):
 
 def select_outside_edit_mode(mesh, faces, extend=False, deselect=False, active=None):
     """Selects that: the faces, and their edges and vertices. active: the face to make the active one."""
-    chosen = chosen_outside_edit_mode(mesh, faces, extend, deselect)
+    chosen = predict_face_selection(mesh, faces, extend, deselect)
     arrays.write(mesh.polygons, "select", chosen)
-    arrays.write(mesh.vertices, "select", arrays.of_faces(mesh, chosen, "vertices", "vertex_index"))
-    _select_edges(mesh, arrays.of_faces(mesh, chosen, "edges", "edge_index"))
+    arrays.write(mesh.vertices, "select", arrays.mask_elements_of_faces(mesh, chosen, "vertices", "vertex_index"))
+    _select_edges(mesh, arrays.mask_elements_of_faces(mesh, chosen, "edges", "edge_index"))
     if len(faces):
         mesh.polygons.active = int(faces[0]) if active is None else active
     mesh.update()

@@ -7,7 +7,7 @@ from ..mesh import arrays
 from ..mesh.mesh_identity import MeshTable, element_counts, mesh_key
 from ..preferences import preferences
 from . import registry
-from .stored import unopened
+from .stored import pending
 from ..mesh.errors import UserError
 from ..words.say import rpt_
 from partwheel import Mode, PartwheelError, Status
@@ -15,37 +15,37 @@ from partwheel.library import load
 from partwheel.worker import WAIT_SECONDS, Job, available_memory
 
 _builds = {}  # those that have not ended, in the order in which they were asked for, by the key of their mesh
-_sheets = MeshTable()  # how many vertices and polygons a mesh had when it was refused for being a sheet
+_sheet_counts = MeshTable()  # how many vertices and polygons a mesh had when it was refused for being a sheet
 
 
 class Outdated(UserError):
     """A build ended and its mesh is not there any more, or not as it was."""
 
 
-def running():
+def has_builds():
     """Whether any build is under way or waits."""
     return bool(_builds)
 
 
-def being_built(obj):
+def is_being_built(obj):
     """Whether parts of the object's mesh as it is now are being found, or are to be."""
     build = _builds.get(mesh_key(obj.data))
-    return build is not None and build.serves(arrays.present(obj))
+    return build is not None and build.serves(arrays.current_fingerprint(obj))
 
 
-def build(obj, **options):
+def request_build(obj, **options):
     """The Build of the object's mesh: the one that is under way, or else a new one. options: those of Build; without
     any whatever is under way will do. If the mesh has changed, or with other options, that is cancelled for a new one.
     """
     former = _builds.get(mesh_key(obj.data))
     if former:
-        if former.serves(arrays.present(obj), options):
+        if former.serves(arrays.current_fingerprint(obj), options):
             return former
         former.cancel()
-    return Build(obj, **options)
+    return QueuedBuild(obj, **options)
 
 
-class Build:
+class QueuedBuild:
     """A build of the object's mesh as it is now, in a process of its own, once those asked for earlier are over. The
     mesh is not changed, nor kept from changing. To be had from build(): there is one a mesh. Ask it from the main
     thread: poll(), wait(), cancel(), result()."""
@@ -55,20 +55,20 @@ class Build:
         """mode: a partwheel.Mode; limits and exactly: as Job has them; None: the preferences'. open_surfaces holds for
         later builds of the mesh too."""
         load()  # a missing library is better told here
-        mesh, self._built = obj.data, arrays.present(obj)
+        mesh, self._built = obj.data, arrays.current_fingerprint(obj)
         self.name, self._key, self._counts = mesh.name, mesh_key(mesh), element_counts(mesh)
-        former = registry.entry_of(mesh)
+        former = registry.find_entry(mesh)
         self._open_surfaces = open_surfaces or (former is not None and former.open_surfaces)
         self._mode = Mode[preferences().parts] if mode is None else mode
         self._exactly = preferences().exactly if exactly is None else exactly
         self._options = {"quality": quality, "open_surfaces": open_surfaces, "exactly": exactly, "mode": mode,
                          "cpu_limit": cpu_limit, "memory_limit": memory_limit}
-        self._surface = arrays.surface(mesh)
+        self._surface = arrays.read_surface(mesh)
         self._hierarchy = self._error = None
         self._cancelled = False
         self.job = None  # from its turn on
         _builds[self._key] = self
-        _turn()
+        _advance_queue()
 
     def serves(self, now, options=None):
         """Whether whoever wants a build of the mesh as it is now, with these options or whatever, can have this one."""
@@ -91,14 +91,14 @@ class Build:
 
     def poll(self):
         """(fraction 0..1 that never falls, what is done, or whose build is waited for); None once result() won't block."""
-        turn = _turn()
+        turn = _advance_queue()
         if self.job:
             return self.job.poll()
         return None if self._cancelled or self._error else (0.0, turn.name)
 
     def wait(self, seconds):
         """Waits so long at most; whether result() won't block."""
-        turn = None if self.poll() is None else self if self.job else _turn()
+        turn = None if self.poll() is None else self if self.job else _advance_queue()
         if turn:
             turn.job.wait(seconds)
         return self.poll() is None
@@ -142,55 +142,55 @@ class Build:
             return self.job.result()
         except PartwheelError as error:
             if error.status == Status.NOT_SOLID:
-                _sheets[self._key] = self._counts
+                _sheet_counts[self._key] = self._counts
             raise
 
     def _keep(self, built):
-        obj = _user(self._key)
+        obj = _find_user(self._key)
         if obj is None:
             raise Outdated("The mesh {name} is gone, so its parts were left aside.", name=self.name)
-        mesh, now = obj.data, arrays.present(obj)
+        mesh, now = obj.data, arrays.current_fingerprint(obj)
         if now.topology != self._built.topology:
             raise Outdated("{name} was edited while its parts were being found, so they were left aside. Find them again when "
                            "the mesh is as you want it.", name=mesh.name)
         for table in MeshTable.tables:
             table.drop_gone()
-        unopened.pop(self._key, None)
-        _sheets.pop(self._key, None)
-        registry.keep(mesh, registry.Entry(self._built, self._counts, built, open_surfaces=self._open_surfaces), now)
+        pending.pop(self._key, None)
+        _sheet_counts.pop(self._key, None)
+        registry.store(mesh, registry.HierarchyEntry(self._built, self._counts, built, open_surfaces=self._open_surfaces), now)
         self._hierarchy = built
 
     def outdated(self):
         """Whether its mesh is gone, or is another one by now, be it only by places of vertices."""
-        obj = _user(self._key)
-        return obj is None or arrays.present(obj) != self._built
+        obj = _find_user(self._key)
+        return obj is None or arrays.current_fingerprint(obj) != self._built
 
 
-def _turn():
+def _advance_queue():
     """The Build that has a worker; if none has, the one that has waited longest gets one. None if none waits."""
     return (next((each for each in _builds.values() if each.job and each.job.poll()), None)
             or next((each for each in list(_builds.values()) if not each.job and each.start()), None))
 
 
-def drop_outdated():
+def cancel_outdated():
     """Cancels those whose mesh is not there any more as it was."""
     for each in list(_builds.values()):
         if each.outdated():
             each.cancel()
 
 
-def _user(wanted):
+def _find_user(wanted):
     """An object with the mesh of this key, in Edit Mode if there is one such, or None."""
     users = [obj for obj in bpy.data.objects if obj.type == "MESH" and mesh_key(obj.data) == wanted]
     return next((obj for obj in users if obj.mode == "EDIT"), users[0] if users else None)
 
 
-def refused_as_sheet(mesh):
+def is_refused_as_sheet(mesh):
     """Whether the last build refused the mesh for being a sheet, as far as the counts tell that it is the same."""
-    return _sheets.get(mesh_key(mesh)) == element_counts(mesh)
+    return _sheet_counts.get(mesh_key(mesh)) == element_counts(mesh)
 
 
-def stop():
+def cancel_all():
     """Cancels all."""
     for each in list(_builds.values()):
         each.cancel()

@@ -4,86 +4,86 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from ..mesh import apart, arrays
+from ..mesh import temporary_scene, arrays
 from ..mesh.mesh_identity import MeshTable, mesh_key
 
 # How often the mesh was changed, or what modifiers show of it, or anything told of it.
-_edits, _shown, _told = MeshTable(), MeshTable(), MeshTable()
-_undos = 0
+_geometry_counts, _display_counts, _update_counts = MeshTable(), MeshTable(), MeshTable()
+_undo_count = 0
 
 
-def edits(mesh):
+def geometry_revision(mesh):
     """Something that is another after each change of the mesh's geometry, or of what is hidden, that Blender told of.
     Selecting is none."""
-    return _edits.get(mesh_key(mesh), 0), _undos
+    return _geometry_counts.get(mesh_key(mesh), 0), _undo_count
 
 
 def revision(mesh):
     """The same, and another also after a change of what modifiers show of it, be it on the cage."""
-    return edits(mesh), shown(mesh)
+    return geometry_revision(mesh), display_revision(mesh)
 
 
-def shown(mesh):
+def display_revision(mesh):
     """Something that is another after a change of what modifiers show of the mesh: in another frame, for instance."""
-    return _shown.get(mesh_key(mesh), 0)
+    return _display_counts.get(mesh_key(mesh), 0)
 
 
-def told(mesh):
+def update_revision(mesh):
     """Something that is another after whatever Blender told of the mesh, be it that something was selected in it."""
-    return _told.get(mesh_key(mesh), 0), _undos
+    return _update_counts.get(mesh_key(mesh), 0), _undo_count
 
 
 @persistent
-def _edited(_scene, depsgraph):
-    if arrays.writing_back or apart.active:
+def _on_depsgraph_update(_scene, depsgraph):
+    if arrays.is_writing_back or temporary_scene.is_active:
         return
     for update in depsgraph.updates:
         if isinstance(update.id, bpy.types.Mesh):
-            _count(_told, update.id.original)
+            _increment(_update_counts, update.id.original)
         of_mesh = isinstance(update.id, bpy.types.Object) and update.id.type == "MESH"
-        if not (update.is_updated_geometry or of_mesh and _stroke(update, depsgraph)):
+        if not (update.is_updated_geometry or of_mesh and _is_sculpt_stroke(update, depsgraph)):
             continue
-        arrays.changed()
+        arrays.invalidate_snapshot()
         if isinstance(update.id, bpy.types.Mesh):
-            _count(_edits, update.id.original)
+            _increment(_geometry_counts, update.id.original)
         elif of_mesh:
-            _count_shown(update.id)
+            _increment_display(update.id)
 
 
 @persistent
-def _frame_changed(_scene, depsgraph):
+def _on_frame_change(_scene, depsgraph):
     """A new frame evaluates what is animated, and Blender calls no other handler for it. No mesh is edited by it. A render
     has an evaluation of its own, which no 3D view shows."""
-    if depsgraph.mode == "RENDER" or apart.active:
+    if depsgraph.mode == "RENDER" or temporary_scene.is_active:
         return
     for update in depsgraph.updates:
         if update.is_updated_geometry and isinstance(update.id, bpy.types.Object) and update.id.type == "MESH":
-            arrays.changed()
-            _count_shown(update.id)
+            arrays.invalidate_snapshot()
+            _increment_display(update.id)
 
 
-def _count_shown(evaluated):
+def _increment_display(evaluated):
     """In Edit Mode only modifiers on the cage change what is shown."""
-    if evaluated.mode != "EDIT" or arrays.on_cage(evaluated):
-        _count(_shown, evaluated.original.data)
+    if evaluated.mode != "EDIT" or arrays.find_cage_modifiers(evaluated):
+        _increment(_display_counts, evaluated.original.data)
 
 
-def _stroke(update, depsgraph):
+def _is_sculpt_stroke(update, depsgraph):
     """Whether an update of an object tells of a stroke of Sculpt Mode: of its shading, which is all that is told of one.
     Newer Blenders tell of the shading of all objects, and of the scene, when something was added or removed."""
     return (update.id.mode == "SCULPT" and update.is_updated_shading
             and not any(isinstance(each.id, bpy.types.Scene) for each in depsgraph.updates))
 
 
-def _count(table, mesh):
+def _increment(table, mesh):
     table[mesh_key(mesh)] = table.get(mesh_key(mesh), 0) + 1
 
 
 @persistent
-def _undone(*_):
-    global _undos
-    arrays.changed()
-    _undos += 1
+def _on_undo(*_):
+    global _undo_count
+    arrays.invalidate_snapshot()
+    _undo_count += 1
 
 
-HANDLERS = {"depsgraph_update_post": _edited, "frame_change_post": _frame_changed, "undo_post": _undone, "redo_post": _undone}
+HANDLERS = {"depsgraph_update_post": _on_depsgraph_update, "frame_change_post": _on_frame_change, "undo_post": _on_undo, "redo_post": _on_undo}

@@ -7,46 +7,46 @@ from bpy.app.handlers import persistent
 from ..mesh.mesh_identity import mesh_key
 from ..preferences import preferences
 from . import builds, registry, stored
-from .stored import carried, unopened
+from .stored import take_property, pending
 
 
 @persistent
-def _before_saving(*_):
+def _on_save(*_):
     if not preferences().save_with_file:
         return
     for mesh in bpy.data.meshes:
         if mesh.library:
             continue
-        fits, entry = registry.state(mesh)
+        fits, entry = registry.get_state(mesh)
         if fits in registry.USABLE and not entry.packed:
             entry.packed = stored.pack(entry.built, entry.hierarchy)
-        packed = unopened.get(mesh_key(mesh)) if fits == registry.State.UNOPENED else entry and entry.packed
+        packed = pending.get(mesh_key(mesh)) if fits == registry.State.UNOPENED else entry and entry.packed
         if packed:
-            carried(mesh)  # Blender 4.2 to 5.0 cut bytes off at a 0 where they replace others
+            take_property(mesh)  # Blender 4.2 to 5.0 cut bytes off at a 0 where they replace others
             mesh[stored.PROPERTY] = packed
 
 
 @persistent
-def _after_saving(*_):
+def _on_saved(*_):
     for mesh in bpy.data.meshes:
         if stored.PROPERTY in mesh:
-            carried(mesh)
+            take_property(mesh)
 
 
 @persistent
-def after_loading(*_):
+def on_load(*_):
     """Another file was opened: its meshes are others."""
     unregister()
     for mesh in bpy.data.meshes:
         if stored.PROPERTY in mesh and not mesh.library:
-            unopened[mesh_key(mesh)] = carried(mesh)
+            pending[mesh_key(mesh)] = take_property(mesh)
 
 
-HANDLERS = {"load_post": after_loading, "save_pre": _before_saving, "save_post": _after_saving,
-            "save_post_fail": _after_saving}  # from Blender 4.0
+HANDLERS = {"load_post": on_load, "save_pre": _on_save, "save_post": _on_saved,
+            "save_post_fail": _on_saved}  # from Blender 4.0
 
 
 def unregister():
     """Nothing goes on, and nothing is remembered."""
-    builds.stop()
+    builds.cancel_all()
     registry.forget_all()

@@ -20,7 +20,7 @@ from partwheel import Hierarchy
 NO_PICK = "No part is picked. Pick one with Select Part by Wheel, and confirm it."
 
 
-class Picked(NamedTuple):
+class Pick(NamedTuple):
     """A part of a mesh that the user chose: a node of its hierarchy, and the face that was clicked. snap: whether it was
     taken with its border in creases."""
 
@@ -30,26 +30,26 @@ class Picked(NamedTuple):
     snap: bool
 
 
-REMEMBERED = 32  # picks of a mesh that undo may come back to
+MAX_PAST_PICKS = 32  # picks of a mesh that undo may come back to
 _past = MeshTable()  # [((_glance(), _digest()) after the pick, Picked), ...], the newest last
-_picks = MeshTable(gone=lambda picks, gone: registry.retired(picks[gone].hierarchy) or picks.pop(gone))
+_picks = MeshTable(gone=lambda picks, gone: registry.is_retired(picks[gone].hierarchy) or picks.pop(gone))
 
 
 def remember(obj, face, node, snap=False):
     """The user has chosen this part of the object's mesh, which has a hierarchy."""
-    _picks[mesh_key(obj.data)] = Picked(int(node), int(face), registry.known(obj.data), bool(snap))
+    _picks[mesh_key(obj.data)] = Pick(int(node), int(face), registry.find_hierarchy(obj.data), bool(snap))
 
 
-def settled(obj):
+def record_selection(obj):
     """What the pick has made of the mesh's selection is there now."""
     mesh = obj.data
     pick, past = _picks.get(mesh_key(mesh)), _past.setdefault(mesh_key(mesh), [])
     if pick:
-        past[:] = [each for each in past if each[1].hierarchy is pick.hierarchy][1 - REMEMBERED:] + [
-            ((_glance(mesh), _digest(mesh)), pick)]
+        past[:] = [each for each in past if each[1].hierarchy is pick.hierarchy][1 - MAX_PAST_PICKS:] + [
+            ((_summarize_selection(mesh), _hash_selection(mesh)), pick)]
 
 
-def _glance(mesh):
+def _summarize_selection(mesh):
     """(active face, how many are selected): at once. Where it differs from that after a pick, so does the selection."""
     if mesh.is_editmode:
         active = bmesh.from_edit_mesh(mesh).faces.active
@@ -57,7 +57,7 @@ def _glance(mesh):
     return mesh.polygons.active, int(np.count_nonzero(arrays.read(mesh.polygons, "select", bool)))
 
 
-def _digest(mesh):
+def _hash_selection(mesh):
     """Of which faces are selected."""
     if mesh.is_editmode:
         faces = bmesh.from_edit_mesh(mesh).faces
@@ -68,14 +68,14 @@ def _digest(mesh):
 
 
 @persistent
-def _undone(*_):
+def _on_undo(*_):
     """The newest pick after which the selection was as it is now; in Object Mode none where nothing is. Else it stays."""
     for mesh in bpy.data.meshes:
         past = _past.get(mesh_key(mesh))
         if past:
-            glance = _glance(mesh)
+            glance = _summarize_selection(mesh)
             alike = [(digest, pick) for (before, digest), pick in reversed(past) if before == glance]
-            now = _digest(mesh) if alike else None
+            now = _hash_selection(mesh) if alike else None
             pick = next((pick for digest, pick in alike if digest == now), None)
             if pick:
                 _picks[mesh_key(mesh)] = pick
@@ -83,34 +83,34 @@ def _undone(*_):
                 _picks.pop(mesh_key(mesh), None)
 
 
-def drop(obj):
+def clear_pick(obj):
     """No part of the object's mesh is picked any more."""
     _picks.pop(mesh_key(obj.data), None)
 
 
-def picked(obj):
+def get_pick(obj):
     """The Picked that was chosen last in the object's mesh; None if there is none, or its hierarchy is not the mesh's
     any more."""
     pick = _picks.get(mesh_key(obj.data))
-    return pick if pick and registry.hierarchy(obj) is pick.hierarchy else None
+    return pick if pick and registry.get_hierarchy(obj) is pick.hierarchy else None
 
 
-def picked_as_told(obj):
-    """The same for panels and poll(), which Blender calls often: as far as registry.state() tells."""
+def get_pick_for_poll(obj):
+    """The same for panels and poll(), which Blender calls often: as far as registry.get_state() tells."""
     pick = _picks.get(mesh_key(obj.data))
     if not pick:
         return None
-    fits, entry = registry.state(obj.data)
+    fits, entry = registry.get_state(obj.data)
     return pick if fits in registry.USABLE and entry.hierarchy is pick.hierarchy else None
 
 
-def chosen(obj, node):
+def resolve_node(obj, node):
     """(the hierarchy of the object's mesh as it is now, one of its nodes): this one, or for -1 the one that was picked
     last. Raises Refused."""
-    found = registry.needed(obj)
+    found = registry.require_hierarchy(obj)
     if node >= len(found.parent):
         raise Refused("There is no part {number}: there are {count}.", number=node, count=len(found.parent))
-    pick = picked(obj)
+    pick = get_pick(obj)
     if node < 0 and not pick:
         raise Refused(NO_PICK)
     return found, node if node >= 0 else pick.node
@@ -121,14 +121,14 @@ class NeedsPick:
 
     @classmethod
     def poll(cls, context):
-        return check_poll(cls, context.mode == "EDIT_MESH" and picked_as_told(context.edit_object), NO_PICK)
+        return check_poll(cls, context.mode == "EDIT_MESH" and get_pick_for_poll(context.edit_object), NO_PICK)
 
 
-def forget(obj):
+def forget_parts(obj):
     """Lets the hierarchy of the object's mesh go, and with it the part."""
     registry.forget(obj.data)
     _past.pop(mesh_key(obj.data), None)
-    drop(obj)
+    clear_pick(obj)
 
 
-HANDLERS = {"undo_post": _undone, "redo_post": _undone}
+HANDLERS = {"undo_post": _on_undo, "redo_post": _on_undo}

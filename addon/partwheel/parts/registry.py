@@ -13,12 +13,12 @@ from ..mesh.arrays import Fingerprint
 from ..mesh.mesh_identity import MeshTable, element_counts, mesh_key
 from ..mesh.errors import Refused
 from . import changes
-from .stored import Opening, carried, unopened, waits
+from .stored import PendingLoad, take_property, pending, has_stored
 from partwheel import Hierarchy
 
 
 @dataclasses.dataclass
-class Entry:
+class HierarchyEntry:
     """A mesh's hierarchy."""
 
     built: Fingerprint  # what it was built for
@@ -27,10 +27,10 @@ class Entry:
     packed: bytes = None  # for files; made when a file is first saved
     open_surfaces: bool = False  # the user wants this mesh taken for a thin solid, should it be a sheet
     seen: Fingerprint = None  # the mesh as it was when last looked at,
-    looked: tuple = None  # and what changes.edits() said then
+    looked: tuple = None  # and what changes.geometry_revision() said then
 
     def look(self, mesh, fingerprint):
-        self.seen, self.looked = fingerprint, changes.edits(mesh)
+        self.seen, self.looked = fingerprint, changes.geometry_revision(mesh)
 
 
 class State(Enum):
@@ -44,50 +44,50 @@ class State(Enum):
 
 
 USABLE = State.FITS, State.MOVED
-RETIRED = 3
+MAX_RETIRED = 3
 
 _entries = MeshTable(gone=lambda entries, gone: _retire(entries.pop(gone)))
-_strangers = MeshTable()  # what changes.edits() said when a mesh was found to be no twin of those
+_unmatched = MeshTable()  # what changes.geometry_revision() said when a mesh was found to be no twin of those
 _retired = []  # of meshes that are gone, or others by now: undo may bring them back; the newest last, so many at most
 
 
-@arrays.one_reading()
-def hierarchy(obj):
+@arrays.use_snapshot()
+def get_hierarchy(obj):
     """The hierarchy of the object's mesh, or None if there is none for its present topology."""
-    mesh = arrays.up_to_date(obj)
+    mesh = arrays.update_mesh(obj)
     entry = _entries.get(mesh_key(mesh))
-    opening = None if entry else Opening(mesh)
-    now = arrays.present(obj)  # takes half as long as opening
+    opening = None if entry else PendingLoad(mesh)
+    now = arrays.current_fingerprint(obj)  # takes half as long as opening
     if not entry or entry.built.topology != now.topology:
-        entry = _twin(now) or _opened(opening or Opening(mesh), now) or entry
+        entry = _find_identical(now) or _load_stored(opening or PendingLoad(mesh), now) or entry
     if not entry:
         return None
-    keep(mesh, entry, now)
+    store(mesh, entry, now)
     return entry.hierarchy if entry.built.topology == now.topology else None
 
 
-def needed(obj):
+def require_hierarchy(obj):
     """The same. Raises Refused if there is none."""
-    found = hierarchy(obj)
+    found = get_hierarchy(obj)
     if not found:
         raise Refused("{name} has no parts for its mesh as it is now. Find them first.", name=obj.name)
     return found
 
 
-def _twin(now):
+def _find_identical(now):
     """A new entry with the hierarchy of a mesh that is the same in all: the one that was duplicated, for instance, or
     the one that undo has brought back."""
     entry = next((entry for entry in (*_entries.values(), *reversed(_retired)) if entry.built == now), None)
     return entry and dataclasses.replace(entry)
 
 
-def _opened(opening, now):
+def _load_stored(opening, now):
     """A new entry with what came from a file, or None."""
     found = opening.result(now)
-    return found and Entry(found[0], element_counts(opening.mesh), found[1], opening.packed)
+    return found and HierarchyEntry(found[0], element_counts(opening.mesh), found[1], opening.packed)
 
 
-def keep(mesh, entry, now):
+def store(mesh, entry, now):
     """From now on it is the mesh's, whose Fingerprint is now; one of another topology that was there retires."""
     before = _entries.get(mesh_key(mesh))
     if before and before.built.topology != entry.built.topology:
@@ -98,10 +98,10 @@ def keep(mesh, entry, now):
 
 def _retire(entry):
     _retired[:] = [other for other in _retired if other.hierarchy is not entry.hierarchy] + [entry]
-    del _retired[:-RETIRED]
+    del _retired[:-MAX_RETIRED]
 
 
-def retired(hierarchy):
+def is_retired(hierarchy):
     """Whether undo may bring it back."""
     return any(entry.hierarchy is hierarchy for entry in _retired)
 
@@ -109,8 +109,8 @@ def retired(hierarchy):
 def forget(mesh):
     """Lets the mesh's hierarchy go, also the one that came with the file."""
     _entries.pop(mesh_key(mesh), None)
-    unopened.pop(mesh_key(mesh), None)
-    carried(mesh)
+    pending.pop(mesh_key(mesh), None)
+    take_property(mesh)
 
 
 def forget_all():
@@ -122,47 +122,47 @@ def forget_all():
 # ---- For panels and poll(), which Blender calls often
 
 
-def state(mesh):
+def get_state(mesh):
     """(State, Entry or None). In Edit Mode as far as the counts and the last use tell; else exactly."""
-    entry = _entries.get(mesh_key(mesh)) or _brought(mesh)
+    entry = _entries.get(mesh_key(mesh)) or _adopt_identical(mesh)
     if not entry:
-        return (State.UNOPENED if waits(mesh) else State.NONE), None
+        return (State.UNOPENED if has_stored(mesh) else State.NONE), None
     if mesh.is_editmode:
         if element_counts(mesh) != entry.counts:
             return State.CHANGED, entry
-    elif entry.looked != changes.edits(mesh):
-        entry.look(mesh, arrays.fingerprint(mesh))
+    elif entry.looked != changes.geometry_revision(mesh):
+        entry.look(mesh, arrays.compute_fingerprint(mesh))
     if entry.seen.topology != entry.built.topology:
-        twin = _twin(entry.seen)
+        twin = _find_identical(entry.seen)
         if not twin:
             return State.CHANGED, entry
-        keep(mesh, twin, entry.seen)
+        store(mesh, twin, entry.seen)
         return State.FITS, twin
     return (State.FITS if entry.seen == entry.built else State.MOVED), entry
 
 
-def _brought(mesh):
+def _adopt_identical(mesh):
     """The Entry of a mesh that undo has brought back, or of a duplicate, which nobody has used since; or None."""
-    if mesh.is_editmode or waits(mesh) or _strangers.get(mesh_key(mesh)) == changes.edits(mesh):
+    if mesh.is_editmode or has_stored(mesh) or _unmatched.get(mesh_key(mesh)) == changes.geometry_revision(mesh):
         return None
     size = element_counts(mesh)
     if not any(entry.counts == size for entry in (*_entries.values(), *_retired)):
         return None
-    now = arrays.fingerprint(mesh)
-    twin = _twin(now)
+    now = arrays.compute_fingerprint(mesh)
+    twin = _find_identical(now)
     if twin:
-        keep(mesh, twin, now)
+        store(mesh, twin, now)
     else:
-        _strangers[mesh_key(mesh)] = changes.edits(mesh)
+        _unmatched[mesh_key(mesh)] = changes.geometry_revision(mesh)
     return twin
 
 
-def entry_of(mesh):
+def find_entry(mesh):
     """The Entry that was made for the mesh, fitting or not, or None. At once."""
     return _entries.get(mesh_key(mesh))
 
 
-def known(mesh):
+def find_hierarchy(mesh):
     """The hierarchy of that, or None."""
-    entry = entry_of(mesh)
+    entry = find_entry(mesh)
     return entry and entry.hierarchy

@@ -15,7 +15,7 @@ from partwheel import Hierarchy, PartwheelError
 from ..mesh import arrays
 from ..mesh.arrays import Fingerprint
 from ..mesh.mesh_identity import MeshTable, mesh_key
-from ..view.background import Background
+from ..view.background import BackgroundTask
 
 PROPERTY = "partwheel"
 MAGIC, VERSION = b"PWPARTS\0", 2  # grows with this form, and with the hierarchy's (format_version in hierarchy.cpp)
@@ -25,19 +25,19 @@ HEADER = struct.Struct("<8sI16s16s")
 HASH_SIZE = 16
 SPACING = 0.01  # of the points that a hierarchy's deviation was measured at, as a share of the mesh's diagonal
 
-unopened = MeshTable()  # packed
-newer = MeshTable()  # True: those that came with it are of a version after this one, which the user hasn't been told
+pending = MeshTable()  # packed
+from_newer_version = MeshTable()  # True: those that came with it are of a version after this one, which the user hasn't been told
 
 
-class Unsound(Exception):
+class UnsoundData(Exception):
     """Bytes that are not a hierarchy of this mesh. str() says why, as the end of a sentence."""
 
 
-class Older(Unsound):
+class OlderVersion(UnsoundData):
     """Bytes of a version before this one, that it can't read any more."""
 
 
-class Newer(Unsound):
+class NewerVersion(UnsoundData):
     """Bytes of a version after this one."""
 
 
@@ -46,7 +46,7 @@ def pack(fingerprint, hierarchy):
     return b"".join([header, _hash(header), hierarchy.save()])
 
 
-def fits(hierarchy, positions, begin, corners, moved):
+def matches_mesh(hierarchy, positions, begin, corners, moved):
     """Whether a hierarchy can be of a mesh, which its hashes don't tell: the vertices that it names are there, and each
     face lies where its tetrahedron is.
 
@@ -76,17 +76,17 @@ def unpack(data):
     """(Fingerprint when it was built, Hierarchy). Raises Unsound."""
     start = HEADER.size + HASH_SIZE
     if not isinstance(data, bytes) or len(data) < start or not data.startswith(MAGIC):
-        raise Unsound("it is not ours")
+        raise UnsoundData("it is not ours")
     _, version, *fingerprint = HEADER.unpack_from(data)
     fingerprint = Fingerprint(*fingerprint)
     if version != VERSION:
-        raise (Newer if version > VERSION else Older)("it is of another version")
+        raise (NewerVersion if version > VERSION else OlderVersion)("it is of another version")
     if _hash(data[:HEADER.size]) != data[HEADER.size:start]:
-        raise Unsound("it is damaged")
+        raise UnsoundData("it is damaged")
     try:
         hierarchy = Hierarchy.load(memoryview(data)[start:])
     except PartwheelError as error:
-        raise Unsound("it is damaged") from error
+        raise UnsoundData("it is damaged") from error
     return fingerprint, hierarchy
 
 
@@ -94,12 +94,12 @@ def _hash(data):
     return hashlib.blake2b(data, digest_size=HASH_SIZE).digest()
 
 
-def waits(mesh):
+def has_stored(mesh):
     """Whether one is there."""
-    return mesh_key(mesh) in unopened or PROPERTY in mesh
+    return mesh_key(mesh) in pending or PROPERTY in mesh
 
 
-def carried(mesh):
+def take_property(mesh):
     """What an appended or linked mesh has brought along, packed, or None; taken off it, if it can be changed."""
     packed = mesh.get(PROPERTY)
     if packed is not None and not mesh.library:
@@ -107,13 +107,13 @@ def carried(mesh):
     return packed
 
 
-class Opening:
+class PendingLoad:
     """The hierarchy, if any, that came with the mesh, being opened while the caller does other things."""
 
     def __init__(self, mesh):
-        self.mesh, self.packed = mesh, unopened.pop(mesh_key(mesh), None) or carried(mesh)
+        self.mesh, self.packed = mesh, pending.pop(mesh_key(mesh), None) or take_property(mesh)
         self._opened = None
-        self._task = None if self.packed is None else Background(self._unpack)
+        self._task = None if self.packed is None else BackgroundTask(self._unpack)
 
     def _unpack(self, _stop):
         self._opened = unpack(self.packed)
@@ -126,17 +126,17 @@ class Opening:
             self._task.finish()
             built, hierarchy = self._opened
             if built.topology != now.topology:
-                raise Unsound("the mesh has changed since")
+                raise UnsoundData("the mesh has changed since")
             corners = arrays.read(self.mesh.loops, "vertex_index", np.int32)
-            if not fits(hierarchy, arrays.read(self.mesh.vertices, "co", np.float32, 3),
-                        arrays.polygon_sizes(self.mesh)[0], corners, built.positions != now.positions):
-                raise Unsound("it is of another mesh")
+            if not matches_mesh(hierarchy, arrays.read(self.mesh.vertices, "co", np.float32, 3),
+                                arrays.read_polygon_sizes(self.mesh)[0], corners, built.positions != now.positions):
+                raise UnsoundData("it is of another mesh")
             return self._opened
-        except Older:
+        except OlderVersion:
             return None  # they are found anew, as any that aren't there
-        except Newer:
-            newer[mesh_key(self.mesh)] = True
+        except NewerVersion:
+            from_newer_version[mesh_key(self.mesh)] = True
             return None
-        except Unsound as reason:
+        except UnsoundData as reason:
             print(f"Partwheel: the parts saved with {self.mesh.name} are left aside, for {reason}.")
             return None

@@ -7,25 +7,25 @@ from ..mesh import arrays
 from ..parts import registry
 from partwheel import Creases
 
-_kept = None  # (Fingerprint, Creases) of the mesh that was asked about last
+_cache = None  # (Fingerprint, Creases) of the mesh that was asked about last
 
 
-def faces(obj, hierarchy, node, snap):
+def get_part_faces(obj, hierarchy, node, snap):
     """(n,) the faces of a node of the object's hierarchy; snap: with its border in creases. In no certain order."""
     own = hierarchy.faces(node)
-    return np.flatnonzero(inside(obj, hierarchy, node)).astype(np.int32) if snap and len(own) else own
+    return np.flatnonzero(get_part_mask(obj, hierarchy, node)).astype(np.int32) if snap and len(own) else own
 
 
-def inside(obj, hierarchy, node):
-    """(F,) bool: the faces of a node with its border in creases. The hierarchy is what registry.hierarchy(obj) said."""
-    part = arrays.mask(len(hierarchy.order), hierarchy.faces(node))
-    return _creases(obj).snap(part) if part.any() else part
+def get_part_mask(obj, hierarchy, node):
+    """(F,) bool: the faces of a node with its border in creases. The hierarchy is what registry.get_hierarchy(obj) said."""
+    part = arrays.make_mask(len(hierarchy.order), hierarchy.faces(node))
+    return _get_creases(obj).snap(part) if part.any() else part
 
 
-def _creases(obj):
+def _get_creases(obj):
     """Of the object's mesh as it was when its hierarchy was asked for last."""
-    global _kept
-    seen = registry.entry_of(obj.data).seen
-    if not _kept or _kept[0] != seen:
-        _kept = seen, Creases(*arrays.surface(obj.data))
-    return _kept[1]
+    global _cache
+    seen = registry.find_entry(obj.data).seen
+    if not _cache or _cache[0] != seen:
+        _cache = seen, Creases(*arrays.read_surface(obj.data))
+    return _cache[1]

@@ -16,36 +16,36 @@ from ..mesh.mesh_identity import mesh_key
 from ..view import status
 from ..view.in_view import InView
 from ..mesh.poll import NeedsActiveMesh, check_poll
-from ..words.say import iface_, percent, rpt_, told
+from ..words.say import iface_, format_percent, rpt_, translate_error
 
 # By rung. off: how far that is from the mesh, as a share of its size.
-DONE = {
+FILL_DESCRIPTIONS = {
     "exact": "From the mesh as it is", "repaired": "Repaired copy, {off} off",
     "points": "Points on it, {off} off", "coarse": "Coarser copy, {off} off",
 }
 TICK = 0.1  # seconds between two looks at the worker
 
 
-def done(hierarchy):
+def describe_fill(hierarchy):
     """What was done to the mesh, so that its parts could be found, in a line."""
-    return iface_(DONE[hierarchy.summary.rung]).format(off=percent(hierarchy.summary.deviation))
+    return iface_(FILL_DESCRIPTIONS[hierarchy.summary.rung]).format(off=format_percent(hierarchy.summary.deviation))
 
 
-class Building:
+class BuildMonitor:
     """A build of an object's mesh on an operator's behalf: what came of it is reported through the operator.
 
     hierarchy: None until it is done, and if it fails."""
 
     def __init__(self, operator, obj, **options):
-        """options: of builds.build(). Raises an Error when it can't even begin."""
+        """options: of builds.request_build(). Raises an Error when it can't even begin."""
         self.operator, self.hierarchy = operator, None
         self.began = time.perf_counter()
-        self.build = builds.build(obj, **options)
-        if stored.newer.pop(mesh_key(obj.data), False):
+        self.build = builds.request_build(obj, **options)
+        if stored.from_newer_version.pop(mesh_key(obj.data), False):
             operator.report({"WARNING"}, rpt_(
                 "The parts saved with {name} are of a newer Partwheel than this one, so they are found anew. Update "
                 "Partwheel to have those of the file.").format(name=obj.data.name))
-        self.timer, self.line = None, status.Line()
+        self.timer, self.line = None, status.StatusLine()
         self.printed = 0
 
     # ---- Until it is done
@@ -134,43 +134,43 @@ class Building:
                 report({"INFO"}, rpt_("Cancelled: no parts were found."))
                 return
             where = [rpt_("The panel Partwheel in the sidebar does that.")] * (error.status == Status.NOT_SOLID)
-            report({"ERROR"}, " ".join([rpt_("No parts for {name}: {reason}").format(name=name, reason=told(error)), *where]))
+            report({"ERROR"}, " ".join([rpt_("No parts for {name}: {reason}").format(name=name, reason=translate_error(error)), *where]))
             return
         except builds.Outdated as reason:
             report({"WARNING"}, str(reason))
             return
         for failure in self.build.job.failures:
-            report({"WARNING"}, rpt_("A way that was tried first failed: {reason}").format(reason=told(failure)))
+            report({"WARNING"}, rpt_("A way that was tried first failed: {reason}").format(reason=translate_error(failure)))
         found = rpt_("{name}, {count:,} faces: its parts were found in {seconds:.1f} s.").format(
             name=name, count=len(self.hierarchy.order), seconds=time.perf_counter() - self.began)
-        report({"INFO"}, f"{found} ({done(self.hierarchy)})")
+        report({"INFO"}, f"{found} ({describe_fill(self.hierarchy)})")
 
 
-def start(operator, obj, **options):
+def start_build(operator, obj, **options):
     """A Building, or None and a report."""
     try:
-        return Building(operator, obj, **options)
+        return BuildMonitor(operator, obj, **options)
     except LibraryError as error:
-        _refuse(operator, obj, library_error.log_library_error(error))
+        _report_refusal(operator, obj, library_error.log_library_error(error))
     except Error as error:
-        _refuse(operator, obj, error)
+        _report_refusal(operator, obj, error)
     return None
 
 
-def _refuse(operator, obj, reason):
-    operator.report({"ERROR"}, rpt_("No parts for {name}: {reason}").format(name=obj.data.name, reason=told(reason)))
+def _report_refusal(operator, obj, reason):
+    operator.report({"ERROR"}, rpt_("No parts for {name}: {reason}").format(name=obj.data.name, reason=translate_error(reason)))
 
 
-def waited_for(operator, context, obj):
+def build_and_wait(operator, context, obj):
     """The hierarchy of the object's mesh, found now if there is none; or None and a report."""
-    hierarchy = registry.hierarchy(obj)
+    hierarchy = registry.get_hierarchy(obj)
     if not hierarchy:
-        building = start(operator, obj)
+        building = start_build(operator, obj)
         hierarchy = building and building.wait(context)
     return hierarchy
 
 
-class Beside(InView):
+class BuildsFirst(InView):
     """Mixed into an operator, ahead of those with an execute(): where there is a window, parts are found beside Blender's
     own work first, with Esc; then _found() goes on. One object after the other, the queue is made at once."""
 
@@ -182,10 +182,10 @@ class Beside(InView):
     def _lacking(self, context):
         """The objects whose parts are to be found before it can go on."""
         obj = context.active_object
-        return [] if registry.hierarchy(obj) else [obj]
+        return [] if registry.get_hierarchy(obj) else [obj]
 
     def _start(self, obj):
-        return start(self, obj)
+        return start_build(self, obj)
 
     def _found(self, context):
         """They are found: it goes on where the user has not gone elsewhere meanwhile."""
@@ -225,7 +225,7 @@ class Beside(InView):
             building.abandon(context)
 
 
-class Finds(Beside):
+class FindsParts(BuildsFirst):
     """Mixed into an operator that finds parts and does nothing with them."""
 
     def execute(self, context):
@@ -236,13 +236,13 @@ class Finds(Beside):
         return {"FINISHED"}
 
 
-def without_parts(objects):
+def filter_without_parts(objects):
     """Those whose meshes have none; of those that share a mesh one."""
     meshes = {obj.data: obj for obj in objects if obj.type == "MESH"}
-    return [obj for mesh, obj in meshes.items() if registry.state(mesh)[0] not in registry.USABLE]
+    return [obj for mesh, obj in meshes.items() if registry.get_state(mesh)[0] not in registry.USABLE]
 
 
-class _Build(NeedsActiveMesh, Finds):
+class _BuildOperator(NeedsActiveMesh, FindsParts):
     """What building and finding have in common."""
 
     quality: bpy.props.FloatProperty(
@@ -260,10 +260,10 @@ class _Build(NeedsActiveMesh, Finds):
         return [context.active_object]
 
     def _start(self, obj):
-        return start(self, obj, quality=self.quality, open_surfaces=self.open_surfaces, exactly=self.exactly or None)
+        return start_build(self, obj, quality=self.quality, open_surfaces=self.open_surfaces, exactly=self.exactly or None)
 
 
-class MESH_OT_partwheel_build(_Build, bpy.types.Operator):
+class MESH_OT_partwheel_build(_BuildOperator, bpy.types.Operator):
     """Find the parts of the active mesh, and of other selected ones that have none, at all sizes for the wheel"""
 
     bl_idname = "mesh.partwheel_build"
@@ -272,10 +272,10 @@ class MESH_OT_partwheel_build(_Build, bpy.types.Operator):
 
     def _lacking(self, context):
         obj = context.active_object
-        return [obj, *without_parts(each for each in context.selected_objects if each.data != obj.data)]
+        return [obj, *filter_without_parts(each for each in context.selected_objects if each.data != obj.data)]
 
 
-class MESH_OT_partwheel_find(_Build, bpy.types.Operator):
+class MESH_OT_partwheel_find(_BuildOperator, bpy.types.Operator):
     """The same on behalf of an operator that made the mesh, which stays the last operation, with its panel"""
 
     bl_idname = "mesh.partwheel_find"
@@ -293,7 +293,7 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         obj = context.active_object
-        return check_poll(cls, obj is not None and obj.type == "MESH" and registry.state(obj.data)[0] != registry.State.NONE,
+        return check_poll(cls, obj is not None and obj.type == "MESH" and registry.get_state(obj.data)[0] != registry.State.NONE,
                           "The active object has no parts.")
 
     def invoke(self, context, event):
@@ -304,7 +304,7 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
         return context.window_manager.invoke_confirm(self, event, **texts)
 
     def execute(self, context):
-        picks.forget(context.active_object)
+        picks.forget_parts(context.active_object)
         for area in context.screen.areas if context.screen else ():
             area.tag_redraw()
         return {"FINISHED"}

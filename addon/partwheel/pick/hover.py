@@ -13,11 +13,11 @@ from .. import library_error
 from ..mesh import arrays, mesh_identity
 from ..parts import picks, registry
 from ..view import overlay, picking
-from ..view.seen import NO_FACE
+from ..view.visible_surface import NO_FACE
 from . import borders, states
-from .prepared import advance, at_rest, current, note_written_back, prepared, ready, stop
+from .view_cache import prepare_next_slice, is_at_rest, is_current, mark_written_meshes, get_view_cache, get_ready_cache, stop_timers
 
-HOVERED = *registry.USABLE, registry.State.UNOPENED
+HOVER_STATES = *registry.USABLE, registry.State.UNOPENED
 
 # Mode of the context -> the tool's operator there.
 OPERATORS = {
@@ -28,7 +28,7 @@ OPERATORS = {
 
 
 class Hover:
-    """What the mouse is over: an object's full name, its overlay.Parts, a node, and the faces of it where its border is
+    """What the mouse is over: an object's full name, its overlay.PartTriangles, a node, and the faces of it where its border is
     snapped, else None; or None."""
 
     def __init__(self):
@@ -39,16 +39,16 @@ class Hover:
 
         After an edit that takes some steps, a slice of what is needed each: what is to be seen of the mouse meanwhile
         would come late."""
-        if not at_rest():
+        if not is_at_rest():
             self._to(None)
             return
-        edited = _edited(context)
-        if advance(edited):
+        edited = _find_edited_objects(context)
+        if prepare_next_slice(edited):
             self._go_on(context, point)
             return
         self._waits = False
-        with arrays.one_reading():
-            note_written_back(edited)
+        with arrays.use_snapshot():
+            mark_written_meshes(edited)
             found = self._found(context, point)
             highlight.update(context)
         if self._waits:
@@ -58,7 +58,7 @@ class Hover:
     def _to(self, found):
         if found is not self.what:
             self.what = found
-            overlay.redraw()
+            overlay.redraw_views()
 
     def _go_on(self, context, point):
         """The next step follows once Blender has seen to what else there is."""
@@ -82,47 +82,47 @@ class Hover:
 
     def _found(self, context, point):
         obj, face = self._under(context, context.region, context.region_data, point)
-        parts = prepared(obj).parts(obj) if obj and face != NO_FACE else None
+        parts = get_view_cache(obj).parts(obj) if obj and face != NO_FACE else None
         if not parts:
             return None
-        node, snap = states.pick(parts.hierarchy, face).node, snaps(context)
+        node, snap = states.pick_face(parts.hierarchy, face).node, is_tool_snapping(context)
         if self.what and self.what[:3] == (obj.name_full, parts, node) and snap == (self.what[3] is not None):
             return self.what
-        return obj.name_full, parts, node, borders.faces(obj, parts.hierarchy, node, True) if snap else None
+        return obj.name_full, parts, node, borders.get_part_faces(obj, parts.hierarchy, node, True) if snap else None
 
     def _under(self, context, *view):
         """(object, face), (None, None) where nothing is that has faces to be picked."""
         if context.mode == "OBJECT":
-            hit = picking.surface_under(context, context.area, *view)
-            if not hit or hit.obj.type != "MESH" or registry.state(hit.obj.data)[0] not in HOVERED:
+            hit = picking.find_surface_under(context, context.area, *view)
+            if not hit or hit.obj.type != "MESH" or registry.get_state(hit.obj.data)[0] not in HOVER_STATES:
                 return None, None
             kept = self._ready(hit.obj)
             found = kept and kept.tree(hit.obj).under(hit.matrix, *view)
             return (hit.obj, found[0]) if found else (None, None)
-        shown = [each for each in _edited(context) if self._ready(each)]
-        return picking.nearest(shown, lambda each: prepared(each).tree(each), *view)
+        shown = [each for each in _find_edited_objects(context) if self._ready(each)]
+        return picking.find_nearest_face(shown, lambda each: get_view_cache(each).tree(each), *view)
 
     def _ready(self, obj):
-        kept = ready(obj)
+        kept = get_ready_cache(obj)
         self._waits = self._waits or kept is None
         return kept
 
     def draw(self, context):
-        if not self.what or overlay.shown.on:
+        if not self.what or overlay.pick_overlay.on:
             return
         name, parts, node, snapped = self.what
         obj = mesh_identity.find_object(name)
-        if obj and overlay.visible(context, obj) and current(obj, parts):
+        if obj and overlay.is_visible(context, obj) and is_current(obj, parts):
             overlay.draw_hover(context, obj, parts, node, snapped)
 
 
-def _edited(context):
+def _find_edited_objects(context):
     """The meshes of the context's mode that are seen in its view."""
     edited = context.objects_in_mode_unique_data if context.mode == "EDIT_MESH" else [context.active_object]
     return [each for each in edited if each and each.type == "MESH" and each.visible_get(viewport=context.space_data)]
 
 
-def snaps(context):
+def is_tool_snapping(context):
     """Whether the tool is set to snap borders."""
     tool = context.workspace.tools.from_space_view3d_mode(context.mode)
     return bool(tool and tool.operator_properties(OPERATORS[context.mode]).snap)
@@ -132,35 +132,35 @@ class Highlight:
     """The faces of the active object that are selected in Object Mode, once a part of it was picked."""
 
     def __init__(self):
-        self.what = None  # as in Hover: an object's full name, its overlay.Parts, the faces
+        self.what = None  # as in Hover: an object's full name, its overlay.PartTriangles, the faces
         self.shown = 0  # how often others have been
 
     def update(self, context):
         """To what is selected now."""
         obj = context.active_object
-        if context.mode != "OBJECT" or obj is None or obj.type != "MESH" or not picks.picked_as_told(obj):
+        if context.mode != "OBJECT" or obj is None or obj.type != "MESH" or not picks.get_pick_for_poll(obj):
             self.what = None
             return
-        if ready(obj) and not (self.what and self.what[0] == obj.name_full and current(obj, self.what[1])):
+        if get_ready_cache(obj) and not (self.what and self.what[0] == obj.name_full and is_current(obj, self.what[1])):
             self.show_selected(obj)
 
     def shows(self, obj):
         """Whether it is on this object now."""
-        return bool(self.what and self.what[0] == obj.name_full and len(self.what[2]) and current(obj, self.what[1]))
+        return bool(self.what and self.what[0] == obj.name_full and len(self.what[2]) and is_current(obj, self.what[1]))
 
     def show_selected(self, obj):
         self.show(obj, np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)))
 
     def show(self, obj, faces):
-        self.what, self.shown = (obj.name_full, prepared(obj).parts(obj), faces), self.shown + 1
-        overlay.redraw()
+        self.what, self.shown = (obj.name_full, get_view_cache(obj).parts(obj), faces), self.shown + 1
+        overlay.redraw_views()
 
     def draw(self, context):
         if not self.what:
             return
         name, parts, faces = self.what
         obj = mesh_identity.find_object(name)
-        if context.mode == "OBJECT" and obj and len(faces) and overlay.visible(context, obj) and current(obj, parts):
+        if context.mode == "OBJECT" and obj and len(faces) and overlay.is_visible(context, obj) and is_current(obj, parts):
             overlay.draw_faces(context, obj, parts, ("chosen", self.shown), faces)
 
 
@@ -202,4 +202,4 @@ CLASSES = (VIEW3D_GT_partwheel_hover, VIEW3D_GGT_partwheel_hover)
 def unregister():
     hover.what = highlight.what = None
     hover.stop()
-    stop()
+    stop_timers()

@@ -8,15 +8,15 @@ import numpy as np
 from ..mesh import arrays, mesh_identity
 from ..mesh.errors import read_only_reason
 from ..mesh.poll import check_poll
-from ..mesh.selection import chosen_outside_edit_mode, select_outside_edit_mode
+from ..mesh.selection import predict_face_selection, select_outside_edit_mode
 from ..parts import picks
 from ..view import keys, picking
-from ..view.seen import NO_FACE
+from ..view.visible_surface import NO_FACE
 from ..words.say import rpt_
 from .hover import highlight
 from .pick import PartPicker
-from .prepared import prepared, unchanged
-from .preview import Preview
+from .view_cache import get_view_cache, keep_view_cache
+from .preview import PreviewTarget
 
 
 class _InObjectMode(PartPicker):
@@ -35,8 +35,8 @@ class _InObjectMode(PartPicker):
 
     def _target(self, context, event):
         """The object under the mouse, or else the active one, if it can be edited; or None and a report."""
-        view = picking.under_mouse(context, event)
-        hit = view and picking.surface_under(context, *view)
+        view = picking.find_view_under_mouse(context, event)
+        hit = view and picking.find_surface_under(context, *view)
         obj = hit.obj if hit else context.active_object
         space = view[0].spaces.active if view else context.space_data
         shown = obj is not None and obj.visible_get(viewport=space)
@@ -58,9 +58,9 @@ class _InObjectMode(PartPicker):
 
     def _under(self, context, event):
         """Also on an instance of the object."""
-        view, (obj,) = picking.under_mouse(context, event), self._objects(context)
-        hit = view and picking.surface_under(context, *view)
-        found = prepared(obj).tree(obj).under(hit.matrix, *view[1:]) if hit and hit.obj == obj else None
+        view, (obj,) = picking.find_view_under_mouse(context, event), self._objects(context)
+        hit = view and picking.find_surface_under(context, *view)
+        found = get_view_cache(obj).tree(obj).under(hit.matrix, *view[1:]) if hit and hit.obj == obj else None
         if found and found[0] == NO_FACE:
             self._made_by_modifiers(obj)
         return (obj, found[0]) if found and found[0] != NO_FACE else (None, None)
@@ -75,7 +75,7 @@ class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
     commands = keys.COMMANDS
 
     def _aim(self, context, obj):
-        return Preview(obj)
+        return PreviewTarget(obj)
 
     def _key_while_holding(self, context, event, over):
         if event.type == "TAB" and not (event.shift or event.ctrl):  # confirming does what it asks for
@@ -107,17 +107,17 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def _aim(self, context, obj):
-        return _Highlighted(obj)
+        return _HighlightTarget(obj)
 
     def _missed(self, context):
         """As in Edit Mode: a click beside everything picks nothing."""
         obj = context.active_object
         if self.extend or self.deselect or not arrays.read(obj.data.polygons, "select", bool).any():
             return {"CANCELLED"}
-        with unchanged(obj):
+        with keep_view_cache(obj):
             select_outside_edit_mode(obj.data, [])
             context.view_layer.update()
-        picks.drop(obj)
+        picks.clear_pick(obj)
         highlight.update(context)
         return {"FINISHED"}
 
@@ -127,7 +127,7 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
     def _apply(self, context, obj, faces, picked):
         _activate(context, obj)
         context.view_layer.update()
-        with unchanged(obj):
+        with keep_view_cache(obj):
             select_outside_edit_mode(obj.data, faces, self.extend, self.deselect, picked.face)
             context.view_layer.update()
         if not bpy.app.background:
@@ -135,7 +135,7 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class _Highlighted(Preview):
+class _HighlightTarget(PreviewTarget):
     """What else is picked stays highlighted beside the part, as far as it will be picked still."""
 
     def __init__(self, obj):
@@ -143,8 +143,8 @@ class _Highlighted(Preview):
         self.before = np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)), obj.data.polygons.active
 
     def select(self, obj, faces, _face, extend, deselect):
-        chosen = chosen_outside_edit_mode(obj.data, faces, extend, deselect)
-        highlight.show(obj, np.flatnonzero(chosen & ~arrays.mask(len(chosen), faces)))
+        chosen = predict_face_selection(obj.data, faces, extend, deselect)
+        highlight.show(obj, np.flatnonzero(chosen & ~arrays.make_mask(len(chosen), faces)))
 
     def restore(self):
         """Also what an error in the middle of confirming has selected."""

@@ -5,19 +5,19 @@ import bpy
 
 from ..mesh.errors import Refused
 from ..mesh.poll import check_poll, poll_is_editable
-from ..view.seen import sculpted_levels
+from ..view.visible_surface import find_sculpted_multires
 from ..words.say import iface_, rpt_
 from .pick import PartPicker
-from .preview import Preview
-from .writers import CLEARED, MASKS_LEVELS, WRITERS, mask_levels
+from .preview import PreviewTarget
+from .writers import HAS_CONTENT, UNDOES_LEVEL_MASKS, WRITERS, write_level_mask
 
 # Mode of the context -> what a part can become there, the first by default.
-WAYS = {
+TARGETS_BY_MODE = {
     "SCULPT": ("MASK", "FACE_SET"), "PAINT_WEIGHT": ("VERTEX_GROUP", "PAINT_MASK"), "PAINT_VERTEX": ("PAINT_MASK",),
     "PAINT_TEXTURE": ("PAINT_MASK",),
 }
-BECOMES = {"MASK": "Mask", "FACE_SET": "Face Set", "VERTEX_GROUP": "Vertex Group", "PAINT_MASK": "Paint Mask"}
-DYNAMIC = "Dynamic topology changes the faces all the time: switch it off first."
+TARGET_LABELS = {"MASK": "Mask", "FACE_SET": "Face Set", "VERTEX_GROUP": "Vertex Group", "PAINT_MASK": "Paint Mask"}
+DYNAMIC_TOPOLOGY_REASON = "Dynamic topology changes the faces all the time: switch it off first."
 
 
 class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
@@ -30,29 +30,29 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
     write: bpy.props.EnumProperty(
         name="Make It", default="AUTO", description="What the part becomes",
         items=(("AUTO", "Usual", "A mask in Sculpt Mode, a vertex group in Weight Paint, else a paint mask"),
-               ("MASK", BECOMES["MASK"], "Masked against sculpting"),
-               ("FACE_SET", BECOMES["FACE_SET"], "A new face set"),
-               ("VERTEX_GROUP", BECOMES["VERTEX_GROUP"], "Weight 1 in a new vertex group, named after the part; with Extend in "
+               ("MASK", TARGET_LABELS["MASK"], "Masked against sculpting"),
+               ("FACE_SET", TARGET_LABELS["FACE_SET"], "A new face set"),
+               ("VERTEX_GROUP", TARGET_LABELS["VERTEX_GROUP"], "Weight 1 in a new vertex group, named after the part; with Extend in "
                 "the active one, with Deselect none there"),
-               ("PAINT_MASK", BECOMES["PAINT_MASK"], "The only faces that can be painted on")),
+               ("PAINT_MASK", TARGET_LABELS["PAINT_MASK"], "The only faces that can be painted on")),
     )
 
     @classmethod
     def poll(cls, context):
         obj = context.active_object
-        return (check_poll(cls, context.mode in WAYS and obj is not None and obj.type == "MESH",
+        return (check_poll(cls, context.mode in TARGETS_BY_MODE and obj is not None and obj.type == "MESH",
                            "This is for Sculpt Mode and the paint modes of a mesh.")
                 and poll_is_editable(cls, obj)
-                and check_poll(cls, not obj.use_dynamic_topology_sculpting, DYNAMIC))
+                and check_poll(cls, not obj.use_dynamic_topology_sculpting, DYNAMIC_TOPOLOGY_REASON))
 
     def _apply(self, context, obj, faces, picked):
         return self._write(context, obj, faces, picked.node)
 
     def _objects(self, context):
-        return [context.active_object] if context.mode in WAYS else []
+        return [context.active_object] if context.mode in TARGETS_BY_MODE else []
 
     def _aim(self, context, obj):
-        return Preview(obj)
+        return PreviewTarget(obj)
 
     def _commit(self, context):
         return self._write(context, self._object(context), self.faces, self.state.node)
@@ -60,21 +60,21 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
     def _missed(self, context):
         """As in Edit Mode: a click beside everything leaves nothing masked."""
         obj, way = context.active_object, self._way(context)
-        there = way in CLEARED and (CLEARED[way](obj.data) or MASKS_LEVELS and way == "MASK" and sculpted_levels(obj))
+        there = way in HAS_CONTENT and (HAS_CONTENT[way](obj.data) or UNDOES_LEVEL_MASKS and way == "MASK" and find_sculpted_multires(obj))
         if self.extend or self.deselect or not there:
             return {"CANCELLED"}
         return self._write(context, obj, [], -1)
 
     def _way(self, context):
-        return WAYS[context.mode][0] if self.write == "AUTO" else self.write
+        return TARGETS_BY_MODE[context.mode][0] if self.write == "AUTO" else self.write
 
     def _write(self, context, obj, faces, node):
         way = self._way(context)
-        if way not in WAYS[context.mode]:
-            self.report({"ERROR"}, rpt_("Parts can't become this in this mode: {made}.").format(made=iface_(BECOMES[way])))
+        if way not in TARGETS_BY_MODE[context.mode]:
+            self.report({"ERROR"}, rpt_("Parts can't become this in this mode: {made}.").format(made=iface_(TARGET_LABELS[way])))
             return {"CANCELLED"}
-        levels = way == "MASK" and sculpted_levels(obj)
-        if levels and not MASKS_LEVELS:
+        levels = way == "MASK" and find_sculpted_multires(obj)
+        if levels and not UNDOES_LEVEL_MASKS:
             self.report({"ERROR"}, rpt_("Blender would not undo a mask of the multires modifier's levels. Make the part a face "
                                         "set instead: the tool's header and the menu Face Sets have it."))
             return {"CANCELLED"}
@@ -83,7 +83,7 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
         if sculpting:
             bpy.ops.object.mode_set(mode="OBJECT")
         try:
-            write = mask_levels if levels else WRITERS[way]
+            write = write_level_mask if levels else WRITERS[way]
             said = write(obj, faces, node, self.extend, self.deselect)
         except Refused as reason:
             self.report({"ERROR"}, str(reason))

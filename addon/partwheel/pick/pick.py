@@ -15,14 +15,14 @@ from ..mesh import arrays
 from ..parts import builds, changes, picks, registry
 from ..preferences import preferences
 from ..view import keys, overlay, picking
-from ..view.stepper import Stepper, ui_scale
+from ..view.stepper import StepButtons, get_ui_scale
 from . import borders, states
 from partwheel import PartwheelError
-from .prepared import advance, at_rest, note_written_back, prepared
-from ..view.seen import NO_FACE
-from .build import start, waited_for
+from .view_cache import prepare_next_slice, is_at_rest, mark_written_meshes, get_view_cache
+from ..view.visible_surface import NO_FACE
+from .build import start_build, build_and_wait
 from ..view.in_view import InView
-from ..words.say import iface_, label_of, percent, rpt_
+from ..words.say import iface_, get_operator_label, format_percent, rpt_
 
 
 class PartPicker(InView):
@@ -65,45 +65,45 @@ class PartPicker(InView):
 
     def _apply(self, context, obj, faces, picked):
         """Does at once with these faces what otherwise a target and _commit() do; the answer of the operator. picked: a
-        states.Picked."""
+        states.PickedPart."""
         raise NotImplementedError
 
     NEAR = 30  # pixels, at a resolution scale of 1, that a hand may move a mouse by while it turns the wheel
 
     n_started = 0  # how many picks have begun, with the mouse, by whichever operator
     commands = ()  # keys.COMMANDS that the status bar shows while a part is held
-    state, target, object_name = states.Waiting(), None, ""
+    state, target, object_name = states.WaitingForClick(), None, ""
     clicked, stepper, wheeling = None, None, True
 
     # ---- Without a window
 
     def execute(self, context):
         obj = self._objects(context)[0]
-        hierarchy = waited_for(self, context, obj)
+        hierarchy = build_and_wait(self, context, obj)
         if not hierarchy:
             return {"CANCELLED"}
         try:
-            picked = states.pick(hierarchy, self.face_index, self.level)
+            picked = states.pick_face(hierarchy, self.face_index, self.level)
         except PartwheelError as error:
             self.report({"ERROR"}, rpt_("Face {number} can't be picked: {reason}").format(
                 number=self.face_index, reason=error))
             return {"CANCELLED"}
-        result = self._apply(context, obj, borders.faces(obj, hierarchy, picked.node, self.snap), picked)
+        result = self._apply(context, obj, borders.get_part_faces(obj, hierarchy, picked.node, self.snap), picked)
         picks.remember(obj, picked.face, picked.node, self.snap)
-        picks.settled(obj)
+        picks.record_selection(obj)
         return result
 
     # ---- With the mouse: from nothing to a part
 
     def _run_guarded(self, context, step):
         """Nobody else runs during a step."""
-        with arrays.one_reading():
+        with arrays.use_snapshot():
             return InView._run_guarded(self, context, step)
 
     def on_start(self, context, event):
         PartPicker.n_started += 1
         self.number = PartPicker.n_started
-        self.scroll, self.drag = keys.Scroll(keys.SCROLL_STEP), None
+        self.scroll, self.drag = keys.NotchCounter(keys.SCROLL_STEP), None
         if self.tool:
             self._click(context, event)
         objects = self._objects(context)
@@ -111,8 +111,8 @@ class PartPicker(InView):
             self.report({"WARNING"}, rpt_("This 3D view does not show the mesh that is being edited."))
             return {"CANCELLED"}
         context.view_layer.update()  # whatever there is to be told is told
-        self.state = states.Begun(event.type, event.value, event.mouse_x, event.mouse_y)
-        if not advance(objects):
+        self.state = states.Preparing(event.type, event.value, event.mouse_x, event.mouse_y)
+        if not prepare_next_slice(objects):
             return self._start_prepared(context)
         # The window is not held up until all of them are made.
         self._slices = self._exit_stack.enter_context(contextlib.ExitStack())
@@ -125,7 +125,7 @@ class PartPicker(InView):
         idle = released or event.type in keys.SYSTEM | keys.MOVES
         if released and event.type == self.state.type:
             self.state = replace(self.state, value=event.value)
-        while advance(objects):
+        while prepare_next_slice(objects):
             if idle:
                 return {"RUNNING_MODAL"}
         self._slices.close()
@@ -134,9 +134,9 @@ class PartPicker(InView):
 
     def _start_prepared(self, context):
         """All that is needed of the meshes is there, and what was done is seen to."""
-        event, self.state = self.state, states.Waiting()
+        event, self.state = self.state, states.WaitingForClick()
         objects = self._objects(context)
-        note_written_back(objects)
+        mark_written_meshes(objects)
         obj, face = self._under(context, event)
         if obj is not None:
             return self._pick(context, event, obj, face)
@@ -149,29 +149,29 @@ class PartPicker(InView):
 
     def _click(self, context, event):
         """The wheel is ours as long as the mouse is there, and the view as it is."""
-        view = picking.under_mouse(context, event)
+        view = picking.find_view_under_mouse(context, event)
         if view and preferences().wheel == "NEAR":
             self.clicked = event.mouse_x, event.mouse_y, view[2].perspective_matrix.copy()
         if event.is_tablet or preferences().show_steps:
-            self.stepper = Stepper(event.mouse_x, event.mouse_y)
+            self.stepper = StepButtons(event.mouse_x, event.mouse_y)
 
     def _at_click(self, context, event):
         """Whether the wheel is ours."""
-        view = picking.under_mouse(context, event)
+        view = picking.find_view_under_mouse(context, event)
         if not (view and self.clicked):
             return view is not None
         x, y, looked = self.clicked
         moved = hypot(event.mouse_x - x, event.mouse_y - y)
-        return moved <= self.NEAR * ui_scale() and view[2].perspective_matrix == looked
+        return moved <= self.NEAR * get_ui_scale() and view[2].perspective_matrix == looked
 
     def _under(self, context, event):
         """(object, face index) under the mouse, or (None, None)."""
-        view = picking.under_mouse(context, event)
+        view = picking.find_view_under_mouse(context, event)
         if not view:
             return None, None
         area, *pixel = view
         shown = [each for each in self._objects(context) if each.visible_get(viewport=area.spaces.active)]
-        obj, face = picking.nearest(shown, lambda each: prepared(each).tree(each), *pixel)
+        obj, face = picking.find_nearest_face(shown, lambda each: get_view_cache(each).tree(each), *pixel)
         if face == NO_FACE:
             self._made_by_modifiers(obj)
             return None, None
@@ -184,30 +184,30 @@ class PartPicker(InView):
     @staticmethod
     def _parts(obj):
         """The hierarchy of the object's mesh; None if there is none, or a new one is on its way."""
-        return None if builds.being_built(obj) else registry.hierarchy(obj)
+        return None if builds.is_being_built(obj) else registry.get_hierarchy(obj)
 
     def _pick(self, context, event, obj, face):
         self.hierarchy = self._parts(obj)
         if self.hierarchy is None:
             # Which face was meant is known now: the user may turn the view while the parts are being built.
             return self._build(context, obj, face)
-        picked = states.pick(self.hierarchy, face)
+        picked = states.pick_face(self.hierarchy, face)
         if event.type == "LEFTMOUSE" and event.value == "PRESS":
             self.drag = event.mouse_y, picked.index
         return self._start_holding(context, obj, picked)
 
     def _start_holding(self, context, obj, picked):
         self.object_name, self.target, self.shown = obj.name_full, self._aim(context, obj), None
-        self._exit_stack.callback(overlay.shown.hide)
+        self._exit_stack.callback(overlay.pick_overlay.hide)
         if self.stepper:
             self._add_draw_handler(self.stepper.draw, "POST_PIXEL")
         return self._show(context, picked)
 
     def _build(self, context, obj, face):
-        self.building = start(self, obj)
+        self.building = start_build(self, obj)
         if not self.building:
             return {"CANCELLED"}
-        self.object_name, self.state = obj.name_full, states.Building(face)
+        self.object_name, self.state = obj.name_full, states.WaitingForParts(face)
         self.building.watch(context)
         return {"RUNNING_MODAL"}
 
@@ -215,17 +215,17 @@ class PartPicker(InView):
         """While the parts are being built all but Esc goes to Blender itself; then the face is picked."""
         if not self.building.step(context, event):
             return {"PASS_THROUGH"}
-        face, self.state = self.state.face, states.Waiting()
+        face, self.state = self.state.face, states.WaitingForClick()
         self.hierarchy = self.building.hierarchy
         if not self.hierarchy or self.number < PartPicker.n_started:  # the last click counts: its part stays selected
             return {"CANCELLED"}
         obj = self._object(context)
         if obj is None or context.area is None:
             self.report({"INFO"}, rpt_("The parts are found. Start {operator} again to pick them.").format(
-                operator=label_of(self)))
+                operator=get_operator_label(self)))
             return {"CANCELLED"}
         if face is not None:
-            return self._start_holding(context, obj, states.pick(self.hierarchy, face))
+            return self._start_holding(context, obj, states.pick_face(self.hierarchy, face))
         return self._wait(context, iface_("Click a face of the mesh"))
 
     def _object(self, context):
@@ -239,21 +239,21 @@ class PartPicker(InView):
     # ---- With a part, or waiting for one
 
     def on_event(self, context, event):
-        if isinstance(self.state, states.Begun):
+        if isinstance(self.state, states.Preparing):
             return self._prepared_on(context, event)
-        if isinstance(self.state, states.Building):
+        if isinstance(self.state, states.WaitingForParts):
             return self._built_on(context, event)
-        if self.target and registry.known(self._object(context).data) is not self.hierarchy:
+        if self.target and registry.find_hierarchy(self._object(context).data) is not self.hierarchy:
             self.report({"WARNING"}, rpt_("Partwheel stopped: the parts were found anew. Pick one of them."))
             return {"CANCELLED"}
         if self.target:
             self._drawn_anew(self._object(context))
         if event.type in keys.SYSTEM:
             return {"PASS_THROUGH"}
-        holding = isinstance(self.state, states.Picked)
+        holding = isinstance(self.state, states.PickedPart)
         if event.type in keys.MOVES:
             return self._dragged(context, event)
-        over = picking.under_mouse(context, event) is not None
+        over = picking.find_view_under_mouse(context, event) is not None
         plain = not (event.alt or event.oskey or event.ctrl and not (self.deselect or event.type == "LEFTMOUSE"))
         at_click = holding and self._at_click(context, event)
         if event.type == "TRACKPADPAN" and at_click and plain and not event.shift:
@@ -261,7 +261,7 @@ class PartPicker(InView):
             return self._show(context, self.state.turned(notches))
         wheeled = event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE"}
         if event.type in keys.NAVIGATE.events or (wheeled and not (at_click if holding else over)) or (
-                not plain and (event.type in keys.TURNS or event.type in keys.BUTTONS)):
+                not plain and (event.type in keys.WHEEL_STEPS or event.type in keys.BUTTONS)):
             return {"PASS_THROUGH"}
         if event.type == "LEFTMOUSE" and event.value == "RELEASE":
             self.drag = None
@@ -284,8 +284,8 @@ class PartPicker(InView):
         step = self.stepper.sign(event) if self.stepper and event.type == "LEFTMOUSE" else 0
         if step:
             return self._show(context, self.state.turned(step))
-        if event.type in keys.TURNS:
-            return self._show(context, self.state.turned(keys.TURNS[event.type]))
+        if event.type in keys.WHEEL_STEPS:
+            return self._show(context, self.state.turned(keys.WHEEL_STEPS[event.type]))
         if event.type in keys.DIGITS and not self.tool:
             return self._show(context, self.state.with_digit(keys.DIGITS[event.type]))
         if event.type in keys.ERASE.events and not self.tool:
@@ -304,7 +304,7 @@ class PartPicker(InView):
 
     def _dragged(self, context, event):
         """Up or down with the button, or a pen, still down."""
-        if self.drag and isinstance(self.state, states.Picked):
+        if self.drag and isinstance(self.state, states.PickedPart):
             begin, index = self.drag
             index += int((event.mouse_y - begin) / keys.DRAG_STEP)
             if index != self.state.index:
@@ -320,8 +320,8 @@ class PartPicker(InView):
         self.state = state
         if (state.node, self.snap) != self.shown:
             self.shown = state.node, self.snap
-            self.faces = borders.faces(obj, self.hierarchy, state.node, self.snap)
-            parts = None if bpy.app.background else prepared(obj).parts(obj)  # reads the mesh: before it changes
+            self.faces = borders.get_part_faces(obj, self.hierarchy, state.node, self.snap)
+            parts = None if bpy.app.background else get_view_cache(obj).parts(obj)  # reads the mesh: before it changes
             self.target.select(obj, self.faces, state.face, self.extend, self.deselect)
             if parts:
                 self._draw(obj, parts)
@@ -329,22 +329,22 @@ class PartPicker(InView):
 
     def _draw(self, obj, parts):
         """What is held, as it is seen in this frame; in another one it is drawn no more."""
-        seen = self.seen = changes.shown(obj.data)
-        overlay.shown.show(self._guard_drawing, lambda obj: changes.shown(obj.data) == seen, obj, parts, self.state.node,
-                           self.state.next, self.faces if self.snap else None)
+        seen = self.seen = changes.display_revision(obj.data)
+        overlay.pick_overlay.show(self._guard_drawing, lambda obj: changes.display_revision(obj.data) == seen, obj, parts, self.state.node,
+                                  self.state.next, self.faces if self.snap else None)
 
     def _drawn_anew(self, obj):
         """In another frame, once playback has ended."""
-        if overlay.shown.on and self.seen != changes.shown(obj.data) and at_rest():
-            self._draw(obj, prepared(obj).parts(obj))
+        if overlay.pick_overlay.on and self.seen != changes.display_revision(obj.data) and is_at_rest():
+            self._draw(obj, get_view_cache(obj).parts(obj))
 
     def _say(self, context, state):
         share = self.hierarchy.area[state.node] / self.hierarchy.area[-1]
         number = state.typed + "_" if state.typed else state.index + 1
         told = iface_("Part {number} of {count}, {faces:,} faces, {share} of the area").format(
-            number=number, count=len(state.stops), faces=len(self.faces), share=percent(share))
+            number=number, count=len(state.stops), faces=len(self.faces), share=format_percent(share))
         self._show_status(context, ", ".join([told] + [iface_("border in creases")] * self.snap),
-                   (keys.PICKED if not self.tool else keys.HELD if self.wheeling else keys.LEFT) + self.commands
+                   (keys.PICKED if not self.tool else keys.TOOL_PICKED if self.wheeling else keys.TOOL_PICKED_AWAY) + self.commands
                    + (keys.ENDS[1:] if self.tool else keys.ENDS))
         return {"RUNNING_MODAL"}
 
@@ -362,17 +362,17 @@ class PartPicker(InView):
         self.face_index, self.level = self.state.face, self.state.level
         picks.remember(obj, self.state.face, self.state.node, self.snap)
         answer = self._commit(context)
-        picks.settled(obj)
+        picks.record_selection(obj)
         return answer
 
     def on_cancel(self, context):
-        if isinstance(self.state, states.Building):
+        if isinstance(self.state, states.WaitingForParts):
             self.building.abandon(context)
         elif self.target and self.can_continue(context):
             self.target.restore()
 
     def can_continue(self, context):
-        if isinstance(self.state, states.Building):
+        if isinstance(self.state, states.WaitingForParts):
             return True
         if not self.target:
             return bool(self._objects(context))

@@ -4,7 +4,7 @@
 from ..mesh import mesh_identity
 
 
-class Preview:
+class PreviewTarget:
     """The overlay alone shows the part: no element of the mesh is touched, which a million of them would be felt by."""
 
     def __init__(self, obj):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
-class Begun:
+class Preparing:
     """What is needed is being made, slice by slice, since this event: what of it is asked for then, as it was."""
 
     type: str
@@ -15,19 +15,19 @@ class Begun:
 
 
 @dataclass(frozen=True)
-class Building:
+class WaitingForParts:
     """The parts are still being found: after that this face, the one that was clicked, is picked, if there is one."""
 
     face: int = None
 
 
 @dataclass(frozen=True)
-class Waiting:
+class WaitingForClick:
     """Nothing is picked yet: the next click picks."""
 
 
 @dataclass(frozen=True)
-class Picked:
+class PickedPart:
     """A face is picked: the part stops[index] on its path is selected."""
 
     face: int  # the clicked source face
@@ -71,7 +71,7 @@ class Picked:
         return self.at(int(typed) - 1, typed) if typed else replace(self, typed="")
 
 
-def pick(hierarchy, face, level=0):
+def pick_face(hierarchy, face, level=0):
     """The state after a click on a source face and then level notches. Raises PartwheelError for no such face."""
     stops, start = hierarchy.wheel(face)
-    return Picked(face, tuple(stops.tolist()), start, start).turned(level)
+    return PickedPart(face, tuple(stops.tolist()), start, start).turned(level)

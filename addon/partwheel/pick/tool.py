@@ -9,14 +9,14 @@ from ..parts import registry
 from ..preferences import draw_overlays
 from ..words.say import iface_
 from .hover import OPERATORS
-from .paint import BECOMES, DYNAMIC, WAYS
+from .paint import TARGET_LABELS, DYNAMIC_TOPOLOGY_REASON, TARGETS_BY_MODE
 
 ICON = str(Path(__file__).with_name("partwheel.select"))  # Blender adds ".dat"
 
 
 # Mode of the context -> the tool of Blender's that it stands behind in the toolbar.
-AFTER = {"EDIT_MESH": "builtin.select", "OBJECT": "builtin.select", "SCULPT": "builtin.box_mask",
-         "PAINT_WEIGHT": "builtin.gradient", "PAINT_VERTEX": None, "PAINT_TEXTURE": None}
+AFTER_TOOL = {"EDIT_MESH": "builtin.select", "OBJECT": "builtin.select", "SCULPT": "builtin.box_mask",
+              "PAINT_WEIGHT": "builtin.gradient", "PAINT_VERTEX": None, "PAINT_TEXTURE": None}
 TOOL = "Select Part"
 # What is said of it there. A click, the wheel, Shift and Ctrl mean the same in all.
 DESCRIPTIONS = {
@@ -42,7 +42,7 @@ GESTURES = {
 }
 
 
-def _tool(mode):
+def _create_tool(mode):
     """The tool in one mode: a click, the wheel, Shift and Ctrl mean the same in all."""
     return type(f"SelectPart_{mode}", (bpy.types.WorkSpaceTool,), {
         "bl_space_type": "VIEW_3D",
@@ -59,7 +59,7 @@ def _tool(mode):
     })
 
 
-def _gesture(name, operator, gesture):
+def _create_gesture_tool(name, operator, gesture):
     """A tool of Edit Mode: a drag selects whole parts, a click is the other tool's."""
     held = (({}, "SET", ()), ({"shift": True}, "ADD", [("extend", True)]), ({"ctrl": True}, "SUB", [("deselect", True)]))
     return type(f"SelectParts_{name}", (bpy.types.WorkSpaceTool,), {
@@ -85,16 +85,16 @@ def _draw_settings(context, layout, tool):
     if obj is None or obj.type != "MESH":
         return
     if mode == "SCULPT" and obj.use_dynamic_topology_sculpting:
-        layout.label(text=iface_(DYNAMIC), icon="ERROR")
+        layout.label(text=iface_(DYNAMIC_TOPOLOGY_REASON), icon="ERROR")
         return
-    if registry.state(obj.data)[0] in {registry.State.NONE, registry.State.CHANGED}:
+    if registry.get_state(obj.data)[0] in {registry.State.NONE, registry.State.CHANGED}:
         layout.label(text="Parts are found at the first click", icon="INFO")
     properties = tool.operator_properties(OPERATORS[mode])
-    ways = WAYS.get(mode, ())
+    ways = TARGETS_BY_MODE.get(mode, ())
     if len(ways) > 1:
         row = layout.row(align=True)
         for way, value in zip(ways, ("AUTO", *ways[1:])):
-            row.prop_enum(properties, "write", value, text=BECOMES[way])
+            row.prop_enum(properties, "write", value, text=TARGET_LABELS[way])
     layout.prop(properties, "snap")
     layout.popover("VIEW3D_PT_partwheel_overlays", text="Overlay")
 
@@ -119,12 +119,12 @@ def register():
     """Where Blender starts without a window it has no keymaps yet when it enables add-ons, and can't take a tool."""
     if bpy.context.window_manager.keyconfigs.default is None:
         return
-    for mode, after in AFTER.items():
-        _tools.append(_tool(mode))
+    for mode, after in AFTER_TOOL.items():
+        _tools.append(_create_tool(mode))
         bpy.utils.register_tool(_tools[-1], after={after} if after else None, separator=after is None, group=True)
     for gesture in (("Box", "mesh.partwheel_box", "VIEW3D_OT_select_box"),
                     ("Lasso", "mesh.partwheel_lasso", "VIEW3D_OT_select_lasso")):
-        _tools.append(_gesture(*gesture))
+        _tools.append(_create_gesture_tool(*gesture))
         bpy.utils.register_tool(_tools[-1], after={"partwheel.select", "partwheel.box"})
 
 

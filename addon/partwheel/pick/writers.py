@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 
-from ..mesh import arrays, pieces
+from ..mesh import arrays, assembly
 from ..mesh.errors import Refused
 from ..mesh.selection import select_outside_edit_mode
 from ..words.say import rpt_
@@ -13,18 +13,18 @@ FACE_SET = ".sculpt_face_set"
 MASK = ".sculpt_mask"  # an attribute from Blender 4.1 on
 
 # Whether undo takes back what mask_levels() does: in Blender 4.5 and 5.2 it was seen not to.
-MASKS_LEVELS = bpy.app.version < (4, 1)
+UNDOES_LEVEL_MASKS = bpy.app.version < (4, 1)
 
 
 def _part_vertices(mesh, faces):
     """(V,) bool: the vertices of these faces, and those welded with them."""
-    return arrays.with_coincident(mesh, arrays.of_faces(mesh, arrays.mask(len(mesh.polygons), faces)))
+    return arrays.add_coincident_vertices(mesh, arrays.mask_elements_of_faces(mesh, arrays.make_mask(len(mesh.polygons), faces)))
 
 
 def _write_face_set(obj, faces, _node, _extend, deselect):
     """A set of its own; with deselect the part goes back to the first one."""
     mesh = obj.data
-    attribute = arrays.needed_attribute(mesh, FACE_SET, "INT", "FACE")
+    attribute = arrays.ensure_attribute(mesh, FACE_SET, "INT", "FACE")
     values = arrays.read(attribute.data, "value", np.int32)
     values[values == 0] = 1  # what Blender takes faces without a set for
     values[faces] = 1 if deselect else values.max(initial=1) + 1
@@ -33,25 +33,25 @@ def _write_face_set(obj, faces, _node, _extend, deselect):
 
 def _write_mask(obj, faces, _node, extend, deselect):
     mesh = obj.data
-    if mask(mesh) is None:
+    if find_mask(mesh) is None:
         if bpy.app.version >= (4, 1):
-            arrays.needed_attribute(mesh, MASK, "FLOAT", "POINT")
+            arrays.ensure_attribute(mesh, MASK, "FLOAT", "POINT")
         else:
-            with pieces.edited(mesh, mesh) as bm:
+            with assembly.edit_as_bmesh(mesh, mesh) as bm:
                 bm.verts.layers.paint_mask.verify()
-    values = mask(mesh)
+    values = find_mask(mesh)
     before = arrays.read(values, "value", np.float32)
-    values.foreach_set("value", _joined(before, _part_vertices(mesh, faces), extend, deselect))
+    values.foreach_set("value", _merge_mask(before, _part_vertices(mesh, faces), extend, deselect))
 
 
-def mask_levels(obj, faces, _node, extend, deselect):
+def write_level_mask(obj, faces, _node, extend, deselect):
     """The mask of a multires modifier's own levels, which Python can't write: Blender fills what is not hidden."""
     polygons = obj.data.polygons
     hidden = arrays.read(polygons, "hide", bool)
     try:
         if not (extend or deselect):
             _fill_mask(0)
-        arrays.write(polygons, "hide", ~arrays.mask(len(polygons), faces))
+        arrays.write(polygons, "hide", ~arrays.make_mask(len(polygons), faces))
         _fill_mask(0 if deselect else 1)
     finally:
         arrays.write(polygons, "hide", hidden)
@@ -65,16 +65,16 @@ def _fill_mask(value):
         bpy.ops.object.mode_set(mode="OBJECT")
 
 
-def mask(mesh):
+def find_mask(mesh):
     """What holds the mask's value of each vertex, or None. Not of the levels that a multires modifier has of its own."""
     if bpy.app.version >= (4, 1):
-        layer = arrays.attribute(mesh, MASK, "FLOAT", "POINT")
+        layer = arrays.find_attribute(mesh, MASK, "FLOAT", "POINT")
     else:
         layer = next(iter(mesh.vertex_paint_masks), None)
     return layer and layer.data
 
 
-def _joined(before, part, extend, deselect):
+def _merge_mask(before, part, extend, deselect):
     """(V,) float32: the mask with the part in it, or taken out of it."""
     if deselect:
         return np.where(part, 0, before).astype(np.float32)
@@ -111,5 +111,5 @@ def _write_paint_mask(obj, faces, _node, extend, deselect):
 WRITERS = {"FACE_SET": _write_face_set, "MASK": _write_mask, "VERTEX_GROUP": _write_vertex_group,
            "PAINT_MASK": _write_paint_mask}
 # Whether a mesh has what a click beside it clears, for those that are cleared so.
-CLEARED = {"MASK": lambda mesh: mask(mesh) is not None and arrays.read(mask(mesh), "value", np.float32).any(),
-           "PAINT_MASK": lambda mesh: mesh.use_paint_mask}
+HAS_CONTENT = {"MASK": lambda mesh: find_mask(mesh) is not None and arrays.read(find_mask(mesh), "value", np.float32).any(),
+               "PAINT_MASK": lambda mesh: mesh.use_paint_mask}

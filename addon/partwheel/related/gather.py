@@ -12,7 +12,7 @@ from ..mesh.poll import check_poll
 from ..mesh.selection import Selections
 from ..parts import picks
 from ..pick import states
-from ..pick.build import waited_for
+from ..pick.build import build_and_wait
 
 ASKED = 20_000  # of so many of the faces, a quarter of a second's worth, it is asked which part a click takes
 GRAZED = 0.1  # a part of which less than this share is touched, and which is less of what is touched, is left out
@@ -51,7 +51,7 @@ class MESH_OT_partwheel_gather(_InEditMode, bpy.types.Operator):
 
     def execute(self, context):
         before = _before.pop()
-        with arrays.one_reading():
+        with arrays.use_snapshot():
             touched = {obj: before.touched(obj, self.mode == "SET") for obj in context.objects_in_mode_unique_data}
             before.restore()
             parts = {obj: self._parts(context, obj, faces) for obj, faces in touched.items()}
@@ -64,12 +64,12 @@ class MESH_OT_partwheel_gather(_InEditMode, bpy.types.Operator):
         """The faces of all parts that touched ones belong to; None and a report if there are no parts."""
         if not len(touched):
             return touched
-        hierarchy = waited_for(self, context, obj)
+        hierarchy = build_and_wait(self, context, obj)
         if not hierarchy:
             return None
-        level = _level(picks.picked(obj))
+        level = _level(picks.get_pick(obj))
         step = len(touched) // ASKED + 1
-        return _joined(hierarchy, {face: states.pick(hierarchy, face, level).node for face in touched[::step].tolist()},
+        return _joined(hierarchy, {face: states.pick_face(hierarchy, face, level).node for face in touched[::step].tolist()},
                        step)
 
 

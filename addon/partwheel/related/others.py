@@ -24,19 +24,19 @@ class Alike(NamedTuple):
 
 def alike(obj, hierarchy, node, objects=()):
     """[Alike, ...] of all the others of the object, and of those of other objects that have parts, the most alike first:
-    see partwheel.likeness.similar. Sizes are those in the world. The hierarchy is what registry.hierarchy(obj) said."""
-    searched = [(obj, hierarchy)] + [(other, found) for other in objects if (found := registry.hierarchy(other))]
+    see partwheel.likeness.similar. Sizes are those in the world. The hierarchy is what registry.get_hierarchy(obj) said."""
+    searched = [(obj, hierarchy)] + [(other, found) for other in objects if (found := registry.get_hierarchy(other))]
     matrices = [np.array(each.matrix_world) for each, _ in searched]
 
     def find():
-        measured = [likeness.measure_nodes(found, *arrays.surface(each.data)[:3], matrix)
+        measured = [likeness.measure_nodes(found, *arrays.read_surface(each.data)[:3], matrix)
                     for (each, found), matrix in zip(searched, matrices)]
         among = [None, *((found, those) for (_, found), those in list(zip(searched, measured))[1:])]
         found = [Alike(each.name_full, *pair) for (each, _), where in zip(searched, among)
                  for pair in likeness.similar_parts(hierarchy, measured[0], node, where)]
         return sorted(found, key=lambda each: -each.likeness)
 
-    asked = [(each.name_full, registry.entry_of(each.data).seen, found) for each, found in searched]
+    asked = [(each.name_full, registry.find_entry(each.data).seen, found) for each, found in searched]
     return _kept("alike", (asked, [matrix.tobytes() for matrix in matrices], node), find)
 
 
@@ -45,8 +45,8 @@ def images(obj, hierarchy, node):
     """
     if node == len(hierarchy.parent) - 1:
         raise Refused("The part is the whole model, which has no other side. Pick a smaller one.")
-    asked = registry.entry_of(obj.data).seen, hierarchy, node
-    found = _kept("images", asked, lambda: likeness.mirrored_parts(hierarchy, *arrays.surface(obj.data)[:3], node))
+    asked = registry.find_entry(obj.data).seen, hierarchy, node
+    found = _kept("images", asked, lambda: likeness.mirrored_parts(hierarchy, *arrays.read_surface(obj.data)[:3], node))
     if not found:
         raise Refused("The part has no mirror image in {name}: it lies across the plane of symmetry, or the model "
                       "is not the same on both sides.", name=obj.name)

@@ -29,7 +29,7 @@ class _InEditMode:
         except Refused as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        overlay.redraw()  # and with the view the list beside it
+        overlay.redraw_views()  # and with the view the list beside it
         return {"FINISHED"}
 
 
@@ -54,7 +54,7 @@ class MESH_OT_partwheel_remember(_InEditMode, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return super().poll(context) and check_poll(cls, picks.picked_as_told(context.edit_object), picks.NO_PICK)
+        return super().poll(context) and check_poll(cls, picks.get_pick_for_poll(context.edit_object), picks.NO_PICK)
 
     def invoke(self, context, _event):
         taken, number = remembered.names(context.edit_object.data), 1
@@ -67,8 +67,8 @@ class MESH_OT_partwheel_remember(_InEditMode, bpy.types.Operator):
         _typed(self.layout, self, "part")
 
     def work(self, _context, obj):
-        hierarchy, node = picks.chosen(obj, -1)
-        remembered.remember(obj.data, self.part, borders.faces(obj, hierarchy, node, picks.picked(obj).snap))
+        hierarchy, node = picks.resolve_node(obj, -1)
+        remembered.remember(obj.data, self.part, borders.get_part_faces(obj, hierarchy, node, picks.get_pick(obj).snap))
 
 
 class MESH_OT_partwheel_recall(_Named, bpy.types.Operator):
@@ -88,9 +88,9 @@ class MESH_OT_partwheel_recall(_Named, bpy.types.Operator):
         return self.execute(context)
 
     def work(self, context, obj):
-        hierarchy = registry.needed(obj)
+        hierarchy = registry.require_hierarchy(obj)
         node, snap = remembered.node(obj, hierarchy, self.part)
-        faces = borders.faces(obj, hierarchy, node, snap)
+        faces = borders.get_part_faces(obj, hierarchy, node, snap)
         Selections(context.objects_in_mode_unique_data, obj).select(obj, faces, int(faces[0]), self.extend, self.deselect)
         picks.remember(obj, int(hierarchy.faces(node)[0]), node, snap)
 

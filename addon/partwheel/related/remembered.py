@@ -47,8 +47,8 @@ def remember(mesh, name, faces):
         bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
     else:
         mesh.attributes.new(PREFIX + name, "INT", "FACE").data.foreach_set(
-            "value", arrays.mask(len(mesh.polygons), faces).astype(np.int32))
-    arrays.changed()
+            "value", arrays.make_mask(len(mesh.polygons), faces).astype(np.int32))
+    arrays.invalidate_snapshot()
 
 
 def rename(mesh, name, new):
@@ -66,15 +66,15 @@ def forget(mesh, name):
 
 def node(obj, hierarchy, name):
     """(the node that is nearest to what is remembered, whether its border is in creases). The hierarchy is what
-    registry.hierarchy(obj) said. Raises Refused where no node is near."""
-    wanted = arrays.mask(len(hierarchy.order), faces(obj.data, name))
+    registry.get_hierarchy(obj) said. Raises Refused where no node is near."""
+    wanted = arrays.make_mask(len(hierarchy.order), faces(obj.data, name))
     found, overlap = best_node(hierarchy, wanted)
     if overlap < OVERLAP:
         raise Refused("No part of {name} as it is now is much like the one remembered as {part}. Pick the part anew, "
                       "forget this name, and remember the part under it again.", name=obj.name, part=name)
     if overlap == 1:
         return found, False
-    snapped = borders.inside(obj, hierarchy, found)
+    snapped = borders.get_part_mask(obj, hierarchy, found)
     return found, bool((snapped & wanted).sum() / (snapped | wanted).sum() > overlap)
 
 

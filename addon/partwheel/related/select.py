@@ -11,7 +11,7 @@ from ..mesh.selection import Selections
 from ..parts import picks, registry
 from ..pick import borders
 from ..view import keys, picking
-from ..view.in_view import InView, waiting
+from ..view.in_view import InView, show_wait_cursor
 from ..words.say import iface_, rpt_
 from . import others
 from partwheel.likeness import THRESHOLD
@@ -24,7 +24,7 @@ class _FromPart(picks.NeedsPick):
         name="Extend", description="Add to what is selected, instead of replacing it", default=True)
 
     def _faces(self, obj, hierarchy, nodes, snap):
-        return np.concatenate([borders.faces(obj, hierarchy, node, snap) for node in nodes])
+        return np.concatenate([borders.get_part_faces(obj, hierarchy, node, snap) for node in nodes])
 
 
 class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
@@ -51,13 +51,13 @@ class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
         return {"FINISHED"}
 
     def _start(self, context, obj):
-        with arrays.one_reading():
-            self.hierarchy, _ = picks.chosen(obj, -1)
-            self.pick = picks.picked(obj)
+        with arrays.use_snapshot():
+            self.hierarchy, _ = picks.resolve_node(obj, -1)
+            self.pick = picks.get_pick(obj)
             edited = list(context.objects_in_mode_unique_data)
             self.alike = others.alike(obj, self.hierarchy, self.pick.node, [each for each in edited if each != obj])
             self.selections = Selections(edited, obj)
-            lacking = [each.name for each in edited if not registry.hierarchy(each)]
+            lacking = [each.name for each in edited if not registry.get_hierarchy(each)]
         if lacking:
             self.report({"WARNING"}, rpt_("Not searched, for no parts are known there yet: {names}. Find them first.").format(
                 names=", ".join(lacking)))
@@ -72,7 +72,7 @@ class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
         nodes = {own: [self.pick.node]}
         for each in self.alike[:count]:
             nodes.setdefault(find_object(each.name), []).append(each.node)
-        faces = {obj: self._faces(obj, registry.known(obj.data), those, self.pick.snap) for obj, those in nodes.items()}
+        faces = {obj: self._faces(obj, registry.find_hierarchy(obj.data), those, self.pick.snap) for obj, those in nodes.items()}
         self.selections.select_in_each(faces, self.extend, active={own: self.pick.face})
 
     # ---- With the wheel
@@ -80,9 +80,9 @@ class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
     def on_start(self, context, _event):
         obj = context.edit_object
         self.object_name, self.selections = obj.name_full, None
-        with waiting(context):
+        with show_wait_cursor(context):
             self._start(context, obj)
-        self.scroll = keys.Scroll(keys.SCROLL_STEP)
+        self.scroll = keys.NotchCounter(keys.SCROLL_STEP)
         return self._to(context, self._count())
 
     def _to(self, context, count):
@@ -93,24 +93,24 @@ class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
             self.threshold = (ends[count] + ends[count + 1]) / 2
         self._show(context, count)
         self._show_status(context, iface_("{count} parts, alike from {threshold:.2f} on").format(
-            count=count + 1, threshold=self.threshold), keys.ALIKE)
+            count=count + 1, threshold=self.threshold), keys.SIMILAR)
         return {"RUNNING_MODAL"}
 
     def on_event(self, context, event):
         if event.type in keys.SYSTEM or event.type in keys.MOVES:
             return {"PASS_THROUGH"}
-        over = picking.under_mouse(context, event) is not None
+        over = picking.find_view_under_mouse(context, event) is not None
         plain = not (event.shift or event.ctrl or event.alt or event.oskey)
         if event.type == "TRACKPADPAN" and over and plain:
             return self._to(context, self.count + self.scroll.notches(event.mouse_y - event.mouse_prev_y))
-        if event.type in keys.NAVIGATE.events or event.type in keys.TURNS and not (over and plain):
+        if event.type in keys.NAVIGATE.events or event.type in keys.WHEEL_STEPS and not (over and plain):
             return {"PASS_THROUGH"}
         if event.value not in {"PRESS", "DOUBLE_CLICK"}:
             return {"RUNNING_MODAL"}
         if event.type in keys.CANCEL.events:
             return {"CANCELLED"}
-        if event.type in keys.TURNS:
-            return self._to(context, self.count + keys.TURNS[event.type])
+        if event.type in keys.WHEEL_STEPS:
+            return self._to(context, self.count + keys.WHEEL_STEPS[event.type])
         if event.type in keys.MODIFIERS:
             return {"RUNNING_MODAL"}
         if event.type in keys.CONFIRM.events or event.type == "LEFTMOUSE" and over:
@@ -142,13 +142,13 @@ class MESH_OT_partwheel_mirrored(_FromPart, bpy.types.Operator):
     def execute(self, context):
         obj = context.edit_object
         try:
-            hierarchy, self.node = picks.chosen(obj, self.node)
+            hierarchy, self.node = picks.resolve_node(obj, self.node)
             images = others.images(obj, hierarchy, self.node)
         except Refused as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         self.plane = min(self.plane, len(images))
-        node, pick = images[self.plane - 1].node, picks.picked(obj)
+        node, pick = images[self.plane - 1].node, picks.get_pick(obj)
         snap = bool(pick and pick.snap)
         nodes = [self.node, node] if self.extend else [node]
         face = int(hierarchy.faces(node)[0])

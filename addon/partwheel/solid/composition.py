@@ -12,7 +12,7 @@ import numpy as np
 from mathutils import Vector
 
 from ..mesh import arrays
-from ..mesh.datablocks import all_or_nothing, copy_settings, own_actions, redirect_drivers
+from ..mesh.datablocks import rollback_on_error, copy_settings, copy_actions, redirect_drivers
 from ..mesh.errors import Refused
 from ..pick import borders
 from ..words.say import rpt_
@@ -26,7 +26,7 @@ _BIND_PROPERTIES = {"SURFACE_DEFORM": "is_bound", "MESH_DEFORM": "is_bound", "CO
                     "LAPLACIANDEFORM": "is_bind"}
 
 
-@all_or_nothing()
+@rollback_on_error()
 def create_part_object(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
                        options: solids.CapOptions = solids.CapOptions(), snap: bool = False,
                        collection: bpy.types.Collection | None = None) -> bpy.types.Object:
@@ -44,7 +44,7 @@ def create_part_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
     return solids.create_mesh(obj, hierarchy, first, last, options, snapped_faces(obj, hierarchy, node, snap))
 
 
-@all_or_nothing()
+@rollback_on_error()
 def remove_part(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
                 options: solids.CapOptions = solids.CapOptions(), snap: bool = False) -> None:
     """Removes the part, as create_part_object() copies it, from the object's mesh and closes the hole."""
@@ -72,7 +72,7 @@ def create_rest_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, sna
     return solids.create_mesh(obj, hierarchy, last, first, faces=faces)
 
 
-@all_or_nothing()
+@rollback_on_error()
 def split_into_objects(obj: bpy.types.Object, hierarchy: Hierarchy, bounds: np.ndarray,
                        options: solids.CapOptions = solids.CapOptions(),
                        explode: float = 0.0) -> list[bpy.types.Object]:
@@ -135,7 +135,7 @@ def create_collection(obj: bpy.types.Object, name: str) -> bpy.types.Collection:
 
 def snapped_faces(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, snap: bool) -> np.ndarray | None:
     """(F,) bool: the faces of a node with its border in creases; None (the node's own faces) without snap or faces."""
-    return borders.inside(obj, hierarchy, node) if snap and len(hierarchy.faces(node)) else None
+    return borders.get_part_mask(obj, hierarchy, node) if snap and len(hierarchy.faces(node)) else None
 
 
 def _tetrahedron_slice(hierarchy: Hierarchy, node: int) -> tuple[int, int]:
@@ -156,7 +156,7 @@ def create_object_like(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
     copies = {obj: new, obj.data: mesh, **({obj.data.shape_keys: mesh.shape_keys} if mesh.shape_keys else {})}
     for block in (new, mesh, mesh.shape_keys):
         if block:
-            own_actions(block)
+            copy_actions(block)
             redirect_drivers(block, copies)
     for modifier in list(new.modifiers):
         if modifier.type == "MULTIRES" and modifier.total_levels:

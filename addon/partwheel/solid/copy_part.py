@@ -4,13 +4,13 @@
 import bpy
 
 from ..mesh import arrays
-from ..mesh.datablocks import all_or_nothing
+from ..mesh.datablocks import rollback_on_error
 from ..mesh.errors import Refused
 from ..mesh.poll import NeedsActiveMesh, poll_is_editable
-from ..mesh.selection import KINDS, is_selected
+from ..mesh.selection import KINDS, is_exact_selection
 from ..parts import picks, registry
 from ..pick import borders
-from ..pick.build import Beside, waited_for
+from ..pick.build import BuildsFirst, build_and_wait
 from . import composition, solids
 from partwheel import Error, Hierarchy
 from partwheel.likeness import best_node
@@ -28,12 +28,12 @@ class PartsOperator(NeedsActiveMesh):
         obj = context.active_object
         try:
             self.check(obj)
-            if not waited_for(self, context, obj):
+            if not build_and_wait(self, context, obj):
                 return {"CANCELLED"}
             hierarchy = self.require_hierarchy(obj)
             for sentence in self.loss_messages(obj):
                 self.report({"WARNING"}, sentence)
-            with all_or_nothing():
+            with rollback_on_error():
                 self._run_in_object_mode(context, obj, hierarchy)
         except Error as error:
             self.report({"ERROR"}, str(error))
@@ -64,7 +64,7 @@ class PartsOperator(NeedsActiveMesh):
 
     def require_hierarchy(self, obj: bpy.types.Object) -> Hierarchy:
         """The object's hierarchy. Raises Refused."""
-        return registry.needed(obj)
+        return registry.require_hierarchy(obj)
 
 
 class PartOperator(PartsOperator):
@@ -81,17 +81,17 @@ class PartOperator(PartsOperator):
         default=-1, min=-1, options={"SKIP_SAVE"})
 
     def check(self, obj: bpy.types.Object) -> None:
-        if self.node < 0 and not picks.picked_as_told(obj) and not _has_selected_faces(obj):
+        if self.node < 0 and not picks.get_pick_for_poll(obj) and not _has_selected_faces(obj):
             raise Refused(picks.NO_PICK)
 
     def require_hierarchy(self, obj: bpy.types.Object) -> Hierarchy:
-        uses_pick, pick = self.node < 0, picks.picked(obj)
+        uses_pick, pick = self.node < 0, picks.get_pick(obj)
         if uses_pick and not pick and _has_selected_faces(obj):
-            hierarchy = registry.needed(obj)
+            hierarchy = registry.require_hierarchy(obj)
             self.node, overlap = best_node(hierarchy, arrays.read(obj.data.polygons, "select", bool))
             if overlap < MIN_OVERLAP:
                 raise Refused("What is selected is no part. Pick one with Select Part by Wheel, and confirm it.")
-        hierarchy, node = picks.chosen(obj, self.node)
+        hierarchy, node = picks.resolve_node(obj, self.node)
         if uses_pick and self.removes_faces and not _is_part_selected(obj, hierarchy, node, [pick.snap] if pick
                                                                       else [False, True]):
             raise Refused("Only a part that is selected as a whole, and nothing else with it, can be taken away. Pick "
@@ -110,7 +110,7 @@ def _is_part_selected(obj: bpy.types.Object, hierarchy: Hierarchy, node: int, sn
     creases."""
     modes = bpy.context.tool_settings.mesh_select_mode
     kind = next(kind for kind, on in zip(KINDS, modes) if on)
-    return any(is_selected(obj.data, borders.faces(obj, hierarchy, node, snap), kind) for snap in snaps)
+    return any(is_exact_selection(obj.data, borders.get_part_faces(obj, hierarchy, node, snap), kind) for snap in snaps)
 
 
 class _CapOptions:
@@ -126,7 +126,7 @@ class _CapOptions:
         return solids.CapOptions(self.smooth, self.material)
 
 
-class MESH_OT_partwheel_copy(PartOperator, Beside, _CapOptions, bpy.types.Operator):
+class MESH_OT_partwheel_copy(PartOperator, BuildsFirst, _CapOptions, bpy.types.Operator):
     """Copy the picked part as a solid: a new object, closed where it was cut; Ctrl C, Ctrl V take it to other files"""
 
     bl_idname = "mesh.partwheel_copy"
@@ -139,7 +139,7 @@ class MESH_OT_partwheel_copy(PartOperator, Beside, _CapOptions, bpy.types.Operat
         select_only(context, [composition.create_part_object(obj, hierarchy, self.node, self.cap_options(), self.snap)])
 
 
-class MESH_OT_partwheel_remove(PartOperator, Beside, _CapOptions, bpy.types.Operator):
+class MESH_OT_partwheel_remove(PartOperator, BuildsFirst, _CapOptions, bpy.types.Operator):
     """Take the picked part out of the mesh and close the hole"""
 
     bl_idname = "mesh.partwheel_remove"
@@ -157,7 +157,7 @@ class MESH_OT_partwheel_remove(PartOperator, Beside, _CapOptions, bpy.types.Oper
         composition.remove_part(obj, hierarchy, self.node, self.cap_options(), self.snap)
 
 
-class MESH_OT_partwheel_split(PartsOperator, Beside, _CapOptions, bpy.types.Operator):
+class MESH_OT_partwheel_split(PartsOperator, BuildsFirst, _CapOptions, bpy.types.Operator):
     """Make each part of a cut an object of its own: closed solids that fit each other exactly"""
 
     bl_idname = "mesh.partwheel_split"

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..mesh import arrays
 from partwheel import Hierarchy, PartwheelError, Solid, Status, duplicate_faces
-from ..mesh.pieces import Origins, Plan
+from ..mesh.assembly import ElementSources, MeshPlan
 from ..mesh.errors import Refused
 
 
@@ -73,7 +73,7 @@ def duplicate_originals(mesh: bpy.types.Mesh, hierarchy: Hierarchy) -> np.ndarra
     """(F,) for each polygon, the one that it is a duplicate of, or itself."""
     if hierarchy.summary.rung == "exact":
         return np.arange(len(mesh.polygons))
-    return duplicate_faces(*arrays.surface(mesh))
+    return duplicate_faces(*arrays.read_surface(mesh))
 
 
 def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list[tuple], smooth: bool,
@@ -84,7 +84,7 @@ def map_repaired_solids(mesh: bpy.types.Mesh, hierarchy: Hierarchy, slices: list
     left out."""
     if hierarchy.summary.rung != "repaired" or smooth:
         return [None] * len(slices)
-    surface = arrays.surface(mesh)
+    surface = arrays.read_surface(mesh)
     _, first, inverse = np.unique(surface.vertices, axis=0, return_index=True, return_inverse=True)
     alias = first[inverse.ravel()]
     midpoint_of = np.where(hierarchy.source < 0, -1, alias[hierarchy.source])
@@ -190,8 +190,8 @@ def _is_ascending(triangles: np.ndarray) -> np.ndarray:
     return (triangles < np.roll(triangles, -1, axis=1)).sum(axis=1) == 2
 
 
-def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, with_caps: bool) -> Plan:
-    """The pieces.Plan of a MappedSolid: polygons that lie in it whole stay, cut ones become triangles; with its caps
+def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, with_caps: bool) -> MeshPlan:
+    """The assembly.MeshPlan of a MappedSolid: polygons that lie in it whole stay, cut ones become triangles; with its caps
     if with_caps."""
     solid, midpoint_of, alias, is_reversed = mapped
     outer = solid.faces >= 0
@@ -203,11 +203,11 @@ def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, w
     first[source[::-1]] = np.arange(len(source))[::-1]
     is_first = (first[source] == np.arange(len(source))) & (source >= 0)
 
-    begin, totals = arrays.polygon_sizes(mesh)
+    begin, totals = arrays.read_polygon_sizes(mesh)
     n_triangles = np.bincount(faces, minlength=len(totals))
     # Polygons with a corner that is not their own; with a corner where the surface is split.
-    has_foreign_corner = arrays.mask(len(totals), faces[(source < 0)[corners].any(axis=1)])
-    has_split_corner = arrays.mask(len(totals), faces[~is_first[corners].all(axis=1)])
+    has_foreign_corner = arrays.make_mask(len(totals), faces[(source < 0)[corners].any(axis=1)])
+    has_split_corner = arrays.make_mask(len(totals), faces[~is_first[corners].all(axis=1)])
     is_whole = (n_triangles == totals - 2) & ~has_foreign_corner
     is_large = is_whole[faces] & (totals[faces] > 3)
     ngon_faces, _ = _unique_corners(faces[is_large], corners[is_large], len(source))
@@ -237,13 +237,13 @@ def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, w
     ends = midpoint_of[new]
     ends[(ends < 0).any(axis=1)] = -1
     middle = np.flatnonzero(ends[:, 0] != ends[:, 1])
-    origins = Origins(np.concatenate([kept, ends[:, 0]]), len(kept) + middle, ends[middle, 1])
+    origins = ElementSources(np.concatenate([kept, ends[:, 0]]), len(kept) + middle, ends[middle, 1])
     positions = solid.vertices[new].astype(np.float32)
     from_solid = np.zeros(len(source), np.int32)  # solid vertex -> plan vertex
     from_solid[is_first] = from_mesh[source[is_first]]
     from_solid[new] = len(kept) + np.arange(len(new))
 
-    parts = [_PolygonGroup(Origins(loops), from_mesh[vertex[loops]], totals[unchanged], unchanged)]
+    parts = [_PolygonGroup(ElementSources(loops), from_mesh[vertex[loops]], totals[unchanged], unchanged)]
     # The mesh's loops of changed polygons, sorted by (polygon, vertex).
     changed_polygons = np.flatnonzero((n_triangles > 0) & ~(is_whole & ~has_split_corner))
     changed_loops = _polygon_loops(begin, totals, changed_polygons)
@@ -258,13 +258,13 @@ def plan_of_solid(mesh: bpy.types.Mesh, mapped: MappedSolid, standalone: bool, w
     in_loop = np.zeros(len(vertex), np.int32)
     in_loop[find_loop(replaced_faces, source[replacements])] = from_solid[replacements]
     loops = outward_loops(split_polygons)
-    parts.append(_PolygonGroup(Origins(loops), in_loop[loops], totals[split_polygons], split_polygons))
+    parts.append(_PolygonGroup(ElementSources(loops), in_loop[loops], totals[split_polygons], split_polygons))
     at = corners[is_cut].ravel()
     first_loop, second_loop = (find_loop(np.repeat(faces[is_cut], 3), midpoint_of[at, k]) for k in (0, 1))
     middle = np.flatnonzero(first_loop != second_loop)
-    parts.append(_PolygonGroup(Origins(first_loop, middle, second_loop[middle]), from_solid[at],
+    parts.append(_PolygonGroup(ElementSources(first_loop, middle, second_loop[middle]), from_solid[at],
                                np.full(is_cut.sum(), 3), faces[is_cut]))
-    parts.append(_PolygonGroup(Origins(np.full(caps.size, -1)), from_solid[caps.ravel()], np.full(len(caps), 3),
+    parts.append(_PolygonGroup(ElementSources(np.full(caps.size, -1)), from_solid[caps.ravel()], np.full(len(caps), 3),
                                np.full(len(caps), -1)))
     return _concatenate(mesh, parts, 0 if is_reversed.any() else len(unchanged), origins, positions, wires, from_mesh,
                         alias)
@@ -287,8 +287,8 @@ def _unique_corners(faces: np.ndarray, corners: np.ndarray, count: int) -> tuple
 
 
 def plan_of_faces(mesh: bpy.types.Mesh, hierarchy: Hierarchy, tet_first: int, tet_last: int, faces: np.ndarray | None,
-                  standalone: bool, original: np.ndarray | None = None) -> Plan:
-    """The pieces.Plan of the slice's own polygons, or of the given faces. original: as from duplicate_originals(), to
+                  standalone: bool, original: np.ndarray | None = None) -> MeshPlan:
+    """The assembly.MeshPlan of the slice's own polygons, or of the given faces. original: as from duplicate_originals(), to
     have duplicates once."""
     inside = _face_mask(hierarchy, tet_first, tet_last, faces)
     if original is not None:
@@ -296,12 +296,12 @@ def plan_of_faces(mesh: bpy.types.Mesh, hierarchy: Hierarchy, tet_first: int, te
     inside = np.flatnonzero(inside)
     if not len(inside):
         raise Refused("This part has no face of the mesh. Take a larger one.")
-    begin, totals = arrays.polygon_sizes(mesh)
+    begin, totals = arrays.read_polygon_sizes(mesh)
     loops = _polygon_loops(begin, totals, inside)
     vertex, is_kept, wires = _kept_elements(mesh, loops, standalone)
     plan_vertices = np.cumsum(is_kept, dtype=np.int32) - 1
-    part = _PolygonGroup(Origins(loops), plan_vertices[vertex[loops]], totals[inside], inside)
-    return _concatenate(mesh, [part], len(inside), Origins(np.flatnonzero(is_kept)), np.empty((0, 3), np.float32),
+    part = _PolygonGroup(ElementSources(loops), plan_vertices[vertex[loops]], totals[inside], inside)
+    return _concatenate(mesh, [part], len(inside), ElementSources(np.flatnonzero(is_kept)), np.empty((0, 3), np.float32),
                         wires, plan_vertices)
 
 
@@ -328,7 +328,7 @@ class _PolygonGroup(NamedTuple):
     """Some of a Plan's polygons: the Origins of their loops, their corners (L,), corner counts (P,), and source
     polygons (P,)."""
 
-    loops: Origins
+    loops: ElementSources
     corners: np.ndarray
     totals: np.ndarray
     polygons: np.ndarray
@@ -341,29 +341,29 @@ def _kept_elements(mesh: bpy.types.Mesh, loops: np.ndarray, standalone: bool,
     vertex = own = arrays.read(mesh.loops, "vertex_index", np.int32)
     if alias is not None:
         vertex = alias[own]
-    is_kept = arrays.mask(len(mesh.vertices), vertex[loops])
+    is_kept = arrays.make_mask(len(mesh.vertices), vertex[loops])
     wires = np.empty(0, np.int64)
     if not standalone:
         edges = arrays.read(mesh.loops, "edge_index", np.int32)
         wires = np.flatnonzero(np.bincount(edges, minlength=len(mesh.edges)) == 0)
-        ends = arrays.edge_vertices(mesh)
+        ends = arrays.read_edge_vertices(mesh)
         is_loose = np.ones(len(is_kept), bool)
         is_loose[own] = is_loose[ends] = False
         is_kept[ends[wires]] = is_kept[is_loose] = True
     return vertex, is_kept, wires
 
 
-def _concatenate(mesh: bpy.types.Mesh, parts: list[_PolygonGroup], n_whole: int, origins: Origins,
+def _concatenate(mesh: bpy.types.Mesh, parts: list[_PolygonGroup], n_whole: int, origins: ElementSources,
                  positions: np.ndarray, wires: np.ndarray, plan_vertices: np.ndarray,
-                 alias: np.ndarray | None = None) -> Plan:
+                 alias: np.ndarray | None = None) -> MeshPlan:
     """The Plan of several _PolygonGroups; the first n_whole polygons are unchanged. positions (m, 3): of the last
     vertices; all before are the mesh's own."""
     starts = np.cumsum([0] + [len(part.corners) for part in parts])
-    loops = Origins(*(np.concatenate(columns) for columns in zip(*(
+    loops = ElementSources(*(np.concatenate(columns) for columns in zip(*(
         (part.loops.first, start + part.loops.at, part.loops.other) for part, start in zip(parts, starts)))))
     corners, totals, polygons = (np.concatenate(columns) for columns in list(zip(*parts))[1:])
     mesh_positions = arrays.read(mesh.vertices, "co", np.float32, 3)
     kept_vertices = origins.first[:len(origins.first) - len(positions)]
     positions = np.concatenate([mesh_positions[kept_vertices], positions])
-    return Plan(positions, origins, loops, corners, np.cumsum(totals) - totals, polygons, n_whole, wires,
-                plan_vertices, alias)
+    return MeshPlan(positions, origins, loops, corners, np.cumsum(totals) - totals, polygons, n_whole, wires,
+                    plan_vertices, alias)

@@ -16,7 +16,7 @@ import bmesh
 import bpy
 import numpy as np
 
-from ..mesh import arrays, pieces
+from ..mesh import arrays, assembly
 from . import bridging, closing, fitting
 from partwheel import Hierarchy
 from ..mesh.errors import Refused
@@ -47,7 +47,7 @@ def create_meshes(obj: bpy.types.Object, hierarchy: Hierarchy, slices: list[tupl
     """New meshes, one for each slice (tet_first, tet_last), where both may be arrays (n,) of several slices. Caps
     match exactly, unless they are smooth. None for a slice without tetrahedra, or, unless it is the only one, without
     faces where it can't be a solid. faces: as for create_mesh(), for a single slice."""
-    mesh = arrays.up_to_date(obj)
+    mesh = arrays.update_mesh(obj)
     exact = hierarchy.summary.rung == "exact"
     if not exact:
         solids = fitting.map_repaired_solids(mesh, hierarchy, slices, options.smooth, faces, standalone=True)
@@ -63,7 +63,7 @@ def create_meshes(obj: bpy.types.Object, hierarchy: Hierarchy, slices: list[tupl
             new, normals = _create_closed_mesh(mesh, hierarchy, solid, *tet_slice, options, faces, standalone=True)
             meshes.append(new)
             if normals is not None:
-                arrays.set_custom_normals(new, normals)
+                arrays.write_custom_normals(new, normals)
     except Exception:
         for new in filter(None, meshes):
             bpy.data.meshes.remove(new)
@@ -86,10 +86,10 @@ def remove_from_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, tet_first: int
     new, normals = _create_closed_mesh(target, hierarchy, solid, tet_last, tet_first, options, faces, standalone=False)
     if options.material and len(new.materials) > len(target.materials):
         _cap_material_slot(target)
-    pieces.replace_geometry(target, new)
+    assembly.replace_geometry(target, new)
     bpy.data.meshes.remove(new)
     if normals is not None:
-        arrays.set_custom_normals(target, normals)
+        arrays.write_custom_normals(target, normals)
     target.update()
 
 
@@ -114,8 +114,8 @@ def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitti
     else:
         original = fitting.duplicate_originals(mesh, hierarchy) if standalone else None
         plan = fitting.plan_of_faces(mesh, hierarchy, tet_first, tet_last, faces, standalone, original)
-    normals = arrays.custom_normals(mesh)
-    new, loops = pieces.assembled(mesh, plan, f"{mesh.name} part", not standalone), plan.loops.first
+    normals = arrays.read_custom_normals(mesh)
+    new, loops = assembly.assemble_mesh(mesh, plan, f"{mesh.name} part", not standalone), plan.loops.first
     try:
         caps = np.flatnonzero(plan.polygons < 0)
         if not exact or options.smooth:
@@ -124,15 +124,15 @@ def _create_closed_mesh(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: fitti
                 facets = fitting.inner_facets(hierarchy, tet_first, tet_last, faces)
             caps, loops = _close_boundary(new, loops, mesh, facets, options.smooth, exact, standalone)
         if options.material and len(caps):
-            indices = arrays.material_indices(new)
+            indices = arrays.read_material_indices(new)
             indices[caps] = _cap_material_slot(new)
-            arrays.set_material_indices(new, indices)
+            arrays.write_material_indices(new, indices)
         _mark_caps(new, caps)
     except Exception:
         bpy.data.meshes.remove(new)
         raise
     if normals is not None:
-        normals[np.repeat(is_reversed, arrays.polygon_sizes(mesh)[1])] *= -1
+        normals[np.repeat(is_reversed, arrays.read_polygon_sizes(mesh)[1])] *= -1
         normals = np.where(loops[:, None] < 0, 0, normals[loops])  # 0: computed by Blender
     return new, normals
 
@@ -143,7 +143,7 @@ def _close_boundary(new: bpy.types.Mesh, loops: np.ndarray, mesh: bpy.types.Mesh
     """Closes a mesh made from another's polygons, by facets near its boundary, else by new faces. If the polygons are
     unusable as a solid, all boundary edges from before stay open, unless standalone. (its caps; (L,) source loop of
     each loop, -1: new)"""
-    with pieces.edited(new, new) as bm:
+    with assembly.edit_as_bmesh(new, new) as bm:
         loop_layer = bm.loops.layers.int.new(_LOOP_LAYER)
         for loop, source in zip((loop for face in bm.faces for loop in face.loops), loops.tolist()):
             loop[loop_layer] = source + 1
@@ -203,7 +203,7 @@ def _cap_material_slot(mesh: bpy.types.Mesh) -> int:
 
 def _mark_caps(mesh: bpy.types.Mesh, caps: np.ndarray) -> None:
     """Sets the cap attribute on these faces."""
-    layer = arrays.needed_attribute(mesh, CAP_ATTRIBUTE, "BOOLEAN", "FACE")  # False in a new attribute
+    layer = arrays.ensure_attribute(mesh, CAP_ATTRIBUTE, "BOOLEAN", "FACE")  # False in a new attribute
     marks = arrays.read(layer.data, "value", bool)
     marks[caps] = True
     layer.data.foreach_set("value", marks)

@@ -6,13 +6,13 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..mesh.poll import check_poll
-from ..pick.build import Finds, start, without_parts
+from ..pick.build import FindsParts, start_build, filter_without_parts
 from ..preferences import preferences
 
 _before = None  # how many objects there were at the last look, and where the last operation lies, its only identity
 
 
-class MESH_OT_partwheel_imported(Finds, bpy.types.Operator):
+class MESH_OT_partwheel_imported(FindsParts, bpy.types.Operator):
     """Find the parts of the selected meshes that have none, on behalf of what imported them"""
 
     bl_idname = "mesh.partwheel_imported"
@@ -28,7 +28,7 @@ class MESH_OT_partwheel_imported(Finds, bpy.types.Operator):
         return lacking(context.view_layer)
 
     def _start(self, obj):
-        return start(_Quiet(self), obj)
+        return start_build(_Quiet(self), obj)
 
 
 class _Quiet:
@@ -43,7 +43,7 @@ class _Quiet:
 
 def lacking(view_layer):
     """The selected objects whose meshes have faces but no parts; of those that share a mesh one."""
-    return without_parts(obj for obj in view_layer.objects.selected if obj.type == "MESH" and obj.data.polygons)
+    return filter_without_parts(obj for obj in view_layer.objects.selected if obj.type == "MESH" and obj.data.polygons)
 
 
 @persistent

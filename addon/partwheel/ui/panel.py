@@ -5,8 +5,8 @@ import bpy
 
 from .. import library_error
 from ..parts import builds, picks, registry
-from ..pick.build import done
-from ..words.say import iface_, percent
+from ..pick.build import describe_fill
+from ..words.say import iface_, format_percent
 from . import measure
 
 State = registry.State
@@ -48,12 +48,12 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
         row = layout.row()
         row.operator_context = "INVOKE_REGION_WIN"
         row.operator("mesh.partwheel_parts")
-        state, entry = registry.state(context.active_object.data)
+        state, entry = registry.get_state(context.active_object.data)
         column = layout.column(align=True)
         if entry:
             _describe(context, column, entry.hierarchy)
         _say(context, column, STATES[state])
-        if state in {State.NONE, State.CHANGED} and builds.refused_as_sheet(context.active_object.data):
+        if state in {State.NONE, State.CHANGED} and builds.is_refused_as_sheet(context.active_object.data):
             _say(context, column, SHEET)
             column.operator("mesh.partwheel_build", text="Take as Thin Solid").open_surfaces = True
         if entry and entry.hierarchy.summary.rung == "coarse":
@@ -66,9 +66,9 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
 
 def _describe(context, column, hierarchy):
     """The part that was picked last, or else all; and what was done to the mesh, in a line."""
-    pick = picks.picked_as_told(context.edit_object) if context.mode == "EDIT_MESH" else None
+    pick = picks.get_pick_for_poll(context.edit_object) if context.mode == "EDIT_MESH" else None
     if pick:
-        share = percent(hierarchy.area[pick.node] / hierarchy.area[-1])
+        share = format_percent(hierarchy.area[pick.node] / hierarchy.area[-1])
         told = iface_("Part: {share} of the area").format(share=share)
         size = " × ".join(measure.sides(context, context.edit_object, hierarchy, pick.node))
         for text in (told, size):
@@ -76,7 +76,7 @@ def _describe(context, column, hierarchy):
     else:
         told = iface_("Parts of {count:,} faces").format(count=len(hierarchy.order))
         column.label(text=told, translate=False)
-    library_error.draw_wrapped_text(context, column, done(hierarchy))
+    library_error.draw_wrapped_text(context, column, describe_fill(hierarchy))
 
 
 def _say(context, column, text):

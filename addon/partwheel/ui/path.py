@@ -8,16 +8,16 @@ import bpy
 
 from ..parts import picks
 from ..pick import states
-from ..words.say import percent
+from ..words.say import format_percent
 from . import measure
 
 SMALLEST = 0.25  # share of the width that the smallest part's bar takes
 
 
 def rows(pick):
-    """[(number from 1, node, faces, share of the area, bar 0..1)] of a picks.Picked, growing."""
+    """[(number from 1, node, faces, share of the area, bar 0..1)] of a picks.Pick, growing."""
     hierarchy = pick.hierarchy
-    picked = states.pick(hierarchy, pick.face)
+    picked = states.pick_face(hierarchy, pick.face)
     counts = [len(hierarchy.faces(node)) for node in picked.stops]
     low, high = math.log(counts[0]), math.log(max(counts[-1], counts[0] + 1))
     return [(number, node, count, hierarchy.area[node] / hierarchy.area[-1], (math.log(count) - low) / (high - low))
@@ -34,7 +34,7 @@ class VIEW3D_PT_partwheel_path(bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return context.mode == "EDIT_MESH" and picks.picked_as_told(context.edit_object) is not None
+        return context.mode == "EDIT_MESH" and picks.get_pick_for_poll(context.edit_object) is not None
 
     def draw(self, context):
         draw_path(self.layout, context)
@@ -59,10 +59,10 @@ class MESH_OT_partwheel_path(picks.NeedsPick, bpy.types.Operator):
 
 def draw_path(layout, context):
     obj = context.edit_object
-    pick = picks.picked_as_told(obj)
+    pick = picks.get_pick_for_poll(obj)
     if not pick:
         return
-    start = states.pick(pick.hierarchy, pick.face).start
+    start = states.pick_face(pick.hierarchy, pick.face).start
     column = layout.column(align=True)
     column.operator_context = "EXEC_DEFAULT"
     for number, node, count, share, bar in reversed(rows(pick)):
@@ -72,7 +72,7 @@ def draw_path(layout, context):
         button.face_index, button.level, button.snap = pick.face, number - 1 - start, pick.snap
         left.label(text="")
         right = split.row()
-        right.label(text=percent(share))
+        right.label(text=format_percent(share))
         right.label(text=measure.sides(context, obj, pick.hierarchy, node)[0])
 
 

@@ -4,7 +4,7 @@
 import threading
 
 
-class Background:
+class BackgroundTask:
     """function(stop) in a thread; stop is a threading.Event that asks it to end early, which is no error."""
 
     def __init__(self, function):

@@ -11,7 +11,7 @@ from .. import library_error
 from partwheel import Error, LibraryError
 from . import overlay
 from . import status
-from ..words.say import label_of, rpt_
+from ..words.say import get_operator_label, rpt_
 
 
 class InView:
@@ -41,13 +41,13 @@ class InView:
     def invoke(self, context, event):
         if context.window is None or context.area is None or context.area.type != "VIEW_3D":
             self.report({"ERROR"}, rpt_("{operator}: start this with the mouse over a 3D view.").format(
-                operator=label_of(self)))
+                operator=get_operator_label(self)))
             return {"CANCELLED"}
         return self._start_modal(context, event)
 
     def _start_modal(self, context, event):
         self._exit_stack, self._status, self._draw_errors = contextlib.ExitStack(), None, []
-        self._status_line = status.Line()
+        self._status_line = status.StatusLine()
         return self._run_guarded(context, lambda: self._call_on_start(context, event))
 
     def modal(self, context, event):
@@ -67,7 +67,7 @@ class InView:
         if self._draw_errors:
             raise self._draw_errors[0]
         if not self.can_continue(context):
-            self.report({"WARNING"}, rpt_(self.lost_message).format(operator=label_of(self)))
+            self.report({"WARNING"}, rpt_(self.lost_message).format(operator=get_operator_label(self)))
             return {"CANCELLED"}
         return self.on_event(context, event)
 
@@ -104,10 +104,10 @@ class InView:
                 context.area.header_text_set(None)
 
     def _show_status(self, context, header, row):
-        """A line in the view's header, and in the status bar the keys that count, see status.drawer()."""
+        """A line in the view's header, and in the status bar the keys that count, see status.make_drawer()."""
         if (header, row) != self._status:  # each time both bars are drawn anew
             self._status = header, row
-            self._status_line.say(context, status.drawer(row))
+            self._status_line.say(context, status.make_drawer(row))
             if context.area:
                 context.area.header_text_set(f"Partwheel: {header}")
 
@@ -120,7 +120,7 @@ class InView:
     def _add_draw_handler(self, function, over="POST_VIEW"):
         """function() is called whenever a 3D view is drawn; "POST_PIXEL": in pixels."""
         handler = bpy.types.SpaceView3D.draw_handler_add(self._guard_drawing(function), (), "WINDOW", over)
-        self._exit_stack.callback(overlay.redraw)
+        self._exit_stack.callback(overlay.redraw_views)
         self._exit_stack.callback(bpy.types.SpaceView3D.draw_handler_remove, handler, "WINDOW")
 
     def _call_before_saving(self, function):
@@ -145,7 +145,7 @@ class InView:
 
 
 @contextlib.contextmanager
-def waiting(context):
+def show_wait_cursor(context):
     """What takes a while has Blender's cursor for it."""
     context.window.cursor_modal_set("WAIT")
     try:

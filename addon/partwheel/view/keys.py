@@ -28,9 +28,9 @@ class Command(NamedTuple):
     options: dict = {}
 
 
-TURNS = {"WHEELUPMOUSE": 1, "PAGE_UP": 1, "NUMPAD_PLUS": 1, "UP_ARROW": 1,
-         "WHEELDOWNMOUSE": -1, "PAGE_DOWN": -1, "NUMPAD_MINUS": -1, "DOWN_ARROW": -1}
-RESIZE = Key("RESIZE", frozenset(TURNS), "Size", names="Wheel, ↑↓")
+WHEEL_STEPS = {"WHEELUPMOUSE": 1, "PAGE_UP": 1, "NUMPAD_PLUS": 1, "UP_ARROW": 1,
+               "WHEELDOWNMOUSE": -1, "PAGE_DOWN": -1, "NUMPAD_MINUS": -1, "DOWN_ARROW": -1}
+RESIZE = Key("RESIZE", frozenset(WHEEL_STEPS), "Size", names="Wheel, ↑↓")
 CONFIRM = Key("CONFIRM", frozenset({"RET", "NUMPAD_ENTER"}), "Confirm", ("EVENT_RETURN",))
 CANCEL = Key("CANCEL", frozenset({"RIGHTMOUSE", "ESC"}), "Cancel", ("EVENT_ESC", "MOUSE_RMB"))
 CLICK = Key("CLICK", frozenset({"LEFTMOUSE"}), "Pick a Part", ("MOUSE_LMB",))
@@ -53,9 +53,9 @@ WAITING = (CLICK, NAVIGATE, CANCEL)
 # While a part is held; then COMMANDS, and the ends: as many as fit in a window 1280 pixels wide.
 PICKED = (RESIZE, NUMBER._replace(label="Part"), SNAP_BORDER)
 # With the toolbar's tool a click goes on to the next part, and 1, 2 and 3 are Blender's.
-HELD = (RESIZE, CLICK._replace(label="Next Part"), SNAP_BORDER)
+TOOL_PICKED = (RESIZE, CLICK._replace(label="Next Part"), SNAP_BORDER)
 # The same while the mouse is elsewhere than where it clicked: there the wheel zooms.
-LEFT = (RESIZE._replace(names="↑↓"), *HELD[1:])
+TOOL_PICKED_AWAY = (RESIZE._replace(names="↑↓"), *TOOL_PICKED[1:])
 ENDS = (CONFIRM, CANCEL)  # by the toolbar's tool only the second: there whatever is done next confirms
 # Shift, Ctrl and a letter, of those that no keymap of Blender's has for anything in Edit Mode.
 COMMANDS = (
@@ -70,7 +70,7 @@ COMMANDS = (
 )
 
 # While the parts that are alike are chosen.
-ALIKE = (Key("ALIKE", frozenset(TURNS), "More, Fewer", names="Wheel, ↑↓"), CONFIRM, NAVIGATE, CANCEL)
+SIMILAR = (Key("ALIKE", frozenset(WHEEL_STEPS), "More, Fewer", names="Wheel, ↑↓"), CONFIRM, NAVIGATE, CANCEL)
 
 # While a part is deformed: between two movements of the handle, and during one.
 DRAG = Key("DRAG", frozenset({"LEFTMOUSE"}), "Drag the Handle, or Put It Elsewhere", ("MOUSE_LMB_DRAG",))
@@ -81,11 +81,11 @@ RECOMPUTE = Key("RECOMPUTE", frozenset("P"), "Confirm, Recompute Parts", ("EVENT
 AXIS = Key("AXIS", frozenset("XYZ"), "Axis", ("EVENT_X", "EVENT_Y", "EVENT_Z"))
 PLANE = Key("PLANE", frozenset(), "Plane", ("EVENT_SHIFT", "EVENT_X", "EVENT_Y", "EVENT_Z"))
 TYPE = Key("TYPE", frozenset(DIGITS), "Type", names="0-9 . -")
-STEPS = Key("STEPS", frozenset({"LEFT_CTRL", "RIGHT_CTRL"}), "Snap", ("EVENT_CTRL",))
-FINE = Key("FINE", frozenset({"LEFT_SHIFT", "RIGHT_SHIFT"}), "Precise", ("EVENT_SHIFT",))
+SNAP_STEPS = Key("STEPS", frozenset({"LEFT_CTRL", "RIGHT_CTRL"}), "Snap", ("EVENT_CTRL",))
+PRECISE = Key("FINE", frozenset({"LEFT_SHIFT", "RIGHT_SHIFT"}), "Precise", ("EVENT_SHIFT",))
 DONE = Key("DONE", CLICK.events | CONFIRM.events, "Done", ("MOUSE_LMB", "EVENT_RETURN"))
 DEFORMING = (DRAG, ONE_MORE, TRANSFORM, HANDLE_SIZE, CONFIRM, RECOMPUTE, NAVIGATE, CANCEL)
-MOVING = (AXIS, PLANE, TYPE, STEPS, FINE, TRANSFORM, DONE, CANCEL)
+MOVING = (AXIS, PLANE, TYPE, SNAP_STEPS, PRECISE, TRANSFORM, DONE, CANCEL)
 
 # While a part is placed; those that come in pairs are in TURNS too.
 SIZE = Key("SIZE", frozenset({"WHEELUPMOUSE", "WHEELDOWNMOUSE", "NUMPAD_PLUS", "NUMPAD_MINUS"}), "Size", names="Wheel")
@@ -103,24 +103,24 @@ PLACING = (SIZE, TURN, DEPTH, FIT, MIRROR, CLICK._replace(label="Confirm"), NAVI
 # While the whole model is divided into parts: the wheel does what it does to the part that was clicked, or to all.
 ONE = Key("ONE", CLICK.events, "A Part", ("MOUSE_LMB",))
 MERGE = Key("MERGE", frozenset(), "Merge", ("MOUSE_LMB_DRAG",))
-COUNT = Key("COUNT", frozenset(TURNS), "More, Fewer", names="Wheel")
-DIVIDE = Key("DIVIDE", frozenset(TURNS), "Join, Split", names="Wheel")
-ANEW = Key("ANEW", frozenset("A"), "Automatic", ("EVENT_A",))
-RESULTS = {"FACE_SETS": Key("FACE_SETS", frozenset("S"), "Face Sets", ("EVENT_S",)),
-           "VERTEX_GROUPS": Key("VERTEX_GROUPS", frozenset("G"), "Groups", ("EVENT_G",)),
-           "COLORS": Key("COLORS", frozenset("C"), "Colours", ("EVENT_C",)),
-           "MATERIALS": Key("MATERIALS", frozenset("M"), "Slots", ("EVENT_M",)),
-           "SEAMS": Key("SEAMS", frozenset("U"), "Seams", ("EVENT_U",)),
-           "OBJECTS": Key("OBJECTS", frozenset("O"), "Objects", ("EVENT_O",)),
-           "BONES": Key("BONES", frozenset("B"), "Bones", ("EVENT_B",)),
-           "PRINT": Key("PRINT", frozenset("P"), "Print", ("EVENT_P",))}
-DIVIDING = (COUNT, NUMBER, ANEW, ONE, MERGE, *RESULTS.values(), CONFIRM, CANCEL)
-ON_ONE = (DIVIDE, MERGE, ONE._replace(label="Another"), *RESULTS.values(), CONFIRM, CANCEL)
+COUNT = Key("COUNT", frozenset(WHEEL_STEPS), "More, Fewer", names="Wheel")
+DIVIDE = Key("DIVIDE", frozenset(WHEEL_STEPS), "Join, Split", names="Wheel")
+AUTOMATIC = Key("ANEW", frozenset("A"), "Automatic", ("EVENT_A",))
+CUT_RESULTS = {"FACE_SETS": Key("FACE_SETS", frozenset("S"), "Face Sets", ("EVENT_S",)),
+               "VERTEX_GROUPS": Key("VERTEX_GROUPS", frozenset("G"), "Groups", ("EVENT_G",)),
+               "COLORS": Key("COLORS", frozenset("C"), "Colours", ("EVENT_C",)),
+               "MATERIALS": Key("MATERIALS", frozenset("M"), "Slots", ("EVENT_M",)),
+               "SEAMS": Key("SEAMS", frozenset("U"), "Seams", ("EVENT_U",)),
+               "OBJECTS": Key("OBJECTS", frozenset("O"), "Objects", ("EVENT_O",)),
+               "BONES": Key("BONES", frozenset("B"), "Bones", ("EVENT_B",)),
+               "PRINT": Key("PRINT", frozenset("P"), "Print", ("EVENT_P",))}
+CUTTING = (COUNT, NUMBER, AUTOMATIC, ONE, MERGE, *CUT_RESULTS.values(), CONFIRM, CANCEL)
+CUTTING_ONE_PART = (DIVIDE, MERGE, ONE._replace(label="Another"), *CUT_RESULTS.values(), CONFIRM, CANCEL)
 
 SCROLL_STEP, DRAG_STEP = 30, 24  # pixels of a trackpad's scroll, and of a drag, that count as a notch
 
 
-class Scroll:
+class NotchCounter:
     """Counts notches in a trackpad's scroll or a drag, both of which come as pixels."""
 
     def __init__(self, step):

@@ -13,18 +13,18 @@ from mathutils import Matrix, Vector
 
 # How much nearer to the eye than the model tints and lines are drawn, as a share of the distance, so that the model's own
 # faces don't show through.
-NEARER, LINES_NEARER = 5e-4, 2e-3
+DEPTH_OFFSET, LINE_DEPTH_OFFSET = 5e-4, 2e-3
 
 # "planes" are those of the clipping region; "size" is the region's, in pixels; "kind": 1 for glass, half a line's width,
 # how much nearer.
 UNIFORMS = "struct PartwheelLayer { mat4 matrix; mat4 planes; vec4 eye; vec4 color; vec4 kind; vec4 size; };"
-VERTEX = """
+COMMON_VERTEX = """
 vec4 seen(vec3 place)
 {
   return layer.matrix * vec4(place + (layer.eye.xyz - place * layer.eye.w) * layer.kind.z, 1.0);
 }
 """
-PAINT = VERTEX + """
+PAINT_VERTEX = COMMON_VERTEX + """
 void main()
 {
   gl_Position = seen(pos);
@@ -32,7 +32,7 @@ void main()
   tint = COLOR;
 }
 """
-LINE = VERTEX + """
+LINE_VERTEX = COMMON_VERTEX + """
 void main()
 {
   vec4 here = seen(pos), there = seen(other);
@@ -59,7 +59,7 @@ void main()
 }
 """
 # Attributes beside "pos", and how the vertices are put.
-KINDS = {"flat": ({}, PAINT), "colored": ({"color": 4}, PAINT), "line": ({"other": 3, "side": 1}, LINE)}
+SHADER_KINDS = {"flat": ({}, PAINT_VERTEX), "colored": ({"color": 4}, PAINT_VERTEX), "line": ({"other": 3, "side": 1}, LINE_VERTEX)}
 _shaders = {}
 
 
@@ -72,10 +72,10 @@ class Layer(NamedTuple):
     width: float = 0.0
 
 
-def shader(kind):
+def get_shader(kind):
     """One of KINDS; made at its first use."""
     if kind not in _shaders:
-        attributes, source = KINDS[kind]
+        attributes, source = SHADER_KINDS[kind]
         info = gpu.types.GPUShaderCreateInfo()
         info.typedef_source(UNIFORMS)
         info.uniform_buf(0, "PartwheelLayer", "layer")
@@ -94,7 +94,7 @@ def shader(kind):
     return _shaders[kind]
 
 
-def vertices(**attributes):
+def create_vertex_buffer(**attributes):
     """A buffer of these (n, width) attributes."""
     form = gpu.types.GPUVertFormat()
     for name, values in attributes.items():
@@ -105,21 +105,21 @@ def vertices(**attributes):
     return buffer
 
 
-def batch(buffer, triangles):
+def create_batch(buffer, triangles):
     return gpu.types.GPUBatch(type="TRIS", buf=buffer, elem=gpu.types.GPUIndexBuf(type="TRIS", seq=triangles))
 
 
-def lines(positions, edges):
+def create_line_batch(positions, edges):
     """(shader, batch) of edges (n,2) of positions: a rectangle for each, whose corners know both ends and their side."""
     ends = positions[edges]  # (n, 2, 3)
     places = ends[:, (0, 0, 1, 1)].reshape(-1, 3)
     others = ends[:, (1, 1, 0, 0)].reshape(-1, 3)
     sides = np.tile([1.0, -1.0, 1.0, -1.0], len(edges))[:, None]
     corners = 4 * np.arange(len(edges), dtype=np.int32)[:, None, None] + np.array([(0, 1, 2), (0, 2, 3)], np.int32)
-    return shader("line"), batch(vertices(pos=places, other=others, side=sides), corners.reshape(-1, 3))
+    return get_shader("line"), create_batch(create_vertex_buffer(pos=places, other=others, side=sides), corners.reshape(-1, 3))
 
 
-def beyond(triangles):
+def find_neighbor_triangles(triangles):
     """(T,3) the triangle beyond each edge of triangles (T,3), from the edge 0 1 on; T where there is none. Edges of more
     than two triangles lead from each to the next. A generator, for this takes a while: the last that it yields is that,
     before it None."""
@@ -145,7 +145,7 @@ def beyond(triangles):
     yield result.reshape(3, number).T
 
 
-def border(triangles, beyond, mine):
+def find_border_edges(triangles, beyond, mine):
     """(n,2) the edges of some of the triangles, mine (n,), beyond which is none of these. beyond: of all triangles."""
     inside = np.zeros(len(triangles) + 1, bool)
     inside[mine] = True
@@ -155,13 +155,13 @@ def border(triangles, beyond, mine):
     return np.column_stack([ends[each, edge], ends[each, (edge + 1) % 3]])
 
 
-def see_through(context):
+def is_see_through(context):
     """Whether the view shows what lies behind, too: X-ray and wireframe. Then nothing hides what is drawn here."""
     shading = context.space_data.shading if context.space_data else None
     return shading is not None and (shading.type == "WIREFRAME" or shading.type == "SOLID" and shading.show_xray)
 
 
-def draw(context, obj, layers):
+def draw_layers(context, obj, layers):
     """Layers, one over the other in the context's view."""
     view = context.region_data
     to_local = obj.matrix_world.inverted_safe()
@@ -174,14 +174,14 @@ def draw(context, obj, layers):
     if view.use_clip_planes:
         planes = Matrix(list(view.clip_planes)[:4]) @ obj.matrix_world
     before = gpu.state.blend_get(), gpu.state.depth_test_get(), gpu.state.depth_mask_get()
-    through = see_through(context)
+    through = is_see_through(context)
     gpu.state.blend_set("ALPHA")
     gpu.state.depth_test_set("ALWAYS" if through else "LESS_EQUAL")
     gpu.state.depth_mask_set(False)
     matrix = view.perspective_matrix @ obj.matrix_world
     for (program, drawn), color, glass, width in layers:
         gpu.state.face_culling_set("BACK" if through and not width else "NONE")  # or both sides would add up
-        kind = glass, width / 2, LINES_NEARER if width else NEARER, 0
+        kind = glass, width / 2, LINE_DEPTH_OFFSET if width else DEPTH_OFFSET, 0
         values = np.concatenate([np.array(matrix.transposed()).ravel(), np.array(planes.transposed()).ravel(), eye,
                                  color, kind, (context.region.width, context.region.height, 0, 0)]).astype(np.float32)
         program.bind()

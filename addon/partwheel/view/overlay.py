@@ -12,16 +12,16 @@ from ..mesh import arrays, mesh_identity
 from ..preferences import preferences
 from . import layers
 from .layers import Layer
-from .seen import NO_FACE
+from .visible_surface import NO_FACE
 from partwheel import cut
 
 CUT_OPACITY = 0.55
 GLASS = (0.75, 0.9, 1.0, 0.75)
-CASING = (0.0, 0.0, 0.0, 0.55)  # about an outline: it stands out on whatever colours, also for who can't tell them apart
-KEPT = 24  # batches
+OUTLINE_CASING = (0.0, 0.0, 0.0, 0.55)  # about an outline: it stands out on whatever colours, also for who can't tell them apart
+MAX_CACHED_BATCHES = 24  # batches
 
 
-class Colors(NamedTuple):
+class OverlayColors(NamedTuple):
     """Of what the mouse is over, of the part that is held, of what the next notch adds."""
 
     hover: tuple
@@ -29,21 +29,21 @@ class Colors(NamedTuple):
     next: tuple
 
 
-def colors():
+def get_theme_colors():
     """The user's theme's: those of what is active, selected, and second to that."""
     theme = bpy.context.preferences.themes[0]
-    return Colors((*theme.view_3d.object_active, 0.35), (*theme.view_3d.object_selected, 0.35),
-                  (*theme.user_interface.gizmo_secondary, 0.22))
+    return OverlayColors((*theme.view_3d.object_active, 0.35), (*theme.view_3d.object_selected, 0.35),
+                         (*theme.user_interface.gizmo_secondary, 0.22))
 
 
-def line_width():
+def get_line_width():
     """In pixels of this screen: as wide as Blender's own outlines."""
     preferences = bpy.context.preferences
     return (0.5 + preferences.themes[0].view_3d.outline_width) * preferences.system.pixel_size
 
 
-class Parts:
-    """What is seen of an object (a seen.Seen): its triangles in the order of its hierarchy's faces."""
+class PartTriangles:
+    """What is seen of an object (a visible_surface.VisibleSurface): its triangles in the order of its hierarchy's faces."""
 
     def __init__(self, seen, hierarchy):
         self.hierarchy, self.positions = hierarchy, seen.positions
@@ -56,7 +56,7 @@ class Parts:
         self._start = np.concatenate([[0], np.cumsum(counts)])
         self.triangles = triangles[by_face[np.arange(len(faces)) + np.repeat(begin - self._start[:-1], counts)]]
         self._batches = {}
-        self._beyond = layers.beyond(self.triangles)
+        self._beyond = layers.find_neighbor_triangles(self.triangles)
 
     def slice(self, node):
         """(first, last) of a node's triangles."""
@@ -69,25 +69,25 @@ class Parts:
 
     def batch(self, piece):
         """(shader, batch) of a slice of triangles."""
-        return layers.shader("flat"), self._kept(piece, lambda: layers.batch(self._buffer, self.triangles[slice(*piece)]))
+        return layers.get_shader("flat"), self._kept(piece, lambda: layers.create_batch(self._buffer, self.triangles[slice(*piece)]))
 
     def of_faces(self, name, faces):
         """The same of the triangles of any faces, kept under a name."""
         def make():
-            return layers.batch(self._buffer, self.triangles[self._of(faces)])
-        return layers.shader("flat"), self._kept(name, make)
+            return layers.create_batch(self._buffer, self.triangles[self._of(faces)])
+        return layers.get_shader("flat"), self._kept(name, make)
 
     def outline(self, node, faces=None):
         """The same of a node's border, or that of these faces: lines."""
         def make():
             edges = self.border(node, faces)
-            return layers.lines(self.positions, edges) if len(edges) else None
+            return layers.create_line_batch(self.positions, edges) if len(edges) else None
         return self._kept(("outline", node, faces is None), make)
 
     def border(self, node, faces=None):
         """(n,2) the edges, by their vertices, where a node ends, or these faces."""
         mine = np.arange(*self.slice(node)) if faces is None else self._of(faces)
-        return layers.border(self.triangles, self.beyond, mine)
+        return layers.find_border_edges(self.triangles, self.beyond, mine)
 
     @cached_property
     def beyond(self):
@@ -108,19 +108,19 @@ class Parts:
 
     def _of(self, faces):
         """(n,) the triangles of faces."""
-        chosen = arrays.mask(len(self.hierarchy.order), faces)
+        chosen = arrays.make_mask(len(self.hierarchy.order), faces)
         return np.flatnonzero(np.repeat(chosen[self.hierarchy.order], np.diff(self._start)))
 
     def hull(self, node):
         """The same of a node's convex hull."""
         def make():
             vertices, triangles = self.hierarchy.hull(node)
-            return layers.batch(layers.vertices(pos=vertices), np.ascontiguousarray(triangles))
-        return layers.shader("flat"), self._kept(node, make)
+            return layers.create_batch(layers.create_vertex_buffer(pos=vertices), np.ascontiguousarray(triangles))
+        return layers.get_shader("flat"), self._kept(node, make)
 
     def cut(self, node):
         """The same of all triangles, coloured by the parts of the dendrogram cut at the node's height."""
-        return self.painted(("cut", node), lambda: distinct(self.hierarchy.face_labels(
+        return self.painted(("cut", node), lambda: make_distinct_colors(self.hierarchy.face_labels(
             self.hierarchy.cut_height(self.hierarchy.height[node]))))
 
     def painted(self, name, paint):
@@ -128,74 +128,74 @@ class Parts:
         def make():
             corners = self.positions[self.triangles.ravel()]
             shades = np.repeat(paint()[self.hierarchy.order], 3 * np.diff(self._start), axis=0)
-            return gpu.types.GPUBatch(type="TRIS", buf=layers.vertices(pos=corners, color=shades))
-        return layers.shader("colored"), self._kept(name, make)
+            return gpu.types.GPUBatch(type="TRIS", buf=layers.create_vertex_buffer(pos=corners, color=shades))
+        return layers.get_shader("colored"), self._kept(name, make)
 
     @cached_property
     def _buffer(self):
-        return layers.vertices(pos=self.positions)
+        return layers.create_vertex_buffer(pos=self.positions)
 
     def _kept(self, name, make):
         """Of what was drawn last, since the user goes back and forth."""
         if name not in self._batches:
-            while len(self._batches) >= KEPT:
+            while len(self._batches) >= MAX_CACHED_BATCHES:
                 del self._batches[next(iter(self._batches))]
             self._batches[name] = make()
         return self._batches[name]
 
 
-def distinct(labels, opacity=CUT_OPACITY):
+def make_distinct_colors(labels, opacity=CUT_OPACITY):
     """(n,4) a colour for each label, far from those of the labels next to it."""
     return np.column_stack([cut.colors(labels), np.broadcast_to(opacity, len(labels))])
 
 
-def draw_held(context, obj, parts, node, larger, snapped):
+def draw_picked_part(context, obj, parts, node, larger, snapped):
     """The part that is held, what the next notch adds, and what else the preferences want. snapped: the part's faces
     where its border is not the node's own, else None."""
-    wanted, drawn, used = preferences(), [], colors()
+    wanted, drawn, used = preferences(), [], get_theme_colors()
     if wanted.show_cut:
         drawn.append(Layer(parts.cut(node), used.part))
     if wanted.show_next:
-        drawn += _shell(parts, node, larger, snapped, used.next)
+        drawn += _make_next_part_layers(parts, node, larger, snapped, used.next)
     if wanted.show_part:
-        drawn += _tint(parts, node, used.part, snapped) + _outline(parts, node, used.part, snapped)
+        drawn += _make_tint_layers(parts, node, used.part, snapped) + _make_outline_layers(parts, node, used.part, snapped)
     if wanted.show_hull:
         drawn.append(Layer(parts.hull(node), GLASS, glass=True))
-    layers.draw(context, obj, drawn)
+    layers.draw_layers(context, obj, drawn)
 
 
 def draw_painted(context, obj, parts, name, paint):
     """All faces, each in its colour: see Parts.painted()."""
-    layers.draw(context, obj, [Layer(parts.painted(name, paint), GLASS)])
+    layers.draw_layers(context, obj, [Layer(parts.painted(name, paint), GLASS)])
 
 
 def draw_faces(context, obj, parts, name, faces):
     """Any faces, kept under a name."""
-    layers.draw(context, obj, [Layer(parts.of_faces(name, faces), colors().part)])
+    layers.draw_layers(context, obj, [Layer(parts.of_faces(name, faces), get_theme_colors().part)])
 
 
 def draw_hover(context, obj, parts, node, snapped):
     """The part that a click would take."""
-    color = colors().hover
-    layers.draw(context, obj, _tint(parts, node, color, snapped) + _outline(parts, node, color, snapped))
+    color = get_theme_colors().hover
+    layers.draw_layers(context, obj, _make_tint_layers(parts, node, color, snapped) + _make_outline_layers(parts, node, color, snapped))
 
 
-def _tint(parts, node, color, snapped):
+def _make_tint_layers(parts, node, color, snapped):
     if snapped is not None:
         return [Layer(parts.of_faces(("snapped", node), snapped), color)]
     piece = parts.slice(node)
     return [Layer(parts.batch(piece), color)] if piece[0] < piece[1] else []
 
 
-def _outline(parts, node, color, snapped):
-    lines, width = parts.outline(node, snapped), line_width()
+def _make_outline_layers(parts, node, color, snapped):
+    lines, width = parts.outline(node, snapped), get_line_width()
     if not lines:
         return []
     pixel = bpy.context.preferences.system.pixel_size
-    return [Layer(lines, CASING, width=width + 2 * pixel), Layer(lines, (*color[:3], 1.0), width=width)]
+    return [Layer(lines, OUTLINE_CASING, width=width + 2 * pixel), Layer(lines, (*color[:3], 1.0), width=width)]
 
 
-def _shell(parts, node, larger, snapped, color):
+def _make_next_part_layers(parts, node, larger, snapped, color):
     if snapped is None:
         return [Layer(parts.batch(piece), color) for piece in parts.shell(node, larger)]
     if node == larger:
@@ -204,13 +204,13 @@ def _shell(parts, node, larger, snapped, color):
     return [Layer(parts.of_faces(("beyond", node, larger), more), color)]
 
 
-def visible(context, obj):
+def is_visible(context, obj):
     """Whether this 3D view shows the object and overlays at all: not in another's local view, or hidden."""
     space = context.space_data
     return space.overlay.show_overlays and obj.visible_get(viewport=space)
 
 
-class Shown:
+class PickOverlay:
     """Draws the held part in every 3D view for as long as it is on."""
 
     def __init__(self):
@@ -226,22 +226,22 @@ class Shown:
         self._what, self._fits = (obj.name_full, parts, node, larger, snapped), fits
         if not self._handler:
             self._handler = bpy.types.SpaceView3D.draw_handler_add(guard(self._draw), (), "WINDOW", "POST_VIEW")
-        redraw()
+        redraw_views()
 
     def hide(self):
         if self._handler:
             bpy.types.SpaceView3D.draw_handler_remove(self._handler, "WINDOW")
-            redraw()
+            redraw_views()
         self._handler = self._what = self._fits = None
 
     def _draw(self):
         context, (name, *what) = bpy.context, self._what
         obj = mesh_identity.find_object(name)
-        if obj and visible(context, obj) and self._fits(obj):
-            draw_held(context, obj, *what)
+        if obj and is_visible(context, obj) and self._fits(obj):
+            draw_picked_part(context, obj, *what)
 
 
-def redraw():
+def redraw_views():
     """Of every 3D view."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
@@ -249,9 +249,9 @@ def redraw():
                 area.tag_redraw()
 
 
-shown = Shown()  # what the picking operator that runs now shows; there is one at a time
+pick_overlay = PickOverlay()  # what the picking operator that runs now shows; there is one at a time
 
 
 def unregister():
-    shown.hide()
+    pick_overlay.hide()
     layers.unregister()

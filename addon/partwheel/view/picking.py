@@ -10,20 +10,20 @@ from mathutils import Matrix, Vector
 
 from partwheel import RayTarget
 from ..mesh import arrays
-from .seen import seen
+from .visible_surface import compute_visible_surface
 
-STEP = 1e-5  # how far behind a clipped face the search goes on, as a share of the way there
-BEHIND = 1e-6  # the same behind what a view does not show, as a share of the coordinates, which have 24 bits
+CLIPPED_STEP = 1e-5  # how far behind a clipped face the search goes on, as a share of the way there
+HIDDEN_STEP = 1e-6  # the same behind what a view does not show, as a share of the coordinates, which have 24 bits
 
 
-class FaceTree:
+class FaceRayCaster:
     """What is seen of an object's faces as they are now, to be searched by rays. Not to be made while Blender draws."""
 
     def __init__(self, obj, shown=None):
-        """shown: its seen.Seen, if that is there already."""
+        """shown: its visible_surface.VisibleSurface, if that is there already."""
         if not shown:
-            arrays.up_to_date(obj)
-            shown = seen(obj)
+            arrays.update_mesh(obj)
+            shown = compute_visible_surface(obj)
         self._faces, self._target = shown.faces, RayTarget(shown.positions, shown.triangles)
 
     def under(self, matrix, region, view, point):
@@ -36,18 +36,18 @@ class FaceTree:
         while hit:
             triangle, distance = hit
             place = matrix @ (origin + distance * towards)
-            if not clipped(view, place):
+            if not is_clipped(view, place):
                 return int(self._faces[triangle]), (place - eye).length
-            hit = self._target.first_hit(origin, towards, distance * (1 + STEP))
+            hit = self._target.first_hit(origin, towards, distance * (1 + CLIPPED_STEP))
         return None
 
 
-def clipped(view, point):
+def is_clipped(view, point):
     """Whether the view's clipping region (Alt B) leaves out a point of the world."""
     return view.use_clip_planes and any(Vector(plane).dot((*point, 1.0)) < 0 for plane in list(view.clip_planes)[:4])
 
 
-class Surface(NamedTuple):
+class SurfaceHit(NamedTuple):
     """A place on a surface, in the world; normal: towards the eye. obj: whose it is; matrix: that object's to the
     world, or its instance's."""
 
@@ -57,7 +57,7 @@ class Surface(NamedTuple):
     matrix: Matrix
 
 
-def surface_under(context, area, region, view, point, wanted=lambda obj: True):
+def find_surface_under(context, area, region, view, point, wanted=lambda obj: True):
     """The Surface that a 3D view shows under a point of its region, or None. wanted(object): whether it is not looked
     through."""
     depsgraph = context.evaluated_depsgraph_get()
@@ -68,13 +68,13 @@ def surface_under(context, area, region, view, point, wanted=lambda obj: True):
         if not found:
             return None
         obj = obj.original
-        if (wanted(obj) and not clipped(view, location)
-                and _shown_there(area.spaces.active, depsgraph, obj, matrix)):
-            return Surface(location, -normal if normal.dot(towards) > 0 else normal, obj, matrix)
-        origin = location + towards * BEHIND * max(location.length, origin.length)
+        if (wanted(obj) and not is_clipped(view, location)
+                and _is_shown(area.spaces.active, depsgraph, obj, matrix)):
+            return SurfaceHit(location, -normal if normal.dot(towards) > 0 else normal, obj, matrix)
+        origin = location + towards * HIDDEN_STEP * max(location.length, origin.length)
 
 
-def _shown_there(space, depsgraph, obj, matrix):
+def _is_shown(space, depsgraph, obj, matrix):
     """Whether a 3D view shows the object, or an instance of it, with this matrix: scene.ray_cast() does not know."""
     if obj.evaluated_get(depsgraph).matrix_world == matrix and obj.visible_get(viewport=space):
         return True
@@ -82,7 +82,7 @@ def _shown_there(space, depsgraph, obj, matrix):
                and each.parent.original.visible_get(viewport=space) for each in depsgraph.object_instances)
 
 
-def nearest(objects, tree_of, region, view, point):
+def find_nearest_face(objects, tree_of, region, view, point):
     """(object, face index) of the first face under a point of the region, or (None, None); the index may be NO_FACE.
     tree_of(object): a FaceTree."""
     hits = [(tree_of(each).under(each.matrix_world, region, view, point), each) for each in objects]
@@ -93,29 +93,29 @@ def nearest(objects, tree_of, region, view, point):
     return obj, face
 
 
-def under_mouse(context, event):
+def find_view_under_mouse(context, event):
     """(area, region, RegionView3D, point of the region) of the 3D view that the mouse is over, or None."""
-    return view_under(context.window, event.mouse_x, event.mouse_y) if context.window else None
+    return find_view_at(context.window, event.mouse_x, event.mouse_y) if context.window else None
 
 
-def view_under(window, x, y):
+def find_view_at(window, x, y):
     """The same at a window's pixel; a panel lying over the view counts as not the view."""
     for area in window.screen.areas:
-        if area.type != "VIEW_3D" or not _holds(area, x, y):
+        if area.type != "VIEW_3D" or not _contains_point(area, x, y):
             continue
-        regions = [region for region in area.regions if region.width > 1 and region.height > 1 and _holds(region, x, y)]
+        regions = [region for region in area.regions if region.width > 1 and region.height > 1 and _contains_point(region, x, y)]
         if len(regions) != 1 or regions[0].type != "WINDOW":
             return None
-        return area, regions[0], view_of(area, regions[0]), (x - regions[0].x, y - regions[0].y)
+        return area, regions[0], get_region_view(area, regions[0]), (x - regions[0].x, y - regions[0].y)
     return None
 
 
-def view_of(area, region):
+def get_region_view(area, region):
     """The RegionView3D of a 3D view's region of type WINDOW."""
     space, windows = area.spaces.active, [each for each in area.regions if each.type == "WINDOW"]
     views = list(space.region_quadviews) or [space.region_3d]  # four in quad view, in the order of the regions
     return views[windows.index(region)]
 
 
-def _holds(box, x, y):
+def _contains_point(box, x, y):
     return box.x <= x < box.x + box.width and box.y <= y < box.y + box.height

@@ -11,7 +11,7 @@ from . import keys
 ICONS = set(bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys())
 
 
-class Line:
+class StatusLine:
     """What one operator says in the status bar. Of several the one is heard that began last: the keys for the part that
     is held, say, and not how far the build for another mesh is."""
 
@@ -21,47 +21,47 @@ class Line:
     def say(self, context, said):
         """said: a text or a drawer()."""
         self._said = said
-        if self not in Line.lines:
-            Line.lines.append(self)
-        if self is Line.lines[-1]:
+        if self not in StatusLine.lines:
+            StatusLine.lines.append(self)
+        if self is StatusLine.lines[-1]:
             context.workspace.status_text_set(said)
 
     def end(self, context):
-        if self in Line.lines:
-            Line.lines.remove(self)
+        if self in StatusLine.lines:
+            StatusLine.lines.remove(self)
             if context.workspace:
-                context.workspace.status_text_set(Line.lines[-1]._said if Line.lines else None)
+                context.workspace.status_text_set(StatusLine.lines[-1]._said if StatusLine.lines else None)
 
 
-def drawer(row):
+def make_drawer(row):
     """A function for WorkSpace.status_text_set(): these keys.Key, and keys.Command as far as the user has keys for
     them. Modifiers that several have are shown before the first."""
     def draw(header, _context):
         before = []
-        for icons, text in filter(None, map(_shown, row)):
+        for icons, text in filter(None, map(_key_label, row)):
             held, before = before if icons[:-1] == before else [], icons[:-1]
-            _entry(header.layout, icons[len(held):], text)
+            _draw_entry(header.layout, icons[len(held):], text)
     return draw
 
 
-def _shown(key):
+def _key_label(key):
     """(icons, text), or None."""
     if isinstance(key, keys.Key):
         return list(key.icons), f"{iface_(key.names)}: {iface_(key.label)}" if key.names else iface_(key.label)
-    item = _item(key)
+    item = _find_keymap_item(key)
     if item and f"EVENT_{item.type}" in ICONS:
         held = [f"EVENT_{name.upper()}" for name in ("shift", "ctrl", "alt") if getattr(item, name)]
         return [*held, f"EVENT_{item.type}"], iface_(key.label)
     return item and ([], f"{item.to_string()}: {iface_(key.label)}")
 
 
-def _entry(layout, icons, text):
+def _draw_entry(layout, icons, text):
     for icon in icons[:-1]:
         layout.label(text="", icon=icon)
     layout.label(text=text, icon=icons[-1] if icons else "NONE")
 
 
-def _item(command):
+def _find_keymap_item(command):
     """The KeyMapItem that starts a keys.Command as the user has set it, or None."""
     configuration = bpy.context.window_manager.keyconfigs.user
     keymap = configuration and configuration.keymaps.get("Mesh")

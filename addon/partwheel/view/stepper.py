@@ -8,23 +8,23 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
-RADIUS, ASIDE = 15, 44  # of a button, and from the click to its middle, in pixels at a resolution scale of 1
-BUTTON, SIGN = (0.12, 0.12, 0.12, 0.8), (0.95, 0.95, 0.95, 1.0)
-CORNERS = 24
+RADIUS, OFFSET = 15, 44  # of a button, and from the click to its middle, in pixels at a resolution scale of 1
+BUTTON_COLOR, SIGN_COLOR = (0.12, 0.12, 0.12, 0.8), (0.95, 0.95, 0.95, 1.0)
+CIRCLE_CORNERS = 24
 
 
-def ui_scale():
+def get_ui_scale():
     """Blender's resolution scale, which is 0 without a window."""
     return bpy.context.preferences.system.ui_scale or 1.0
 
 
-class Stepper:
+class StepButtons:
     """Larger is above the click's height, smaller below. x, y: the click's, in the window."""
 
     def __init__(self, x, y):
-        scale = ui_scale()
+        scale = get_ui_scale()
         self._radius = RADIUS * scale
-        self._middles = {sign: (x + ASIDE * scale, y + sign * 1.2 * self._radius) for sign in (1, -1)}
+        self._middles = {sign: (x + OFFSET * scale, y + sign * 1.2 * self._radius) for sign in (1, -1)}
 
     def sign(self, event):
         """1 over larger, -1 over smaller, else 0."""
@@ -37,24 +37,24 @@ class Stepper:
         before = gpu.state.blend_get()
         gpu.state.blend_set("ALPHA")
         for sign, (x, y) in self._middles.items():
-            _draw(_circle(x - region.x, y - region.y, self._radius), BUTTON)
-            _draw(_bar(x - region.x, y - region.y, self._radius / 2, self._radius / 8), SIGN)
+            _draw_triangles(_circle_lines(x - region.x, y - region.y, self._radius), BUTTON_COLOR)
+            _draw_triangles(_bar_triangles(x - region.x, y - region.y, self._radius / 2, self._radius / 8), SIGN_COLOR)
             if sign > 0:
-                _draw(_bar(x - region.x, y - region.y, self._radius / 8, self._radius / 2), SIGN)
+                _draw_triangles(_bar_triangles(x - region.x, y - region.y, self._radius / 8, self._radius / 2), SIGN_COLOR)
         gpu.state.blend_set(before)
 
 
-def _circle(x, y, radius):
-    rim = [(x + radius * cos(2 * pi * k / CORNERS), y + radius * sin(2 * pi * k / CORNERS)) for k in range(CORNERS + 1)]
+def _circle_lines(x, y, radius):
+    rim = [(x + radius * cos(2 * pi * k / CIRCLE_CORNERS), y + radius * sin(2 * pi * k / CIRCLE_CORNERS)) for k in range(CIRCLE_CORNERS + 1)]
     return [corner for a, b in pairwise(rim) for corner in ((x, y), a, b)]
 
 
-def _bar(x, y, wide, high):
+def _bar_triangles(x, y, wide, high):
     a, b, c, d = (x - wide, y - high), (x + wide, y - high), (x + wide, y + high), (x - wide, y + high)
     return [a, b, c, a, c, d]
 
 
-def _draw(corners, color):
+def _draw_triangles(corners, color):
     shader = gpu.shader.from_builtin("UNIFORM_COLOR")
     shader.uniform_float("color", color)
     batch_for_shader(shader, "TRIS", {"pos": [(*corner, 0.0) for corner in corners]}).draw(shader)

@@ -13,20 +13,20 @@ rpt_ = getattr(translations, "pgettext_rpt", tip_)  # from Blender 4.2 on
 OPERATOR = "Operator"  # the context of operators' labels
 
 
-def label_of(operator):
+def get_operator_label(operator):
     """An operator's label, as it is drawn."""
     return iface_(operator.bl_label, OPERATOR)
 
 
-def told(error):
+def translate_error(error):
     """What an error of the package says, or part of one (partwheel.worker.translatable)."""
     if sentences := getattr(error, "sentences", ()):
-        values = {name: told(value) if isinstance(value, Exception) or hasattr(value, "sentences") else value
+        values = {name: translate_error(value) if isinstance(value, Exception) or hasattr(value, "sentences") else value
                   for name, value in error.values.items()}
         return " ".join(map(rpt_, sentences)).format(**values)
     return rpt_(str(error))
 
 
-def percent(share):
+def format_percent(share):
     """Of 1, short enough to be read at a glance: never in powers of ten."""
     return "< 0.1%" if 0 < share < 0.0005 else f"{share:.1%}"

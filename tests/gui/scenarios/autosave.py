@@ -17,7 +17,7 @@ def play(stage):
         bpy.ops.ed.undo_push(message="moved")
         bpy.ops.object.mode_set(mode="EDIT")
     height = stage.object.data.vertices[0].co.z
-    stage.check(stage.registry.hierarchy(stage.object) is not None, "the parts are there before")
+    stage.check(stage.registry.get_hierarchy(stage.object) is not None, "the parts are there before")
     filepaths = bpy.context.preferences.filepaths
     filepaths.temporary_directory = str(aside)
     filepaths.auto_save_time = 1
@@ -37,7 +37,7 @@ def play(stage):
     stage.mouse.key("RET")
     yield from stage.until("then it does at once", saved)
     stage.check(not stage.object.data.keys(), "no bytes of ours are left on the mesh")
-    stage.check(stage.registry.state(stage.object.data)[0] != stage.registry.State.NONE, "its parts are still there")
+    stage.check(stage.registry.get_state(stage.object.data)[0] != stage.registry.State.NONE, "its parts are still there")
     filepaths.temporary_directory = ""
     filepaths.auto_save_time = 2
 

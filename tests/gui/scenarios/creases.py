@@ -7,7 +7,7 @@ import numpy
 def play(stage):
     yield from stage.open("homer")
     model, package, arrays = stage.object, stage.package(), stage.part("mesh.arrays")
-    creases = package.Creases(*arrays.surface(arrays.up_to_date(model)))
+    creases = package.Creases(*arrays.read_surface(arrays.update_mesh(model)))
 
     def snapped(faces):
         inside = numpy.zeros(len(stage.wheels.triangles), bool)

@@ -56,5 +56,5 @@ def play(stage):
         stage.check(not numpy.delete(moved, free).any(), f"nothing but the {name} has moved")
         stage.check(numpy.linalg.norm(after - before, axis=1).max() > 0.02, f"the {name} has moved far")
     stage.check((stage.coordinates() == first)[~allowed].all(), "nothing outside the parts has moved")
-    stage.check(stage.registry.state(stage.object.data)[0].name == "MOVED", "the parts are still there, moved")
+    stage.check(stage.registry.get_state(stage.object.data)[0].name == "MOVED", "the parts are still there, moved")
     yield from stage.ended()

@@ -99,10 +99,10 @@ def play(stage):
     yield from stage.until("the number moves it", lambda: (stage.coordinates() != before).any())
     stage.mouse.key("RET")
     yield from stage.settle()
-    old = stage.registry.known(stage.object.data)
+    old = stage.registry.find_hierarchy(stage.object.data)
     stage.mouse.key("P")
     yield from stage.until("the parts are found anew",
-                           lambda: stage.registry.known(stage.object.data) is not old)
+                           lambda: stage.registry.find_hierarchy(stage.object.data) is not old)
     yield from stage.ended()
     shift = stage.coordinates() - before
     farthest = shift[numpy.linalg.norm(shift, axis=1).argmax()]

@@ -88,10 +88,10 @@ def play(stage):
     overlay = stage.part("view.overlay")
     handle, begin, moves = Clock(picker, "on_event"), Clock(picker, "_call_on_start"), Clock(hover, "move")
     draws, hover_draws, software = (
-        Clock(overlay, "draw_held"), Clock(overlay, "draw_hover"), watch_batches(overlay.Parts))
+        Clock(overlay, "draw_picked_part"), Clock(overlay, "draw_hover"), watch_batches(overlay.PartTriangles))
     stage.use_tool()
     spots = points(stage)
-    stage.part("pick.prepared")._kept.clear()
+    stage.part("pick.view_cache")._caches.clear()
     stage.mouse.move(*spots[0])
     yield from stage.until("hover has found a part", lambda: stage.hovered() is not None)
     first_hover = max(moves.take())
@@ -129,7 +129,7 @@ def play(stage):
         stage.mouse.key("ESC")
         yield from stage.settle()
         stage.select(())
-    stage.part("pick.prepared")._kept.clear()
+    stage.part("pick.view_cache")._caches.clear()
     for clock in (begin, handle):
         clock.take()
     stage.mouse.click()
@@ -165,9 +165,9 @@ def at_208000_faces(stage):
 
     alone = yield from redraw()
     stage.shortcut("mesh.partwheel_select")
-    yield from stage.until("a build has begun", stage.builds.running)
+    yield from stage.until("a build has begun", stage.builds.has_builds)
     during = yield from redraw()
-    whole = "" if stage.builds.running() else ", though it was over before"
+    whole = "" if stage.builds.has_builds() else ", though it was over before"
     print(f"felt: a redraw during a build takes {during / alone:.1f} times as long as alone{whole}")
     yield from stage.until("the part is selected", lambda: stage.object.data.total_face_sel > 0)
     stage.mouse.key("RET")

@@ -24,8 +24,8 @@ def play(stage):
     picker, hover = stage.part("pick.pick").PartPicker, stage.part("pick.hover").Hover
     overlay = stage.part("view.overlay")
     handle, begin, moves = Clock(picker, "on_event"), Clock(picker, "_call_on_start"), Clock(hover, "move")
-    draws, software = Clock(overlay, "draw_held"), watch_batches(overlay.Parts)
-    written = Clock(stage.part("mesh.arrays"), "up_to_date")
+    draws, software = Clock(overlay, "draw_picked_part"), watch_batches(overlay.PartTriangles)
+    written = Clock(stage.part("mesh.arrays"), "update_mesh")
     clocks = handle, begin, moves, draws, software, written
     stage.use_tool()
 

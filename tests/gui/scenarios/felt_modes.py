@@ -40,8 +40,8 @@ class Clocks:
         picker, hover = stage.part("pick.pick").PartPicker, stage.part("pick.hover")
         overlay = stage.part("view.overlay")
         self._clocks = {"begin": Clock(picker, "_call_on_start"), "handle": Clock(picker, "on_event"),
-                        "move": Clock(hover.Hover, "move"), "make": Clock(stage.part("pick.prepared"), "_make"),
-                        "draw": Clock(overlay, "draw_held"), "software": watch_batches(overlay.Parts)}
+                        "move": Clock(hover.Hover, "move"), "make": Clock(stage.part("pick.view_cache"), "_prepare_in_timer"),
+                        "draw": Clock(overlay, "draw_picked_part"), "software": watch_batches(overlay.PartTriangles)}
 
     def take(self, *names):
         return [seconds for name in names for seconds in self._clocks[name].take()]
@@ -97,7 +97,7 @@ def in_mode(stage, clocks, mode):
 
 def ready(stage):
     what = stage.part("pick.hover").hover.what
-    return what is not None and stage.part("pick.prepared").current(stage.object, what[1])
+    return what is not None and stage.part("pick.view_cache").is_current(stage.object, what[1])
 
 
 def edited(stage, clocks):

@@ -14,20 +14,20 @@ def play(stage):
     stage.select(sorted(part))
     before = places(stage.object.data, part)
     stage.mouse.move(*stage.empty_spot())
-    stage.check(stage.registry.known(stage.object.data) is None, "there are no parts")
+    stage.check(stage.registry.find_hierarchy(stage.object.data) is None, "there are no parts")
 
     stage.shortcut("mesh.partwheel_copy")
-    yield from stage.until("a build has begun", stage.builds.running)
+    yield from stage.until("a build has begun", stage.builds.has_builds)
     yield from stage.screenshot("0-building")
-    said = stage.part("view.status").Line.lines[-1]._said
+    said = stage.part("view.status").StatusLine.lines[-1]._said
     stage.check("finds the parts of homer" in said and "Esc" in said, f"the status bar says so ({said})")
     stage.mouse.key("ESC")
-    yield from stage.until("Esc ends it", lambda: not stage.builds.running())
+    yield from stage.until("Esc ends it", lambda: not stage.builds.has_builds())
     yield from stage.selected(part, "after Esc")
     stage.check(len(bpy.data.objects) == 1 and stage.object.mode == "EDIT", "and all is as it was")
 
     stage.shortcut("mesh.partwheel_copy")
-    yield from stage.until("a build has begun again", stage.builds.running)
+    yield from stage.until("a build has begun again", stage.builds.has_builds)
     view = stage.view_state()
     stage.mouse.key("NUMPAD_3")
     yield from stage.until("the view turns meanwhile", lambda: stage.view_state() != view)
@@ -43,11 +43,11 @@ def play(stage):
     gate.close()
     yield from again(stage, part)
     stage.shortcut("mesh.partwheel_remove")
-    yield from stage.until("a build has begun for Remove", stage.builds.running)
+    yield from stage.until("a build has begun for Remove", stage.builds.has_builds)
     stage.check(stage.object.data.total_face_sel == len(part), "nothing is removed yet")
     gate.open()
     left = len(stage.wheels.triangles) - len(part)
-    yield from stage.until("the part is gone", lambda: stage.object.mode == "EDIT" and not stage.builds.running()
+    yield from stage.until("the part is gone", lambda: stage.object.mode == "EDIT" and not stage.builds.has_builds()
                            and len(bmesh.from_edit_mesh(stage.object.data).faces) < left + 0.5 * len(part))
     with stage.override():
         bpy.ops.object.mode_set(mode="OBJECT")
@@ -58,7 +58,7 @@ def play(stage):
     yield from again(stage, ())
     with stage.override():
         bpy.ops.mesh.partwheel_split("INVOKE_DEFAULT", True, parts=4)
-    yield from stage.until("a build has begun for Split", stage.builds.running)
+    yield from stage.until("a build has begun for Split", stage.builds.has_builds)
     stage.check(len(bpy.data.objects) == 1, "nothing is split yet")
     gate.open()
     yield from stage.until("there are four parts", lambda: len(bpy.data.objects) == 5)

@@ -19,7 +19,7 @@ def play(stage):
     scene.frame_start, scene.frame_end = 1, LAST
     scene.frame_set(1)
     stage.use_tool()
-    highlight, prepared = stage.part("pick.hover").highlight, stage.part("pick.prepared")
+    highlight, prepared = stage.part("pick.hover").highlight, stage.part("pick.view_cache")
 
     def seen_now():
         stage.wheels.vertices = shown(stage.object)
@@ -48,7 +48,7 @@ def play(stage):
 
     stage.mouse.key("SPACE")
     yield from stage.until("it plays", lambda: stage.window.screen.is_animation_playing and scene.frame_current > LAST // 2)
-    stage.check(not prepared.at_rest(), "the add-on knows that it plays, and makes nothing for hovering")
+    stage.check(not prepared.is_at_rest(), "the add-on knows that it plays, and makes nothing for hovering")
     stage.mouse.key("SPACE")
     yield from stage.until("it stands", lambda: not stage.window.screen.is_animation_playing)
     yield from picked("played")
@@ -66,7 +66,7 @@ def play(stage):
     stage.mouse.move(x + 1, y)
     seen_now()
     yield from stage.until(f"it is drawn where it is seen in frame {frame}", lambda: numpy.allclose(
-        stage.part("view.overlay").shown._what[1].positions, stage.wheels.vertices, atol=1e-5))
+        stage.part("view.overlay").pick_overlay._what[1].positions, stage.wheels.vertices, atol=1e-5))
     yield from stage.screenshot("held-elsewhere")
     stage.mouse.key("ESC")
     stage.wheels.vertices = own

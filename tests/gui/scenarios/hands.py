@@ -27,7 +27,7 @@ def play(stage):
     yield from stage.settle()
     yield from stage.selected(arm, "after all that")
 
-    key = stage.part("preferences").pie_key()
+    key = stage.part("preferences").find_pie_key()
     stage.check(key.type == "NONE", "no key is taken for the pie")
     key.type = "F6"
     stage.mouse.key("F6")

@@ -19,13 +19,13 @@ def play(stage):
     preferences = stage.part("preferences").preferences()
 
     yield from bring(stage, path)
-    stage.check(not stage.builds.running(), "nothing is found unless the preferences say so")
+    stage.check(not stage.builds.has_builds(), "nothing is found unless the preferences say so")
     preferences.on_import = True
 
     imported = yield from bring(stage, path)
-    yield from stage.until("a build has begun for what was imported", stage.builds.running)
-    stage.check(stage.builds.being_built(imported) and not stage.builds.being_built(model), "for nothing else")
-    said = stage.part("view.status").Line.lines[-1]._said
+    yield from stage.until("a build has begun for what was imported", stage.builds.has_builds)
+    stage.check(stage.builds.is_being_built(imported) and not stage.builds.is_being_built(model), "for nothing else")
+    said = stage.part("view.status").StatusLine.lines[-1]._said
     stage.check("finds the parts of" in said and "Esc" in said, f"the status bar says so ({said})")
     yield from stage.screenshot("0-imported")
     view = stage.view_state()
@@ -33,28 +33,28 @@ def play(stage):
     stage.mouse.key("NUMPAD_3")
     yield from stage.until("the view turns meanwhile", lambda: stage.view_state() != view)
     gate.open()
-    yield from stage.until("its parts are found", lambda: stage.registry.known(imported.data) is not None)
-    stage.check(stage.registry.state(imported.data)[0] == stage.registry.State.FITS, "and fit")
+    yield from stage.until("its parts are found", lambda: stage.registry.find_hierarchy(imported.data) is not None)
+    stage.check(stage.registry.get_state(imported.data)[0] == stage.registry.State.FITS, "and fit")
 
     gate.close()
     stage.registry.forget_all()
     yield from bring(stage, path)
-    yield from stage.until("a build has begun again", stage.builds.running)
+    yield from stage.until("a build has begun again", stage.builds.has_builds)
     stage.mouse.move(*stage.empty_spot())
     stage.mouse.key("ESC")
-    yield from stage.until("Esc ends it", lambda: not stage.builds.running())
+    yield from stage.until("Esc ends it", lambda: not stage.builds.has_builds())
     yield from stage.settle()
-    stage.check(not stage.builds.running(), "for good")
+    stage.check(not stage.builds.has_builds(), "for good")
 
     with stage.override():
         bpy.ops.mesh.primitive_torus_add("INVOKE_DEFAULT", True)
     yield from stage.settle()
-    stage.check(not stage.builds.running(), "nothing is found for an object that is added")
+    stage.check(not stage.builds.has_builds(), "nothing is found for an object that is added")
     with stage.override():
         bpy.ops.ed.undo()
         bpy.ops.ed.redo()
     yield from stage.settle()
-    stage.check(not stage.builds.running(), "nor when undo and redo take it away and bring it back")
+    stage.check(not stage.builds.has_builds(), "nor when undo and redo take it away and bring it back")
 
     gate.open()
     yield from bring(stage, sheet)
@@ -63,7 +63,7 @@ def play(stage):
     yield from stage.screenshot("1-sheet")
 
     appended = yield from bring(stage, library, "wm.append", "Object")
-    yield from stage.until("what was appended has parts", lambda: stage.registry.known(appended.data) is not None)
+    yield from stage.until("what was appended has parts", lambda: stage.registry.find_hierarchy(appended.data) is not None)
     gate.remove()
 
 

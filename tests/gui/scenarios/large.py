@@ -19,7 +19,7 @@ def play(stage):
     stage.mouse.move(x, y)
     gate = stage.hold_workers()
     stage.shortcut("mesh.partwheel_select")
-    yield from stage.until("a build has begun", stage.builds.running)
+    yield from stage.until("a build has begun", stage.builds.has_builds)
     build, = stage.builds._builds.values()
     for _ in range(5):
         yield from stage.drawn()
@@ -30,7 +30,7 @@ def play(stage):
     stage.mouse.key("ESC")
     yield from stage.settle()
     stage.check(not alive(process), "once Esc has been handled the worker is gone")
-    stage.check(not stage.builds.running(), "the tool has ended")
+    stage.check(not stage.builds.has_builds(), "the tool has ended")
     yield from stage.selected({3}, "after Esc")
 
     gate.open()
@@ -45,7 +45,7 @@ def play(stage):
     for wanted, path in (yield from saved(stage)).items():
         hierarchy = reopened(stage, path)
         stage.check((hierarchy is not None) == wanted, "the parts are there if they were saved")
-        stage.check(not stage.builds.running(), "nothing is built for that")
+        stage.check(not stage.builds.has_builds(), "nothing is built for that")
         yield from stage.settle()
         stage.check(not bpy.data.is_dirty, "a file just opened counts as saved")
 
@@ -78,4 +78,4 @@ def saved(stage):
 def reopened(stage, path):
     """Opens the file: the Hierarchy of its mesh, or None."""
     bpy.ops.wm.open_mainfile(filepath=path, load_ui=False)
-    return stage.registry.hierarchy(stage.object)
+    return stage.registry.get_hierarchy(stage.object)

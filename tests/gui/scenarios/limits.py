@@ -3,7 +3,7 @@
 
 def play(stage):
     yield from stage.open("hand")
-    stage.part("mesh.selection").ALL_OFF = 0  # as with large meshes, much is deselected at once
+    stage.part("mesh.selection").DESELECT_ALL_COST = 0  # as with large meshes, much is deselected at once
     _, stops, start = yield from stage.pick(0.5, 0.9)
     last = len(stops) - 1
     stage.mouse.wheel(last - start)

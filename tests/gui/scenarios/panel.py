@@ -43,7 +43,7 @@ def play(stage):
 
     def shown(state, name):
         yield from stage.until(f"the state is {state.name}",
-                               lambda: stage.registry.state(stage.object.data)[0] == state)
+                               lambda: stage.registry.get_state(stage.object.data)[0] == state)
         drawn.clear()
         sidebar.tag_redraw()
         yield from stage.until("the panel is drawn", lambda: drawn)
@@ -63,7 +63,7 @@ def play(stage):
     yield from shown(stage.registry.State.CHANGED, "changed")
     with stage.override():
         bpy.ops.mesh.partwheel_build()
-    stage.check(stage.registry.hierarchy(stage.object).account != "", "the panel has something to tell")
+    stage.check(stage.registry.get_hierarchy(stage.object).account != "", "the panel has something to tell")
     yield from shown(stage.registry.State.FITS, "mended")
     with stage.override():
         bpy.ops.mesh.partwheel_clear()

@@ -8,7 +8,7 @@ def play(stage):
     yield from stage.open("homer")
     model = stage.object
     cut = stage.package("cut").Cut
-    hierarchy = stage.registry.known(model.data)
+    hierarchy = stage.registry.find_hierarchy(model.data)
     automatic = cut.automatic(hierarchy)
     stages = stage.part("cut.parts_to").MESH_OT_partwheel_parts
     seen = []

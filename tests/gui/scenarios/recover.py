@@ -51,7 +51,7 @@ def recovered(stage, height):
     mesh = bpy.data.objects["hand"].data
     stage.check(abs(mesh.vertices[0].co.z - height) < 1, "the vertex is where it was moved before")
     stage.check(list(mesh.keys()) == [], "no bytes of ours are on the mesh")
-    stage.check(stage.registry.state(mesh)[0] == stage.registry.State.NONE, "no parts are claimed that are not there")
+    stage.check(stage.registry.get_state(mesh)[0] == stage.registry.State.NONE, "no parts are claimed that are not there")
     mesh.vertices[0].co.z -= 1000
     stage.window.view_layer.objects.active = bpy.data.objects["hand"]
     with stage.override():

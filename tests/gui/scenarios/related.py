@@ -8,7 +8,7 @@ def play(stage):
     likeness = stage.part("related.others").alike
 
     def has_its_like(spot):
-        hierarchy = stage.registry.hierarchy(stage.object)
+        hierarchy = stage.registry.get_hierarchy(stage.object)
         stops, start = hierarchy.wheel(spot[2])
         found = likeness(stage.object, hierarchy, int(stops[start]))
         return found and found[0].likeness > 0.7
@@ -16,7 +16,7 @@ def play(stage):
     spots = (stage.spot(x, 0.5, above=1) for x in (0.05, 0.95, 0.2, 0.8, 0.35, 0.65))
     yield from stage.take(next(spot for spot in spots if has_its_like(spot)), "to be used", notches=0)
     arm = stage.selection()
-    pick = stage.part("parts.picks").picked
+    pick = stage.part("parts.picks").get_pick
     stage.shortcut("mesh.partwheel_similar")
     yield from stage.until("the alike ones are selected", lambda: len(stage.selection()) > len(arm))
     hierarchy, node = pick(stage.object).hierarchy, pick(stage.object).node

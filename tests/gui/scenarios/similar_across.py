@@ -17,7 +17,7 @@ def play(stage):
     stage.shortcut("mesh.partwheel_similar")
     yield from stage.until("those of the copy are selected", lambda: selected(copy))
 
-    pick = stage.part("parts.picks").picked(obj)
+    pick = stage.part("parts.picks").get_pick(obj)
     alike = stage.part("related.others").alike(obj, pick.hierarchy, pick.node, [copy])
     threshold = stage.package("likeness").THRESHOLD
 

@@ -56,7 +56,7 @@ def play(stage):
     stage.mouse.click()
     yield from stage.until("a click swaps", lambda: len(bpy.data.objects) == 2 and homer.mode == "OBJECT" and
                            len(bpy.data.objects["homer"].data.polygons) != count)
-    yield from stage.until("its parts are found", lambda: not stage.builds.running())
+    yield from stage.until("its parts are found", lambda: not stage.builds.has_builds())
     stage.check(closed(homer) and volume(homer) != whole, "the result is closed")
     stage.check({mesh.name for mesh in bpy.data.meshes} == before[0], "nothing else is left")
     yield from stage.screenshot("3-swapped")

@@ -26,7 +26,7 @@ def play(stage):
     sidebar = next(region for region in stage.area.regions if region.type == "UI")
     with stage.override():
         bpy.ops.object.select_all(action="DESELECT")
-    stage.check(stage.registry.known(homer.data) is None, "no parts are known")
+    stage.check(stage.registry.find_hierarchy(homer.data) is None, "no parts are known")
     shown = []
     operator = stage.part("cut.parts_to").MESH_OT_partwheel_parts
     show = operator._show

@@ -23,24 +23,24 @@ _TYPES = {
     "INT32_2D": ("value", np.int32, 2, False), "QUATERNION": ("value", np.float32, 4, False),
     "FLOAT4X4": ("value", np.float32, 16, False),
 }
-_SHAPE = {"position", ".edge_verts", ".corner_vert", ".corner_edge", ".corner_normal"}
+_TOPOLOGY = {"position", ".edge_verts", ".corner_vert", ".corner_edge", ".corner_normal"}
 _SELECTION = {".select_vert", ".select_edge", ".select_poly"}
 # What was no attribute but a property of the elements, in Blenders that had it so.
-_MARKS = {"vertices": [], "edges": [], "polygons": []}
+_ELEMENT_PROPERTIES = {"vertices": [], "edges": [], "polygons": []}
 if bpy.app.version < (5, 0, 0):
-    _MARKS["edges"] = [("use_freestyle_mark", bool)]
-    _MARKS["polygons"] = [("use_freestyle_mark", bool)]
+    _ELEMENT_PROPERTIES["edges"] = [("use_freestyle_mark", bool)]
+    _ELEMENT_PROPERTIES["polygons"] = [("use_freestyle_mark", bool)]
 if bpy.app.version < (4, 0, 0):
-    _MARKS["vertices"] += [("bevel_weight", np.float32)]
-    _MARKS["edges"] += [("use_seam", bool), ("use_edge_sharp", bool), ("crease", np.float32),
-                        ("bevel_weight", np.float32)]
-    _MARKS["polygons"] += [("use_smooth", bool)]
+    _ELEMENT_PROPERTIES["vertices"] += [("bevel_weight", np.float32)]
+    _ELEMENT_PROPERTIES["edges"] += [("use_seam", bool), ("use_edge_sharp", bool), ("crease", np.float32),
+                                     ("bevel_weight", np.float32)]
+    _ELEMENT_PROPERTIES["polygons"] += [("use_smooth", bool)]
 # Where the mesh itself knows whether it has any.
-_KNOWN = {("vertices", "bevel_weight"): "has_bevel_weight_vertex", ("edges", "bevel_weight"): "has_bevel_weight_edge",
-          ("edges", "crease"): "has_crease_edge"}
+_HAS_PROPERTY = {("vertices", "bevel_weight"): "has_bevel_weight_vertex", ("edges", "bevel_weight"): "has_bevel_weight_edge",
+                 ("edges", "crease"): "has_crease_edge"}
 # What is a collection of layers of its own, which only a bmesh makes; without some of them in newer Blenders:
 # collection -> (elements, the bmesh's, its name there, fields: (name, type, how many, of a new element)).
-_OWN_LAYERS = {
+_BMESH_LAYERS = {
     "skin_vertices": ("vertices", "verts", "skin", [("radius", np.float32, 2, 0.25), ("use_root", bool, 1, False),
                                                     ("use_loose", bool, 1, False)]),
     "vertex_paint_masks": ("vertices", "verts", "paint_mask", [("value", np.float32, 1, 0)]),
@@ -48,14 +48,14 @@ _OWN_LAYERS = {
     "face_maps": ("polygons", "faces", "face_map", [("value", np.int32, 1, -1)]),
 }
 if bpy.app.version >= (4, 0, 0):  # the others are attributes
-    _OWN_LAYERS = {"skin_vertices": _OWN_LAYERS["skin_vertices"]}
+    _BMESH_LAYERS = {"skin_vertices": _BMESH_LAYERS["skin_vertices"]}
 
 
-_NONE = np.empty(0, np.int64)
+_EMPTY = np.empty(0, np.int64)
 
 
 @contextmanager
-def edited(mesh, into=None):
+def edit_as_bmesh(mesh, into=None):
     """A bmesh of the mesh, or of nothing, for a while; what was done with it is written into another, or the same."""
     bm = bmesh.new()
     try:
@@ -68,16 +68,16 @@ def edited(mesh, into=None):
         bm.free()
 
 
-class Origins(NamedTuple):
+class ElementSources(NamedTuple):
     """Where n elements come from: first (n,) the source's that each is, -1 for new ones; but those at (k,) are midway
     between that one and other (k,)."""
 
     first: np.ndarray
-    at: np.ndarray = _NONE
-    other: np.ndarray = _NONE
+    at: np.ndarray = _EMPTY
+    other: np.ndarray = _EMPTY
 
 
-class Plan(NamedTuple):
+class MeshPlan(NamedTuple):
     """A mesh of n vertices, L corners and P polygons, and where each comes from:
 
     places (n,3)
@@ -91,8 +91,8 @@ class Plan(NamedTuple):
     """
 
     places: np.ndarray
-    vertices: Origins
-    loops: Origins
+    vertices: ElementSources
+    loops: ElementSources
     corners: np.ndarray
     begin: np.ndarray
     polygons: np.ndarray
@@ -102,17 +102,17 @@ class Plan(NamedTuple):
     alias: np.ndarray = None
 
 
-def assembled(mesh, plan, name, selection):
+def assemble_mesh(mesh, plan, name, selection):
     """A new mesh: materials, settings and properties are the source's; and what is selected, if selection."""
     made = mesh.copy()
     made.name = name
     if made.shape_keys:
-        clear_keys(made)
+        clear_shape_keys(made)
     made.clear_geometry()
-    _make_own_layers(mesh, made)
-    of_edge, ends, edge_from = _edges(mesh, plan)
+    _create_bmesh_layers(mesh, made)
+    of_edge, ends, edge_from = _build_edges(mesh, plan)
     made.vertices.add(len(plan.places))
-    _copy_groups(mesh, made, plan.vertices)
+    _copy_vertex_groups(mesh, made, plan.vertices)
     for elements, count in ((made.edges, len(ends)), (made.loops, len(plan.corners)), (made.polygons, len(plan.begin))):
         elements.add(count)
     write(made.vertices, "co", plan.places)
@@ -122,26 +122,26 @@ def assembled(mesh, plan, name, selection):
     write(made.polygons, "loop_start", plan.begin.astype(np.int32))
     if bpy.app.version < (4, 0, 0):
         write(made.polygons, "loop_total", np.diff(plan.begin, append=len(plan.corners)).astype(np.int32))
-    origins = {"POINT": plan.vertices, "CORNER": plan.loops, "EDGE": Origins(edge_from), "FACE": Origins(plan.polygons)}
-    _copy_attributes(mesh, made, origins, _SHAPE if selection else _SHAPE | _SELECTION)
+    origins = {"POINT": plan.vertices, "CORNER": plan.loops, "EDGE": ElementSources(edge_from), "FACE": ElementSources(plan.polygons)}
+    _copy_attributes(mesh, made, origins, _TOPOLOGY if selection else _TOPOLOGY | _SELECTION)
     first = {"vertices": plan.vertices.first, "edges": edge_from, "polygons": plan.polygons}
-    _copy_marks(mesh, made, first)
-    _copy_own_layers(mesh, made, first)
-    _copy_keys(mesh, made, plan)
-    _choose_layers(made, _chosen_layers(mesh))
+    _copy_element_properties(mesh, made, first)
+    _copy_bmesh_layers(mesh, made, first)
+    _copy_shape_keys(mesh, made, plan)
+    _set_active_layers(made, _find_active_layers(mesh))
     made.update()
     return made
 
 
-def _edges(mesh, plan):
+def _build_edges(mesh, plan):
     """((L,) the edge from each corner to the next, (m,2) the edges' vertices, (m,) the source edge of each, or -1)"""
     own, count = plan.loops.first, len(plan.corners)
-    numbers, all_ends = _edge_numbers(mesh, plan.alias), arrays.edge_vertices(mesh)
+    numbers, all_ends = _read_loop_edges(mesh, plan.alias), arrays.read_edge_vertices(mesh)
     # Of whole polygons they are the source's.
     rest = int(plan.begin[plan.whole]) if plan.whole < len(plan.begin) else count
     of_edge = np.empty(count, np.int32)
     source = numbers[own[:rest]]
-    used = np.flatnonzero(arrays.mask(len(all_ends), source))
+    used = np.flatnonzero(arrays.make_mask(len(all_ends), source))
     place = np.empty(len(all_ends), np.int32)
     place[used] = np.arange(len(used))
     of_edge[:rest] = place[source]
@@ -153,7 +153,7 @@ def _edges(mesh, plan):
     following = np.arange(rest + 1, count + 1)
     following[np.append(plan.begin[plan.whole + 1:], count)[:len(plan.begin) - plan.whole] - 1 - rest] = (
         plan.begin[plan.whole:])
-    begin, totals = arrays.polygon_sizes(mesh)
+    begin, totals = arrays.read_polygon_sizes(mesh)
     after = np.arange(1, len(mesh.loops) + 1, dtype=np.int32)
     after[begin + totals - 1] = begin
     single = own >= 0
@@ -166,7 +166,7 @@ def _edges(mesh, plan):
 
     # Among them an edge may be one that is already there.
     low, high = (each(plan.corners[rest:], plan.corners[following]) for each in (np.minimum, np.maximum))
-    touched = arrays.mask(len(plan.places), [low, high])
+    touched = arrays.make_mask(len(plan.places), [low, high])
     near = np.flatnonzero(touched[ends[:, 0]] & touched[ends[:, 1]])
     key = np.concatenate([np.sort(ends[near], axis=1), np.stack([low, high], axis=1)]).astype(np.int64)
     unique, which = np.unique(key[:, 0] * len(plan.places) + key[:, 1], return_inverse=True)
@@ -183,17 +183,17 @@ def _edges(mesh, plan):
     return of_edge, ends.astype(np.int32), edge_from
 
 
-def _edge_numbers(mesh, alias):
+def _read_loop_edges(mesh, alias):
     """(L,) the edge of each of the mesh's loops; by alias, of several between the same two vertices the first."""
     edges = read(mesh.loops, "edge_index", np.int32)
     if alias is None:
         return edges
-    ends = np.sort(alias[arrays.edge_vertices(mesh)], axis=1)
+    ends = np.sort(alias[arrays.read_edge_vertices(mesh)], axis=1)
     _, first, which = np.unique(ends, axis=0, return_index=True, return_inverse=True)
     return first[which.ravel()][edges]
 
 
-def _picked(values, origins, mean=False, otherwise=0):
+def _gather(values, origins, mean=False, otherwise=0):
     """values (n,) or (n, width) at Origins: their mean, or the first's; otherwise where there is none."""
     taken = values[origins.first]
     taken[origins.first < 0] = otherwise
@@ -214,7 +214,7 @@ def _copy_attributes(mesh, made, origins, but):
                 item.value = old.data[at].value if at >= 0 else ""
             continue
         field, dtype, width, mean = _TYPES[kind]
-        taken = _picked(read(old.data, field, dtype, width), of, mean)
+        taken = _gather(read(old.data, field, dtype, width), of, mean)
         if name == "sharp_face":
             taken[of.first < 0] = True
         new.data.foreach_set(field, taken.ravel())
@@ -226,40 +226,40 @@ def _copy_attributes(mesh, made, origins, but):
             made.uv_layers.new(name=uv.name, do_init=False)
         if bpy.app.version < (3, 5, 0):
             new = made.uv_layers[uv.name].data
-            new.foreach_set("uv", _picked(read(uv.data, "uv", np.float32, 2), origins["CORNER"], True).ravel())
-            new.foreach_set("pin_uv", _picked(read(uv.data, "pin_uv", bool), origins["CORNER"]))
+            new.foreach_set("uv", _gather(read(uv.data, "uv", np.float32, 2), origins["CORNER"], True).ravel())
+            new.foreach_set("pin_uv", _gather(read(uv.data, "pin_uv", bool), origins["CORNER"]))
 
 
-def _copy_marks(mesh, made, origins):
-    for kind, marks in _MARKS.items():
+def _copy_element_properties(mesh, made, origins):
+    for kind, marks in _ELEMENT_PROPERTIES.items():
         for field, dtype in marks:
-            if not getattr(mesh, _KNOWN.get((kind, field), ""), True):
+            if not getattr(mesh, _HAS_PROPERTY.get((kind, field), ""), True):
                 continue
             values = read(getattr(mesh, kind), field, dtype)
             if values.any():
-                getattr(made, kind).foreach_set(field, _picked(values, Origins(origins[kind])))
+                getattr(made, kind).foreach_set(field, _gather(values, ElementSources(origins[kind])))
 
 
-def _make_own_layers(mesh, made):
+def _create_bmesh_layers(mesh, made):
     """made has no elements yet."""
-    names = [each[1:3] for collection, each in _OWN_LAYERS.items() if len(getattr(mesh, collection))]
+    names = [each[1:3] for collection, each in _BMESH_LAYERS.items() if len(getattr(mesh, collection))]
     if names:
-        with edited(None, made) as bm:
+        with edit_as_bmesh(None, made) as bm:
             for elements, name in names:
                 getattr(getattr(bm, elements).layers, name).verify()
 
 
-def _copy_own_layers(mesh, made, origins):
-    for collection, (elements, _, _, fields) in _OWN_LAYERS.items():
-        of = Origins(origins[elements])
+def _copy_bmesh_layers(mesh, made, origins):
+    for collection, (elements, _, _, fields) in _BMESH_LAYERS.items():
+        of = ElementSources(origins[elements])
         for old, new in zip(getattr(mesh, collection), getattr(made, collection)):
             for field, dtype, width, otherwise in fields:
-                taken = _picked(read(old.data, field, dtype, width), of, otherwise=otherwise)
+                taken = _gather(read(old.data, field, dtype, width), of, otherwise=otherwise)
                 new.data.foreach_set(field, taken.ravel())
 
 
 @contextmanager
-def _held(mesh):
+def _temporary_object(mesh):
     """An object that holds the mesh while its groups and keys are at work."""
     holder = bpy.data.objects.new("partwheel", mesh)
     try:
@@ -268,17 +268,17 @@ def _held(mesh):
         bpy.data.objects.remove(holder)
 
 
-def _copy_groups(mesh, made, origins):
+def _copy_vertex_groups(mesh, made, origins):
     """made has its vertices, and nothing else yet: so a bmesh, which copies a vertex's weights as one, costs little."""
-    if not _name_groups(mesh, made):
+    if not _copy_group_names(mesh, made):
         return
-    bare = _vertices_alone(mesh)
-    with edited(bare) as olds:
+    bare = _copy_vertices_only(mesh)
+    with edit_as_bmesh(bare) as olds:
         bpy.data.meshes.remove(bare)
         layer = olds.verts.layers.deform.active
         if layer is None:  # nothing is in a group
             return
-        with edited(made, made) as news:
+        with edit_as_bmesh(made, made) as news:
             own = news.verts.layers.deform.verify()
             sources, verts = list(olds.verts), list(news.verts)
             for vert, first in zip(verts, origins.first.tolist()):
@@ -290,21 +290,21 @@ def _copy_groups(mesh, made, origins):
                     weights[group] = (weights.get(group, 0) + beyond.get(group, 0)) / 2
 
 
-def _name_groups(mesh, made):
+def _copy_group_names(mesh, made):
     """Gives made groups of the same names; whether there are any."""
-    with _held(mesh) as old, _held(made) as new:
+    with _temporary_object(mesh) as old, _temporary_object(made) as new:
         new.vertex_groups.clear()
         for group in old.vertex_groups:
             new.vertex_groups.new(name=group.name).lock_weight = group.lock_weight
         return len(old.vertex_groups) > 0
 
 
-def _vertices_alone(mesh):
+def _copy_vertices_only(mesh):
     """A new mesh: the vertices with their layers, and nothing else. Nothing but Blender's own validation takes faces
     away quickly: those, and edges, whose corners are all one vertex."""
     bare = mesh.copy()
     if bare.shape_keys:
-        clear_keys(bare)
+        clear_shape_keys(bare)
     write(bare.loops, "vertex_index", np.zeros(len(bare.loops), np.int32))
     write(bare.edges, "vertices", np.zeros(2 * len(bare.edges), np.int32))
     if bpy.app.version < (4, 0, 0):
@@ -313,27 +313,27 @@ def _vertices_alone(mesh):
     return bare
 
 
-def clear_keys(mesh):
+def clear_shape_keys(mesh):
     """Blender counts one user too many of a copied mesh's keys, and leaves them behind: a file with such a key opens with
     an error."""
     keys = mesh.shape_keys
     left_behind = keys.users > 1
-    with _held(mesh) as holder:
+    with _temporary_object(mesh) as holder:
         holder.shape_key_clear()
     if left_behind:
         bpy.data.batch_remove([keys])
 
 
-def _copy_keys(mesh, made, plan):
+def _copy_shape_keys(mesh, made, plan):
     if not mesh.shape_keys:
         return
-    with _held(made) as holder:
+    with _temporary_object(made) as holder:
         for old in mesh.shape_keys.key_blocks:
             new = holder.shape_key_add(name=old.name, from_mix=False)
             places = plan.places.copy()
             own = plan.vertices.first >= 0
             old_places = read(old.data, "co", np.float32, 3)
-            places[own] = _picked(old_places, plan.vertices, True)[own]
+            places[own] = _gather(old_places, plan.vertices, True)[own]
             new.data.foreach_set("co", places.ravel())
             new.slider_min, new.slider_max = old.slider_min, old.slider_max  # or they bound the value
             copy_settings(old, new, {"name", "relative_key"})
@@ -345,7 +345,7 @@ def _copy_keys(mesh, made, plan):
     copy_animation(mesh.shape_keys, made.shape_keys)
 
 
-def _chosen_layers(mesh):
+def _find_active_layers(mesh):
     """The names of the layers that Blender shows, renders, clones and masks by."""
     uv = mesh.uv_layers
     found = {"active": uv.active, "render": next((each for each in uv if each.active_render), None),
@@ -356,7 +356,7 @@ def _chosen_layers(mesh):
     return {role: layer.name for role, layer in found.items() if layer}
 
 
-def _choose_layers(mesh, chosen):
+def _set_active_layers(mesh, chosen):
     """Only those that the mesh has, too."""
     for role, name in chosen.items():
         if role.endswith("color_index"):
@@ -374,13 +374,13 @@ def _choose_layers(mesh, chosen):
 def replace_geometry(target, made, keys=None):
     """Puts a mesh's geometry, with all layers, into another, whose name, properties and users stay, and shape keys but for the
     places. keys: {name: (V,3) places} for them; None: made has the same."""
-    kept, chosen = len(target.shape_keys.key_blocks) if target.shape_keys else 0, _chosen_layers(target)
-    with edited(made, target):
+    kept, chosen = len(target.shape_keys.key_blocks) if target.shape_keys else 0, _find_active_layers(target)
+    with edit_as_bmesh(made, target):
         pass
-    _choose_layers(target, chosen)
+    _set_active_layers(target, chosen)
     if kept:
         # Blender goes by numbers of the keys that are others in each mesh, once one was removed: it mixes them up.
-        with _held(target) as holder:
+        with _temporary_object(target) as holder:
             for key in list(target.shape_keys.key_blocks)[kept:]:
                 holder.shape_key_remove(key)
         for key in target.shape_keys.key_blocks:

@@ -10,40 +10,40 @@ import bpy
 from ..mesh import arrays
 from ..mesh.mesh_identity import MeshTable, element_counts, mesh_key, find_object
 from ..parts import changes, registry
-from ..view import overlay, picking, seen
+from ..view import overlay, picking, visible_surface
 
-_kept = MeshTable()  # Prepared
-_written = MeshTable()  # what changes.told() said when Blender had written its edits back
-_soon = {}  # full name of an object -> the timer that makes its Prepared
+_caches = MeshTable()  # Prepared
+_written_revisions = MeshTable()  # what changes.update_revision() said when Blender had written its edits back
+_timers = {}  # full name of an object -> the timer that makes its Prepared
 
 
-class Prepared:
+class ViewCache:
     """Of an object's mesh as it was at this stamp. Making it reads what is seen; the rest follows when it is asked for."""
 
     def __init__(self, obj, stamp):
         self.stamp = stamp
-        arrays.up_to_date(obj)
-        self._seen = seen.seen(obj)
+        arrays.update_mesh(obj)
+        self._seen = visible_surface.compute_visible_surface(obj)
         self._tree = self._hierarchy = self._parts = self._known = None
         self._asked = False
 
     def tree(self, obj):
-        """A picking.FaceTree: made when it is asked for, which nobody does who has a face."""
-        self._tree = self._tree or picking.FaceTree(obj, self._seen)
+        """A picking.FaceRayCaster: made when it is asked for, which nobody does who has a face."""
+        self._tree = self._tree or picking.FaceRayCaster(obj, self._seen)
         return self._tree
 
     def hierarchy(self, obj):
-        """registry.hierarchy(obj), asked again only when there is a new one."""
-        if not self._asked or registry.known(obj.data) is not self._known:
-            self._hierarchy, self._asked, self._parts = registry.hierarchy(obj), True, None
-            self._known = registry.known(obj.data)
+        """registry.get_hierarchy(obj), asked again only when there is a new one."""
+        if not self._asked or registry.find_hierarchy(obj.data) is not self._known:
+            self._hierarchy, self._asked, self._parts = registry.get_hierarchy(obj), True, None
+            self._known = registry.find_hierarchy(obj.data)
         return self._hierarchy
 
     def parts(self, obj):
-        """An overlay.Parts, or None without a hierarchy."""
+        """An overlay.PartTriangles, or None without a hierarchy."""
         hierarchy = self.hierarchy(obj)
         if hierarchy and not self._parts:
-            self._parts = overlay.Parts(self._seen, hierarchy)
+            self._parts = overlay.PartTriangles(self._seen, hierarchy)
         return self._parts
 
     @property
@@ -64,110 +64,110 @@ class Prepared:
             self._parts.advance()
 
 
-def advance(objects):
+def prepare_next_slice(objects):
     """Makes the next slice of what hovering lacks of those that are in Edit Mode; whether there was one. Blender writing
     its edits back, which takes longest, is a slice of its own."""
     edited = [obj for obj in objects if obj.mode == "EDIT"]
     for obj in edited:
-        if not _written_back(obj):
-            arrays.up_to_date(obj)
-            _written[mesh_key(obj.data)] = changes.told(obj.data)
+        if not _is_written_back(obj):
+            arrays.update_mesh(obj)
+            _written_revisions[mesh_key(obj.data)] = changes.update_revision(obj.data)
             return True
-    lacking = next((obj for obj in edited if not _whole(obj)), None)
+    lacking = next((obj for obj in edited if not _is_complete(obj)), None)
     if lacking:
-        with arrays.one_reading():
-            arrays.written_back(lacking)
-            _slice(lacking)
+        with arrays.use_snapshot():
+            arrays.mark_up_to_date(lacking)
+            _prepare_slice(lacking)
     return lacking is not None
 
 
-def _slice(obj):
+def _prepare_slice(obj):
     """The next one: what is seen of the object to begin with, and then what is made of that."""
-    kept = _kept.get(mesh_key(obj.data))
-    if kept and kept.stamp == _stamp(obj):
+    kept = _caches.get(mesh_key(obj.data))
+    if kept and kept.stamp == _compute_stamp(obj):
         kept.advance(obj)
     else:
-        prepared(obj)
+        get_view_cache(obj)
 
 
-def note_written_back(objects):
-    """Within arrays.one_reading(): Blender has nothing to write back of those of which it told nothing since hovering."""
+def mark_written_meshes(objects):
+    """Within arrays.use_snapshot(): Blender has nothing to write back of those of which it told nothing since hovering."""
     for obj in objects:
-        if obj.mode == "EDIT" and _written_back(obj):
-            arrays.written_back(obj)
+        if obj.mode == "EDIT" and _is_written_back(obj):
+            arrays.mark_up_to_date(obj)
 
 
-def _written_back(obj):
-    return _written.get(mesh_key(obj.data)) == changes.told(obj.data)
+def _is_written_back(obj):
+    return _written_revisions.get(mesh_key(obj.data)) == changes.update_revision(obj.data)
 
 
-def _whole(obj):
-    kept = _kept.get(mesh_key(obj.data))
-    return kept is not None and kept.stamp == _stamp(obj) and kept.whole
+def _is_complete(obj):
+    kept = _caches.get(mesh_key(obj.data))
+    return kept is not None and kept.stamp == _compute_stamp(obj) and kept.whole
 
 
 @contextlib.contextmanager
-def unchanged(obj):
+def keep_view_cache(obj):
     """What Blender tells of the object's mesh within it is no more than a selection: what is made stays."""
-    kept = _kept.get(mesh_key(obj.data))
-    fits = kept and kept.stamp == _stamp(obj)
+    kept = _caches.get(mesh_key(obj.data))
+    fits = kept and kept.stamp == _compute_stamp(obj)
     yield
     if fits:
-        kept.stamp = _stamp(obj)
+        kept.stamp = _compute_stamp(obj)
 
 
-def prepared(obj):
+def get_view_cache(obj):
     """The Prepared of the object's mesh as it is now, as far as Blender has told of changes."""
-    stamp, kept = _stamp(obj), _kept.get(mesh_key(obj.data))
+    stamp, kept = _compute_stamp(obj), _caches.get(mesh_key(obj.data))
     if not kept or kept.stamp != stamp:
-        _kept.drop_gone()
-        kept = _kept[mesh_key(obj.data)] = Prepared(obj, stamp)
+        _caches.drop_gone()
+        kept = _caches[mesh_key(obj.data)] = ViewCache(obj, stamp)
     return kept
 
 
-def ready(obj):
+def get_ready_cache(obj):
     """The same for gizmos, while Blender asks which it must not be given new data: outside Edit Mode None as long as it
     isn't there, and then it will be soon."""
-    if obj.mode == "EDIT" or _whole(obj):
-        return prepared(obj)
-    if obj.name_full not in _soon:
-        _soon[obj.name_full] = functools.partial(_make, obj.name_full)
-        bpy.app.timers.register(_soon[obj.name_full])
+    if obj.mode == "EDIT" or _is_complete(obj):
+        return get_view_cache(obj)
+    if obj.name_full not in _timers:
+        _timers[obj.name_full] = functools.partial(_prepare_in_timer, obj.name_full)
+        bpy.app.timers.register(_timers[obj.name_full])
     return None
 
 
-def _make(name):
+def _prepare_in_timer(name):
     """A slice of it; what a timer waits for until the next, or None."""
     obj = find_object(name)
-    if obj and at_rest() and not _whole(obj):
-        _slice(obj)
+    if obj and is_at_rest() and not _is_complete(obj):
+        _prepare_slice(obj)
         return 0
-    _soon.pop(name)
+    _timers.pop(name)
     return None
 
 
-def at_rest():
+def is_at_rest():
     """Whether neither playback nor a render goes on: each frame would have all made anew, or find Blender's data changing."""
     playing = any(window.screen.is_animation_playing for window in bpy.context.window_manager.windows)
     return not (playing or bpy.app.is_job_running("RENDER"))
 
 
-def stop():
+def stop_timers():
     """Makes none any more."""
-    for make in _soon.values():
+    for make in _timers.values():
         if bpy.app.timers.is_registered(make):
             bpy.app.timers.unregister(make)
-    _soon.clear()
+    _timers.clear()
 
 
-def current(obj, parts):
+def is_current(obj, parts):
     """Whether these parts are of the object's mesh as it is now. Makes nothing, so it may be asked while Blender draws.
     """
-    kept = _kept.get(mesh_key(obj.data))
-    return kept is not None and kept._parts is parts and kept.stamp == _stamp(obj)
+    kept = _caches.get(mesh_key(obj.data))
+    return kept is not None and kept._parts is parts and kept.stamp == _compute_stamp(obj)
 
 
-def _stamp(obj):
+def _compute_stamp(obj):
     """Each view layer of each scene is evaluated by itself, with a frame of its own."""
     layer = bpy.context.view_layer
     evaluation = layer.id_data.name_full, layer.name

@@ -6,33 +6,33 @@ import contextlib
 
 import bpy
 
-active = False  # while there is one: what Blender tells of then are no changes of the user's
+is_active = False  # while there is one: what Blender tells of then are no changes of the user's
 
 
 @contextlib.contextmanager
-def scene_apart(*objects):
+def create_temporary_scene(*objects):
     """The view layer of a new scene with these objects alone, in the frame and with the settings by which the user's scene
     evaluates modifiers. The objects stay the caller's. Not to be called while Blender draws."""
-    global active
+    global is_active
     user, scene = bpy.context.scene, bpy.data.scenes.new("Partwheel")
-    active, before = True, active
+    is_active, before = True, is_active
     try:
         scene.frame_current, scene.frame_subframe = user.frame_current, user.frame_subframe
-        for name in ("fps", "fps_base", *filter(_simplifies, user.render.bl_rna.properties.keys())):
+        for name in ("fps", "fps_base", *filter(_is_simplify_setting, user.render.bl_rna.properties.keys())):
             setattr(scene.render, name, getattr(user.render, name))
         for obj in objects:
             scene.collection.objects.link(obj)
         yield scene.view_layers[0]
     finally:
         bpy.data.scenes.remove(scene)
-        active = before
+        is_active = before
 
 
-def _simplifies(name):
+def _is_simplify_setting(name):
     return name == "use_simplify" or name.startswith("simplify_")
 
 
-def depsgraph(layer):
+def update_depsgraph(layer):
     """Of a view layer, up to date."""
     layer.update()
     return layer.depsgraph
