@@ -133,7 +133,9 @@ TEST(Degenerate, MirrorPlanesAreAnErrorOrFinite) {
         size_t count = 0;
         const pw_status status =
             pw_mirror_planes(numbers(mesh), mesh.vertices.size(), corners(mesh), mesh.triangles.size(), planes, &count);
-        if (is_ok(status, mesh)) EXPECT_TRUE(all_finite(planes, 4 * count)) << mesh.name;
+        if (is_ok(status, mesh)) {
+            EXPECT_TRUE(all_finite(planes, 4 * count)) << mesh.name;
+        }
     }
 }
 
@@ -141,15 +143,18 @@ TEST(Degenerate, NormalsAndDistancesAreAnErrorOrFinite) {
     for (const TriMesh& mesh : degenerate_meshes()) {
         const size_t count = mesh.vertices.size();
         std::vector<double> normals(3 * count), distance(count);
-        if (is_ok(pw_vertex_normals(numbers(mesh), count, corners(mesh), mesh.triangles.size(), normals.data()), mesh))
+        if (is_ok(pw_vertex_normals(numbers(mesh), count, corners(mesh), mesh.triangles.size(), normals.data()), mesh)) {
             EXPECT_TRUE(all_finite(normals.data(), normals.size())) << mesh.name;
+        }
         const std::vector<uint8_t> start(count, 1);
-        if (is_ok(pw_surface_distances(numbers(mesh), count, corners(mesh), mesh.triangles.size(), start.data(), distance.data()), mesh))
+        if (is_ok(pw_surface_distances(numbers(mesh), count, corners(mesh), mesh.triangles.size(), start.data(), distance.data()), mesh)) {
             EXPECT_TRUE(all_finite(distance.data(), count)) << mesh.name;
+        }
         std::vector<uint8_t> first(count, 0);
         first[0] = 1;  // what can't be reached is infinitely far, and nothing is no number
-        if (is_ok(pw_surface_distances(numbers(mesh), count, corners(mesh), mesh.triangles.size(), first.data(), distance.data()), mesh))
+        if (is_ok(pw_surface_distances(numbers(mesh), count, corners(mesh), mesh.triangles.size(), first.data(), distance.data()), mesh)) {
             for (const double d : distance) EXPECT_GE(d, 0) << mesh.name;
+        }
     }
 }
 
@@ -161,8 +166,9 @@ TEST(Degenerate, FairingIsAnErrorOrFinite) {
         std::vector<uint8_t> free(mesh.vertices.size(), 1);
         free[0] = 0;
         std::vector<double> result(3 * mesh.vertices.size());
-        if (is_ok(pw_faired(numbers(mesh), mesh.vertices.size(), edges.data(), edges.size() / 2, free.data(), result.data()), mesh))
+        if (is_ok(pw_faired(numbers(mesh), mesh.vertices.size(), edges.data(), edges.size() / 2, free.data(), result.data()), mesh)) {
             EXPECT_TRUE(all_finite(result.data(), result.size())) << mesh.name;
+        }
     }
 }
 
