@@ -24,7 +24,7 @@ class Alike(NamedTuple):
 
 def alike(obj, hierarchy, node, objects=()):
     """[Alike, ...] of all the others of the object, and of those of other objects that have parts, the most alike first:
-    see partwheel.likeness.similar. Sizes are those in the world. The hierarchy is what registry.get_hierarchy(obj) said."""
+    see partwheel.likeness.similar_parts. Sizes are those in the world. The hierarchy is what registry.get_hierarchy(obj) said."""
     searched = [(obj, hierarchy)] + [(other, found) for other in objects if (found := registry.get_hierarchy(other))]
     matrices = [np.array(each.matrix_world) for each, _ in searched]
 
