@@ -1,7 +1,7 @@
-"""One build at default settings, in a process of its own: prints what it was, or why there is none, as JSON. Seconds are
-processor time, of all threads together, so that a busy machine changes little.
+"""Builds one model at default settings in a separate process and prints the result or the error as JSON. Times are processor
+seconds of all threads, which depend little on the machine's load.
 
-Run as: build/venv/core/bin/python any_build.py MODEL [MUTATION SEED]   the mutation being one of tests/reliability's
+Run as: build/venv/core/bin/python any_build.py MODEL [MUTATION SEED]   MUTATION: a function of tests/reliability/mutations.py
 """
 
 import json
@@ -20,19 +20,19 @@ from partwheel import Hierarchy, PartwheelError, meshes  # noqa: E402
 
 def main():
     path, *mutation = sys.argv[1:]
-    vertices, triangles, faces, face_count, _ = meshes.read(path)
+    vertices, triangles, faces, face_count = meshes.read(path)[:4]
     if mutation:
         kind, seed = mutation
         vertices, triangles = getattr(mutations, kind)(np.random.default_rng(int(seed)), vertices, triangles)
         faces, face_count = None, None
     report = {"faces": len(triangles)}
-    began = time.process_time()
+    start = time.process_time()
     try:
         summary = Hierarchy.build(vertices, triangles, faces, face_count).summary
         report.update(way=summary.rung, deviation=summary.deviation)
     except PartwheelError as error:
         report.update(way=error.name, why=str(error))
-    report["seconds"] = time.process_time() - began
+    report["seconds"] = time.process_time() - start
     with open("/proc/self/status") as file:
         report["peak"] = 1024 * int(re.search(r"VmHWM:\s+(\d+)", file.read()).group(1))
     print(json.dumps(report))

@@ -1,4 +1,4 @@
-"""Any mesh: every real model there is, as it is, and broken ones made from them; each built at default settings."""
+"""Any mesh: all real models, unchanged and with defects added; each built at default settings."""
 
 from collections import Counter
 from pathlib import Path
@@ -9,27 +9,27 @@ from programs import BUILD, ROOT, run
 
 PYTHON = ROOT / "build" / "venv" / "core" / "bin" / "python"
 PROGRAM = Path(__file__).with_name("any_build.py")
-HANGS = ROOT.parent / "shared" / "meshes" / "ring.off"  # clean, and without end for TetGen's improvement
+HANGS = ROOT.parent / "shared" / "meshes" / "ring.off"  # clean, but TetGen's mesh improvement does not terminate on it
 MUTATIONS = {"delete": "holes", "flip": "turned faces", "duplicate": "doubled faces", "intersect": "a crossing copy",
              "tremble": "noise", "slivers": "slivers", "dust": "dust"}
 MUTANTS = 300
-LEAST, MOST = 1_000, 60_000  # faces of what is mutated
+MIN_FACES, MAX_FACES = 1_000, 60_000  # of a model that is mutated
 TIME_LIMIT = 200
-ALIKE = 2  # a clean model with at most so many times as many or as few faces is one of as many faces
+SIZE_RATIO = 2  # models whose face counts differ by at most this factor are compared
 SHEETS = {"not solid"}
-LARGE = 1_000_000  # faces of one more, subdivided
-NO_MESH = {"b9.ply"}  # a cloud of points
+LARGE = 1_000_000  # faces of one more model, which is subdivided
+NO_MESH = {"b9.ply"}  # a point cloud
 
 
 def measure(quick):
-    """One after the other, so that none takes time from another."""
+    """Builds the models one after another, so that they don't compete for cores."""
     files = [path for path in sorted(models.DEMO.iterdir()) if path.name not in NO_MESH]
     benchmark, source = models.real(0, 10**9)
     if benchmark[0].parent != models.DEMO:
         files += benchmark
     sizes = sorted((models.face_count(path), path) for path in files if path.suffix == ".off")
-    whole = models.spread([path for faces, path in sizes if LEAST <= faces <= MOST], MUTANTS // len(MUTATIONS) + 1)
-    mutants = [(path, kind, str(seed)) for seed, path in enumerate(whole) for kind in MUTATIONS][:MUTANTS]
+    originals = models.spread([path for faces, path in sizes if MIN_FACES <= faces <= MAX_FACES], MUTANTS // len(MUTATIONS) + 1)
+    mutants = [(path, kind, str(seed)) for seed, path in enumerate(originals) for kind in MUTATIONS][:MUTANTS]
     large = [] if quick else [models.write(f"natural-{LARGE}", models.subdivided(models.read(models.NATURAL), LARGE))]
     files += large
     builds = [(path,) for path in [*files, *[HANGS] * HANGS.exists()]] + mutants
@@ -47,14 +47,14 @@ def measure(quick):
 
 
 def figures(rows):
-    """What the goals are about."""
+    """The figures that have goals."""
     built = [row for row in rows if "deviation" in row]
     clean = [row for row in built if row["way"] == "exact"]
     ratios = []
     for row in built:
-        alike = [other["seconds"] for other in clean if 1 / ALIKE <= other["faces"] / row["faces"] <= ALIKE]
-        if row["way"] != "exact" and alike:
-            ratios.append(row["seconds"] / median(alike))
+        comparable = [other["seconds"] for other in clean if 1 / SIZE_RATIO <= other["faces"] / row["faces"] <= SIZE_RATIO]
+        if row["way"] != "exact" and comparable:
+            ratios.append(row["seconds"] / median(comparable))
     return {"ways": Counter(row["way"] for row in rows).most_common(),
             "longest": max(row["seconds"] / max(10, row["faces"] / 20_000) for row in built),
             "broken": len(ratios), "broken_over_clean": median(ratios),
@@ -62,7 +62,7 @@ def figures(rows):
 
 
 def table(rows):
-    """A line each, those that took longest first."""
+    """Lines of text, one per model, the slowest first."""
     lines = [f"{'model':48}{'faces':>9}  {'way':10}{'seconds':>8}{'MB':>7}{'away':>8}"]
     for row in sorted(rows, key=lambda row: -row.get("seconds", TIME_LIMIT)):
         seconds, peak = (f"{row['seconds']:.2f}", f"{row['peak'] / 1e6:.0f}") if "seconds" in row else ("", "")

@@ -1,4 +1,4 @@
-"""What a mouse move costs while a part of 20,000 or 100,000 vertices is deformed: in the engine, and in Blender."""
+"""The cost of a mouse move while a part of 20,000 or 100,000 vertices is deformed: in the library, and in Blender."""
 
 import json
 import os
@@ -8,8 +8,8 @@ import models
 import numpy as np
 from programs import BUILD, ROOT, Failure, run
 
-PARTS = {20_000: 33, 100_000: 100}  # vertices of the part, the goal in ms
-MOVES, ITERATIONS = 60, 1  # the iterations of a mouse move in the add-on, for parts of these sizes
+PARTS = {20_000: 33, 100_000: 100}  # number of vertices of the part -> goal in ms
+MOVES, ITERATIONS = 60, 1  # iterations per mouse move, as in the add-on for parts of these sizes
 AXIS = 1
 SCRIPT = ROOT / "scripts/bench_parts/deform_in_blender.py"
 BLENDERS = (["blender", "-b", "-noaudio", "--factory-startup", "--python-exit-code", "9", "--python", SCRIPT],
@@ -18,7 +18,7 @@ CLEAN = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": os.environ.get("HOME",
 
 
 def measure(quick):
-    """As the add-on does it: the part and the faces around it, nothing else."""
+    """Deforms the same region as the add-on: the part and the faces around it."""
     moves = MOVES // 3 if quick else MOVES
     sizes = []
     for count, goal in PARTS.items():
@@ -26,26 +26,26 @@ def measure(quick):
         part = np.argsort(-vertices[:, AXIS], kind="stable")[:count]
         inside = np.zeros(len(vertices), bool)
         inside[part] = True
-        near = triangles[inside[triangles].any(axis=1)]
-        used, near = np.unique(near, return_inverse=True)
-        path = models.write(f"part-{count}", (vertices[used], near.reshape(-1, 3)))
+        region = triangles[inside[triangles].any(axis=1)]
+        used, region = np.unique(region, return_inverse=True)
+        path = models.write(f"part-{count}", (vertices[used], region.reshape(-1, 3)))
         report, why_not = run(BUILD / "deform_bench", path, AXIS, count, moves, ITERATIONS)
         if report is None:
             raise Failure(f"the part of {count} vertices: {why_not}")
         print(f"   {count} vertices: {1000 * report['move']['median']:.1f} ms a move (processor: "
               f"{1000 * report['move']['median_cpu']:.1f} ms), {report['create'][0]:.2f} s to begin")
-        given = path.with_suffix(".npz")
-        np.savez(given, vertices=vertices, triangles=triangles, part=part)
+        mesh_file = path.with_suffix(".npz")
+        np.savez(mesh_file, vertices=vertices, triangles=triangles, part=part)
         sizes.append({"count": count, "goal": goal, **report,
-                      "blenders": [in_blender(blender, given, moves) for blender in BLENDERS]})
+                      "blenders": [in_blender(blender, mesh_file, moves) for blender in BLENDERS]})
     return {"iterations": ITERATIONS, "sizes": sizes}
 
 
-def in_blender(blender, given, moves):
-    """What deform_in_blender.py reports."""
-    result = given.with_suffix(".json")
+def in_blender(blender, mesh_file, moves):
+    """The report of deform_in_blender.py."""
+    result = mesh_file.with_suffix(".json")
     result.unlink(missing_ok=True)
-    done = subprocess.run([*blender, "--", given, str(moves), result], env=CLEAN, capture_output=True, text=True)
+    done = subprocess.run([*blender, "--", mesh_file, str(moves), result], env=CLEAN, capture_output=True, text=True)
     if not result.exists():
         raise Failure(f"{blender[0]} ended with code {done.returncode}: {done.stderr.strip()[-300:]}")
     report = json.loads(result.read_text())

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a mouse move costs inside Blender while a part is deformed: all that the add-on does for it, in Edit Mode.
+"""Measures a mouse move inside Blender while a part is deformed: everything that the add-on does for it, in Edit Mode.
 
     blender -b --factory-startup --python deform_in_blender.py -- MESH.npz MOVES RESULT.json
 
-The same steps as the operator's: the region follows its handle, its places are read, written into Blender's mesh, and
-normals found. MESH.npz: vertices, triangles, and part, the vertices of the part, ordered so that the first tenth is the
-handle. RESULT.json, in seconds: begin, what is done once while Blender waits, and prepare, what is done once in the
-background; for a move the medians of follow, write and whole, and of
-what Blender itself then does to bring its scene up to date.
+The steps are the operator's: the region follows its handle, its positions are read and written to Blender's mesh, and the
+normals are computed. MESH.npz: vertices, triangles, and part, the vertices of the part, of which the first tenth is the
+handle. RESULT.json, in seconds: begin, done once while Blender waits; prepare, done once in the background; and the medians
+over the moves of follow, write, whole and blender_update, Blender's own update of the scene.
 """
 import importlib.util
 import json
@@ -21,15 +20,15 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "native" / "python"))
-# The add-on from the checkout, under the name that it has where it is installed.
+# The add-on of this source tree, under its installed name.
 spec = importlib.util.spec_from_file_location("partwheel_addon", ROOT / "addon" / "partwheel" / "__init__.py")
 sys.modules[spec.name] = importlib.util.module_from_spec(spec)
 methods, pens, regions = (importlib.import_module(f"partwheel_addon.deform.{name}")
                           for name in ("methods", "pen", "region"))
 
 
-def edited(vertices, triangles):
-    """An object with this mesh, in Edit Mode."""
+def create_edited_object(vertices, triangles):
+    """Creates an object with this mesh and enters Edit Mode."""
     mesh = bpy.data.meshes.new("part")
     mesh.from_pydata(vertices, [], triangles.tolist())
     obj = bpy.data.objects.new("part", mesh)
@@ -39,8 +38,8 @@ def edited(vertices, triangles):
     return obj
 
 
-def turned(angle, center):
-    """(4,4): about the z axis through center."""
+def rotation(angle, center):
+    """(4, 4) rotation about the z axis through center; angle in radians."""
     matrix = np.eye(4)
     matrix[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
     matrix[:3, 3] = center - matrix[:3, :3] @ center
@@ -48,24 +47,24 @@ def turned(angle, center):
 
 
 def main():
-    given, moves, result = sys.argv[sys.argv.index("--") + 1:]
-    given, moves = np.load(given), int(moves)
-    vertices, triangles, part = given["vertices"], given["triangles"], given["part"]
-    obj = edited(vertices, triangles)
+    mesh_file, moves, result = sys.argv[sys.argv.index("--") + 1:]
+    arrays, moves = np.load(mesh_file), int(moves)
+    vertices, triangles, part = arrays["vertices"], arrays["triangles"], arrays["part"]
+    obj = create_edited_object(vertices, triangles)
     inside = np.zeros(len(vertices), bool)
     inside[part] = True
-    began = time.perf_counter()
+    start = time.perf_counter()
     region = regions.Region(obj, np.flatnonzero(inside[triangles].any(axis=1)))
     handle = np.intersect1d(region.vertices, part[:len(part) // 10], return_indices=True)[1]
     shape = methods.AsRigidAsPossible(region, [handle])
     pen = pens.Pen(obj, region)
-    begin = time.perf_counter() - began
+    begin = time.perf_counter() - start
     shape.jump([np.eye(4)])
-    prepare = time.perf_counter() - began - begin
+    prepare = time.perf_counter() - start - begin
     steps = []
     for move in range(1, moves + 1):
         times = [time.perf_counter()]
-        shape.follow([turned(0.5 * move / moves, region.rest[handle].mean(axis=0))])
+        shape.follow([rotation(0.5 * move / moves, region.rest[handle].mean(axis=0))])
         times.append(time.perf_counter())
         pen.draft(obj, shape.points())
         times.append(time.perf_counter())

@@ -1,5 +1,5 @@
-"""Large meshes: one natural model of 1, 4 and 10 million faces, by the coarser copy; at a million also exactly, how well
-the wheel's stops agree, and how well they could."""
+"""Large meshes: one natural model with 1, 4 and 10 million faces, built on a coarser copy. With 1 million also at full
+resolution: how well the wheel stops agree, and how well they could."""
 
 from pathlib import Path
 
@@ -17,16 +17,17 @@ def measure(quick):
     mesh, rows = models.read(models.NATURAL), []
     for faces in QUICK if quick else SIZES:
         mesh = models.subdivided(mesh, faces)
-        rows.append(one(mesh, *["beside"] * (faces == SIZES[0])))
+        rows.append(build(mesh, *["compare"] * (faces == SIZES[0])))
         print(f"   {faces} faces: {rows[-1]['seconds']:.1f} s of processors, {rows[-1]['peak'] / 1e9:.2f} GB")
     return {"model": models.NATURAL.stem, "sizes": rows}
 
 
-def one(mesh, *how):
+def build(mesh, *options):
+    """The report of large_build.py."""
     WORK.mkdir(parents=True, exist_ok=True)
     path = WORK / "large.npz"
     np.savez(path, vertices=mesh[0].astype(np.float32), triangles=mesh[1].astype(np.int32))
-    row, why_not = run(PYTHON, PROGRAM, path, *how)
+    row, why_not = run(PYTHON, PROGRAM, path, *options)
     path.unlink()
     if row is None:
         raise Failure(f"{len(mesh[1]):,} faces: {why_not}")

@@ -1,10 +1,9 @@
-"""One build of a large mesh, in a process of its own: prints what it took as JSON. Seconds are processor time, of all
-threads together.
+"""Builds a large mesh in a separate process and prints time and memory as JSON. Times are processor seconds of all threads.
 
-Run as: build/venv/core/bin/python large_build.py MODEL.npz [beside]
-beside: exactly, too, and how well the wheel's stops of the one are stops of the other. Then two bounds of that: the same
-of two exact ones, of which the first has its vertices moved by a millionth of the model's size; and how well the
-tetrahedra of the copy can tell the exact stops, whatever tree is made of them.
+Run as: build/venv/core/bin/python large_build.py MODEL.npz [compare]
+compare: also builds the mesh at full resolution, and measures how well the wheel stops of the two hierarchies overlap.
+Two bounds on that: the overlap of two builds at full resolution, one with vertices moved by a millionth of the model's size;
+and how well sets of the copy's tetrahedra can represent the stops, independent of the tree.
 """
 
 import json
@@ -20,40 +19,41 @@ import numpy as np  # noqa: E402
 from partwheel import Hierarchy  # noqa: E402
 
 CLICKS = 200
-SHAKE = 1e-6
+JITTER = 1e-6  # of the model's size
 
 
-def peak():
+def peak_memory():
+    """In bytes."""
     with open("/proc/self/status") as file:
         return 1024 * int(re.search(r"VmHWM:\s+(\d+)", file.read()).group(1))
 
 
-def built(vertices, triangles, exactly):
+def build(vertices, triangles, exactly):
     """(Hierarchy, report)"""
-    began = time.process_time()
+    start = time.process_time()
     hierarchy = Hierarchy.build(vertices, triangles, exactly=exactly)
-    return hierarchy, {"faces": len(triangles), "seconds": time.process_time() - began, "peak": peak(),
+    return hierarchy, {"faces": len(triangles), "seconds": time.process_time() - start, "peak": peak_memory(),
                        "way": hierarchy.summary.rung}
 
 
 def overlaps(vertices, triangles, coarse, exact):
-    """Of each wheel stop of some clicks the largest overlap, by area, with a stop of the exact tree at that face."""
+    """For each wheel stop of CLICKS random faces, its largest overlap (intersection over union of area) with an exact stop."""
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    areas, found = np.linalg.norm(np.cross(b - a, c - a), axis=1), []
+    areas, result = np.linalg.norm(np.cross(b - a, c - a), axis=1), []
     for face in np.random.default_rng(1).choice(len(areas), CLICKS, p=areas / areas.sum()):
-        # The stops of a path lie in each other: the first that holds each face tells all that two paths share.
+        # The stops of a path are nested, so the first stop that contains each face determines all intersections.
         (mine, counts), (theirs, others) = (first_stops(hierarchy, face) for hierarchy in (coarse, exact))
         shared = np.bincount(mine * others + theirs, areas, counts * others).reshape(counts, others)
         shared = shared.cumsum(axis=0).cumsum(axis=1)
         union = shared[:, -1:] + shared[-1:] - shared
-        found += (shared / union).max(axis=1).tolist()
-    return found
+        result += (shared / union).max(axis=1).tolist()
+    return result
 
 
-def told(vertices, triangles, coarse, exact):
-    """Of each exact wheel stop of some clicks its largest overlap, by area, with tetrahedra of the coarse tree."""
+def best_overlaps(vertices, triangles, coarse, exact):
+    """For each exact wheel stop of CLICKS random faces, its largest overlap with any set of tetrahedra of the coarse tree."""
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    areas, found = np.linalg.norm(np.cross(b - a, c - a), axis=1), []
+    areas, result = np.linalg.norm(np.cross(b - a, c - a), axis=1), []
     count = len(coarse.tetrahedra)
     tetrahedron = np.empty(len(areas), np.int64)
     tetrahedron[coarse.order] = np.repeat(np.arange(count), (coarse.last - coarse.first)[:count])
@@ -63,14 +63,14 @@ def told(vertices, triangles, coarse, exact):
             faces = exact.faces(node)
             inside = np.bincount(tetrahedron[faces], areas[faces], count)
             some = np.flatnonzero(inside)
-            most = some[np.argsort(-inside[some] / whole[some], kind="stable")]  # the best set is a beginning of this
+            most = some[np.argsort(-inside[some] / whole[some], kind="stable")]  # the best set is a prefix
             union = inside.sum() + np.cumsum(whole[most] - inside[most])
-            found.append(float((np.cumsum(inside[most]) / union).max()))
-    return found
+            result.append(float((np.cumsum(inside[most]) / union).max()))
+    return result
 
 
 def first_stops(hierarchy, face):
-    """(the number of the first of the face's stops that holds each face, how many stops there are)"""
+    """((F,) index of the first of the face's stops that contains each face, number of stops)"""
     stops = hierarchy.wheel(face)[0].tolist()
     first = np.full(len(hierarchy.order), len(stops) - 1)
     for number, node in reversed(list(enumerate(stops))):
@@ -78,22 +78,22 @@ def first_stops(hierarchy, face):
     return first, len(stops)
 
 
-def spread(found):
-    return {"median": float(np.median(found)), "mean": float(np.mean(found)), "stops": len(found)}
+def statistics(values):
+    return {"median": float(np.median(values)), "mean": float(np.mean(values)), "stops": len(values)}
 
 
 def main():
-    path, *how = sys.argv[1:]
+    path, *options = sys.argv[1:]
     with np.load(path) as file:
         vertices, triangles = file["vertices"].astype(float), file["triangles"]
-    hierarchy, report = built(vertices, triangles, False)
-    if how:
-        exact, report["exactly"] = built(vertices, triangles, True)
-        report["overlap"] = spread(overlaps(vertices, triangles, hierarchy, exact))
-        report["told"] = spread(told(vertices, triangles, hierarchy, exact))
+    hierarchy, report = build(vertices, triangles, False)
+    if options:
+        exact, report["exactly"] = build(vertices, triangles, True)
+        report["overlap"] = statistics(overlaps(vertices, triangles, hierarchy, exact))
+        report["best_overlap"] = statistics(best_overlaps(vertices, triangles, hierarchy, exact))
         size = np.linalg.norm(np.ptp(vertices, axis=0))
-        moved = vertices + SHAKE * size * np.random.default_rng(1).normal(size=vertices.shape)
-        report["shaken"] = spread(overlaps(vertices, triangles, built(moved, triangles, True)[0], exact))
+        moved = vertices + JITTER * size * np.random.default_rng(1).normal(size=vertices.shape)
+        report["jittered"] = statistics(overlaps(vertices, triangles, build(moved, triangles, True)[0], exact))
     print(json.dumps(report))
 
 

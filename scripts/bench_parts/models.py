@@ -1,5 +1,5 @@
-"""Models to measure with: real ones, and shapes made by formula. Coordinates of what is made here are single-precision
-numbers, as in Blender; that also keeps TetGen from the exactly regular input that it is very slow on.
+"""Models for benchmarks: real ones, and generated shapes. Generated coordinates are rounded to single precision, as in Blender;
+this also avoids exactly regular input, on which TetGen is very slow.
 
 A mesh is (vertices (V,3) float64, triangles (T,3) int), closed and counter-clockwise seen from outside.
 """
@@ -18,7 +18,7 @@ SEED = 1
 
 
 def real(low, high):
-    """OFF files of all real models with low to high faces, smallest first, and a sentence on where they are from."""
+    """(OFF files of all real models with low to high faces, smallest first; the source of the models)"""
     if PSB.exists():
         folder = WORK / "psb"
         if not (folder / "complete").exists():
@@ -31,20 +31,20 @@ def real(low, high):
         files, source = sorted(folder.glob("*.off")), "the Princeton Segmentation Benchmark"
     else:
         files = sorted(DEMO.glob("*.off"))
-        source = f"libcgal-demo, for the Princeton Segmentation Benchmark is not there ({PSB.relative_to(ROOT.parent)})"
+        source = f"libcgal-demo, because the Princeton Segmentation Benchmark is not available ({PSB.relative_to(ROOT.parent)})"
     sizes = [(face_count(file), file) for file in files]
     return [file for faces, file in sorted(sizes) if low <= faces <= high], source
 
 
 def spread(files, count):
-    """count of them, evenly from first to last."""
+    """count files, evenly spaced from first to last."""
     if len(files) <= count:
         return files
     return [files[round(i * (len(files) - 1) / (count - 1))] for i in range(count)]
 
 
 def face_count(path):
-    """0 for a file that is not in OFF."""
+    """The number of faces in an OFF file; 0 for any other file."""
     with open(path) as file:
         words = file.readline().split() + file.readline().split()
     return int(words[2]) if words[0] == "OFF" and len(words) > 2 and words[2].isdigit() else 0
@@ -56,12 +56,12 @@ def read(path):
     vertices = np.array(words[4:4 + 3 * v], float).reshape(v, 3)
     triangles = np.array(words[4 + 3 * v:4 + 3 * v + 4 * f], int).reshape(f, 4)
     if not (triangles[:, 0] == 3).all():
-        raise Failure(f"{path} has faces that are no triangles")
+        raise Failure(f"{path} has faces that are not triangles")
     return vertices, triangles[:, 1:]
 
 
 def write(name, mesh):
-    """The path of an OFF file with the mesh, its coordinates rounded to single precision."""
+    """Writes an OFF file with coordinates rounded to single precision; returns its path."""
     vertices, triangles = mesh
     WORK.mkdir(parents=True, exist_ok=True)
     path = WORK / f"{name}.off"
@@ -72,12 +72,12 @@ def write(name, mesh):
     return path
 
 
-# ---- A natural model, as fine as you like
+# ---- A natural model at any resolution
 
 
 def subdivided(mesh, faces):
-    """The mesh with triangles bisected, longest edges first, to exactly so many faces. New vertices lie on the curved
-    PN triangles of Vlachos et al. 2001, so that the surface stays smooth and nothing becomes coplanar."""
+    """The mesh, subdivided to this number of faces by bisecting the longest edges first. New vertices lie on the PN triangles of
+    Vlachos et al. 2001, so that the surface stays smooth and no faces become coplanar."""
     vertices, triangles = np.array(mesh[0], float), np.array(mesh[1], int)
     while len(triangles) < faces:
         normals = vertex_normals(vertices, triangles)
@@ -85,8 +85,8 @@ def subdivided(mesh, faces):
         length = np.linalg.norm(vertices[half[:, :, 0]] - vertices[half[:, :, 1]], axis=2)
         ends = np.sort(half, axis=2)
         key = ends[:, :, 0] * len(vertices) + ends[:, :, 1]
-        # The longest edge of each triangle, equal ones by their ends. An edge that is the longest of both its triangles
-        # can be bisected with no regard to any other.
+        # The longest edge of each triangle, ties broken by its vertices. Edges that are the longest of both their triangles
+        # can be bisected independently.
         corner = np.lexsort((key, length), axis=1)[:, -1]
         mine = key[np.arange(len(triangles)), corner]
         order = np.argsort(mine, kind="stable")
@@ -123,13 +123,13 @@ def vertex_normals(vertices, triangles):
 
 
 def ball(faces):
-    """The convex hull of random points on a sphere: every union is convex or as good as, all costs are nearly 0."""
+    """The convex hull of random points on a sphere: every union is nearly convex, and all costs are nearly 0."""
     points = np.random.default_rng(SEED).normal(size=(faces // 2 + 2, 3))
     return hull(rounded(points / np.linalg.norm(points, axis=1)[:, None]))
 
 
 def strip(faces):
-    """A ribbon a thousand times as long as wide, in waves."""
+    """A wavy ribbon, a thousand times as long as wide."""
     rings = faces // 8 + 1
     t = np.linspace(0, 1000, rings)
     wave = np.sin(t / 7)
@@ -139,10 +139,10 @@ def strip(faces):
 
 
 def box(faces):
-    """A cube with random points on its sides: exactly coplanar, irregular. Every union of tetrahedra that is convex
-    costs exactly 0, and so do very many others."""
+    """A cube with random points on its sides: irregular and exactly coplanar. Convex unions of tetrahedra cost exactly 0, and
+    there are very many of them."""
     random = np.random.default_rng(SEED)
-    # Points on the edges are shared by two sides, so that the sides fit; V - 2 = F / 2.
+    # Two sides share the points on their edge, so that the sides match; V - 2 = F / 2.
     n = faces // 2 + 2 - 8
     on_edge = max(1, int(np.sqrt(n) / 10))
     points = [corner for corner in np.ndindex(2, 2, 2)]
@@ -170,9 +170,9 @@ def box(faces):
 
 
 def comb(faces):
-    """A bar with hundreds of teeth: one cluster with very many neighbours."""
+    """A bar with hundreds of teeth: one cluster with very many neighbors."""
     height = 12
-    teeth = max(2, round(faces / (8 * height + 14)))  # each with its piece of the bar
+    teeth = max(2, round(faces / (8 * height + 14)))  # each with its section of the bar
     cells = np.zeros((2 * teeth + 1, 1, height + 1), bool)
     cells[:, :, 0] = True
     cells[1::2] = True
@@ -201,23 +201,23 @@ def jittered(vertices, amount):
 
 
 def rounded(vertices):
-    """To single precision, before what must be exact is made from them."""
+    """Rounded to single precision, before exact shapes are built from them."""
     return vertices.astype(np.float32).astype(float)
 
 
 def hull(points):
-    """Their convex hull, all points being extreme."""
-    made = ConvexHull(points)
-    triangles = made.simplices.copy()
+    """The convex hull of points in convex position."""
+    qhull = ConvexHull(points)
+    triangles = qhull.simplices.copy()
     a, b, c = (points[triangles[:, k]] for k in range(3))
-    inward = (np.cross(b - a, c - a) * made.equations[:, :3]).sum(1) < 0
+    inward = (np.cross(b - a, c - a) * qhull.equations[:, :3]).sum(1) < 0
     triangles[inward] = triangles[inward][:, ::-1]
     used, place = np.unique(triangles, return_inverse=True)
     return points[used], place.reshape(triangles.shape)
 
 
 def tube(vertices, rings, across):
-    """Rings of `across` vertices each, joined one to the next, closed by a fan at each end."""
+    """Consecutive rings of `across` vertices each, connected, and closed by a fan at each end."""
     ring, k = np.meshgrid(np.arange(rings - 1), np.arange(across), indexing="ij")
     a, b = ring * across + k, ring * across + (k + 1) % across
     c, d = a + across, b + across
@@ -228,7 +228,7 @@ def tube(vertices, rings, across):
 
 
 def surface_of(cells):
-    """The outside of a grid of unit cubes, two triangles a square."""
+    """The boundary of a set of unit cubes, two triangles per square."""
     full = np.pad(cells, 1)
     squares = []
     for axis in range(3):
@@ -246,7 +246,7 @@ def surface_of(cells):
 
 
 def icosphere():
-    """The icosahedron, bisected once: 80 faces on the unit sphere."""
+    """The icosahedron, subdivided once: 80 faces on the unit sphere."""
     g = (1 + 5 ** 0.5) / 2
     points = np.array([p for s in (-1, 1) for t in (-g, g) for p in ((0, s, t), (s, t, 0), (t, 0, s))], float)
     vertices, triangles = hull(points / np.linalg.norm(points, axis=1)[:, None])

@@ -1,6 +1,6 @@
-"""A peer on one model, in a process of its own: prints its parts, seconds [wall, cpu] and peak memory in bytes as JSON.
+"""Runs a competing tool on one model; prints its number of parts, seconds [wall, cpu] and peak memory in bytes as JSON.
 
-Run as: build/venv/peers/bin/python peer.py coacd|vhacd MODEL.off   All options are the peer's own defaults.
+Run as: build/venv/peers/bin/python peer.py coacd|vhacd MODEL.off   With the tool's default options.
 """
 
 import json
@@ -37,7 +37,7 @@ def read(path):
 def main():
     name, path = sys.argv[1:]
     answer = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)  # what the peer prints is none of it
+    os.dup2(2, 1)  # what the tool prints must not mix with the answer
     decompose = {"coacd": coacd, "vhacd": vhacd}[name](*read(path))
     wall, cpu = time.monotonic(), time.process_time()
     parts = decompose()

@@ -1,4 +1,4 @@
-"""Other ways to find parts, on the same models in the same run: CoACD, V-HACD, CGAL's SDF segmentation."""
+"""Competing tools on the same models in the same run: CoACD, V-HACD, CGAL's SDF segmentation."""
 
 from pathlib import Path
 from statistics import median
@@ -18,14 +18,14 @@ TIME_LIMIT = 600
 
 
 def measure(quick):
-    """Each peer with its defaults, each model in a process of its own, turn about. Ours is the whole hierarchy, from
-    arrays to saved bytes, in one thread; CoACD and V-HACD take all cores they like. Seconds are wall time."""
+    """Runs each tool with its default options, each model in a separate process, the tools alternating. Partwheel builds the whole
+    hierarchy, from arrays to saved bytes, in one thread; CoACD and V-HACD use all cores. Seconds are wall time."""
     files, source = models.real(10_000, 30_000)
     rows = []
     for first in [0] if quick else models.spread(range(len(files)), 6)[:-1]:
-        # From there on the first that is closed.
-        tried = ((file, ours(file)) for file in files[first:])
-        file, mine = next((found for found in tried if "error" not in found[1]), (None, None))
+        # The first closed model from there on.
+        attempts = ((file, ours(file)) for file in files[first:])
+        file, mine = next((attempt for attempt in attempts if "error" not in attempt[1]), (None, None))
         if file is None:
             raise Failure("no model could be built")
         row = {"model": file.stem, "faces": models.face_count(file), "Partwheel": mine}

@@ -1,10 +1,10 @@
-"""Time and memory against size, beside t log^2 t: like the paper's Figure 10."""
+"""Plots time and memory against size, with t log^2 t for comparison, like the paper's Figure 10."""
 
 import matplotlib
 import numpy as np
 
 matplotlib.use("agg")
-import matplotlib.pyplot as plt  # noqa: E402  (after the choice of where to draw)
+import matplotlib.pyplot as plt  # noqa: E402  (after the backend is chosen)
 
 
 def draw(report, path):
@@ -15,7 +15,7 @@ def draw(report, path):
 
     left.plot(tets, [size["htc_seconds"] for size in sizes], "o-", color="tab:blue", label="clustering + dendrogram")
     left.plot(tets, [size["tetgen_seconds"] for size in sizes], "s-", color="tab:orange", label="TetGen")
-    # Through the first measured point.
+    # The curve c t log^2 t through the first measurement.
     fine = np.linspace(tets[0], tets[-1], 200)
     per_tet = sizes[0]["htc_seconds"] / tets[0]
     growth = (np.log(1e6 * fine) / np.log(1e6 * tets[0])) ** 2

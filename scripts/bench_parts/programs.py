@@ -1,4 +1,4 @@
-"""Running the measuring programs, each model in a process of its own."""
+"""Runs the benchmark programs, each model in a separate process."""
 
 import contextlib
 import json
@@ -12,16 +12,16 @@ import threading
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build" / "bench"
-WORK = BUILD / "models"  # models made or unpacked for the benchmarks
-TIME_LIMIT = 1200  # seconds for any one process, so that nothing hangs for ever
+WORK = BUILD / "models"  # generated and extracted models
+TIME_LIMIT = 1200  # seconds for one process, so that nothing hangs forever
 
 
 class Failure(Exception):
-    """Nothing more can be measured. The message says why."""
+    """The measurement can't continue. The message says why."""
 
 
 def run(*command, time_limit=TIME_LIMIT):
-    """-> (what the program printed as JSON, None) or (None, why there is none)."""
+    """Runs a program: (its JSON output, None) or (None, the reason of its failure)."""
     try:
         done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=time_limit)
     except subprocess.TimeoutExpired:
@@ -33,7 +33,7 @@ def run(*command, time_limit=TIME_LIMIT):
 
 
 def stages(model, repetitions, quality=0):
-    """What stages_bench prints of one model, and why not if it can't be built."""
+    """Runs stages_bench on a model: (report, None) or (None, why it can't be built)."""
     try:
         with Stages(model, quality) as program:
             return {**program.report, "seconds": [program.again() for _ in range(repetitions)]}, None
@@ -42,8 +42,8 @@ def stages(model, repetitions, quality=0):
 
 
 class Stages(contextlib.AbstractContextManager):
-    """stages_bench with one model, to be run again and again: several of them may take turns. Raises Failure with what
-    it said last."""
+    """A stages_bench process with one model that can be built repeatedly, so that several models can alternate. Raises Failure
+    with the program's last line of output."""
 
     def __init__(self, model, quality=0):
         self._errors = tempfile.TemporaryFile("w+")
@@ -56,8 +56,8 @@ class Stages(contextlib.AbstractContextManager):
             raise
 
     def again(self):
-        """One more run: {stage: [wall seconds, processor seconds]}"""
-        with contextlib.suppress(BrokenPipeError):  # it has ended: _read() says why
+        """Builds once more: {stage: [wall seconds, processor seconds]}"""
+        with contextlib.suppress(BrokenPipeError):  # the process has ended; _read() raises the reason
             print(file=self._process.stdin, flush=True)
         return self._read()
 
@@ -69,18 +69,18 @@ class Stages(contextlib.AbstractContextManager):
         limit = threading.Timer(TIME_LIMIT, self._process.kill)
         limit.start()
         line = self._process.stdout.readline()
-        late = not limit.is_alive()
+        is_late = not limit.is_alive()
         limit.cancel()
         if line:
             return json.loads(line)
         code = self._process.wait()
         self._errors.seek(0)
-        errors = f"not done after {TIME_LIMIT} s" if late else self._errors.read().strip()
+        errors = f"not done after {TIME_LIMIT} s" if is_late else self._errors.read().strip()
         raise Failure((errors or f"ended with code {code}").splitlines()[-1])
 
 
 def machine():
-    """What the numbers depend on: processor, cores, system, commit."""
+    """What the results depend on: processor, cores, load, commit."""
     name = re.search(r"model name\s*: (.*)", pathlib.Path("/proc/cpuinfo").read_text())
     commit = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True, text=True)
     return {"processor": name.group(1) if name else platform.machine(), "cores": os.cpu_count(),

@@ -1,4 +1,4 @@
-"""What a user waits for on a finished hierarchy: a click, a notch, loading."""
+"""Queries on a finished hierarchy that a user waits for: a click, a notch, loading."""
 
 import models
 from programs import BUILD, Failure, run
@@ -14,7 +14,7 @@ def measure(quick):
     report, why_not = run(BUILD / "queries_bench", path, CLICKS)
     if report is None:
         raise Failure(f"the model of {faces} faces: {why_not}")
-    # Processor time, for a query that another process interrupts has not become slower.
+    # Processor time, which does not include interruptions by other processes.
     longest = max(report[query]["longest"] for query in ("path", "wheel", "node_faces"))
     load_over_build = report["load"][1] / report["build"][1]
     print(f"   longest of {CLICKS} clicks {1000 * longest:.3f} ms, loading {100 * load_over_build:.1f} % of building")

@@ -1,4 +1,4 @@
-"""Clustering and dendrogram against TetGen, on real models of 10,000 to 60,000 faces."""
+"""Time of clustering and dendrogram relative to TetGen, on real models with 10,000 to 60,000 faces."""
 
 from statistics import median
 
@@ -22,9 +22,9 @@ def measure(quick):
             refused[file.stem] = why_not
             continue
         built.append({"model": file.stem, **report, **ratios(report)})
-        now = built[-1]
-        print(f"   {file.stem}: {now['faces']} faces, HTC/TetGen {now['htc']:.2f}, pipeline/TetGen "
-              f"{now['pipeline']:.2f}")
+        model = built[-1]
+        print(f"   {file.stem}: {model['faces']} faces, HTC/TetGen {model['htc']:.2f}, pipeline/TetGen "
+              f"{model['pipeline']:.2f}")
     if not built:
         raise Failure("no model could be built")
     print(f"   {len(built)} built, {len(refused)} refused")
@@ -33,7 +33,7 @@ def measure(quick):
 
 
 def ratios(report):
-    """Each the median over the repetitions. Counted in processor time, which others on the machine disturb least."""
+    """Medians over the repetitions, of processor time, which depends least on the machine's load."""
     def over_tetgen(parts):
         return median(sum(r[part][CPU] for part in parts) / r["tetgen"][CPU] for r in report["seconds"])
 

@@ -1,6 +1,6 @@
-"""The benchmarks: runs the sections asked for, each into build/bench/SECTION.json, then prints the table of them all.
+"""Runs benchmark sections, writes each report to build/bench/SECTION.json, and prints the table of all reports.
 
-Called by scripts/bench, whose first lines say what the arguments mean.
+Called by scripts/bench, which documents the arguments.
 """
 
 import argparse
@@ -24,10 +24,10 @@ SECTIONS = {"any": any_mesh, **{module.__name__: module for module in (ratio, sc
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures, and prints what holds.")
+    parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures, and prints which goals are met.")
     parser.add_argument("section", nargs="*", help=" ".join(SECTIONS))
     parser.add_argument("--quick", action="store_true", help="fewer and smaller models, some 3 minutes")
-    parser.add_argument("--docs", action="store_true", help="also put table and plot into docs/benchmarks.md and docs/images")
+    parser.add_argument("--docs", action="store_true", help="also update docs/benchmarks.md and docs/images")
     arguments = parser.parse_args()
     for name in arguments.section:
         if name not in SECTIONS:
@@ -35,10 +35,10 @@ def main():
 
     for name in arguments.section or SECTIONS:
         print(f"== {name}: {SECTIONS[name].__doc__.splitlines()[0]}")
-        began = datetime.datetime.now()
+        start = datetime.datetime.now()
         measured = SECTIONS[name].measure(arguments.quick)
-        seconds = (datetime.datetime.now() - began).total_seconds()
-        report = {"quick": arguments.quick, "date": f"{began:%Y-%m-%d}", "seconds": round(seconds), **machine(),
+        seconds = (datetime.datetime.now() - start).total_seconds()
+        report = {"quick": arguments.quick, "date": f"{start:%Y-%m-%d}", "seconds": round(seconds), **machine(),
                   **measured}
         path = BUILD / f"{name}.json"
         path.write_text(json.dumps(report, indent=1) + "\n")

@@ -1,8 +1,7 @@
-"""One natural model from 50,000 to 1,000,000 faces: time and memory against size.
+"""One natural model with 50,000 to 1,000,000 faces: time and memory against size.
 
-Growth is against the smallest size, which takes turns with each other one, and is the median of the turns: a machine's
-speed may change within seconds. What is short is repeated more often, as the median of five short runs is a matter of
-chance.
+Growth is relative to the smallest size. Runs of the smallest and of each other size alternate, and the median is taken, because
+a machine's speed may change within seconds. Short runs are repeated more often, because their times vary more.
 """
 
 from contextlib import ExitStack
@@ -35,7 +34,7 @@ def measure(quick):
                 row = {"faces": faces, "growth": 1, **sizes(smallest.report, runs)}
             else:
                 with Stages(path) as program:
-                    runs, growths = in_turn(smallest, program, count, most // count)
+                    runs, growths = run_alternating(smallest, program, count, most // count)
                     row = {"faces": faces, "growth": median(growths), **sizes(program.report, runs)}
             rows.append(row)
             row["log2_growth"] = (log(row["tets"]) / log(rows[0]["tets"])) ** 2
@@ -45,17 +44,18 @@ def measure(quick):
     return {"model": models.NATURAL.stem, "sizes": rows}
 
 
-def in_turn(small, large, turns, between):
-    """The large one's runs, and of each how much longer a tetrahedron takes than in the small one's just before and
-    after; of these there are so many between two turns."""
-    def smalls():
+def run_alternating(small, large, turns, between):
+    """Runs the large model `turns` times, and the small one `between` times before and after each of these.
+
+    Returns the large model's runs, and for each the time per tetrahedron relative to the small model's median."""
+    def run_small():
         return [htc(small.again()) for _ in range(between)]
 
     runs, growths = [], []
-    before = smalls()
+    before = run_small()
     for _ in range(turns):
         runs.append(large.again())
-        after = smalls()
+        after = run_small()
         growths.append(htc(runs[-1]) / large.report["tets"] / (median(before + after) / small.report["tets"]))
         before = after
     return runs, growths

@@ -1,4 +1,4 @@
-"""The table: what was measured, its goal, whether it holds; and beside it the peers. In Markdown."""
+"""The table of results in Markdown: each figure, its goal, whether it is met; and a table of the competing tools."""
 
 import pathlib
 import shutil
@@ -11,7 +11,7 @@ PLOT = pathlib.Path("docs/images/scale.png")
 
 
 def text(reports):
-    """The table of all sections that there are reports of."""
+    """The tables of all sections that have reports."""
     makers = {"ratio": ratio, "scale": scale, "worst": worst, "queries": queries, "deform": deform,
               "any": any_mesh, "large": large}
     rows = [("", "measured", "goal", "holds")]
@@ -40,7 +40,7 @@ def scale(report):
     sizes = report["sizes"]
     low, high = sizes[0], sizes[-1]
     span = f"{low['faces'] // 1000}k to {high['faces'] // 1000}k faces"
-    # Growth beyond log^2, at the size where it is largest.
+    # Growth relative to log^2, at the size where it is largest.
     beyond = max(size["growth"] / size["log2_growth"] for size in sizes[1:])
     over = max(size["over_tetgen"] for size in sizes) / 1000
     return [
@@ -93,7 +93,7 @@ def any_mesh(report):
     ]
 
 
-# Processor seconds and bytes that so many faces may take.
+# Number of faces -> limits on processor seconds and bytes.
 LARGE_GOALS = {1_000_000: (5, 1e9), 4_000_000: (20, None), 10_000_000: (None, 8e9)}
 
 
@@ -112,8 +112,8 @@ def large(report):
             rows.append((f"overlap of a wheel stop with an exact one, median of {size['overlap']['stops']:,}",
                          f"{median:.2f}", "≥ 0.95", "yes" if median >= 0.95 else "**no**"))
             rows.append(("the same of two exact trees, vertices moved by 1e-6 of the size",
-                         f"{size['shaken']['median']:.2f}", "", ""))
-            rows.append(("exact stops as well as tetrahedra of the copy can tell them", f"{size['told']['median']:.2f}",
+                         f"{size['jittered']['median']:.2f}", "", ""))
+            rows.append(("exact stops as well as tetrahedra of the copy can tell them", f"{size['best_overlap']['median']:.2f}",
                          "", ""))
     return rows
 
@@ -145,7 +145,7 @@ def footnote(reports):
         sentences.append(f"Models: {reports['ratio']['source']}; scale and worst cases against libcgal-demo's bear, "
                          "subdivided.")
     if quick:
-        sentences.append(f"Measured with --quick, which settles nothing: {', '.join(quick)}.")
+        sentences.append(f"Measured with --quick, which is not conclusive: {', '.join(quick)}.")
     return textwrap.fill(" ".join(sentences), 120)
 
 
@@ -156,7 +156,7 @@ def markdown(rows):
 
 
 def into_docs(table, reports, root=ROOT):
-    """Replaces what docs/benchmarks.md has between the two marks, and the plot."""
+    """Replaces the text between the two marks in docs/benchmarks.md, and the plot."""
     page = root / "docs" / "benchmarks.md"
     before, begin, rest = page.read_text("utf-8").partition(BEGIN)
     mark, end, after = rest.partition(END)

@@ -1,4 +1,4 @@
-"""Shapes that are hard on the clustering, against a natural model of as many faces."""
+"""Worst cases for the clustering, relative to a natural model with the same number of faces."""
 
 from statistics import median
 
@@ -17,7 +17,7 @@ CASES = (
 
 
 def measure(quick):
-    ordinary = {}  # seconds a tetrahedron by number of faces
+    ordinary = {}  # number of faces -> seconds per tetrahedron
     rows = []
     for name, shape, faces, quality in CASES:
         if quick:
@@ -39,7 +39,7 @@ def measure(quick):
 
 
 def natural(faces):
-    """The natural model with so many faces: subdivided, or by chance smaller than asked for: as it is."""
+    """The natural model, subdivided to this number of faces; unchanged if it has more."""
     return models.subdivided(models.read(models.NATURAL), faces)
 
 

@@ -1,6 +1,6 @@
-"""Takes the grain out of a picture of light: the edge-avoiding à-trous wavelet filter of Dammertz et al. 2010.
+"""Denoises rendered light with the edge-avoiding à-trous wavelet filter of Dammertz et al. 2010.
 
-Debian's Blender comes without a denoiser; with this two light paths a pixel look like hundreds.
+Debian's Blender has no denoiser. With this filter, two light paths per pixel look like hundreds.
 """
 
 import numpy
@@ -9,13 +9,12 @@ KERNEL = numpy.array([1.0, 2.0, 1.0], numpy.float32) / 4.0
 
 
 def denoise(light, normal, depth, strength=1.0, passes=5):
-    """Returns light (h, w, channels), smoothed where the surface is and where its first three channels are alike.
+    """Smooths light (h, w, channels) between pixels with similar normals, depths and first three channels.
 
-    normal: (h, w, 3) of the surface seen, not noisy.  depth: (h, w) its distance from the camera.  strength: how
-    large a difference of light, relative to the light there, may be grain; between neighbours any may, so that no dark
-    speck stays.
+    normal: (h, w, 3) noise-free surface normals. depth: (h, w) distances from the camera. strength: the largest relative
+    difference of light that counts as noise; the first pass ignores it, so that no dark specks remain.
     """
-    # At slivers of a hull a path may end in no number, or in one without end.
+    # At slivers of a hull the renderer may return NaN or infinity.
     light = numpy.nan_to_num(light.astype(numpy.float32), posinf=0.0)
     depth = numpy.minimum(depth, depth.min() * 100.0)
     slope = numpy.maximum(*(abs(part) for part in numpy.gradient(depth))) + 2e-3 * depth

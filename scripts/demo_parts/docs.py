@@ -1,5 +1,4 @@
-"""Makes the docs' pictures, docs/images, of what the demo left: a few wheel stops by name, a few cuts, and the ways of
-building.
+"""Creates images for the docs in docs/images from the demo's layers: named wheel stops, cuts, and fill methods.
 
 Run as: python docs.py FOLDER IMAGES
 """
@@ -11,7 +10,7 @@ from pathlib import Path
 
 from paint import parts_cells, percent, sheet, ways_cells, wheel_cells
 
-# Picture -> model, click, and what to call the wheel stop of about this share of the model's area.
+# Image -> model, click, and (name, approximate fraction of the model's area) of wheel stops.
 STORIES = {
     "man": ("man-remeshed", "finger tip", (
         ("finger tip", 0.0012), ("finger", 0.005), ("hand", 0.02), ("arm", 0.079), ("body", 1.0))),
@@ -20,7 +19,7 @@ STORIES = {
 }
 CUTS = {"parts": ("armadillo", "dino")}
 WAYS = {"ways": "armadillo"}
-SLACK = 1.5  # a stop whose area is this many times another than the named one is not the part that is named
+SLACK = 1.5  # the largest ratio between the area of a stop and that of the named part
 
 
 def load(folder, model):

@@ -1,15 +1,15 @@
-"""The layers of one picture of the demo, on their way from Blender (studio.py) to the painter (paint.py)."""
+"""The layers of one image of the demo, which Blender renders (studio.py) and paint.py combines."""
 
 from typing import NamedTuple
 
 import numpy
 
-OVERSAMPLING = 2  # layers have this many pixels a side for each pixel of the finished picture
+OVERSAMPLING = 2  # pixels of a layer per pixel of the final image, along each axis
 
 
 class Layers(NamedTuple):
-    """light: (h, w, 3) linear light that falls on what each pixel shows.  gloss: (h, w, 3) light to add after
-    painting.  shown: (h, w) int32 number of the polygon that each pixel shows, -1 for the backdrop."""
+    """light: (h, w, 3) linear irradiance. gloss: (h, w, 3) specular light, added after coloring. shown: (h, w) int32 id of the
+    polygon that each pixel shows, -1 for the backdrop."""
 
     light: numpy.ndarray
     gloss: numpy.ndarray

@@ -1,4 +1,4 @@
-"""The demo's models: where they come from, how they stand before the camera, and where the mouse clicks."""
+"""The demo's models: their sources, camera angles and mouse clicks."""
 
 import sys
 from typing import NamedTuple
@@ -7,19 +7,24 @@ MONKEY = "Blender's monkey"
 
 
 class Click(NamedTuple):
-    """A click with the mouse. at: where in the rectangle that the model fills, seen from the camera: from the left and
-    from the top, 0..1."""
+    """A mouse click. at: (x from the left, y from the top), 0..1, in the model's bounding rectangle in the image."""
 
     name: str
     at: tuple
 
 
 class Model(NamedTuple):
-    """source: MONKEY or a file in build/deps/meshes.  voxel: the size for Blender's voxel remesh, which makes a closed
-    surface of any, in the file's unit; 0 leaves the surface as it is.  up: the axis that points up in the file.
-    azimuth, elevation: where the camera stands, degrees; 0, 0 is Blender's front view.  parts: the numbers of convex
-    parts to cut the dendrogram into, growing.  ways: the number of parts to compare the ways of building by; 0 does not.
-    A model without clicks is a sheet, there to be refused.  main: shown also when not all are asked for."""
+    """A model. One without clicks is a sheet, whose build must fail.
+
+    source : MONKEY or a file in build/deps/meshes
+    voxel : voxel size for Blender's voxel remesh, which makes any surface closed, in the file's unit; 0: no remesh
+    up : the axis that points up in the file
+    azimuth, elevation : of the camera, in degrees; 0, 0 is Blender's front view
+    clicks : the mouse clicks
+    parts : increasing numbers of convex parts into which to cut the dendrogram
+    ways : number of parts for the comparison of fill methods; 0: no comparison
+    main : included also without --all
+    """
 
     name: str
     source: str

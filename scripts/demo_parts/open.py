@@ -1,7 +1,7 @@
-"""What scripts/demo --open ends in: the model in the window, the tool chosen, and a ring where to point.
+"""Opens a model of the demo for scripts/demo --open: activates the tool and draws a hint where to click.
 
 Run as: blender MODEL.blend --python open.py
-The hint goes once a part is selected.
+The hint disappears when a part is selected.
 """
 
 from math import cos, pi, sin
@@ -19,14 +19,14 @@ drawing = []
 
 
 def view():
-    """The window, the area and the region of a 3D view."""
+    """The window, area and region of the largest 3D view, for temp_override()."""
     window = bpy.context.window_manager.windows[0]
     area = max((area for area in window.screen.areas if area.type == "VIEW_3D"), key=lambda area: area.width * area.height)
-    return {"window": window, "area": area, "region": next(each for each in area.regions if each.type == "WINDOW")}
+    return {"window": window, "area": area, "region": next(region for region in area.regions if region.type == "WINDOW")}
 
 
 def choose_tool():
-    """As soon as there is a window."""
+    """Activates the tool; runs when the window exists."""
     with bpy.context.temp_override(**view()):
         bpy.ops.mesh.select_all(action="DESELECT")
         bpy.ops.wm.tool_set_by_id(name="partwheel.select")
@@ -45,8 +45,8 @@ def draw_hint():
     if middle is None:
         return
     scale = context.preferences.system.ui_scale
-    turns = (2 * pi * number / SEGMENTS for number in range(SEGMENTS + 1))
-    ring = [(middle.x + RADIUS * scale * cos(turn), middle.y + RADIUS * scale * sin(turn)) for turn in turns]
+    angles = (2 * pi * number / SEGMENTS for number in range(SEGMENTS + 1))
+    ring = [(middle.x + RADIUS * scale * cos(angle), middle.y + RADIUS * scale * sin(angle)) for angle in angles]
     shader = gpu.shader.from_builtin("2D_UNIFORM_COLOR" if bpy.app.version < (4, 0, 0) else "UNIFORM_COLOR")
     gpu.state.line_width_set(3)
     shader.uniform_float("color", COLOR)

@@ -1,8 +1,7 @@
-"""Makes the demo's pictures of the layers that perform.py left: paints them, puts them in a row, labels them.
+"""Combines perform.py's layers into the demo's images: colors them, arranges them in rows, labels them.
 
-Run as: python paint.py FOLDER MODEL...   For each model that was built it writes FOLDER/MODEL.png, a row for each click
-with every wheel stop, and FOLDER/MODEL-parts.png, the dendrogram cut into convex polyhedra; and FOLDER/MODEL-ways.png of the ways
-of building.
+Run as: python paint.py FOLDER MODEL...   For each model it writes FOLDER/MODEL.png, a row for each click with every wheel stop;
+FOLDER/MODEL-parts.png, the dendrogram cut into convex polyhedra; and FOLDER/MODEL-ways.png, the fill methods.
 """
 
 import json
@@ -24,13 +23,13 @@ GAP, LABEL, HEAD = 6, 50, 52  # pixels between pictures, below them, above the r
 
 
 def linear(color):
-    """(3,) linear light of an sRGB colour, "#rrggbb"."""
+    """(3,) linear light of an sRGB color, "#rrggbb"."""
     value = numpy.array([int(color[i:i + 2], 16) for i in (1, 3, 5)]) / 255.0
     return numpy.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4).astype(numpy.float32)
 
 
 def develop(light):
-    """Linear light -> 8 bit sRGB; what is brighter than paper fades into white instead of being cut off."""
+    """Linear light -> 8-bit sRGB. Highlights are compressed instead of clipped."""
     knee = 0.75
     light = numpy.where(light < knee, light, 1.0 - (1.0 - knee) * numpy.exp((knee - light) / (1.0 - knee)))
     value = numpy.where(light <= 0.0031308, 12.92 * light, 1.055 * numpy.maximum(light, 0.0031308) ** (1 / 2.4) - 0.055)
@@ -38,7 +37,7 @@ def develop(light):
 
 
 def paint(picture, colors):
-    """An Image of the layers. colors: (h, w, 3) linear, what the backdrop's pixels are is of no matter."""
+    """Combines layers into an Image. colors: (h, w, 3) linear; ignored at pixels of the backdrop."""
     colors = numpy.where(picture.shown[..., None] < 0, linear(BACKDROP), colors)
     light = picture.light * colors * EXPOSURE + picture.gloss
     height, width = (side // OVERSAMPLING for side in picture.shown.shape)
@@ -46,21 +45,21 @@ def paint(picture, colors):
 
 
 def edges(names, drawn):
-    """(h, w) bool: where drawn neighbours have different names."""
-    found = numpy.zeros(names.shape, bool)
+    """(h, w) bool: pixels that have a drawn neighbor with a different name."""
+    is_edge = numpy.zeros(names.shape, bool)
     for axis in (0, 1):
-        there = [slice(None), slice(None)]
-        here = [slice(None), slice(None)]
-        there[axis], here[axis] = slice(1, None), slice(None, -1)
-        there, here = tuple(there), tuple(here)
-        differ = (names[there] != names[here]) & drawn[there] & drawn[here]
-        found[there] |= differ
-        found[here] |= differ
-    return found
+        after = [slice(None), slice(None)]
+        before = [slice(None), slice(None)]
+        after[axis], before[axis] = slice(1, None), slice(None, -1)
+        after, before = tuple(after), tuple(before)
+        differ = (names[after] != names[before]) & drawn[after] & drawn[before]
+        is_edge[after] |= differ
+        is_edge[before] |= differ
+    return is_edge
 
 
 def paint_stop(picture, entered, stop):
-    """entered: (faces,) the first stop that holds each face. What the last notch added is a little lighter."""
+    """entered: (faces,) the first stop that contains each face. Faces added by the last notch are lighter."""
     when = entered[picture.shown]
     colors = numpy.where((when <= stop)[..., None], linear(PART), linear(BODY))
     if stop:
@@ -70,14 +69,14 @@ def paint_stop(picture, entered, stop):
 
 
 def paint_parts(picture, parts, palette):
-    """parts: (h, w) the part that each pixel shows; of no matter on the backdrop."""
+    """parts: (h, w) the part that each pixel shows; ignored at the backdrop."""
     colors = palette[parts]
     return paint(picture, numpy.where(edges(parts, picture.shown >= 0)[..., None], colors * 0.45, colors))
 
 
 def palettes(cuts):
-    """For each cut (coarse to fine) the linear colours of its parts: a part has the colour of the coarser part that it
-    is the largest piece of, so that the eye can follow it; the other pieces have new colours."""
+    """For each cut (coarse to fine), the linear colors of its parts. The largest piece of a coarser part keeps its color, so that
+    the eye can follow it; the other pieces get new colors."""
     colors, count = [], 0
     for number, cut in enumerate(cuts):
         bounds = numpy.array(cut["bounds"])
@@ -103,7 +102,7 @@ def font(size):
 
 
 def ring(image, at):
-    """Marks the point that was clicked."""
+    """Draws a ring at the clicked point (x, y), 0..1."""
     size, scale = 16, 4
     left, top = round(at[0] * image.width - size / 2), round(at[1] * image.height - size / 2)
     for color, margin, line in ((INK, 1.0, 4.0), ("#ffffff", 2.0, 2.0)):
@@ -114,7 +113,7 @@ def ring(image, at):
 
 
 def sheet(rows):
-    """Rows of pictures side by side. rows: [(title, heading, [(Image, label, remark)])], the title maybe empty."""
+    """Arranges rows of images. rows: [(title or "", heading, [(Image, label, remark)])]."""
     width = max(sum(image.width + GAP for image, _, _ in cells) for _, _, cells in rows) + GAP
     height = GAP + sum((HEAD if title else 0) + cells[0][0].height + LABEL for title, _, cells in rows)
     page = Image.new("RGB", (width, height), "#ffffff")
@@ -160,7 +159,7 @@ def wheel_cells(click, folder):
 
 
 def parts_cells(report, folder):
-    """The cells of the model and its cuts, from fine to coarse."""
+    """The cells of the model and its cuts, from coarse to fine."""
     cells = []
     for cut, palette in zip(report["cuts"], palettes(report["cuts"])):
         picture = layers.load(folder / f"hulls-{cut['parts']}.npz")
@@ -171,7 +170,7 @@ def parts_cells(report, folder):
 
 
 def ways_cells(report, folder):
-    """The cells of the model's parts, found exactly, from points and on a coarser copy."""
+    """The cells of the model's parts: filled exactly, filled from points, found on a coarser copy."""
     body = layers.load(folder / "whole.npz")
     names = {"exact": "exactly", "points": "from points", "coarse": "on a coarser copy"}
     palette, cells = numpy.array([linear(color) for color in PALETTE]), []

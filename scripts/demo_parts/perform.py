@@ -1,9 +1,9 @@
-"""The demo inside Blender: one model is opened, built, clicked and turned through the wheel; leaves layers, a .blend.
+"""Runs the demo inside Blender for one model: opens it, builds its hierarchy, clicks and turns the wheel.
 
 Run as: blender -b --python perform.py -- MODEL MESHES FOLDER [--all]
-with the add-on installed and enabled. In FOLDER it leaves MODEL.blend and, in layers/MODEL/, report.json (what
-happened, numbers and times) and a .npz of layers for each picture; paint.py makes the pictures of those.
-A surface that the library refuses is a result too: then report.json holds the error and there are no layers.
+with the add-on installed and enabled. It writes MODEL.blend to FOLDER, and to layers/MODEL/ report.json (events, sizes, times)
+and a .npz of layers for each image, which paint.py creates. If the build fails, report.json has the error and there are no
+layers.
 """
 
 import json
@@ -25,12 +25,12 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from models import MODELS, MONKEY  # noqa: E402
 from studio import Studio  # noqa: E402
 
-HEIGHT = 300  # of a picture, in pixels
-CLOSER = 0.17  # a part that is smaller than this in the picture, as a fraction of its size, gets a closer look
+HEIGHT = 300  # of an image, in pixels
+CLOSE_UP = 0.17  # a part whose size is a smaller fraction of the image's gets a close-up
 
 
 def open_model(model, meshes):
-    """The model as the only object of the scene, Z up, active."""
+    """Opens the model as the only, active object, with z up."""
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
     if model.source == MONKEY:
@@ -67,13 +67,13 @@ def corners(mesh):
 
 
 def selected_faces():
-    """The numbers of the selected faces of the mesh in Edit Mode, in order."""
+    """(n,) sorted indices of the selected faces in Edit Mode."""
     faces = bmesh.from_edit_mesh(bpy.context.object.data).faces
     return numpy.array([face.index for face in faces if face.select], numpy.int64)
 
 
 def click(thing, studio, at):
-    """The face and the point that a Click at that place hits."""
+    """(face, point) that a Click at this position hits."""
     origin, direction = studio.ray(studio.box(corners(thing.data)), at)
     hit, point, _, face = thing.ray_cast(origin, direction)
     if not hit:
@@ -82,9 +82,9 @@ def click(thing, studio, at):
 
 
 def turn_wheel(hierarchy, face):
-    """Selects every wheel stop of a face by the operator, and returns them: [faces of the stop], start.
+    """Selects every wheel stop of a face by the operator; returns ([faces of a stop, ...], start).
 
-    Raises RuntimeError where the operator's selection is not the hierarchy's part."""
+    Raises RuntimeError if the operator's selection differs from the hierarchy's part."""
     nodes, start = hierarchy.wheel(face)
     stops = []
     for number, node in enumerate(nodes):
@@ -97,19 +97,19 @@ def turn_wheel(hierarchy, face):
 
 
 def closer_views(studio, whole, points, polygons, stops):
-    """The views to see every stop well, widest first, and the number of the one for each stop."""
+    """([View, ...] widest first, the index of the view for each stop): close-ups where parts are small."""
     views, chosen = [whole], [0] * len(stops)
     for number in reversed(range(len(stops))):
         part = points[numpy.unique(numpy.concatenate([polygons[face] for face in stops[number]]))]
         tight = studio.view(part, whole.width, whole.height)
-        if tight.span < CLOSER * views[-1].span:
+        if tight.span < CLOSE_UP * views[-1].span:
             views.append(tight._replace(span=tight.span * 2.6))
         chosen[number] = len(views) - 1
     return views, chosen
 
 
 def hull_object(hierarchy, bounds):
-    """An object of the convex hulls of a cut's parts, and the part of each of its polygons."""
+    """(object of the convex hulls of a cut's parts, part of each of its polygons)"""
     vertices, triangles, parts, count = [], [], [], 0
     for part in range(len(bounds) - 1):
         hull_vertices, hull_triangles = hierarchy.hull_of_slice(bounds[part], bounds[part + 1])
@@ -123,17 +123,17 @@ def hull_object(hierarchy, bounds):
     return bpy.data.objects.new("Hulls", mesh), numpy.concatenate(parts)
 
 
-NOTE = """Partwheel's demo left this model in Edit Mode, faces to select, with a part selected.
+NOTE = """Partwheel's demo saved this model in Edit Mode, in face select mode, with a part selected.
 
-1. The add-on must be installed and enabled: scripts/demo --open MODEL has it in place; elsewhere install the zip of
-   build/package by Edit > Preferences > Add-ons > Install.
-2. Put the mouse over the model and press Shift Ctrl W. The first time this builds the hierarchy: some seconds.
-3. Turn the wheel: up for a larger part, down for a smaller one. Click to confirm, Esc to go back.
+1. The add-on must be installed and enabled: scripts/demo --open MODEL does that; otherwise install the zip of
+   build/package with Edit > Preferences > Add-ons > Install.
+2. Put the mouse over the model and press Shift Ctrl W. The first time, this builds the hierarchy, which takes some seconds.
+3. Turn the wheel: up for a larger part, down for a smaller one. Click to confirm, Esc to cancel.
 """
 
 
 def show_ready(thing, studio, stop):
-    """Leaves Edit Mode on, faces to select, a part selected and the view on the model, for whoever opens the file."""
+    """Prepares the file for a user who opens it: Edit Mode, face select mode, a part selected, the model in view."""
     mesh = thing.data
     bpy.ops.object.mode_set(mode="OBJECT")
     for elements in (mesh.vertices, mesh.edges, mesh.polygons):
@@ -158,11 +158,11 @@ def show_ready(thing, studio, stop):
 
 
 def build(thing, report):
-    """The hierarchy that the add-on's operator builds, or None if it refused the mesh; fills in the report."""
+    """Builds the hierarchy by the add-on's operator and fills in the report; None if the build fails."""
     began = time.perf_counter()
     try:
         bpy.ops.mesh.partwheel_build()
-    except RuntimeError as error:  # what Blender makes of an operator's error report
+    except RuntimeError as error:  # Blender raises an operator's error report
         report["refused"] = str(error).split(": ", 2)[-1].strip()  # Error: No parts for NAME: why
         return None
     hierarchy = registry.hierarchy(thing)
@@ -176,7 +176,7 @@ def build(thing, report):
 
 
 def play_click(spot, thing, studio, whole, hierarchy, folder, report):
-    """A click and every wheel stop after it. Returns the faces of the stop that the click alone takes."""
+    """Plays a click and every wheel stop after it; returns the faces of the start level."""
     mesh = thing.data
     face, point = click(thing, studio, spot.at)
     bpy.ops.object.mode_set(mode="EDIT")
@@ -186,13 +186,13 @@ def play_click(spot, thing, studio, whole, hierarchy, folder, report):
     bpy.ops.object.mode_set(mode="OBJECT")
 
     if "partwheel_demo" not in thing:
-        thing["partwheel_demo"] = point[:]  # where open.py says to point: the first click
+        thing["partwheel_demo"] = point[:]  # open.py draws its hint at the first click
     polygons = [polygon.vertices for polygon in mesh.polygons]
     views, chosen = closer_views(studio, whole, corners(mesh), polygons, stops)
     for number, view in enumerate(views[1:], 1):
         picture = studio.photograph(thing, range(len(polygons)), view)
         picture.save(os.path.join(folder, f"{spot.name}-{number}.npz"))
-    entered = numpy.full(len(polygons), len(stops))  # the first stop that holds a face: the stops only grow
+    entered = numpy.full(len(polygons), len(stops))  # the first stop that contains a face: stops are nested
     for number in reversed(range(len(stops))):
         entered[stops[number]] = number
     numpy.save(os.path.join(folder, f"{spot.name}.npy"), entered)
@@ -208,7 +208,7 @@ def play_click(spot, thing, studio, whole, hierarchy, folder, report):
 
 
 def play_cut(count, studio, whole, hierarchy, folder, report):
-    """The dendrogram cut into so many parts, as their convex hulls."""
+    """Renders the convex hulls of the dendrogram cut into this number of parts."""
     count = min(count, len(hierarchy.tetrahedra))
     bounds = hierarchy.cut_parts(count)
     hulls, parts = hull_object(hierarchy, bounds)
@@ -218,8 +218,8 @@ def play_cut(count, studio, whole, hierarchy, folder, report):
 
 
 def play_ways(count, thing, hierarchy, folder, report):
-    """The faces' parts as the exact way cuts them into so many, and from points, and on a copy with a tenth of the
-    triangles: parts that are most of another way's have its number."""
+    """Saves the parts of each face, cut into this number, after three builds: exact, from points, and on a copy with a tenth of
+    the triangles. Parts are numbered so that they match the first build's as well as possible."""
     surface = arrays.surface(thing.data)
     built = {"exact": hierarchy, "points": Hierarchy.build(*surface, rungs=Rung.POINTS),
              "coarse": Hierarchy.build(*surface, exact_triangles=4 * len(surface.triangles) // 10)}
@@ -239,7 +239,7 @@ def play_ways(count, thing, hierarchy, folder, report):
 
 
 def perform(model, meshes, folder, ways):
-    """Plays the whole job with one model and returns the report. ways: also build it in other ways."""
+    """Runs the whole demo with one model and returns the report. ways: also build with other fill methods."""
     layers = os.path.join(folder, "layers", model.name)
     os.makedirs(layers, exist_ok=True)
     thing = open_model(model, meshes)

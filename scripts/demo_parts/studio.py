@@ -1,8 +1,8 @@
-"""The demo's photo studio: a backdrop, lights and a camera about one model, and pictures taken as layers.
+"""The demo's photo studio: a backdrop, lights and a camera around one model; renders images as layers.
 
-Runs inside Blender. A picture is three arrays that paint.py puts together: the light that reaches each pixel, the
-gloss, and the number of the face that each pixel shows. So a model is lit once for each view and then painted anew
-for each wheel stop, which is many times faster than a render a stop.
+Runs inside Blender. An image has three layers, which paint.py combines: the light at each pixel, the gloss, and the id of the
+face that each pixel shows. A model is rendered once per view and then colored for each wheel stop, which is many times faster
+than a render per stop.
 """
 
 import math
@@ -18,34 +18,34 @@ from denoise import denoise
 from layers import OVERSAMPLING, Layers
 
 FIELD_OF_VIEW = math.radians(16.0)
-SAMPLES = 2  # light paths for each pixel of a layer; denoise() does the rest
+SAMPLES = 2  # light paths per pixel of a layer; denoise() removes the noise
 
 
 class View(NamedTuple):
-    """What a picture shows: a rectangle about (x, y) on the plane at distance 1 before the camera, and its size in
-    pixels when finished."""
+    """An image's rectangle, centered at (x, y) on the plane at distance 1 in front of the camera, and the size of the final image
+    in pixels."""
 
     x: float
     y: float
-    span: float  # of the width
+    span: float  # width of the rectangle
     width: int
     height: int
 
     def pixel(self, point):
-        """Where the picture shows a point of that plane: x from the left, y from the top, both 0..1."""
+        """A point of that plane -> (x from the left, y from the top) in the image, 0..1."""
         rise = self.span * self.height / self.width
         return (point[0] - self.x) / self.span + 0.5, 0.5 - (point[1] - self.y) / rise
 
     def point(self, pixel):
-        """The other way round."""
+        """The inverse of pixel()."""
         rise = self.span * self.height / self.width
         return self.x + (pixel[0] - 0.5) * self.span, self.y + (0.5 - pixel[1]) * rise
 
 
 class Studio:
-    """A scene of its own for what stands about the given points, (n, 3) in world space.
+    """A separate scene around the given points, (n, 3) in world space.
 
-    azimuth, elevation: where the camera stands, degrees; 0, 0 looks along +Y, as Blender's front view does.
+    azimuth, elevation: of the camera, in degrees; 0, 0 looks along +Y, as Blender's front view.
     """
 
     def __init__(self, points, azimuth, elevation):
@@ -61,7 +61,7 @@ class Studio:
         self._add_lights()
 
     def close(self):
-        """Takes the studio away, and all it brought."""
+        """Removes the scene and everything in it."""
         things = list(self.scene.collection.objects)
         bpy.data.batch_remove([self.scene, self.scene.world, *things, *(thing.data for thing in things)])
         bpy.data.batch_remove([material for material in bpy.data.materials if not material.users])
@@ -102,8 +102,8 @@ class Studio:
             scene.render.threads_mode = "FIXED"
             scene.render.threads = threads
 
-    def _add_backdrop(self, floor):
-        """A floor that rises into a wall behind the model, without an edge to see."""
+    def _add_backdrop(self, ground_z):
+        """A ground plane that curves smoothly into a wall behind the model."""
         radius = self.radius
         start, bend = 1.6 * radius, 2.0 * radius
         profile = [(-30.0 * radius, 0.0)]
@@ -117,7 +117,7 @@ class Studio:
         mesh.polygons.foreach_set("use_smooth", [True] * len(polygons))
         mesh.materials.append(paper("Backdrop", 0.8))
         self.backdrop = self._link("Backdrop", mesh)
-        self.backdrop.matrix_world = (Matrix.Translation((self.center.x, self.center.y, floor))
+        self.backdrop.matrix_world = (Matrix.Translation((self.center.x, self.center.y, ground_z))
                                       @ Matrix.Rotation(self.azimuth, 4, "Z"))
 
     def _add_lights(self):
@@ -127,7 +127,7 @@ class Studio:
         sky["Color"].default_value = (0.86, 0.93, 1.0, 1.0)
         self.sky = sky["Strength"]
         self.lamps = []
-        # name, direction (right, up, towards the camera), size, strength, colour
+        # name, direction (right, up, towards the camera), size, strength, color
         for name, direction, size, strength, color in (
                 ("Key", (-1.1, 1.6, 1.3), 1.6, 55.0, (1.0, 0.96, 0.9)),
                 ("Rim", (1.8, 1.2, -1.2), 1.2, 34.0, (0.9, 0.95, 1.0))):
@@ -142,19 +142,19 @@ class Studio:
             self.lamps.append(thing)
 
     def project(self, points):
-        """(n, 3) points in world space -> (n, 2) on the plane at distance 1 before the camera."""
+        """(n, 3) points in world space -> (n, 2) on the plane at distance 1 in front of the camera."""
         local = (numpy.asarray(points) - numpy.array(self.place)) @ numpy.array(self.axes)
         return local[:, :2] / -local[:, 2:]
 
     def view(self, points, width, height, margin=0.06):
-        """The View of this size that shows all the points, with a margin on every side, 0..0.5 of the size."""
+        """The View of this size in pixels that fits all points; margin: on each side, as a fraction of the size, 0..0.5."""
         flat = self.project(points)
         low, high = flat.min(0), flat.max(0)
         span = max(high[0] - low[0], (high[1] - low[1]) * width / height) / (1.0 - 2.0 * margin)
         return View(*((low + high) / 2), span, width, height)
 
     def box(self, points):
-        """The View that the points just fill, of no certain size in pixels."""
+        """The View that the points fill exactly; its size in pixels has no meaning."""
         width, height = numpy.ptp(self.project(points), axis=0)
         return self.view(points, width, height, margin=0.0)
 
@@ -164,7 +164,7 @@ class Studio:
         return self.place, (self.axes @ Vector((x, y, -1.0))).normalized()
 
     def photograph(self, thing, numbers, view):
-        """The Layers of a picture of a mesh object. numbers: (polygons,) what each polygon is known by, 0 or more."""
+        """Renders the Layers of a mesh object. numbers: (polygons,) the id of each polygon, 0 or more."""
         data = self.camera.data
         data.angle = 2.0 * math.atan(view.span / 2.0)
         data.shift_x, data.shift_y = view.x / view.span, view.y / view.span
@@ -199,7 +199,7 @@ class Studio:
         return smooth[..., :3], smooth[..., 3:]
 
     def _numbers(self):
-        """One ray a pixel at a material that glows with the face's number + 1; all else is black."""
+        """(h, w) ids: one ray per pixel, an emissive material with the face's id + 1, everything else black."""
         self.scene.cycles.samples = 1
         self.sky.default_value = 0.0
         for other in (self.backdrop, *self.lamps):
@@ -244,7 +244,7 @@ def _pixels(path):
 
 
 def clay(name, albedo):
-    """A matt material with a little sheen. The albedo matters only for the light that bounces off."""
+    """A matte material with a little gloss. The albedo affects indirect light only."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     shader = material.node_tree.nodes["Principled BSDF"].inputs
@@ -255,7 +255,7 @@ def clay(name, albedo):
 
 
 def paper(name, albedo):
-    """A matt material without any sheen."""
+    """A matte material without gloss."""
     material, nodes, output = _bare(name)
     shader = nodes.new("ShaderNodeBsdfDiffuse")
     shader.inputs["Color"].default_value = (albedo, albedo, albedo, 1.0)
@@ -264,7 +264,7 @@ def paper(name, albedo):
 
 
 def glow(name, attribute):
-    """A material that shines with the value of a face attribute."""
+    """An emissive material whose strength is a face attribute."""
     material, nodes, output = _bare(name)
     value = nodes.new("ShaderNodeAttribute")
     value.attribute_name = attribute

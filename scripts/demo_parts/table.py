@@ -1,7 +1,7 @@
-"""The demo's table of sizes and times, from the reports that perform.py left.
+"""Prints the demo's table of sizes and times from perform.py's reports.
 
-Run as: python table.py FOLDER MODEL...   Writes FOLDER/table.md and FOLDER/table.csv and prints the first; the last
-line of what it prints counts what happened.
+Run as: python table.py FOLDER MODEL...   Writes FOLDER/table.md and FOLDER/table.csv and prints the first. The last
+line of the output is a summary.
 """
 
 import csv

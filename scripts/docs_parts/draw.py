@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws convex parts, parts for a printer, and the paper's figures 4 and 9 for the docs.
+"""Draws images for the docs: convex parts, parts for a 3D printer, and the paper's figures 4 and 9.
 
 usage: draw.py MESHES IMAGES NAME...     NAME: convex, printing, figure4, figure9. Needs numpy, scipy, Pillow, manifold3d.
 """
@@ -20,7 +20,7 @@ from partwheel import Hierarchy, Mode, meshes  # noqa: E402
 from partwheel.cut import Cut, colors, printing  # noqa: E402
 
 FRONT, UP = (0, 0, -1), (0, 1, 0)  # of the armadillo
-APART = 0.45  # of the way from the middle of all, pieces are moved
+EXPLODE = 0.45  # by which fraction of twice their distance from the center parts are moved
 PARTS = 12
 
 
@@ -28,21 +28,21 @@ def read(folder, name):
     return meshes.read(folder / f"{name}.off")
 
 
-def painted(bodies, size, towards=FRONT, up=UP):
-    """A picture of bodies, [(vertices, triangles), ...], each in a colour of its own; of one alone in grey."""
+def draw_bodies(bodies, size, towards=FRONT, up=UP):
+    """An image of bodies [(vertices, triangles), ...], each in a different color; a single one in gray."""
     counts = np.cumsum([0] + [len(vertices) for vertices, _ in bodies])
     triangles = np.concatenate([triangles + first for (_, triangles), first in zip(bodies, counts)])
     mesh = meshes.Mesh(np.concatenate([vertices for vertices, _ in bodies]), triangles, np.arange(len(triangles)),
                        len(triangles), 0)
     paint = colors(np.arange(len(bodies))) if len(bodies) > 1 else np.array([GREY])
-    which = np.repeat(np.arange(len(bodies)), [len(triangles) for _, triangles in bodies])
-    return View(mesh, towards, up, size).painted(paint[which])
+    body_of_triangle = np.repeat(np.arange(len(bodies)), [len(triangles) for _, triangles in bodies])
+    return View(mesh, towards, up, size).painted(paint[body_of_triangle])
 
 
 def save(cells, path):
-    """cells: rows of pictures of one size."""
-    picture = np.concatenate([np.concatenate(row, axis=1) for row in cells])
-    Image.fromarray((255 * picture).astype(np.uint8)).save(path, quality=88)
+    """Saves a grid of images of the same size. cells: rows of images."""
+    image = np.concatenate([np.concatenate(row, axis=1) for row in cells])
+    Image.fromarray((255 * image).astype(np.uint8)).save(path, quality=88)
 
 
 def convex(folder, images):
@@ -50,7 +50,7 @@ def convex(folder, images):
     mesh = read(folder, "armadillo")
     hierarchy = Hierarchy.build(mesh.vertices, mesh.triangles)
     hulls = [[hull[:2] for hull in hierarchy.convex_parts(count)] for count in (4, 12, 32)]
-    save([[painted(bodies, 420) for bodies in [[(mesh.vertices, mesh.triangles)], *hulls]]], images / "convex.jpg")
+    save([[draw_bodies(bodies, 420) for bodies in [[(mesh.vertices, mesh.triangles)], *hulls]]], images / "convex.jpg")
 
 
 def printing_(folder, images):
@@ -58,18 +58,19 @@ def printing_(folder, images):
     mesh = read(folder, "armadillo")
     cut = Cut.automatic(Hierarchy.build(mesh.vertices, mesh.triangles))
     scale = 200 / np.ptp(mesh.vertices, axis=0).max()
-    made = printing.prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, printing.PrintOptions(scale, 0.2))
-    middle = np.mean([vertices.mean(axis=0) for vertices, _ in made.solids.values()], axis=0)
-    apart = [(vertices + APART * 2 * (vertices.mean(axis=0) - middle), triangles) for vertices, triangles in made.solids.values()]
-    save([[painted(apart, 900)]], images / "printing.jpg")
+    printable = printing.prepare_parts(cut, mesh.vertices, mesh.triangles, mesh.faces, printing.PrintOptions(scale, 0.2))
+    middle = np.mean([vertices.mean(axis=0) for vertices, _ in printable.solids.values()], axis=0)
+    exploded = [(vertices + EXPLODE * 2 * (vertices.mean(axis=0) - middle), triangles)
+                for vertices, triangles in printable.solids.values()]
+    save([[draw_bodies(exploded, 900)]], images / "printing.jpg")
 
 
 # ---- The paper's figures
 
 
 def figure4(_, images):
-    """The tree of a simple shape before and after Listing 2: three tetrahedra around an axis, as the paper has three
-    triangles around a point. Heights are concavities: volume of the hull less the volume."""
+    """The tree of a simple shape before and after Listing 2: three tetrahedra around an axis, where the paper has three triangles
+    around a point. Heights are concavities (Eq. 1)."""
     angles = np.arange(3) * 2 * np.pi / 3
     vertices = np.vstack([np.column_stack([np.cos(angles), np.sin(angles), 0 * angles]), [(0, 0, 0.3), (0, 0, -0.3)]])
     triangles = [(a, (a + 1) % 3, 3) for a in range(3)] + [((a + 1) % 3, a, 4) for a in range(3)]
@@ -77,11 +78,11 @@ def figure4(_, images):
     corners = hierarchy.vertices[hierarchy.tetrahedra]
     volumes = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1])) / 6
     count = len(corners)
-    held = [[tet] for tet in range(count)] + [None] * len(hierarchy.merges)
-    below = {}
+    tets_of = [[tet] for tet in range(count)] + [None] * len(hierarchy.merges)
+    children_of = {}
     for number, (one, other) in enumerate(hierarchy.merges.tolist(), count):
-        held[number], below[number] = held[one] + held[other], [one, other]
-    concavity = [abs(ConvexHull(corners[tets].reshape(-1, 3)).volume - volumes[tets].sum()) for tets in held]
+        tets_of[number], children_of[number] = tets_of[one] + tets_of[other], [one, other]
+    concavity = [abs(ConvexHull(corners[tets].reshape(-1, 3)).volume - volumes[tets].sum()) for tets in tets_of]
     pruned = {}
     for node, parent in enumerate(hierarchy.parent.tolist()):
         if parent >= 0:
@@ -90,7 +91,7 @@ def figure4(_, images):
     heights = [concavity[tet] for tet in range(count)] + [concavity[-1]] * (root + 1 - count)
     highest = max(concavity)
 
-    def drawn(children, top, heights, left, title):
+    def draw_tree(children, top, heights, left, title):
         def leaves(node):
             return [leaf for child in children[node] for leaf in leaves(child)] if node in children else [node]
 
@@ -99,7 +100,7 @@ def figure4(_, images):
 
         def place(node):
             x = np.mean([place(child)[0] for child in children[node]]) if node in children else at[node]
-            # What is as low as its children stands a little above them, so that the lines are seen.
+            # A node at the height of its children is drawn a little above them, so that the lines are visible.
             level = max([place(child)[1] for child in children[node]], default=0) + 1 if node in children else 0
             return x, level, 250 - 150 * heights[node] / highest - 24 * level
 
@@ -110,24 +111,24 @@ def figure4(_, images):
                       for child in children.get(node, [])]
         for node in [*children, *order]:
             x, _, y = place(node)
-            held_here = "".join(str(leaf + 1) for leaf in sorted(leaves(node)))
+            label = "".join(str(leaf + 1) for leaf in sorted(leaves(node)))
             marks += [f'<circle cx="{x:.0f}" cy="{y:.0f}" r="6" fill="{"#e07b00" if heights[node] > 1e-9 else "#607d8b"}"/>',
-                      f'<text x="{x + 11:.0f}" y="{y + 5:.0f}">{held_here}: {heights[node]:.3f}</text>']
+                      f'<text x="{x + 11:.0f}" y="{y + 5:.0f}">{label}: {heights[node]:.3f}</text>']
         return [*marks, f'<text x="{left + 40}" y="300">{title}</text>']
 
-    marks = (drawn(below, count + len(hierarchy.merges) - 1, concavity, 0, "the binary tree: node, concavity")
-             + drawn(pruned, root, heights, 380, "after Listing 2"))
+    marks = (draw_tree(children_of, count + len(hierarchy.merges) - 1, concavity, 0, "the binary tree: node, concavity")
+             + draw_tree(pruned, root, heights, 380, "after Listing 2"))
     (images / "figure4.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 320" font-family="sans-serif" font-size="14">\n'
         '<rect width="760" height="320" fill="#fff"/>\n' + "\n".join(marks) + "\n</svg>\n")
 
 
 def figure9(folder, images):
-    """Two models in so many parts, in mode "paper" and in the default, without and with points inside."""
+    """Two models in PARTS parts, in mode "paper" and the default mode, without and with points added inside."""
     rows = []
-    for name, *seen in (("homer", (0, 0, 1), (0, 1, 0)), ("dino", (1, -0.4, 0.2), (0, 0, 1))):
+    for name, *camera in (("homer", (0, 0, 1), (0, 1, 0)), ("dino", (1, -0.4, 0.2), (0, 0, 1))):
         mesh = read(folder, name)
-        row = [painted([(mesh.vertices, mesh.triangles)], 300, *seen)]
+        row = [draw_bodies([(mesh.vertices, mesh.triangles)], 300, *camera)]
         for mode in (Mode.PAPER, Mode.REGROUPED):
             labels = []
             for quality in (0, 1.4):
@@ -137,15 +138,15 @@ def figure9(folder, images):
                 print(f"{name}, {mode.name.lower()}, quality {quality}: {len(hierarchy.tetrahedra):,} tetrahedra, "
                       f"{len(hierarchy.tetrahedra) / len(mesh.triangles):.2f} a triangle")
             one, other = labels
-            other = alike(one, other)
-            row += [View(mesh, *seen, 300).painted(colors(each)) for each in (one, other)]
+            other = match_labels(one, other)
+            row += [View(mesh, *camera, 300).painted(colors(part)) for part in (one, other)]
             print(f"   faces in the same part of both: {np.mean(one == other):.0%}")
         rows.append(row)
     save(rows, images / "figure9.jpg")
 
 
-def alike(one, other):
-    """The labels of `other`, numbered so that as many faces as can be have the same as in `one`."""
+def match_labels(one, other):
+    """The labels `other`, renumbered so that as many faces as possible have the same label as in `one`."""
     from scipy.optimize import linear_sum_assignment
     size = max(one.max(), other.max()) + 1
     common = np.zeros((size, size), int)

@@ -1,5 +1,5 @@
-"""What the site does otherwise than the files of docs/: the C API's page is made from the headers, and a link to a source
-file, which the site doesn't have, is the file's path."""
+"""MkDocs hooks: they generate the C API's page from the headers, and replace links to source files, which the site doesn't have,
+with the files' paths."""
 
 import re
 from pathlib import Path
@@ -16,7 +16,7 @@ def on_page_markdown(markdown, page, **_):
 
 
 def section(header):
-    """A header as a page reads it: each chapter with its comments and declarations, as they stand."""
+    """A header as Markdown: a section for each chapter with its comments and declarations."""
     text = (HEADERS / header).read_text()
     chapters = re.split(r"^/\* -{4} (.+?) -+ \*/\n", text, flags=re.M)
     head, chapters = chapters[0], zip(chapters[1::2], chapters[2::2])

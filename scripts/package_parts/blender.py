@@ -1,4 +1,4 @@
-"""Extensions and their repositories, made and validated by Blender's own tool, which bpy from PyPI brings."""
+"""Builds and validates extensions and their repositories with Blender's own tool, which bpy from PyPI contains."""
 
 import hashlib
 import json
@@ -14,28 +14,28 @@ from platforms import ROOT, platform_of
 
 
 def extensions(wheels, target, version=None):
-    """A zip of the add-on for each of these wheels, in the directory target. version: another than the files' own."""
+    """Builds an extension for each wheel in the directory target. version: overrides the version in the files."""
     with tempfile.TemporaryDirectory() as directory:
-        place = pathlib.Path(directory) / "partwheel"
+        folder = pathlib.Path(directory) / "partwheel"
         manifest = zips.manifest_for([platform_of(wheel) for wheel in wheels], [wheel.name for wheel in wheels])
         if version:
             manifest = re.sub(rb'^version = ".*"', f'version = "{version}"'.encode(), manifest, flags=re.M)
         files = {**zips.addon_files(), **{f"wheels/{wheel.name}": wheel.read_bytes() for wheel in wheels},
                  zips.MANIFEST.name: manifest}
         for name, data in files.items():
-            path = place / name
+            path = folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(data)
-        _blender("build", "--split-platforms", "--source-dir", place, "--output-dir", target)
+        _blender("build", "--split-platforms", "--source-dir", folder, "--output-dir", target)
     for wheel in wheels:
         name = f"partwheel-{version or zips.agreed_version()}-{platform_of(wheel)}.zip"
-        made = (target / name.replace(platform_of(wheel), platform_of(wheel).replace("-", "_"))).rename(target / name)
-        _same_each_time(made)
-        _blender("validate", made)
+        path = (target / name.replace(platform_of(wheel), platform_of(wheel).replace("-", "_"))).rename(target / name)
+        _remove_timestamps(path)
+        _blender("validate", path)
 
 
-def _same_each_time(path):
-    """Writes a zip anew, without the time at which it was made."""
+def _remove_timestamps(path):
+    """Rewrites a zip without timestamps, so that it is reproducible."""
     with zipfile.ZipFile(path) as archive:
         files = {name: archive.read(name) for name in archive.namelist()}
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
@@ -44,9 +44,10 @@ def _same_each_time(path):
 
 
 def repository(wheels, packages, target):
-    """A folder of two repositories that Blender installs and updates from, wherever it is served: the extensions and an
-    index.json each. stable has those in the directory packages; latest has the same under a version that says what is
-    in them: Blender updates what has another version than it has."""
+    """Builds a folder with two repositories for Blender, each with the extensions and an index.json, to be served anywhere.
+
+    stable has the extensions in the directory packages. latest has the same with a version that contains a hash of their
+    content, since Blender updates an extension when its version differs."""
     stable, latest = target / "stable", target / "latest"
     stable.mkdir(parents=True)
     latest.mkdir()
@@ -64,7 +65,7 @@ def repository(wheels, packages, target):
 
 
 def _blender(*command):
-    """`blender --command extension ...`, the same program."""
+    """Runs the program behind `blender --command extension ...`."""
     (venv, *_) = sorted((ROOT / "build" / "venv").glob("bpy-*"), reverse=True)
     (tool,) = venv.glob("lib/python3*/site-packages/bpy/*/scripts/addons_core/bl_pkg/cli/blender_ext.py")
     done = subprocess.run([venv / "bin/python", tool, *map(str, command)], capture_output=True, text=True)

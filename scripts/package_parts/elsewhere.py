@@ -1,9 +1,9 @@
-"""Tries what was packed on the system that it is for, with nothing but Python 3.11: the wheel in an empty environment with the
-core tests that need no compiler, and the extension in Blender as a Python module. Of public CI, on Windows and macOS.
+"""Tests packages on their own platform with Python 3.11 only: the wheel in a new environment with the core tests that need no
+compiler, and the extension in Blender as a Python module. Public CI runs this on Windows and macOS.
 
     python scripts/package_parts/elsewhere.py build/ship
 
-The models that tests read are looked for in build/deps/meshes.
+The tests read models from build/deps/meshes.
 """
 
 import os
@@ -42,16 +42,16 @@ def main(ship):
 
 
 def environment(directory, name, *packages):
-    """The Python of a new environment with these packages."""
-    place = pathlib.Path(directory) / name
-    venv.create(place, with_pip=True)
-    python = place / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+    """Creates an environment with these packages; returns its Python."""
+    folder = pathlib.Path(directory) / name
+    venv.create(folder, with_pip=True)
+    python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     run(python, "-m", "pip", "install", "--disable-pip-version-check", *packages, shown=True)
     return python
 
 
 def run(*command, shown=False, **environment):
-    """What it prints, as a path. Ends this program where it fails."""
+    """Runs a command; returns its output as a path. Exits if it fails."""
     done = subprocess.run(list(map(str, command)), cwd=ROOT, env={**os.environ, **environment}, text=True,
                           stdout=None if shown else subprocess.PIPE)
     if done.returncode:

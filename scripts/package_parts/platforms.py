@@ -1,10 +1,10 @@
-"""The platforms that are shipped: the names that Blender, CMakePresets.json and cmake/cross/zig.cmake have for them."""
+"""The shipped platforms, by their names in Blender, CMakePresets.json and cmake/cross/zig.cmake."""
 
 import pathlib
 import re
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Name -> what a wheel's file name ends with: glibc 2.28 and macOS 11 are the oldest that do.
+# Name -> platform tag of the wheel; the oldest supported systems are glibc 2.28 and macOS 11.
 TAGS = {
     "linux-x64": "manylinux_2_28_x86_64", "linux-arm64": "manylinux_2_28_aarch64",
     "windows-x64": "win_amd64", "windows-arm64": "win_arm64",
@@ -21,7 +21,7 @@ def library_of(platform):
 
 
 def platform_of(wheel):
-    """The platform of a wheel, from its file name: some machine's own, or one of the above."""
+    """The platform of a wheel, from its file name."""
     tag = pathlib.Path(wheel).stem.rsplit("-", 1)[1]
     system, machine = re.fullmatch(r"([a-z]+)[0-9_]*_(x86_64|[a-z0-9]+)", tag).groups()
     return f"{SYSTEMS[system]}-{MACHINES.get(machine, machine)}"

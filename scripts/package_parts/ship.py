@@ -1,5 +1,5 @@
-"""What is shipped, for all platforms or some: libraries, wheels, Blender's extensions, legacy add-ons, a repository folder,
-the source distribution; and a table of what was checked. Called by scripts/package, in build/venv/package.
+"""Builds everything that is shipped, for all platforms or some: libraries, wheels, Blender extensions, legacy add-ons, a
+repository folder, the source distribution; and prints a table of the checks. Called by scripts/package, in build/venv/package.
 
     ship.py all | PLATFORM ...
 """
@@ -38,13 +38,13 @@ def main():
     wheels = []
     for platform in platforms:
         print(f"package: the library and the wheel for {platform}", flush=True)
-        library = linked_twice(platform)
+        library = build_library(platform)
         table[platform] = {**checks.check(library, platform), "twice": "same bytes"}
-        wheels.append(wheel_of(platform))
-    print("package: what the libraries make of a model, where they can be run", flush=True)
-    for platform, told in runs.run(platforms).items():
-        table[platform]["run"] = told
-    print("package: add-ons for Blender, and its repositories", flush=True)
+        wheels.append(build_wheel(platform))
+    print("package: running the libraries, where possible", flush=True)
+    for platform, result in runs.run(platforms).items():
+        table[platform]["run"] = result
+    print("package: add-ons and repositories for Blender", flush=True)
     for wheel in wheels:
         zips.legacy(wheel)
     blender.extensions(wheels, SHIP)
@@ -57,52 +57,52 @@ def main():
     sums = "".join(f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n"
                    for path in sorted(SHIP.iterdir()) if path.suffix in {".whl", ".zip", ".gz"})
     (SHIP / "SHA256SUMS").write_text(sums)
-    print(written(table))
-    print(f"All in {SHIP}.")
+    print(format_table(table))
+    print(f"All packages are in {SHIP}.")
 
 
-def linked_twice(platform):
-    """The library, linked anew from objects that may be there already, twice: both must be the same. zig remembers what it
-    has linked, so each time it gets an empty memory; what it has of the systems' libraries is elsewhere."""
-    made = []
+def build_library(platform):
+    """Builds the library and links it twice, to check that linking is reproducible; returns its path. Each time zig gets an empty
+    cache for linked files; its cache of system libraries is elsewhere."""
+    libraries = []
     logged("cmake", "--preset", platform)
     for _ in range(2):
-        memory = tempfile.TemporaryDirectory()
-        os.environ["ZIG_LOCAL_CACHE_DIR"] = memory.name
+        cache = tempfile.TemporaryDirectory()
+        os.environ["ZIG_LOCAL_CACHE_DIR"] = cache.name
         for old in (ROOT / "build" / platform).glob("*partwheel.*"):
             if old.suffix in {".so", ".dll", ".dylib"} or ".so." in old.name or old.name.endswith(".dylib"):
                 old.unlink()
         logged("cmake", "--build", "--preset", platform, "--target", "partwheel", "--parallel", str(os.cpu_count()))
         stage = ROOT / "build" / platform / "stage"
         logged("cmake", "--install", ROOT / "build" / platform, "--component", "python", "--prefix", stage)
-        made.append((stage / library_of(platform)).read_bytes())
-        memory.cleanup()
+        libraries.append((stage / library_of(platform)).read_bytes())
+        cache.cleanup()
     del os.environ["ZIG_LOCAL_CACHE_DIR"]
-    if made[0] != made[1]:
-        raise SystemExit(f"The library for {platform} is another one each time that it is linked.")
+    if libraries[0] != libraries[1]:
+        raise SystemExit(f"Linking the library for {platform} is not reproducible.")
     return stage / library_of(platform)
 
 
-def wheel_of(platform):
-    """The wheel, with the library that was built already."""
-    made = SHIP / "made"
+def build_wheel(platform):
+    """Builds the wheel with the existing library; returns its path."""
+    folder = SHIP / "made"
     define = "--config-settings=cmake.define."
-    logged("pip", "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", made, ROOT,
+    logged("pip", "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", folder, ROOT,
            f"--config-settings=build-dir=build/{platform}",
            f"{define}CMAKE_TOOLCHAIN_FILE={ROOT / 'cmake/cross/zig.cmake'}", f"{define}PARTWHEEL_PLATFORM={platform}")
     logged("wheel", "tags", "--remove", "--python-tag", "py3", "--abi-tag", "none", "--platform-tag", TAGS[platform],
-           *made.glob("*.whl"))
-    (wheel,) = made.glob("*.whl")
+           *folder.glob("*.whl"))
+    (wheel,) = folder.glob("*.whl")
     wheel = wheel.replace(SHIP / wheel.name)
-    made.rmdir()
+    folder.rmdir()
     with zipfile.ZipFile(wheel) as archive:
-        inside = archive.read(f"partwheel/{library_of(platform)}")
-    if inside != (ROOT / "build" / platform / "stage" / library_of(platform)).read_bytes():
-        raise SystemExit(f"{wheel.name} holds another library than the one that was checked.")
+        packed = archive.read(f"partwheel/{library_of(platform)}")
+    if packed != (ROOT / "build" / platform / "stage" / library_of(platform)).read_bytes():
+        raise SystemExit(f"{wheel.name} does not contain the library that was checked.")
     return wheel
 
 
-def written(table):
+def format_table(table):
     columns = ["exports", "least", "needs", "signed", "twice", "run"]
     rows = [["platform", *columns]] + [[platform, *(found.get(column) or "-" for column in columns)]
                                        for platform, found in table.items()]

@@ -1,5 +1,5 @@
-"""The source distribution: what `pip install` needs beside g++ and CMake, so also the headers of CGAL, Boost and Eigen
-that the library includes, and TetGen's source."""
+"""Builds the source distribution. It has everything that `pip install` needs besides g++ and CMake, including the headers of
+CGAL, Boost and Eigen that the library includes, and TetGen's source."""
 
 import pathlib
 import re
@@ -12,45 +12,45 @@ from platforms import ROOT
 DEPS = ROOT / "build" / "deps"
 OURS = ("CMakeLists.txt", "CMakePresets.json", "cmake", "native/CMakeLists.txt", "native/include", "native/src",
         "native/python", "native/partwheel.map", "pyproject.toml", "LICENSE", "README.md", "CHANGELOG.md")
-# What other compilers may include: each has headers of its own there.
+# Folders with headers for each compiler, all of which are included.
 WHOLE = ("root/usr/include/boost/config", "root/usr/include/boost/predef")
 
 
 def distribution(target, builds):
-    """Writes partwheel-VERSION.tar.gz. builds: directories in which the library was built, whose headers are those."""
+    """Writes partwheel-VERSION.tar.gz to target. builds: build directories of the library; the headers used there are included."""
     with tempfile.TemporaryDirectory() as directory:
-        place = pathlib.Path(directory) / "partwheel"
+        folder = pathlib.Path(directory) / "partwheel"
         for name in OURS:
             if (ROOT / name).is_dir():
-                shutil.copytree(ROOT / name, place / name, ignore=shutil.ignore_patterns("__pycache__", "*.so", "*.dll"))
+                shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.so", "*.dll"))
             else:
-                place.joinpath(name).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy(ROOT / name, place / name)
+                folder.joinpath(name).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(ROOT / name, folder / name)
         names = {name for build in builds for name in _included(build)} | _included_by_gcc()
         names |= {path.relative_to(DEPS) for name in WHOLE for path in (DEPS / name).rglob("*") if path.is_file()}
         names |= {path.relative_to(DEPS) for path in (DEPS / "root/usr/share/doc").glob("*/copyright") if path.is_file()}
         names |= {path.relative_to(DEPS) for path in (DEPS / "tetgen-0.8.0").rglob("*")
                   if path.suffix in {".h", ".cxx"} or path.name.startswith("LICENSE")}
         for name in names:
-            (place / "build/deps" / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(DEPS / name, place / "build/deps" / name)
-        subprocess.run(["pyproject-build", "--sdist", "--no-isolation", "--outdir", target, place], check=True,
+            (folder / "build/deps" / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(DEPS / name, folder / "build/deps" / name)
+        subprocess.run(["pyproject-build", "--sdist", "--no-isolation", "--outdir", target, folder], check=True,
                        capture_output=True)
 
 
 def _included(build):
-    """The headers under build/deps that were included, as ninja noted them down."""
-    said = subprocess.run(["ninja", "-C", build, "-t", "deps"], check=True, capture_output=True, text=True).stdout
-    for name in set(re.findall(r"^\s+(?:\S*/)?build/deps/(\S+)$", said, re.M)):
+    """The headers under build/deps that a build included, from ninja's log."""
+    output = subprocess.run(["ninja", "-C", build, "-t", "deps"], check=True, capture_output=True, text=True).stdout
+    for name in set(re.findall(r"^\s+(?:\S*/)?build/deps/(\S+)$", output, re.M)):
         yield pathlib.Path(name)
 
 
 def _included_by_gcc():
-    """Those that g++ includes: Boost's headers differ by compiler."""
+    """The headers under build/deps that g++ includes: Boost's headers differ by compiler."""
     sources = [*(ROOT / "native/src").rglob("*.cpp"), *(DEPS / "tetgen-0.8.0/src").glob("*.cxx")]
-    places = [option for place in ("root/usr/include", "root/usr/include/eigen3", "tetgen-0.8.0/src")
-              for option in ("-isystem", DEPS / place)]
-    said = subprocess.run(["g++", "-std=c++20", "-M", "-fno-canonical-system-headers", "-DNDEBUG", "-DTETLIBRARY",
+    options = [option for folder in ("root/usr/include", "root/usr/include/eigen3", "tetgen-0.8.0/src")
+              for option in ("-isystem", DEPS / folder)]
+    output = subprocess.run(["g++", "-std=c++20", "-M", "-fno-canonical-system-headers", "-DNDEBUG", "-DTETLIBRARY",
                            "-DCGAL_DISABLE_GMP=1", "-DCGAL_DISABLE_MPFR=1", "-I", ROOT / "native/include",
-                           "-I", ROOT / "native/src", *places, *sources], check=True, capture_output=True, text=True).stdout
-    return {pathlib.Path(name) for name in re.findall(rf"{re.escape(str(DEPS))}/(\S+)", said)}
+                           "-I", ROOT / "native/src", *options, *sources], check=True, capture_output=True, text=True).stdout
+    return {pathlib.Path(name) for name in re.findall(rf"{re.escape(str(DEPS))}/(\S+)", output)}

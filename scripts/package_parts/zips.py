@@ -1,9 +1,10 @@
-"""Writes the add-on with a wheel of the Python package inside: the same bytes for the same files.
+"""Writes reproducible zips of the add-on that contain a wheel of the Python package.
 
     zips.py build/package/partwheel-VERSION-py3-none-TAG.whl
 
-Beside the wheel come partwheel-VERSION-PLATFORM.zip, an extension for Blender 4.2 and later, which installs the wheel;
-and -legacy.zip for 3.4 to 4.1, in which it is unpacked. zips.py --version prints the version that all files agree on.
+Next to the wheel it writes partwheel-VERSION-PLATFORM.zip, an extension for Blender 4.2 and later, which installs the wheel;
+and -legacy.zip for 3.4 to 4.1, which has the wheel's content. zips.py --version prints the version, which must be the same in
+all files.
 """
 
 import ast
@@ -17,39 +18,39 @@ from platforms import ROOT, platform_of
 
 ADDON = ROOT / "addon" / "partwheel"
 MANIFEST = ADDON / "blender_manifest.toml"
-EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can hold
+EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can store
 
 
 def main(wheel):
-    here = platform_of(wheel)
-    write(wheel.with_name(f"partwheel-{agreed_version()}-{here}.zip"), "partwheel",
-          {**addon_files(), MANIFEST.name: manifest_for([here], [wheel.name]),
+    platform = platform_of(wheel)
+    write(wheel.with_name(f"partwheel-{agreed_version()}-{platform}.zip"), "partwheel",
+          {**addon_files(), MANIFEST.name: manifest_for([platform], [wheel.name]),
            f"wheels/{wheel.name}": wheel.read_bytes()})
     legacy(wheel)
 
 
 def legacy(wheel):
-    """The add-on for Blender 3.4 to 4.1."""
+    """Writes the add-on for Blender 3.4 to 4.1."""
     with zipfile.ZipFile(wheel) as archive:
         package = {f"packages/{name}": archive.read(name) for name in archive.namelist()
                    if name.startswith("partwheel/") and not name.endswith("/")}
-    # The folder's name becomes the module's, which must not be the package's.
+    # The folder's name becomes that of the module, which must differ from the package's.
     write(wheel.with_name(f"partwheel-{agreed_version()}-{platform_of(wheel)}-legacy.zip"), "partwheel_addon",
           {**addon_files(), **package})
 
 
 def addon_files():
-    """Name -> bytes, without a manifest and the Python package."""
-    files = {path.relative_to(ADDON).as_posix(): path.read_bytes() for path in ADDON.rglob("*") if wanted(path)}
+    """{name: bytes} of the add-on, without the manifest and the Python package."""
+    files = {path.relative_to(ADDON).as_posix(): path.read_bytes() for path in ADDON.rglob("*") if is_shipped(path)}
     return {**files, "LICENSE": (ROOT / "LICENSE").read_bytes()}
 
 
 def write(target, folder, files):
-    """A zip of these files in one folder, as both installers want them."""
+    """Writes a zip of files in one folder, as both installers require."""
     partial = target.with_suffix(".partial")
     with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-        # Blender before 4.2 removes what an update replaces only if the zip names its folder. Else it would write over
-        # the library while that is in use, and crash.
+        # Before an update, Blender older than 4.2 removes the old add-on only if the zip has an entry for its folder. Otherwise it
+        # overwrites the library while it is in use, and crashes.
         archive.writestr(entry(f"{folder}/", 0o040755), b"")
         for name in sorted(files):
             archive.writestr(entry(f"{folder}/{name}", 0o100644), files[name])
@@ -64,13 +65,13 @@ def entry(name, mode):
     return info
 
 
-def wanted(path):
-    hidden = any(part.startswith((".", "__pycache__")) for part in path.relative_to(ADDON).parts)
-    return path.is_file() and path != MANIFEST and not hidden
+def is_shipped(path):
+    is_hidden = any(part.startswith((".", "__pycache__")) for part in path.relative_to(ADDON).parts)
+    return path.is_file() and path != MANIFEST and not is_hidden
 
 
 def manifest_for(platforms, wheels):
-    """The manifest, with the platforms that the libraries in these wheels are for in place of those in the source."""
+    """The manifest for these platforms and wheels."""
     text, count = re.subn(r"^platforms = .*$", f"platforms = {json.dumps(platforms)}\n"
                           f"wheels = {json.dumps([f'./wheels/{wheel}' for wheel in wheels])}", MANIFEST.read_text(), flags=re.M)
     if count != 1:
@@ -79,7 +80,7 @@ def manifest_for(platforms, wheels):
 
 
 def agreed_version():
-    """The version, which the header, the binding, the manifest and bl_info must agree on."""
+    """The version. Exits unless the header, the binding, the manifest and bl_info have the same."""
     header = re.search(r'^#define PW_VERSION "([^"]+)"', (ROOT / "native/include/partwheel.h").read_text(), re.M)
     binding = re.search(r'^VERSION = "([^"]+)"', (ROOT / "native/python/partwheel/library.py").read_text(), re.M)
     manifest = re.search(r'^version = "([^"]+)"', MANIFEST.read_text(), re.M)

@@ -139,14 +139,14 @@ def beside(results, path, target):
         for tool in "CoACD, fast", "ours":
             results.measure("picture", PICTURED, number, tool, number, loads(path))
     sys.path[:0] = [str(models.ROOT / "scripts" / "docs_parts")]
-    from draw import painted, save
+    from draw import draw_bodies, save
     from scipy.spatial import ConvexHull
 
     def bodies(number, tool):
         return [(points, ConvexHull(points).simplices) for points in results.hulls("picture", PICTURED, number, tool)]
 
-    model = painted([models.read(path)], 420, *SEEN)
-    save([[model, *(painted(bodies(number, tool), 420, *SEEN) for number in PICTURE)] for tool in ("CoACD, fast", "ours")],
+    model = draw_bodies([models.read(path)], 420, *SEEN)
+    save([[model, *(draw_bodies(bodies(number, tool), 420, *SEEN) for number in PICTURE)] for tool in ("CoACD, fast", "ours")],
          Path(target))
 
 
