@@ -23,7 +23,7 @@ HERE = f"linux-{'arm64' if os.uname().machine == 'aarch64' else 'x64'}"
 def compiled(tmp_path, *options, exported=True):
     """A library that has all functions of the headers, without their code."""
     source = tmp_path / "stub.c"
-    source.write_text("".join(f"void {name}(void) {{}}\n" for name in sorted(checks._declared())) +
+    source.write_text("".join(f"void {name}(void) {{}}\n" for name in sorted(checks._declared_functions())) +
                       "int puts(const char *);\nint other(void) { return puts(\"\"); }\n")
     library = tmp_path / "libstub.so"
     keep = tmp_path / "stub.map"
