@@ -39,8 +39,8 @@ from mathutils import Vector
 import partwheel
 from .compose import placement, swapping, union
 from .deform import methods
-from .deform.pen import Pen
 from .deform.region import Region
+from .deform.vertex_writer import VertexWriter
 from .cut import hulls as hull_objects
 from .cut import objects as part_objects
 from .cut import print_parts as printing
@@ -417,15 +417,15 @@ def bend(obj, node, rotation, reach=REACH, snap=False, progress=None, time_limit
     matrix = numpy.eye(4)
     matrix[:3, :3] = rotation
     matrix[:3, 3] = region.center - matrix[:3, :3] @ region.center
-    _deform(obj, region, methods.AtJoint(region), matrix, progress, time_limit)
+    _deform(obj, region, methods.JointBending(region), matrix, progress, time_limit)
 
 
 def _deform(obj, region, shape, matrix, progress, time_limit):
     watch = _Watch(progress, time_limit)
-    shape.jump([numpy.asarray(matrix, float)], watch)
+    shape.solve([numpy.asarray(matrix, float)], watch)
     if watch.reason:
         raise PartwheelError(Status.CANCELLED, f"{watch.reason} The mesh is as it was.")
-    Pen(obj, region).write(obj, shape.points())
+    VertexWriter(obj, region).write(obj, shape.points())
 
 
 class _Watch:

@@ -24,7 +24,7 @@ sys.path.insert(0, str(ROOT / "native" / "python"))
 spec = importlib.util.spec_from_file_location("partwheel_addon", ROOT / "addon" / "partwheel" / "__init__.py")
 sys.modules[spec.name] = importlib.util.module_from_spec(spec)
 methods, pens, regions = (importlib.import_module(f"partwheel_addon.deform.{name}")
-                          for name in ("methods", "pen", "region"))
+                          for name in ("methods", "vertex_writer", "region"))
 
 
 def create_edited_object(vertices, triangles):
@@ -57,16 +57,16 @@ def main():
     region = regions.Region(obj, np.flatnonzero(inside[triangles].any(axis=1)))
     handle = np.intersect1d(region.vertices, part[:len(part) // 10], return_indices=True)[1]
     shape = methods.AsRigidAsPossible(region, [handle])
-    pen = pens.Pen(obj, region)
+    pen = pens.VertexWriter(obj, region)
     begin = time.perf_counter() - start
-    shape.jump([np.eye(4)])
+    shape.solve([np.eye(4)])
     prepare = time.perf_counter() - start - begin
     steps = []
     for move in range(1, moves + 1):
         times = [time.perf_counter()]
         shape.follow([rotation(0.5 * move / moves, region.rest[handle].mean(axis=0))])
         times.append(time.perf_counter())
-        pen.draft(obj, shape.points())
+        pen.write_draft(obj, shape.points())
         times.append(time.perf_counter())
         bpy.context.view_layer.update()
         times.append(time.perf_counter())

@@ -46,8 +46,8 @@ class Coincident(MeshTest):
         return whole, self.add(vertices, polygons, "split"), was, faces, tip
 
     def deform(self, obj, faces, method, rings, tip, matrix):
-        held = part("deform.held")
-        held.deform(obj, faces, method, rings, 1.0, [[held.Handle(int(tip), 0.05 * self.size, matrix)]])
+        held = part("deform.session")
+        held.deform(obj, faces, method, rings, 1.0, [[held.DeformHandle(int(tip), 0.05 * self.size, matrix)]])
 
     def compare(self, method, rings=0, mirror=False, mode="OBJECT"):
         for where in ROWS:
@@ -97,11 +97,11 @@ class Coincident(MeshTest):
         for polygon in obj.data.polygons:
             polygon.use_smooth = True
         self.edit(obj)
-        held, region = part("deform.held"), part("deform.region").Region(obj, faces)
-        shape = part("deform.methods").METHODS["RIGID"](region, held.patches_of(
-            region, "RIGID", [held.Handle(int(numpy.flatnonzero(was == tip)[0]), 0.05 * self.size)]))
+        held, region = part("deform.session"), part("deform.region").Region(obj, faces)
+        shape = part("deform.methods").METHODS["RIGID"](region, held.handle_patches(
+            region, "RIGID", [held.DeformHandle(int(numpy.flatnonzero(was == tip)[0]), 0.05 * self.size)]))
         shape.follow([shift(0.1 * self.size, 0, 0)])
-        part("deform.pen").Pen(obj, region).draft(obj, shape.points())
+        part("deform.vertex_writer").VertexWriter(obj, region).write_draft(obj, shape.points())
         bm = bmesh.from_edit_mesh(obj.data)
         places, normals = edited(obj), numpy.array([vertex.normal[:] for vertex in bm.verts])
         first = numpy.unique(was, return_index=True)[1]
@@ -188,7 +188,7 @@ class Coincident(MeshTest):
         hierarchy = api.hierarchy(obj)
         stops, start = hierarchy.wheel(FINGER)
         api.select(obj, api.part(obj, FINGER, 0))
-        arguments = part("deform.proportional").falloff(obj)
+        arguments = part("deform.proportional").transform_arguments(obj)
         before = edited(obj)
         bpy.ops.transform.translate(value=(0.1 * float(numpy.ptp(before)), 0, 0), **arguments)
         after = edited(obj)

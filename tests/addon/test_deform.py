@@ -225,8 +225,8 @@ class Deform(MeshTest):
         region = part("deform.region").Region(obj, top, 0, True)
         patch = region.patch(region.nearest_free(int(numpy.abs(co - (0.5, 0, 1)).sum(axis=1).argmin())), 0.3)
         shape = part("deform.methods").AsRigidAsPossible(region, [patch])
-        shape.jump([shift(0.2, 0, 0.5)])
-        part("deform.pen").Pen(obj, region).write(obj, shape.points())
+        shape.solve([shift(0.2, 0, 0.5)])
+        part("deform.vertex_writer").VertexWriter(obj, region).write(obj, shape.points())
         after = stored(obj.data.vertices)
         self.assertGreater(after[:, 2].max(), 1.4)
         image = after * (-1, 1, 1)
@@ -246,8 +246,8 @@ class Deform(MeshTest):
         top = [vertex.index for vertex in obj.data.vertices if vertex.co.z > 2.9]
         region = part("deform.region").Region(obj, faces)
         shape = part("deform.methods").AsRigidAsPossible(region, [numpy.searchsorted(region.vertices, top)])
-        shape.jump([shift(1, 0, 0)])
-        part("deform.pen").Pen(obj, region).write(obj, shape.points())
+        shape.solve([shift(1, 0, 0)])
+        part("deform.vertex_writer").VertexWriter(obj, region).write(obj, shape.points())
         self.assertAlmostEqual(max(vertex.co.x for vertex in obj.data.vertices), 2, places=4)
         self.assertEqual(uvs, [tuple(each.uv) for each in obj.data.uv_layers.active.data])
 
@@ -258,9 +258,9 @@ class Deform(MeshTest):
         shape = part("deform.methods").AsRigidAsPossible(region, [[region.nearest_free(tip)]])
         for step in range(5):
             shape.follow([shift(0.02 * step, 0, 0)])
-            part("deform.pen").Pen(obj, region).write(obj, shape.points())
+            part("deform.vertex_writer").VertexWriter(obj, region).write(obj, shape.points())
         self.assertTrue((edited(obj) != before).any())
-        part("deform.pen").Pen(obj, region).restore(obj)
+        part("deform.vertex_writer").VertexWriter(obj, region).restore(obj)
         self.assertTrue((edited(obj) == before).all())
 
     def test_turns_one_after_the_other(self):
@@ -332,9 +332,9 @@ class Deform(MeshTest):
         before = edited(obj)
         region = part("deform.region").Region(obj, faces)
         shape = part("deform.methods").AsRigidAsPossible(region, [[region.nearest_free(tip)]])
-        pen = part("deform.pen").Pen(obj, region)
+        pen = part("deform.vertex_writer").VertexWriter(obj, region)
         shape.follow([shift(0.05, 0, 0)])
-        pen.draft(obj, shape.points())
+        pen.write_draft(obj, shape.points())
         after = edited(obj)
         self.assertTrue(numpy.isfinite(after).all())
         self.assertLess(numpy.abs(after - before).max(), 0.06)
@@ -351,14 +351,14 @@ class Deform(MeshTest):
                 face.smooth = smooth
             region = part("deform.region").Region(obj, faces)
             middle = region.nearest_free(tip)  # of a handle as large as users have it: no thorn
-            patch = region.patch(middle, region.usual_radius(middle))
-            shape, pen = part("deform.methods").AsRigidAsPossible(region, [patch]), part("deform.pen").Pen(obj, region)
+            patch = region.patch(middle, region.default_radius(middle))
+            shape, pen = part("deform.methods").AsRigidAsPossible(region, [patch]), part("deform.vertex_writer").VertexWriter(obj, region)
             shape.follow([shift(0.05, 0.02, 0)])
 
             def normals(elements):
                 return numpy.array([element.normal[:] for element in elements])
 
-            pen.draft(obj, shape.points())
+            pen.write_draft(obj, shape.points())
             seen = normals(bm.verts if smooth else bm.faces)
             pen.write(obj, shape.points())
             final = normals(bm.verts if smooth else bm.faces)
@@ -416,7 +416,7 @@ class Deform(MeshTest):
         turn[:3, :3] = [[1, 0, 0], [0, -1, 0], [0, 0, -1]]
         turn[:3, 3] = region.center - turn[:3, :3] @ region.center
         turn = deform.interpolate_transform(turn, 120 / 180)
-        far, slowly = (part("deform.methods").AtJoint(region) for _ in range(2))
+        far, slowly = (part("deform.methods").JointBending(region) for _ in range(2))
         far.follow([turn])
         for step in range(1, 31):
             slowly.follow([deform.interpolate_transform(turn, step / 30)])
@@ -445,8 +445,8 @@ class Deform(MeshTest):
         shape = part("deform.methods").AsRigidAsPossible(region, [region.patch(region.nearest_free(tip), 4 * size)])
         turn = package("deform").interpolate_transform(numpy.diag([1.0, -1, -1, 1]), 40 / 180)
         turn[:3, 3] = middle - turn[:3, :3] @ middle
-        shape.jump([turn])
-        part("deform.pen").Pen(obj, region).write(obj, shape.points())
+        shape.solve([turn])
+        part("deform.vertex_writer").VertexWriter(obj, region).write(obj, shape.points())
         after = stored(obj.data.vertices)
         beads, moved = after[count:].reshape(3, 8, 3), numpy.linalg.norm(after - before, axis=1)
         for each in range(3):

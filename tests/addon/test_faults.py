@@ -160,7 +160,7 @@ class Faults(SolidTest):
 
     def ready(self, tool, context):
         """The tick at which what was done in the background is done."""
-        until(lambda: not tool.held.task or not tool.held.task._thread.is_alive())
+        until(lambda: not tool.session.task or not tool.session.task._thread.is_alive())
         return tool.modal(context, event("TIMER"))
 
     def test_select(self):
@@ -239,7 +239,7 @@ class Faults(SolidTest):
         tool, context = self.begin(part("deform.operator").MESH_OT_partwheel_deform, {})
         for step in (self.begins("D"), self.sends("G"), self.sends("MOUSEMOVE", (200, 150), "NOTHING")):
             self.assertEqual(step(tool, context), {"RUNNING_MODAL"})
-        tool.held.finish(context.edit_object)
+        tool.session.finish(context.edit_object)
         failed = []
         tool._draw = lambda: failed.append(1) or self.fail("while drawing")
         draw = tool._guard_drawing(tool._draw)

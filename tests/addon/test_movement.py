@@ -13,10 +13,10 @@ class Typing(MeshTest):
         movement = part("deform.movement").Movement("G", Vector(), False)
         for key, typed in (("ONE", "1"), ("PERIOD", "1."), ("NUMPAD_5", "1.5"), ("MINUS", "-1.5"), ("MINUS", "1.5"),
                            ("BACK_SPACE", "1.")):
-            self.assertIs(movement.type(key), True, key)
+            self.assertIs(movement.type_key(key), True, key)
             self.assertEqual(movement.typed, typed)
         for key in ("A", "MOUSEMOVE", "RET"):
-            self.assertIs(movement.type(key), False, key)
+            self.assertIs(movement.type_key(key), False, key)
         self.assertEqual(movement.typed, "1.")
 
 

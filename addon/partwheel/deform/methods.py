@@ -1,28 +1,35 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a region follows its handles: as rigidly as possible, about its joint, or proportionally."""
+"""How a region follows its handles: as rigidly as possible, at its joint, or proportionally."""
 
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
 
 from partwheel.deform import (
-    FIXED, FREE, ENERGY_TOLERANCE, STEP_ANGLE, Deformation, interpolate_transform, rigid_motion, rotation_angle, surface_distances,
+    FIXED, FREE, ENERGY_TOLERANCE, STEP_ANGLE, Deformation, interpolate_transform, rigid_motion, rotation_angle,
+    surface_distances,
 )
 from partwheel.joint import edge_components
 from ..mesh.errors import Refused
+from .region import Region
 
-AT_ONCE, MOST_AT_ONCE = 30_000, 5  # iterations at a mouse move: so many vertices' in all; but no more than so many
-TURN = np.radians(30)  # a handle that turns by more at once, as by a typed number, goes there in steps
-BESIDE = 16  # at least so many vertices of the surface say where a loose piece near them goes
-WAYS = 32  # matrices between rest and the handle's that a proportional deformation mixes
-MIRROR = np.diag([-1.0, 1, 1, 1])
+VERTEX_ITERATIONS_PER_MOVE = 30_000  # vertices times iterations per mouse move
+MAX_ITERATIONS_PER_MOVE = 5  # iterations per mouse move
+MAX_SINGLE_TURN = np.radians(30)  # a handle that turns by more at once, as by a typed number, moves in steps
+MIN_ANCHORS = 16  # least number of surface vertices that a loose component follows
+N_STEPS = 32  # steps between the identity and the handle's matrix, of which a proportional deformation interpolates
+MIRROR_X = np.diag([-1.0, 1, 1, 1])
 
 
 class AsRigidAsPossible:
     """The region follows its handles, patches of its vertices, like a soft body: partwheel.deform.Deformation. Loose
-    pieces in it (eyes, buttons) go with the surface next to them, each as a whole."""
+    components in it (eyes, buttons) follow the surface next to them, each rigidly."""
 
-    def __init__(self, region, patches):
+    def __init__(self, region: Region, patches: list[np.ndarray]) -> None:
         """patches: the region's vertices of each handle. Raises Refused or PartwheelError."""
         roles = np.where(region.free, FREE, FIXED)
         for handle, patch in enumerate(patches):
@@ -30,134 +37,143 @@ class AsRigidAsPossible:
         if not (roles == FREE).any():
             raise Refused("The handle is the whole part, so nothing is left to follow it: make the handle smaller.")
         self._count, self._twins = len(patches), []
-        if region.partner is not None:  # each handle has one across the x axis, unless it lies in the middle
+        if region.partner is not None:  # each handle has a twin across the x axis, unless it lies on it
             for handle, patch in enumerate(patches):
-                other = region.partner[patch]
-                if (other >= 0).all() and (roles[other] == FREE).all():
-                    roles[other] = self._count + len(self._twins)
+                twin = region.partner[patch]
+                if (twin >= 0).all() and (roles[twin] == FREE).all():
+                    roles[twin] = self._count + len(self._twins)
                     self._twins.append(handle)
         if len(np.unique(roles[roles >= 0])) < self._count + len(self._twins):
             raise Refused("One handle covers another: make it smaller, or put it elsewhere.")
-        self._given = region.rest, region.triangles, roles
-        self._at_once = min(max(AT_ONCE // len(roles), 1), MOST_AT_ONCE)
-        self._energy, self._at = np.inf, [np.eye(4)] * self._count
+        self._inputs = region.rest, region.triangles, roles
+        self._iterations_per_move = min(max(VERTEX_ITERATIONS_PER_MOVE // len(roles), 1), MAX_ITERATIONS_PER_MOVE)
+        self._energy, self._matrices = np.inf, [np.eye(4)] * self._count
 
     @cached_property
-    def deformation(self):
-        """Factorizing takes a second for 100,000 vertices: at the first use, in any thread. Raises PartwheelError."""
-        return Deformation(*self._given)
+    def deformation(self) -> Deformation:
+        """The factorized system. 100,000 vertices take a second, at the first use, in any thread. Raises
+        PartwheelError."""
+        return Deformation(*self._inputs)
 
     @cached_property
-    def _pieces(self):
-        """[(vertices of a loose piece, those of the surface that it goes with)]"""
-        rest, triangles, roles = self._given
-        loose = np.isinf(surface_distances(rest, triangles, roles != FREE))
-        within = triangles[loose[triangles[:, 0]]]
-        if not len(within):
+    def _loose_components(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """[(vertices of a loose component, surface vertices that it follows)]"""
+        rest, triangles, roles = self._inputs
+        is_loose = np.isinf(surface_distances(rest, triangles, roles != FREE))
+        loose_triangles = triangles[is_loose[triangles[:, 0]]]
+        if not len(loose_triangles):
             return []
-        group = edge_components(within[:, [[0, 1], [1, 2]]].reshape(-1, 2))[::2]
-        ends = np.flatnonzero(~loose & (roles != FIXED))
-        pieces = []
-        for number in range(group.max() + 1):
-            piece = np.unique(within[group == number])
-            middle = rest[piece].mean(axis=0)
-            away = np.linalg.norm(rest[ends] - middle, axis=1)
-            near = away <= away.min() + np.linalg.norm(rest[piece] - middle, axis=1).max()
-            pieces.append((piece, ends[np.argsort(away, kind="stable")[:max(BESIDE, near.sum())]]))
-        return pieces
+        labels = edge_components(loose_triangles[:, [[0, 1], [1, 2]]].reshape(-1, 2))[::2]
+        anchors = np.flatnonzero(~is_loose & (roles != FIXED))
+        components = []
+        for number in range(labels.max() + 1):
+            component = np.unique(loose_triangles[labels == number])
+            center = rest[component].mean(axis=0)
+            distance = np.linalg.norm(rest[anchors] - center, axis=1)
+            is_near = distance <= distance.min() + np.linalg.norm(rest[component] - center, axis=1).max()
+            components.append((component,
+                               anchors[np.argsort(distance, kind="stable")[:max(MIN_ANCHORS, is_near.sum())]]))
+        return components
 
-    def _all(self, matrices):
-        return [*matrices, *(MIRROR @ matrices[handle] @ MIRROR for handle in self._twins)]
+    def _with_twins(self, matrices: list[np.ndarray]) -> list[np.ndarray]:
+        """The handles' matrices, and those of their twins."""
+        return [*matrices, *(MIRROR_X @ matrices[handle] @ MIRROR_X for handle in self._twins)]
 
-    def follow(self, matrices):
-        """The handles go to their matrices, (4,4) each, and the region most of the way: as much as a mouse move has
+    def follow(self, matrices: list[np.ndarray]) -> None:
+        """Moves the handles to their matrices (4, 4), and the region most of the way, as far as one mouse move has
         time for."""
-        steps = [_step(before, matrix) for before, matrix in zip(self._at, matrices)]
+        steps = [_relative_transform(before, matrix) for before, matrix in zip(self._matrices, matrices)]
         turn = max((rotation_angle(step[:3, :3]) for step in steps if step is not None), default=0)
-        count = 1 if turn < TURN else int(np.ceil(turn / STEP_ANGLE))
-        for at in range(1, count + 1):
-            between = matrices if at == count else [
-                matrix if step is None else interpolate_transform(step, at / count) @ before
-                for before, step, matrix in zip(self._at, steps, matrices)]
-            for handle, matrix in enumerate(self._all(between)):
+        count = 1 if turn < MAX_SINGLE_TURN else int(np.ceil(turn / STEP_ANGLE))
+        for number in range(1, count + 1):
+            targets = matrices if number == count else [
+                matrix if step is None else interpolate_transform(step, number / count) @ before
+                for before, step, matrix in zip(self._matrices, steps, matrices)]
+            for handle, matrix in enumerate(self._with_twins(targets)):
                 self.deformation.move(handle, matrix)
-            self.deformation.iterate(self._at_once)
-        self._energy, self._at = np.inf, matrices
+            self.deformation.iterate(self._iterations_per_move)
+        self._energy, self._matrices = np.inf, matrices
 
-    def go_on(self):
-        """A little further towards the shape of rest. Whether there is more to do."""
-        self.deformation.iterate(self._at_once)
+    def relax(self) -> bool:
+        """A few more iterations towards the rest shape. Returns whether there is more to do."""
+        self.deformation.iterate(self._iterations_per_move)
         before, self._energy = self._energy, self.deformation.energy()
-        return before - self._energy > ENERGY_TOLERANCE * self._at_once * before
+        return before - self._energy > ENERGY_TOLERANCE * self._iterations_per_move * before
 
-    def settle(self, stop=None):
-        """All the way to the shape of rest, unless the threading.Event stop is set meanwhile."""
+    def settle(self, stop: threading.Event | None = None) -> None:
+        """Iterates to the rest shape, unless the threading.Event stop is set."""
         self.deformation.settle(stop=stop)
 
-    def jump(self, matrices, stop=None):
-        """All the way at once, from rest."""
+    def solve(self, matrices: list[np.ndarray], stop: threading.Event | None = None) -> None:
+        """Moves the handles to their matrices and iterates to the rest shape, from the original one."""
         if all((matrix == np.eye(4)).all() for matrix in matrices):
-            self.deformation.reset()  # no rounding either
+            self.deformation.reset()  # without rounding
         else:
-            self.deformation.move_in_steps(self._all(matrices), stop)
-        self._pieces  # found while nobody waits
-        self._energy, self._at = np.inf, matrices
+            self.deformation.move_in_steps(self._with_twins(matrices), stop)
+        self._loose_components  # computed here, in the background
+        self._energy, self._matrices = np.inf, matrices
 
-    def points(self):
-        points, rest = self.deformation.positions(), self._given[0]
-        for piece, beside in self._pieces:
-            turn, shift = rigid_motion(rest[beside], points[beside])
-            points[piece] = rest[piece] @ turn.T + shift
+    def points(self) -> np.ndarray:
+        """(n, 3) the region's vertices now."""
+        points, rest = self.deformation.positions(), self._inputs[0]
+        for component, anchors in self._loose_components:
+            rotation, translation = rigid_motion(rest[anchors], points[anchors])
+            points[component] = rest[component] @ rotation.T + translation
         return points
 
 
-def _step(before, after):
-    """What leads from one matrix to another; None if there is no way back from the first, or nowhere to go."""
-    if not np.linalg.cond(before) < 1e12:
+def _relative_transform(start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
+    """end @ inverse(start); None if start is singular or the result is not finite."""
+    if not np.linalg.cond(start) < 1e12:
         return None
-    step = after @ np.linalg.inv(before)
+    step = end @ np.linalg.inv(start)
     return step if np.isfinite(step).all() else None
 
 
-class AtJoint(AsRigidAsPossible):
-    """A limb keeps its shape and turns, moves or grows as a whole; what is near its border bends, as rigidly as
-    possible."""
+class JointBending(AsRigidAsPossible):
+    """A limb keeps its shape and moves as a whole; what is near its border bends, as rigidly as possible."""
 
-    def __init__(self, region, _patches=()):
+    def __init__(self, region: Region, _patches: Sequence[np.ndarray] = ()) -> None:
         if not len(region.limb):
             raise Refused("No part of this limb is beyond its joint and not hidden: make the joint smaller.")
         super().__init__(region, [region.limb])
 
 
-class Proportional:
-    """The region follows one matrix, less and less towards its border: by the distance from it along the surface."""
+class ProportionalDeformation:
+    """The region follows one matrix, with a weight that falls to 0 at its border, by the distance along the surface."""
 
-    def __init__(self, region, _patches=()):
+    def __init__(self, region: Region, _patches: Sequence[np.ndarray] = ()) -> None:
         distance = surface_distances(region.rest, region.triangles, ~region.free)
         farthest = distance[np.isfinite(distance)].max()
-        share = np.minimum(distance / farthest, 1) if farthest > 0 else region.free.astype(float)
-        self.weight = share * share * (3 - 2 * share)  # Blender's "smooth" falloff
-        self._rest = self._now = region.rest
+        fraction = np.minimum(distance / farthest, 1) if farthest > 0 else region.free.astype(float)
+        self.weight = fraction * fraction * (3 - 2 * fraction)  # Blender's "smooth" falloff
+        self._rest = self._points = region.rest
 
-    def follow(self, matrices):
-        ways = np.array([interpolate_transform(np.asarray(matrices[0], float), way / WAYS) for way in range(WAYS + 1)])
-        below = np.minimum((self.weight * WAYS).astype(int), WAYS - 1)
-        rest = (self.weight * WAYS - below)[:, None, None]
-        matrix = (1 - rest) * ways[below] + rest * ways[below + 1]
-        now = np.einsum("nij,nj->ni", matrix[:, :3, :3], self._rest) + matrix[:, :3, 3]
-        self._now = np.where(self.weight[:, None] > 0, now, self._rest)
+    def follow(self, matrices: list[np.ndarray]) -> None:
+        """Moves the region to the first matrix (4, 4)."""
+        steps = np.array([interpolate_transform(np.asarray(matrices[0], float), number / N_STEPS)
+                          for number in range(N_STEPS + 1)])
+        lower = np.minimum((self.weight * N_STEPS).astype(int), N_STEPS - 1)
+        upper_weight = (self.weight * N_STEPS - lower)[:, None, None]
+        matrix = (1 - upper_weight) * steps[lower] + upper_weight * steps[lower + 1]
+        points = np.einsum("nij,nj->ni", matrix[:, :3, :3], self._rest) + matrix[:, :3, 3]
+        self._points = np.where(self.weight[:, None] > 0, points, self._rest)
 
-    def jump(self, matrices, _stop=None):
+    def solve(self, matrices: list[np.ndarray], _stop: threading.Event | None = None) -> None:
+        """The same as follow()."""
         self.follow(matrices)
 
-    def go_on(self):
+    def relax(self) -> bool:
+        """Never anything to do."""
         return False
 
-    def settle(self, _stop=None):
+    def settle(self, _stop: threading.Event | None = None) -> None:
+        """Nothing to do."""
         pass
 
-    def points(self):
-        return self._now
+    def points(self) -> np.ndarray:
+        """(n, 3) the region's vertices now."""
+        return self._points
 
 
-METHODS = {"RIGID": AsRigidAsPossible, "PROPORTIONAL": Proportional, "JOINT": AtJoint}
+METHODS = {"RIGID": AsRigidAsPossible, "PROPORTIONAL": ProportionalDeformation, "JOINT": JointBending}

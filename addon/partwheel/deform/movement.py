@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One movement with the mouse, as Blender's own transforms: G, R or S; along an axis or in a plane, the world's or the
-object's; by a typed number; in steps (Ctrl) and finely (Shift)."""
+"""One movement by the mouse, like Blender's own transforms: G, R or S; along an axis or in a plane of the world or
+the object; by a typed number; in steps (Ctrl) and precisely (Shift)."""
+
+from __future__ import annotations
 
 import math
 
+import bpy
 from bpy_extras.view3d_utils import (
     location_3d_to_region_2d, region_2d_to_location_3d, region_2d_to_vector_3d,
 )
@@ -13,41 +16,42 @@ from mathutils.geometry import intersect_line_line, intersect_line_plane
 from ..view import keys
 from ..words.say import iface_
 
-STEP_DEGREES, STEP_SCALE = 5.0, 0.1  # what Ctrl snaps to
-FINE = 0.1  # what Shift makes of the mouse's way, and of these steps
-GRAZING = 0.1  # cosine: a line seen so much from its end, a plane so much from its edge, gives no place under the mouse
-DIGITS = {**keys.DIGITS, **{f"NUMPAD_{digit}": str(digit) for digit in range(10)}, "PERIOD": ".", "NUMPAD_PERIOD": "."}
-MINUS = {"MINUS", "NUMPAD_MINUS"}
+STEP_DEGREES, STEP_SCALE = 5.0, 0.1  # steps with Ctrl
+PRECISION_FACTOR = 0.1  # factor of mouse motion and steps with Shift
+MIN_COSINE = 0.1  # cosine: lines and planes at smaller angles to the view direction have no point under the mouse
+DIGIT_KEYS = {**keys.DIGITS, **{f"NUMPAD_{digit}": str(digit) for digit in range(10)}, "PERIOD": ".",
+              "NUMPAD_PERIOD": "."}
+MINUS_KEYS = {"MINUS", "NUMPAD_MINUS"}
 
 
 class Movement:
-    """What is under way since a key or a button began it. Regions and RegionView3Ds are those it began in; the mouse is
-    in pixels of the region."""
+    """A movement since a key or button started it. region and view are those it started in; the mouse is in pixels of
+    the region."""
 
-    def __init__(self, kind, pivot, dragging, axis=None):
+    def __init__(self, kind: str, pivot: Vector, dragging: bool, axis: int | None = None) -> None:
         self.kind = kind  # G, R or S
-        self.pivot = pivot  # of turns and scales, in the world
-        self.dragging = dragging  # ends when the button is released
-        self.axis, self.plane, self.local = axis, False, False  # along or about which alone, or along all but that
-        self.frame = Matrix.Identity(3)  # the world's axes, or the object's if local
+        self.pivot = pivot  # in the world
+        self.dragging = dragging  # whether it ends when the button is released
+        self.axis, self.plane, self.local = axis, False, False  # along or around this axis; plane: along the other two
+        self.frame = Matrix.Identity(3)  # columns: the axes of the world, or of the object if local
         self.typed = ""
-        self._start = self._place = self._mouse = None  # where it began; where it is for the movement, and is really
-        self._fine, self._held = False, False  # Shift counts; it is held since before, when it meant something else
-        self._turned, self._angle = 0.0, None  # so far, in radians: full turns count; the mouse about the pivot
+        self._start = self._position = self._mouse = None  # mouse: start, effective position, real position
+        self._is_precise, self._was_shift_down = False, False  # Shift counts; Shift was down before
+        self._total_angle, self._mouse_angle = 0.0, None  # radians: total; of the mouse around the pivot
 
-    def constrain(self, axis, plane, matrix_world):
-        """As Blender's transforms: the key of an axis takes the world's, pressed again the object's own, then none."""
-        again = (self.axis, self.plane) == (axis, plane)
-        if again and self.local:
+    def constrain(self, axis: int, plane: bool, matrix_world: Matrix) -> None:
+        """Like Blender's transforms: an axis key selects the world's axis, again the object's own, then none."""
+        is_repeated = (self.axis, self.plane) == (axis, plane)
+        if is_repeated and self.local:
             axis, plane = None, False
-        self.axis, self.plane, self.local = axis, plane, again and not self.local
+        self.axis, self.plane, self.local = axis, plane, is_repeated and not self.local
         self.frame = matrix_world.to_3x3().normalized() if self.local else Matrix.Identity(3)
 
-    def type(self, event_type):
-        """Whether that event is part of a number, which it then is."""
-        if event_type in DIGITS:
-            self.typed += DIGITS[event_type]
-        elif event_type in MINUS:
+    def type_key(self, event_type: str) -> bool:
+        """Adds the key to the typed number. Returns whether it is part of a number."""
+        if event_type in DIGIT_KEYS:
+            self.typed += DIGIT_KEYS[event_type]
+        elif event_type in MINUS_KEYS:
             self.typed = self.typed[1:] if self.typed.startswith("-") else "-" + self.typed
         elif event_type == "BACK_SPACE":
             self.typed = self.typed[:-1]
@@ -55,90 +59,95 @@ class Movement:
             return False
         return True
 
-    def told(self):
-        """In words: what moves how."""
-        words = {"G": iface_("Move"), "R": iface_("Rotate"), "S": iface_("Scale")}[self.kind]
+    def status_text(self) -> str:
+        """The movement, for the status bar."""
+        text = {"G": iface_("Move"), "R": iface_("Rotate"), "S": iface_("Scale")}[self.kind]
         if self.axis is not None:
             along = iface_("{movement} along local {axes}") if self.local else iface_("{movement} along global {axes}")
             within = iface_("{movement} in local {axes}") if self.local else iface_("{movement} in global {axes}")
-            words = (within if self.plane else along).format(movement=words, axes="".join("XYZ"[k] for k in self._free()))
-        return f"{words}: {self.typed}" if self.typed else words
+            text = (within if self.plane else along).format(movement=text,
+                                                            axes="".join("XYZ"[k] for k in self._free_axes()))
+        return f"{text}: {self.typed}" if self.typed else text
 
-    def track(self, region, view, mouse, shift):
-        """The mouse went there, with Shift held or not. To be told of every place that it passed, from the first, for
-        full turns count."""
+    def track(self, region: bpy.types.Region, view: bpy.types.RegionView3D, mouse: tuple[float, float],
+              shift: bool) -> None:
+        """Follows the mouse, with or without Shift. Called for every position from the first one on, since full turns
+        count."""
         mouse = Vector(mouse)
         if self._mouse is None:
-            self._start = self._place = self._mouse = mouse
-            self._held = shift
-        self._held = self._held and shift
-        self._fine = shift and not self._held
-        share = FINE if self._fine else 1.0
-        self._place = self._place + share * (mouse - self._mouse)
+            self._start = self._position = self._mouse = mouse
+            self._was_shift_down = shift
+        self._was_shift_down = self._was_shift_down and shift
+        self._is_precise = shift and not self._was_shift_down
+        factor = PRECISION_FACTOR if self._is_precise else 1.0
+        self._position = self._position + factor * (mouse - self._mouse)
         self._mouse = mouse
-        away = mouse - self._center(region, view)
-        if away.length < 1:
+        from_center = mouse - self._pivot_pixel(region, view)
+        if from_center.length < 1:
             return
-        angle = math.atan2(away.y, away.x)
-        if self._angle is not None:
-            self._turned += share * ((angle - self._angle + math.pi) % (2 * math.pi) - math.pi)
-        self._angle = angle
+        angle = math.atan2(from_center.y, from_center.x)
+        if self._mouse_angle is not None:
+            self._total_angle += factor * ((angle - self._mouse_angle + math.pi) % (2 * math.pi) - math.pi)
+        self._mouse_angle = angle
 
-    def matrix(self, region, view, steps):
+    def matrix(self, region: bpy.types.Region, view: bpy.types.RegionView3D, steps: bool) -> Matrix:
         """The movement so far, in the world (4 x 4)."""
-        function = {"G": self._moved, "R": self._rotated, "S": self._scaled}[self.kind]
-        size = (FINE if self._fine else 1.0) if steps else None
-        return function(region, view, self._number(), size)
+        function = {"G": self._translation, "R": self._rotation, "S": self._scaling}[self.kind]
+        size = (PRECISION_FACTOR if self._is_precise else 1.0) if steps else None
+        return function(region, view, self._typed_number(), size)
 
-    def _free(self):
-        """Of the frame's axes those along which there is movement."""
+    def _free_axes(self) -> list[int]:
+        """The axes of the frame along which the movement is free."""
         return [k for k in range(3) if self.axis is None or (k == self.axis) != self.plane]
 
-    def _number(self):
+    def _typed_number(self) -> float | None:
+        """The typed number, or None."""
         try:
             return float(self.typed)
-        except ValueError:  # nothing yet, or only a sign
+        except ValueError:  # empty, or only a sign
             return None
 
-    def _center(self, region, view):
-        """The pivot's pixel; where there is none, behind the viewer, that where it began."""
+    def _pivot_pixel(self, region: bpy.types.Region, view: bpy.types.RegionView3D) -> Vector:
+        """The pivot's pixel; behind the viewer, where the movement started."""
         return location_3d_to_region_2d(region, view, self.pivot) or self._start
 
-    # Each with a typed number or None, and with what share of a step to go by, or None.
+    # number: as typed, or None. steps: fraction of a step to snap to, or None.
 
-    def _moved(self, region, view, number, steps):
+    def _translation(self, region: bpy.types.Region, view: bpy.types.RegionView3D, number: float | None,
+                     steps: float | None) -> Matrix:
         if number is not None:
-            return Matrix.Translation(number * self.frame.col[self._free()[0]])
-        now, before = (self._under(region, view, point) for point in (self._place, self._start))
-        shift = self.frame.transposed() @ (now - before)
-        shift = Vector(shift[k] if k in self._free() else 0 for k in range(3))
+            return Matrix.Translation(number * self.frame.col[self._free_axes()[0]])
+        end, start = (self._point_under(region, view, point) for point in (self._position, self._start))
+        shift = self.frame.transposed() @ (end - start)
+        shift = Vector(shift[k] if k in self._free_axes() else 0 for k in range(3))
         if steps:
-            # A step that shows: the power of ten next to some 20 pixels.
-            aside = self._start + Vector((20, 0))
-            pixels = (region_2d_to_location_3d(region, view, aside, self.pivot)
+            # A visible step: the power of ten nearest to 20 pixels.
+            right = self._start + Vector((20, 0))
+            pixels = (region_2d_to_location_3d(region, view, right, self.pivot)
                       - region_2d_to_location_3d(region, view, self._start, self.pivot)).length
             step = steps * 10 ** round(math.log10(max(pixels, 1e-12)))
             shift = Vector(step * round(value / step) for value in shift)
         return Matrix.Translation(self.frame @ shift)
 
-    def _under(self, region, view, point):
-        """The place under a pixel of the region: on the line or in the plane through the pivot that the movement keeps
-        to, unless that is seen too much from its end or its edge; else as far away as the pivot."""
-        place = region_2d_to_location_3d(region, view, point, self.pivot)
+    def _point_under(self, region: bpy.types.Region, view: bpy.types.RegionView3D, point: Vector) -> Vector:
+        """The point under a pixel: on the line or plane through the pivot to which the movement is constrained;
+        without one, or nearly edge-on, at the pivot's depth."""
+        point_3d = region_2d_to_location_3d(region, view, point, self.pivot)
         if self.axis is None:
-            return place
+            return point_3d
         direction, axis = region_2d_to_vector_3d(region, view, point), self.frame.col[self.axis]
-        slant = abs(direction.normalized().dot(axis))
-        if self.plane and slant > GRAZING:
-            return intersect_line_plane(place, place + direction, self.pivot, axis)
-        if not self.plane and slant < math.sqrt(1 - GRAZING * GRAZING):
-            return intersect_line_line(self.pivot, self.pivot + axis, place, place + direction)[0]
-        return place
+        cosine = abs(direction.normalized().dot(axis))
+        if self.plane and cosine > MIN_COSINE:
+            return intersect_line_plane(point_3d, point_3d + direction, self.pivot, axis)
+        if not self.plane and cosine < math.sqrt(1 - MIN_COSINE * MIN_COSINE):
+            return intersect_line_line(self.pivot, self.pivot + axis, point_3d, point_3d + direction)[0]
+        return point_3d
 
-    def _rotated(self, _region, view, number, steps):
-        towards_user = view.view_matrix.inverted().to_3x3().col[2]
-        axis = towards_user if self.axis is None else self.frame.col[self.axis].copy()
-        angle = self._turned if axis.dot(towards_user) >= 0 else -self._turned
+    def _rotation(self, _region: bpy.types.Region, view: bpy.types.RegionView3D, number: float | None,
+                  steps: float | None) -> Matrix:
+        view_axis = view.view_matrix.inverted().to_3x3().col[2]
+        axis = view_axis if self.axis is None else self.frame.col[self.axis].copy()
+        angle = self._total_angle if axis.dot(view_axis) >= 0 else -self._total_angle
         if number is not None:
             angle = math.radians(number)
         elif steps:
@@ -146,16 +155,17 @@ class Movement:
             angle = step * round(angle / step)
         return self._about_pivot(Matrix.Rotation(angle, 4, axis))
 
-    def _scaled(self, region, view, number, steps):
-        center = self._center(region, view)
-        factor = (self._place - center).length / max((self._start - center).length, 1)
+    def _scaling(self, region: bpy.types.Region, view: bpy.types.RegionView3D, number: float | None,
+                 steps: float | None) -> Matrix:
+        center = self._pivot_pixel(region, view)
+        factor = (self._position - center).length / max((self._start - center).length, 1)
         if number is not None:
             factor = number
         elif steps:
             step = steps * STEP_SCALE
             factor = step * round(factor / step)
-        scale = Matrix.Diagonal([factor if k in self._free() else 1 for k in range(3)])
+        scale = Matrix.Diagonal([factor if k in self._free_axes() else 1 for k in range(3)])
         return self._about_pivot((self.frame @ scale @ self.frame.transposed()).to_4x4())
 
-    def _about_pivot(self, matrix):
+    def _about_pivot(self, matrix: Matrix) -> Matrix:
         return Matrix.Translation(self.pivot) @ matrix @ Matrix.Translation(-self.pivot)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_deform: a picked part follows a handle that is dragged, turned and scaled; all beyond it stays."""
+"""mesh.partwheel_deform: the picked part follows a handle that is dragged, turned and scaled; all beyond it stays."""
 
 import bpy
 import numpy as np
@@ -16,20 +16,20 @@ from ..view.in_view import InView, show_wait_cursor
 from ..view.picking import find_view_under_mouse, get_region_view
 from ..words.say import iface_
 from . import gizmo
-from .held import Handle, Held, deform
-from .movement import DIGITS, Movement
+from .movement import DIGIT_KEYS, Movement
+from .session import DeformHandle, DeformSession, deform
 
-TICK = 0.03  # seconds
-NOTCH = 1.25  # what a notch of the wheel makes of the handle's size
-PATIENCE = 0.05  # seconds that Blender waits for what is done in the background, before it goes on meanwhile
+TIMER_STEP = 0.03  # seconds
+RESIZE_FACTOR = 1.25  # factor of the handle's size per notch
+MAX_WAIT = 0.05  # seconds to wait for the background task, before Blender goes on meanwhile
 
 
 class PARTWHEEL_PG_handle(bpy.types.PropertyGroup):
-    """A handle: a vertex and how far around it the surface belongs to it; and where it went."""
+    """A handle: the surface within a radius of a vertex, and where it goes."""
 
     vertex: bpy.props.IntProperty(name="Vertex", min=0)
     radius: bpy.props.FloatProperty(name="Radius", min=0)
-    turn: bpy.props.IntProperty(name="Turn", min=0)  # handles of one turn act together, one turn after the other
+    turn: bpy.props.IntProperty(name="Turn", min=0)  # handles of one turn act together; turns follow one another
     matrix: bpy.props.FloatVectorProperty(name="Matrix", size=16, default=tuple(np.eye(4).ravel()))
 
 
@@ -39,7 +39,7 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     bl_idname = "mesh.partwheel_deform"
     bl_label = "Deform Part"
     bl_options = {"REGISTER", "UNDO"}
-    held = None
+    session = None
 
     node: bpy.props.IntProperty(
         name="Part", description="The part's number; -1: the part that was picked last", default=-1, min=-1,
@@ -69,20 +69,20 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
     )
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.edit_object
         return (check_poll(cls, context.mode == "EDIT_MESH" and obj, "Parts are deformed in Edit Mode of a mesh.")
                 and check_poll(cls, registry.get_state(obj.data)[0] in registry.USABLE, picks.NO_PICK))
 
-    def draw(self, _context):
+    def draw(self, _context: bpy.types.Context) -> None:
         self.layout.prop(self, "method")
         self.layout.prop(self, "reach" if self.method == "JOINT" else "rings")
         self.layout.prop(self, "snap")
 
     # ---- Without a window ------------------------------------------------------------------------------------------
 
-    def execute(self, context):
-        """The part goes where handles say, at once."""
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Moves the handles of the property to their matrices, at once."""
         obj = context.edit_object
         try:
             faces = self._faces(obj)
@@ -90,15 +90,16 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
                 raise Refused("There is no handle: drag one in the 3D view.")
             if max(each.vertex for each in self.handles) >= len(obj.data.vertices):
                 raise Refused("A handle is a vertex that the mesh doesn't have.")
-            turns = [[Handle(each.vertex, each.radius, np.array(each.matrix).reshape(4, 4)) for each in self.handles
+            turns = [[DeformHandle(each.vertex, each.radius, np.array(each.matrix).reshape(4, 4))
+                      for each in self.handles
                       if each.turn == turn] for turn in sorted({each.turn for each in self.handles})]
             deform(obj, faces, self.method, self.rings, self.reach, turns)
-        except Error as error:  # faces too thin, for instance
+        except Error as error:  # for example, degenerate faces
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         return {"FINISHED"}
 
-    def _faces(self, obj):
+    def _faces(self, obj: bpy.types.Object) -> np.ndarray:
         """The part's faces. Raises Refused."""
         hierarchy, node = picks.resolve_node(obj, self.node)
         if self.node < 0 and not self.properties.is_property_set("snap"):
@@ -108,174 +109,183 @@ class MESH_OT_partwheel_deform(InView, bpy.types.Operator):
 
     # ---- With the mouse --------------------------------------------------------------------------------------------
 
-    def on_start(self, context, event):
+    def on_start(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         obj = context.edit_object
         with show_wait_cursor(context):
-            faces, picked = self._faces(obj), picks.get_pick(obj)
-            self.held = Held(obj, faces, self.method, self.rings, self.reach, picked and picked.face)
-        self._exit_stack.callback(self.held.abandon)
-        self.confirmed = self.recompute = False
-        self.movement, self.base = None, None  # that is under way; the last handle's matrix when it began
-        self._add_timer(context, TICK)
+            faces, pick = self._faces(obj), picks.get_pick(obj)
+            self.session = DeformSession(obj, faces, self.method, self.rings, self.reach, pick and pick.face)
+        self._exit_stack.callback(self.session.abandon)
+        self.is_confirmed = self.recompute = False
+        self.movement, self.base = None, None  # the current movement; the active handle's matrix when it started
+        self._add_timer(context, TIMER_STEP)
         self._add_draw_handler(self._draw)
         if self.start != "NONE":
             self._begin_movement(context, event, self.start)
-        self._tell_state(context)
+        self._show_state(context)
         return {"RUNNING_MODAL"}
 
-    def on_event(self, context, event):
+    def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if event.type in keys.CANCEL.events and event.value == "PRESS":
             return {"CANCELLED"}
-        passed = keys.NAVIGATE.events | keys.SYSTEM
-        if event.type != "TIMER" and event.type in (passed - set(DIGITS) if self.movement else passed):
+        passed_through = keys.NAVIGATE.events | keys.SYSTEM
+        if self.movement:
+            passed_through = passed_through - set(DIGIT_KEYS)
+        if event.type != "TIMER" and event.type in passed_through:
             return {"PASS_THROUGH"}
-        step = self._tick if event.type == "TIMER" else self._during if self.movement else self._between
-        answer = None
+        step = self._handle_movement if self.movement else self._handle_idle
+        if event.type == "TIMER":
+            step = self._on_timer
+        result = None
         try:
-            if event.type == "TIMER" or not self.confirmed:
-                answer = step(context, event)
+            if event.type == "TIMER" or not self.is_confirmed:
+                result = step(context, event)
         except Refused as reason:
             self.report({"WARNING"}, str(reason))
-        if not answer or "RUNNING_MODAL" in answer:
-            self._tell_state(context)
-        return answer or {"PASS_THROUGH" if event.type == "TIMER" else "RUNNING_MODAL"}
+        if not result or "RUNNING_MODAL" in result:
+            self._show_state(context)
+        return result or {"PASS_THROUGH" if event.type == "TIMER" else "RUNNING_MODAL"}
 
-    # Steps: each gives an answer, or None to go on.
+    # Steps: each returns the result of modal(), or None to go on.
 
-    def _between(self, context, event):
-        """Between two movements."""
+    def _handle_idle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str] | None:
+        """An event between two movements."""
         if event.value not in {"PRESS", "DOUBLE_CLICK"}:
             return None
         if event.type == "LEFTMOUSE":
-            return self._clicked(context, event)
+            return self._on_click(context, event)
         self.recompute = event.type in keys.RECOMPUTE.events
         if self.recompute or event.type in keys.CONFIRM.events:
             return self.on_confirm(context)
         if event.type in keys.TRANSFORM.events:
             self._begin_movement(context, event, event.type)
         elif event.type in keys.HANDLE_SIZE.events:
-            self.held.resize(context.edit_object, NOTCH if event.type == "WHEELUPMOUSE" else 1 / NOTCH)
+            factor = RESIZE_FACTOR if event.type == "WHEELUPMOUSE" else 1 / RESIZE_FACTOR
+            self.session.resize_handle(context.edit_object, factor)
         return None
 
-    def _clicked(self, context, event):
+    def _on_click(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str] | None:
         view, obj = find_view_under_mouse(context, event), context.edit_object
         if not view:
             return {"PASS_THROUGH"}
-        grabbed = gizmo.under(self.held.pivot(obj), *self._view(context, event))
-        if grabbed:
-            kind, axis = grabbed
+        hit = gizmo.hit_test(self.session.pivot(obj), *self._view(context, event))
+        if hit:
+            kind, axis = hit
             self._begin_movement(context, event, kind, dragging=True, axis=axis)
             return None
-        vertex = self.held.vertex_under(obj, *view[1:])
+        vertex = self.session.vertex_under(obj, *view[1:])
         if vertex is None:
             return self.on_confirm(context)
         if self.method == "RIGID":
-            self.held.place(obj, vertex, event.shift)
+            self.session.place_handle(obj, vertex, event.shift)
         self._begin_movement(context, event, "R" if self.method == "JOINT" else "G", dragging=True)
         return None
 
-    def _during(self, context, event):
-        """During a movement."""
+    def _handle_movement(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str] | None:
+        """An event during a movement."""
         movement, obj = self.movement, context.edit_object
-        if event.type == "INBETWEEN_MOUSEMOVE":  # there is a later one: not worth a step
+        if event.type == "INBETWEEN_MOUSEMOVE":  # a later one follows
             self._track(context, event)
         elif event.type in keys.MOVES | keys.SNAP_STEPS.events | keys.PRECISE.events:
-            self._follow(context, event)
+            self._move_handle(context, event)
         elif movement.dragging and (event.type, event.value) == ("LEFTMOUSE", "RELEASE"):
             self.movement = None
-            self._follow(context, event, movement)
+            self._move_handle(context, event, movement)
         elif event.value not in {"PRESS", "DOUBLE_CLICK"}:
             return None
         elif event.type in keys.DONE.events:
             self.movement = None
-            self._follow(context, event, movement)
-            if self.start != "NONE":  # it was started for this movement
+            self._move_handle(context, event, movement)
+            if self.start != "NONE":  # the operator was started for this movement only
                 return self.on_confirm(context)
         elif event.type in keys.TRANSFORM.events:
             self._begin_movement(context, event, event.type)
         elif event.type in keys.AXIS.events:
             movement.constrain("XYZ".index(event.type), event.shift, obj.matrix_world)
-            self._follow(context, event)
-        elif movement.type(event.type):
-            self._follow(context, event)
+            self._move_handle(context, event)
+        elif movement.type_key(event.type):
+            self._move_handle(context, event)
         return None
 
-    def _tick(self, context, _event):
-        """While the mouse rests."""
-        if self.held.ready(context.edit_object):
-            if self.confirmed:
+    def _on_timer(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str] | None:
+        """While the mouse rests, the shape relaxes."""
+        if self.session.is_ready(context.edit_object):
+            if self.is_confirmed:
                 return self.on_confirm(context)
-            self.held.go_on(context.edit_object)
+            self.session.relax(context.edit_object)
         return None
 
     # ---- A movement
 
-    def _begin_movement(self, context, event, kind, dragging=False, axis=None):
-        self.movement = Movement(kind, self.held.pivot(context.edit_object), dragging, axis)
-        self.base = self.held.matrix
+    def _begin_movement(self, context: bpy.types.Context, event: bpy.types.Event, kind: str, dragging: bool = False,
+                        axis: int | None = None) -> None:
+        self.movement = Movement(kind, self.session.pivot(context.edit_object), dragging, axis)
+        self.base = self.session.matrix
         self._track(context, event)
 
-    def _view(self, context, event):
-        """(region, RegionView3D, mouse in that region) that the tool was started in, also where it was started from a
-        panel of that view."""
+    def _view(self, context: bpy.types.Context,
+              event: bpy.types.Event) -> tuple[bpy.types.Region, bpy.types.RegionView3D, tuple[int, int]]:
+        """(region, RegionView3D, mouse in the region) of the view that the tool was started in, also from one of its
+        panels."""
         region = context.region
         if region.type != "WINDOW":
             region = next(each for each in context.area.regions if each.type == "WINDOW")
         return region, get_region_view(context.area, region), (event.mouse_x - region.x, event.mouse_y - region.y)
 
-    def _track(self, context, event):
-        """The movement is told where the mouse is."""
+    def _track(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+        """Passes the mouse position to the movement."""
         self.movement.track(*self._view(context, event), event.shift)
 
-    def _follow(self, context, event, movement=None):
-        """The handle goes where the mouse, or the number typed, says; the part follows."""
+    def _move_handle(self, context: bpy.types.Context, event: bpy.types.Event,
+                     movement: Movement | None = None) -> None:
+        """Moves the active handle to where the mouse or the typed number says; the part follows."""
         movement, view, obj = movement or self.movement, self._view(context, event), context.edit_object
         movement.track(*view, event.shift)
         world = movement.matrix(*view[:2], event.ctrl)
-        self.held.move(obj, np.array(obj.matrix_world.inverted_safe() @ world @ obj.matrix_world) @ self.base)
+        self.session.move_handle(obj, np.array(obj.matrix_world.inverted_safe() @ world @ obj.matrix_world) @ self.base)
 
-    # ---- What is seen
+    # ---- Drawing
 
-    def _draw(self):
-        obj = mesh_identity.find_object(self.held.name)
+    def _draw(self) -> None:
+        obj = mesh_identity.find_object(self.session.name)
         if obj is None:
             return
-        self.held.draw(obj)
+        self.session.draw(obj)
         if not self.movement:
-            gizmo.draw(self.held.pivot(obj), bpy.context.region, bpy.context.region_data)
+            gizmo.draw_gizmo(self.session.pivot(obj), bpy.context.region, bpy.context.region_data)
 
-    def _tell_state(self, context):
-        what = self.movement.told() if self.movement else self.held.told()
-        if self.held.task:
-            what = (iface_("{state}: settling") if self.confirmed else iface_("{state}: getting ready")).format(state=what)
+    def _show_state(self, context: bpy.types.Context) -> None:
+        what = self.movement.status_text() if self.movement else self.session.status_text()
+        if self.session.task:
+            text = iface_("{state}: settling") if self.is_confirmed else iface_("{state}: getting ready")
+            what = text.format(state=what)
         self._show_status(context, what, keys.MOVING if self.movement else keys.DEFORMING)
 
     # ---- The end
 
-    def on_confirm(self, context):
-        """Ends, once the part has its shape of rest."""
-        self.confirmed = True
-        if not self.held.settled(context.edit_object, PATIENCE):
+    def on_confirm(self, context: bpy.types.Context) -> set[str]:
+        """Ends once the part has its rest shape."""
+        self.is_confirmed = True
+        if not self.session.settle_within(context.edit_object, MAX_WAIT):
             return {"RUNNING_MODAL"}
-        if not self.held.changed:
+        if not self.session.has_changed:
             return {"CANCELLED"}
-        self.reach = self.held.reach
+        self.reach = self.session.reach
         self.handles.clear()
-        for turn, placed in enumerate([*self.held.turns, self.held.placed]):
-            for handle in placed:
-                each = self.handles.add()
-                each.turn, each.vertex, each.radius = turn, handle.vertex, handle.radius
-                each.matrix = handle.matrix.ravel()
+        for turn, stage_handles in enumerate([*self.session.turns, self.session.handles]):
+            for handle in stage_handles:
+                item = self.handles.add()
+                item.turn, item.vertex, item.radius = turn, handle.vertex, handle.radius
+                item.matrix = handle.matrix.ravel()
         if self.recompute and bpy.ops.mesh.partwheel_build.poll():
             bpy.ops.mesh.partwheel_build("INVOKE_DEFAULT")
         return {"FINISHED"}
 
-    def on_cancel(self, context):
-        if self.held and self.can_continue(context):
-            self.held.restore(context.edit_object)
+    def on_cancel(self, context: bpy.types.Context) -> None:
+        if self.session and self.can_continue(context):
+            self.session.restore(context.edit_object)
 
-    def can_continue(self, context):
-        return self.held.fits(context.edit_object)
+    def can_continue(self, context: bpy.types.Context) -> bool:
+        return self.session.fits(context.edit_object)
 
 
 CLASSES = (PARTWHEEL_PG_handle, MESH_OT_partwheel_deform)

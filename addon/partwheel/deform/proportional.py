@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""mesh.partwheel_move: a picked part is moved by Blender's own tool with proportional editing.
+"""mesh.partwheel_move: moves a picked part by Blender's own tool with proportional editing.
 
-It is told by the call to be proportional, connected, and how far it reaches: by the part's size. It keeps the reach as
-the user's new setting when it ends, so that is put back then.
+The call sets proportional editing, connected, with a size that fits the part. Blender's tool stores this size as the
+user's setting when it ends, so the operator restores the user's value then.
 
-Blender's tool doesn't weld coincident vertices (partwheel.weld): connected, it would tear the mesh where they are. Where
-there are any, distances are straight instead, the same for vertices at one place.
-"""
+Blender's tool doesn't weld coincident vertices (partwheel.weld): with connected, it would tear the mesh there. If
+there are any, distances are straight lines, the same for all vertices at one position."""
+
+from collections.abc import Callable
 
 import bpy
 import numpy as np
@@ -16,10 +17,10 @@ from ..mesh import arrays
 from ..parts import picks, registry
 from ..words.say import rpt_
 
-REACH = 0.5  # beyond the part, by the square root of its area
-TICK = 0.05  # seconds between two looks for the end of Blender's tool
+FALLOFF_FACTOR = 0.5  # falloff radius by the square root of the part's area
+TIMER_STEP = 0.05  # seconds between two checks whether Blender's tool has ended
 
-_waiting = None  # the timer that looks
+_timer = None  # the timer function that checks
 
 
 class MESH_OT_partwheel_move(picks.NeedsPick, bpy.types.Operator):
@@ -29,63 +30,67 @@ class MESH_OT_partwheel_move(picks.NeedsPick, bpy.types.Operator):
     bl_label = "Move Part Proportionally"
     bl_options = {"INTERNAL"}
 
-    def invoke(self, context, _event):
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         if not picks.get_pick(context.edit_object):
             self.report({"ERROR"}, rpt_(picks.NO_PICK))
             return {"CANCELLED"}
-        global _waiting
-        unregister()  # or the reach that the last tool has left would be taken for the user's
-        settings, arguments = context.tool_settings, falloff(context.edit_object)
-        users = settings.proportional_size
-        if np.float32(arguments["proportional_size"]) == np.float32(users):  # or that Blender has kept it would not be seen
+        global _timer
+        unregister()  # otherwise the size that the last run left would count as the user's
+        settings, arguments = context.tool_settings, transform_arguments(context.edit_object)
+        user_size = settings.proportional_size
+        # The sizes must differ, or a change by Blender would go unnoticed.
+        if np.float32(arguments["proportional_size"]) == np.float32(user_size):
             arguments["proportional_size"] *= 1.001
         bpy.ops.transform.translate("INVOKE_DEFAULT", **arguments)
-        _waiting = _putting_back(context.scene.name_full, users)
-        bpy.app.timers.register(_waiting, first_interval=0)
+        _timer = _create_restore_timer(context.scene.name_full, user_size)
+        bpy.app.timers.register(_timer, first_interval=0)
         return {"FINISHED"}
 
 
-def falloff(obj):
-    """What Blender's tool is told, the size in the world's unit."""
+def transform_arguments(obj: bpy.types.Object) -> dict[str, bool | float]:
+    """Arguments of Blender's tool; the size is in the world's unit."""
     split = is_welding(weld_coincident_vertices(arrays.read_edited_positions(obj), arrays.read_triangles(obj.data)[0]))
-    return {"use_proportional_edit": True, "use_proportional_connected": not split, "proportional_size": _reach(obj)}
+    return {"use_proportional_edit": True, "use_proportional_connected": not split,
+            "proportional_size": _falloff_radius(obj)}
 
 
-def _reach(obj):
+def _falloff_radius(obj: bpy.types.Object) -> float:
+    """Radius of the falloff, in the world's unit."""
     area = arrays.read(obj.data.polygons, "area", np.float32)
     part = registry.get_hierarchy(obj).faces(picks.get_pick(obj).node)
-    return REACH * float(np.sqrt(area[part].sum())) * obj.matrix_world.median_scale
+    return FALLOFF_FACTOR * float(np.sqrt(area[part].sum())) * obj.matrix_world.median_scale
 
 
-def _putting_back(scene, users):
-    """A timer that gives a scene the user's reach again as soon as Blender's tool, which ends by writing its own, has
-    done so."""
-    def look():
+def _create_restore_timer(scene: str, user_size: float) -> Callable[[], float | None]:
+    """A timer function that restores the user's size in a scene once Blender's tool, which ends by writing its own,
+    has done so."""
+    def check() -> float | None:
         settings = getattr(bpy.data.scenes.get(scene), "tool_settings", None)
         if settings is None:
             return None
-        if settings.proportional_size == users:
-            return TICK if _transforming() else None
-        settings.proportional_size = users
+        if settings.proportional_size == user_size:
+            return TIMER_STEP if _is_transforming() else None
+        settings.proportional_size = user_size
         return None
-    return look
+    return check
 
 
-def _transforming():
-    """Whether one of Blender's transform tools runs. Before Blender 4.2 that isn't known: then it may."""
+def _is_transforming() -> bool:
+    """Whether one of Blender's transform tools may be running. Always True before Blender 4.2, which doesn't say."""
     windows = bpy.context.window_manager.windows
     if not all(hasattr(window, "modal_operators") for window in windows):
         return True
-    return any(each.bl_idname.startswith("TRANSFORM_OT") for window in windows for each in window.modal_operators)
+    return any(operator.bl_idname.startswith("TRANSFORM_OT") for window in windows
+               for operator in window.modal_operators)
 
 
 CLASSES = (MESH_OT_partwheel_move,)
 
 
-def unregister():
-    """No timer goes on; the user's reach is put back, if Blender's tool has ended."""
-    global _waiting
-    if _waiting and bpy.app.timers.is_registered(_waiting):
-        _waiting()
-        bpy.app.timers.unregister(_waiting)
-    _waiting = None
+def unregister() -> None:
+    """Stops the timer, and restores the user's size if Blender's tool has ended."""
+    global _timer
+    if _timer and bpy.app.timers.is_registered(_timer):
+        _timer()
+        bpy.app.timers.unregister(_timer)
+    _timer = None
