@@ -33,10 +33,10 @@ if PACKAGES.is_dir() and str(PACKAGES) not in sys.path:
 # What Blender is told of, in this order: a module's CLASSES, its HANDLERS (by name), then its register().
 MODULES = (
     "words.catalogues", "preferences", "parts.changes", "parts.picks", "parts.files", "view.previews", "view.overlay",
-    "pick.build", "pick.select", "pick.objects", "pick.paint", "related.others", "related.select", "related.recall",
+    "pick.build", "pick.select", "pick.objects", "pick.paint", "related.similar_parts", "related.select", "related.recall",
     "related.gather", "solid.copy_part", "cut.parts_to", "cut.convex_parts", "compose.place", "compose.unite",
     "compose.swap", "deform.operator", "deform.proportional",
-    "ui.panel", "ui.remembered", "ui.path", "ui.modelling", "ui.menu", "ui.part_menus", "ui.keymap", "ui.on_import",
+    "ui.panel", "ui.named_parts", "ui.path", "ui.modelling", "ui.menu", "ui.part_menus", "ui.keymap", "ui.on_import",
     "pick.hover", "pick.tool", "api", "command",
 )
 

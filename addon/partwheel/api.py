@@ -49,8 +49,7 @@ from .mesh import arrays, selection
 from .mesh.errors import Refused, read_only_reason
 from .parts import builds, picks, registry
 from .pick import borders, states
-from .related import others
-from .related import remembered as named
+from .related import named_parts, similar_parts
 from .solid import composition, solids
 from partwheel import PartwheelError, Status
 from partwheel.cut import Cut, CutPart
@@ -183,14 +182,14 @@ def similar(obj, node, threshold=THRESHOLD, among=None):
     object, of which they are instead; sizes are those in the world."""
     if among is not None:
         hierarchy(among)
-    where, found = among or obj, others.alike(obj, *_node(obj, node), [among] * (among is not None))
+    where, found = among or obj, similar_parts.find_similar(obj, *_node(obj, node), [among] * (among is not None))
     return [(each.node, each.likeness) for each in found if each.name == where.name_full and each.likeness >= threshold]
 
 
 def mirrored(obj, node, plane=0):
     """The node on the other side of the model. plane: of the planes in which it is its own mirror image and the node has
     another part on its other side, the best one first, counted from 0. partwheel.Error: there is none."""
-    images = others.images(obj, *_node(obj, node))
+    images = similar_parts.find_mirror_images(obj, *_node(obj, node))
     if not 0 <= plane < len(images):
         raise ValueError(f"There is no plane {plane}: such planes are numbered from 0 to {len(images) - 1}.")
     return images[plane].node
@@ -200,14 +199,14 @@ def remember(obj, node, name, snap=False):
     """The node gets a name, which the panel lists: the face attribute "part: NAME" of the mesh, 1 on its faces.
     partwheel.Error: another has it."""
     _mesh(obj, changes=True)
-    named.remember(obj.data, name, faces(obj, node, snap))
+    named_parts.remember_part(obj.data, name, faces(obj, node, snap))
 
 
 def remembered(obj):
     """{name: node} of the remembered parts: that which has most in common with the faces then. partwheel.Error: one of
     them is no more."""
     built = hierarchy(obj)
-    return {name: named.node(obj, built, name)[0] for name in named.names(obj.data)}
+    return {name: named_parts.find_node(obj, built, name)[0] for name in named_parts.part_names(obj.data)}
 
 
 def cut(obj, parts=None, height=None, least_concavity=None):

@@ -93,13 +93,13 @@ class Imported(MeshTest):
         for each in (obj, other, shared, beside):
             each.select_set(each is not beside)
         part("parts.registry").forget_all()
-        lacking = part("ui.on_import").lacking(bpy.context.view_layer)
+        lacking = part("ui.on_import").find_without_parts(bpy.context.view_layer)
         self.assertEqual(len(lacking), 2)
         self.assertEqual({each.data for each in lacking}, {obj.data, other.data})
         self.assertEqual(bpy.ops.mesh.partwheel_imported(), {"FINISHED"})
         known = part("parts.registry").find_hierarchy
         self.assertEqual([known(each.data) is None for each in (obj, other, beside)], [False, False, True])
-        self.assertEqual(part("ui.on_import").lacking(bpy.context.view_layer), [])
+        self.assertEqual(part("ui.on_import").find_without_parts(bpy.context.view_layer), [])
 
     def test_a_sheet_is_no_error_that_pops_up(self):
         sheet = self.add([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])

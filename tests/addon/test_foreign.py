@@ -89,7 +89,7 @@ class Foreign(MeshTest):
                     obj.data.attributes.remove(obj.data.attributes[name])
                 obj.data.attributes.new(name, kind, domain)
             with self.subTest(kind, domain=domain):
-                self.assertEqual(part("related.remembered").names(obj.data), [])
+                self.assertEqual(part("related.named_parts").part_names(obj.data), [])
                 self.assertEqual(bpy.ops.mesh.partwheel_parts(to={"FACE_SETS"}, count=3), {"FINISHED"})
                 layer = obj.data.attributes[names[0]]
                 self.assertEqual((layer.data_type, layer.domain), ("INT", "FACE"))

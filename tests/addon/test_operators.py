@@ -123,7 +123,7 @@ class Operators(MeshTest):
 
         def entries(name):
             found = []
-            for draw in ([menus[name]] if name in menus else []) + ([part("ui.part_menus")._draw] if (
+            for draw in ([menus[name]] if name in menus else []) + ([part("ui.part_menus")._draw_submenu] if (
                     name in part("ui.part_menus").MENUS) else []) + ([ours[name]] if name in ours else []):
                 layout = Layout([])
                 draw(type("Menu", (), {"layout": layout})(), bpy.context)

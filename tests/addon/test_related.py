@@ -239,7 +239,7 @@ class Related(ToolTest):
         self.assertEqual(selected(self.obj), self.faces(bars[1]))
         self.assertEqual(bpy.ops.mesh.partwheel_rename(part="Bein", new="Leg"), {"FINISHED"})
         self.assertEqual(bpy.ops.mesh.partwheel_forget(part="Left Arm"), {"FINISHED"})
-        self.assertEqual(set(part("related.remembered").names(self.obj.data)), {"Leg", "頭"})
+        self.assertEqual(set(part("related.named_parts").part_names(self.obj.data)), {"Leg", "頭"})
         for operator, values, words in (
                 (bpy.ops.mesh.partwheel_remember, {"part": "Leg"}, "There is a part that is remembered as Leg"),
                 (bpy.ops.mesh.partwheel_remember, {"part": "  "}, "can't be empty"),
@@ -257,11 +257,11 @@ class Related(ToolTest):
             self.api.remember(self.obj, bar, name)
         mesh = self.obj.data
         mesh.attributes.new("arm of somebody else's", "INT", "FACE")
-        self.assertEqual(part("related.remembered").names(mesh), ["Left Arm", "Leg", "Armour"])
+        self.assertEqual(part("related.named_parts").part_names(mesh), ["Left Arm", "Leg", "Armour"])
         for wanted, found in (("", ["Left Arm", "Leg", "Armour"]), ("arm", ["Left Arm", "Armour"]), ("L*G", ["Leg"]),
                               ("part", []), ("x", [])):
             field = types.SimpleNamespace(filter_name=wanted, bitflag_filter_item=4, use_filter_sort_alpha=False)
-            flags, _ = part("ui.remembered").VIEW3D_UL_partwheel_remembered.filter_items(field, None, mesh, "")
+            flags, _ = part("ui.named_parts").VIEW3D_UL_partwheel_remembered.filter_items(field, None, mesh, "")
             self.assertEqual(set(flags), {0, 4} if found else {0})
             self.assertEqual([f"part: {name}" for name in found],
                              [each.name for each, flag in zip(mesh.attributes, flags) if flag])

@@ -106,7 +106,7 @@ class Words(MeshTest):
         units, root = bpy.context.scene.unit_settings, len(hierarchy.parent) - 1
         obj.scale = (2 / max(obj.dimensions),) * 3
         bpy.context.view_layer.update()
-        sides = lambda: part("ui.measure").sides(bpy.context, obj, hierarchy, root)
+        sides = lambda: part("ui.measure").format_box_sides(bpy.context, obj, hierarchy, root)
         for system, scale, longest in (("METRIC", 1, "2 m"), ("METRIC", 0.01, "2 cm"), ("IMPERIAL", 0.3048, "2'")):
             units.system, units.scale_length = system, scale
             self.assertEqual(sides()[0], longest)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Box and lasso over whole parts: Blender's own gestures, and then each part that they touched is selected, or taken
-away, as a whole: the part that a click there takes, and as many notches as the part that was picked last."""
+"""Box and lasso for whole parts: Blender's own gestures select faces, then each touched part is selected or
+deselected as a whole. The part of a face is the one that a click takes, plus as many notches as the last pick."""
 
 from collections import Counter
 
@@ -13,33 +13,37 @@ from ..mesh.selection import Selections
 from ..parts import picks
 from ..pick import states
 from ..pick.build import build_and_wait
+from partwheel import Hierarchy
 
-ASKED = 20_000  # of so many of the faces, a quarter of a second's worth, it is asked which part a click takes
-GRAZED = 0.1  # a part of which less than this share is touched, and which is less of what is touched, is left out
-_before = []  # the Selections of before the gesture, between the first and the last step of a macro
+MAX_SAMPLES = 20_000  # faces whose parts are looked up, a quarter of a second
+MIN_TOUCHED_FRACTION = 0.1  # least touched fraction of a part, or fraction of all touched faces
+_selections_before = []  # the Selections before the gesture, between the first and the last step of a macro
 MODES = [("SET", "Set", "Select these parts and nothing else"), ("ADD", "Extend", "Add them to what is selected"),
          ("SUB", "Subtract", "Take them away from what is selected")]
 
 
-class _InEditMode:
+class _EditModeOperator:
+    """Mixin for operators that need Edit Mode of a mesh."""
+
     @classmethod
-    def poll(cls, context):
-        return check_poll(cls, context.mode == "EDIT_MESH" and context.edit_object, "Parts are selected in Edit Mode of a mesh.")
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return check_poll(cls, context.mode == "EDIT_MESH" and context.edit_object,
+                          "Parts are selected in Edit Mode of a mesh.")
 
 
-class MESH_OT_partwheel_gather_begin(_InEditMode, bpy.types.Operator):
+class MESH_OT_partwheel_gather_begin(_EditModeOperator, bpy.types.Operator):
     """Remember what is selected"""
 
     bl_idname = "mesh.partwheel_gather_begin"
     bl_label = "Parts: What Is Selected"
     bl_options = {"INTERNAL"}
 
-    def execute(self, context):
-        _before[:] = [Selections(context.objects_in_mode_unique_data)]
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        _selections_before[:] = [Selections(context.objects_in_mode_unique_data)]
         return {"FINISHED"}
 
 
-class MESH_OT_partwheel_gather(_InEditMode, bpy.types.Operator):
+class MESH_OT_partwheel_gather(_EditModeOperator, bpy.types.Operator):
     """Make of what a gesture has selected the whole parts that it touched"""
 
     bl_idname = "mesh.partwheel_gather"
@@ -49,52 +53,54 @@ class MESH_OT_partwheel_gather(_InEditMode, bpy.types.Operator):
     mode: bpy.props.EnumProperty(
         name="Mode", description="What becomes of the selection before", items=MODES, default="SET")
 
-    def execute(self, context):
-        before = _before.pop()
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        selections = _selections_before.pop()
         with arrays.use_snapshot():
-            touched = {obj: before.touched(obj, self.mode == "SET") for obj in context.objects_in_mode_unique_data}
-            before.restore()
-            parts = {obj: self._parts(context, obj, faces) for obj, faces in touched.items()}
+            touched = {obj: selections.touched(obj, self.mode == "SET") for obj in context.objects_in_mode_unique_data}
+            selections.restore()
+            parts = {obj: self._touched_parts(context, obj, faces) for obj, faces in touched.items()}
             if any(faces is None for faces in parts.values()):
                 return {"CANCELLED"}
-            before.select_in_each(parts, self.mode == "ADD", self.mode == "SUB")
+            selections.select_in_each(parts, self.mode == "ADD", self.mode == "SUB")
         return {"FINISHED"}
 
-    def _parts(self, context, obj, touched):
-        """The faces of all parts that touched ones belong to; None and a report if there are no parts."""
+    def _touched_parts(self, context: bpy.types.Context, obj: bpy.types.Object,
+                       touched: np.ndarray) -> np.ndarray | None:
+        """The faces of all parts with touched faces; None, with a report, if the object has no parts."""
         if not len(touched):
             return touched
         hierarchy = build_and_wait(self, context, obj)
         if not hierarchy:
             return None
-        level = _level(picks.get_pick(obj))
-        step = len(touched) // ASKED + 1
-        return _joined(hierarchy, {face: states.pick_face(hierarchy, face, level).node for face in touched[::step].tolist()},
-                       step)
+        level = _notches_from_start(picks.get_pick(obj))
+        step = len(touched) // MAX_SAMPLES + 1
+        nodes = {face: states.pick_face(hierarchy, face, level).node for face in touched[::step].tolist()}
+        return _union_of_nodes(hierarchy, nodes, step)
 
 
-def _level(pick):
-    """Notches from what the click alone took."""
+def _notches_from_start(pick: picks.Pick | None) -> int:
+    """Notches of the pick from what the click alone takes."""
     if not pick:
         return 0
     stops, start = pick.hierarchy.wheel(pick.face)
     return np.flatnonzero(stops == pick.node)[0] - start if pick.node in stops else 0
 
 
-def _joined(hierarchy, takes, step):
-    """The faces of the nodes that the touched faces take ({face: node}, of each step-th): those of most of them first. Faces in these
-    already don't count any more: the few at a finger's end from which a click takes the hand."""
-    inside = np.zeros(len(hierarchy.order), bool)
-    touched, taken = (np.array(list(each)) for each in (takes.keys(), takes.values()))
-    for node, _ in sorted(Counter(takes.values()).items(), key=lambda each: (-each[1], each[0])):
-        left = np.count_nonzero(~inside[touched[taken == node]])
+def _union_of_nodes(hierarchy: Hierarchy, node_of_face: dict[int, int], step: int) -> np.ndarray:
+    """The union of the nodes' faces. node_of_face: {touched face: its node}, of each step-th touched face. Nodes with
+    most touched faces come first; faces already in the union don't count again, so a few faces at a fingertip for
+    which a click takes the hand don't add it."""
+    is_inside = np.zeros(len(hierarchy.order), bool)
+    touched, nodes = (np.array(list(items)) for items in (node_of_face.keys(), node_of_face.values()))
+    for node, _ in sorted(Counter(node_of_face.values()).items(), key=lambda items: (-items[1], items[0])):
+        n_new = np.count_nonzero(~is_inside[touched[nodes == node]])
         faces = hierarchy.faces(node)
-        if left and left >= GRAZED * min(len(touched), len(faces) / step):
-            inside[faces] = True
-    return np.flatnonzero(inside)
+        if n_new and n_new >= MIN_TOUCHED_FRACTION * min(len(touched), len(faces) / step):
+            is_inside[faces] = True
+    return np.flatnonzero(is_inside)
 
 
-class MESH_OT_partwheel_box(_InEditMode, bpy.types.Macro):
+class MESH_OT_partwheel_box(_EditModeOperator, bpy.types.Macro):
     """Select all parts (segments, regions) that a box touches, by as many notches as the part that was picked last"""
 
     bl_idname = "mesh.partwheel_box"
@@ -102,7 +108,7 @@ class MESH_OT_partwheel_box(_InEditMode, bpy.types.Macro):
     bl_options = {"REGISTER", "UNDO"}
 
 
-class MESH_OT_partwheel_lasso(_InEditMode, bpy.types.Macro):
+class MESH_OT_partwheel_lasso(_EditModeOperator, bpy.types.Macro):
     """Select all parts (segments, regions) that a lasso touches, by as many notches as the part that was picked last"""
 
     bl_idname = "mesh.partwheel_lasso"
@@ -113,12 +119,12 @@ class MESH_OT_partwheel_lasso(_InEditMode, bpy.types.Macro):
 CLASSES = (MESH_OT_partwheel_gather_begin, MESH_OT_partwheel_gather, MESH_OT_partwheel_box, MESH_OT_partwheel_lasso)
 
 
-def register():
+def register() -> None:
     for macro, gesture in ((MESH_OT_partwheel_box, "VIEW3D_OT_select_box"),
                            (MESH_OT_partwheel_lasso, "VIEW3D_OT_select_lasso")):
         for step in ("MESH_OT_partwheel_gather_begin", gesture, "MESH_OT_partwheel_gather"):
             macro.define(step)
 
 
-def unregister():
-    _before.clear()
+def unregister() -> None:
+    _selections_before.clear()

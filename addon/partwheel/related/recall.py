@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Operators for remembered parts: the part in hand gets a name; that name selects it again, is changed, is forgotten."""
+"""Operators for remembered parts: give the picked part a name, select it again by this name, change the name, forget
+it."""
 
 import bpy
 
@@ -10,41 +11,43 @@ from ..parts import picks, registry
 from ..pick import borders
 from ..view import overlay
 from ..words.say import iface_
-from . import remembered
+from . import named_parts
 
 
-class _InEditMode:
-    """What they share: Edit Mode, errors."""
+class _NamingOperator:
+    """Mixin for operators on remembered parts: needs Edit Mode, reports errors."""
 
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return check_poll(cls, context.mode == "EDIT_MESH" and context.edit_object,
                           "Parts are remembered in Edit Mode of a mesh.") and poll_is_editable(cls, context.edit_object)
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         try:
-            self.work(context, context.edit_object)
+            self.run(context, context.edit_object)
         except Refused as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        overlay.redraw_views()  # and with the view the list beside it
+        overlay.redraw_views()  # with the list in the sidebar
         return {"FINISHED"}
 
 
-class _Named(_InEditMode):
+class _NamedPartOperator(_NamingOperator):
+    """Mixin for operators on the part with a name."""
+
     part: bpy.props.StringProperty(name="Part", description="The name under which it is remembered",
                                    options={"SKIP_SAVE"})
 
 
-def _typed(layout, operator, name):
-    """A text that can be typed at once, without a click into its field."""
+def _draw_text_field(layout: bpy.types.UILayout, operator: bpy.types.Operator, name: str) -> None:
+    """Draws a text field that is active at once, without a click."""
     layout.activate_init = True
     layout.prop(operator, name)
 
 
-class MESH_OT_partwheel_remember(_InEditMode, bpy.types.Operator):
+class MESH_OT_partwheel_remember(_NamingOperator, bpy.types.Operator):
     """Give the part (segment, region) that was picked last a name, by which the panel's list selects it again"""
 
     bl_idname = "mesh.partwheel_remember"
@@ -53,25 +56,26 @@ class MESH_OT_partwheel_remember(_InEditMode, bpy.types.Operator):
     part: bpy.props.StringProperty(name="Name", description="The part's name", default="Part", options={"SKIP_SAVE"})
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return super().poll(context) and check_poll(cls, picks.get_pick_for_poll(context.edit_object), picks.NO_PICK)
 
-    def invoke(self, context, _event):
-        taken, number = remembered.names(context.edit_object.data), 1
-        while (name := iface_("Part {number}").format(number=number)) in taken:
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        used, number = named_parts.part_names(context.edit_object.data), 1
+        while (name := iface_("Part {number}").format(number=number)) in used:
             number += 1
         self.part = name
         return context.window_manager.invoke_props_dialog(self)
 
-    def draw(self, _context):
-        _typed(self.layout, self, "part")
+    def draw(self, _context: bpy.types.Context) -> None:
+        _draw_text_field(self.layout, self, "part")
 
-    def work(self, _context, obj):
+    def run(self, _context: bpy.types.Context, obj: bpy.types.Object) -> None:
         hierarchy, node = picks.resolve_node(obj, -1)
-        remembered.remember(obj.data, self.part, borders.get_part_faces(obj, hierarchy, node, picks.get_pick(obj).snap))
+        named_parts.remember_part(obj.data, self.part,
+                                  borders.get_part_faces(obj, hierarchy, node, picks.get_pick(obj).snap))
 
 
-class MESH_OT_partwheel_recall(_Named, bpy.types.Operator):
+class MESH_OT_partwheel_recall(_NamedPartOperator, bpy.types.Operator):
     """Select the part that is remembered under this name. Shift adds it to the selection, Ctrl takes it away"""
 
     bl_idname = "mesh.partwheel_recall"
@@ -83,19 +87,20 @@ class MESH_OT_partwheel_recall(_Named, bpy.types.Operator):
     deselect: bpy.props.BoolProperty(
         name="Deselect", description="Take the part away from what is selected", default=False, options={"SKIP_SAVE"})
 
-    def invoke(self, context, event):
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self.extend, self.deselect = bool(event.shift), bool(event.ctrl)
         return self.execute(context)
 
-    def work(self, context, obj):
+    def run(self, context: bpy.types.Context, obj: bpy.types.Object) -> None:
         hierarchy = registry.require_hierarchy(obj)
-        node, snap = remembered.node(obj, hierarchy, self.part)
+        node, snap = named_parts.find_node(obj, hierarchy, self.part)
         faces = borders.get_part_faces(obj, hierarchy, node, snap)
-        Selections(context.objects_in_mode_unique_data, obj).select(obj, faces, int(faces[0]), self.extend, self.deselect)
+        Selections(context.objects_in_mode_unique_data, obj).select(obj, faces, int(faces[0]), self.extend,
+                                                                    self.deselect)
         picks.remember(obj, int(hierarchy.faces(node)[0]), node, snap)
 
 
-class MESH_OT_partwheel_rename(_Named, bpy.types.Operator):
+class MESH_OT_partwheel_rename(_NamedPartOperator, bpy.types.Operator):
     """Give a remembered part another name"""
 
     bl_idname = "mesh.partwheel_rename"
@@ -103,25 +108,25 @@ class MESH_OT_partwheel_rename(_Named, bpy.types.Operator):
 
     new: bpy.props.StringProperty(name="New Name", description="The part's name from now on", options={"SKIP_SAVE"})
 
-    def invoke(self, context, _event):
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         self.new = self.part
         return context.window_manager.invoke_props_dialog(self)
 
-    def draw(self, _context):
-        _typed(self.layout, self, "new")
+    def draw(self, _context: bpy.types.Context) -> None:
+        _draw_text_field(self.layout, self, "new")
 
-    def work(self, _context, obj):
-        remembered.rename(obj.data, self.part, self.new)
+    def run(self, _context: bpy.types.Context, obj: bpy.types.Object) -> None:
+        named_parts.rename_part(obj.data, self.part, self.new)
 
 
-class MESH_OT_partwheel_forget(_Named, bpy.types.Operator):
+class MESH_OT_partwheel_forget(_NamedPartOperator, bpy.types.Operator):
     """Forget the name of a part; the mesh stays as it is"""
 
     bl_idname = "mesh.partwheel_forget"
     bl_label = "Forget Part"
 
-    def work(self, _context, obj):
-        remembered.forget(obj.data, self.part)
+    def run(self, _context: bpy.types.Context, obj: bpy.types.Object) -> None:
+        named_parts.forget_part(obj.data, self.part)
 
 
 CLASSES = (MESH_OT_partwheel_remember, MESH_OT_partwheel_recall, MESH_OT_partwheel_rename, MESH_OT_partwheel_forget)

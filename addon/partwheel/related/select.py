@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Operators that go on from the part that was picked last to others: all that are alike, the one on the other side."""
+"""Operators that go on from the picked part: select all similar parts, or the mirror image."""
 
 import bpy
 import numpy as np
@@ -13,21 +13,23 @@ from ..pick import borders
 from ..view import keys, picking
 from ..view.in_view import InView, show_wait_cursor
 from ..words.say import iface_, rpt_
-from . import others
+from . import similar_parts
+from partwheel import Hierarchy
 from partwheel.likeness import THRESHOLD
 
 
-class _FromPart(picks.NeedsPick):
-    """Selects nodes beside the part in hand."""
+class _PartBasedSelection(picks.NeedsPick):
+    """Mixin for operators that select nodes in addition to the picked part."""
 
     extend: bpy.props.BoolProperty(
         name="Extend", description="Add to what is selected, instead of replacing it", default=True)
 
-    def _faces(self, obj, hierarchy, nodes, snap):
+    def _union_of_nodes(self, obj: bpy.types.Object, hierarchy: Hierarchy, nodes: list[int], snap: bool) -> np.ndarray:
+        """The faces of several nodes."""
         return np.concatenate([borders.get_part_faces(obj, hierarchy, node, snap) for node in nodes])
 
 
-class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
+class MESH_OT_partwheel_similar(_PartBasedSelection, InView, bpy.types.Operator):
     """Select all parts (segments, regions) like the one picked last, in each object being edited: fingers, legs, horns"""
 
     bl_idname = "mesh.partwheel_similar"
@@ -40,93 +42,97 @@ class MESH_OT_partwheel_similar(_FromPart, InView, bpy.types.Operator):
 
     # ---- Without a window
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         obj = context.edit_object
         try:
-            self._start(context, obj)
+            self._find(context, obj)
         except Refused as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        self._show(context, self._count())
+        self._select(context, self._count_similar())
         return {"FINISHED"}
 
-    def _start(self, context, obj):
+    def _find(self, context: bpy.types.Context, obj: bpy.types.Object) -> None:
+        """Finds the similar parts of all edited objects. Raises Refused."""
         with arrays.use_snapshot():
             self.hierarchy, _ = picks.resolve_node(obj, -1)
             self.pick = picks.get_pick(obj)
-            edited = list(context.objects_in_mode_unique_data)
-            self.alike = others.alike(obj, self.hierarchy, self.pick.node, [each for each in edited if each != obj])
-            self.selections = Selections(edited, obj)
-            lacking = [each.name for each in edited if not registry.get_hierarchy(each)]
-        if lacking:
-            self.report({"WARNING"}, rpt_("Not searched, for no parts are known there yet: {names}. Find them first.").format(
-                names=", ".join(lacking)))
+            edited_objects = list(context.objects_in_mode_unique_data)
+            self.similar = similar_parts.find_similar(obj, self.hierarchy, self.pick.node,
+                                                      [searched for searched in edited_objects if searched != obj])
+            self.selections = Selections(edited_objects, obj)
+            not_searched = [searched.name for searched in edited_objects if not registry.get_hierarchy(searched)]
+        if not_searched:
+            text = rpt_("Not searched, for no parts are known there yet: {names}. Find them first.")
+            self.report({"WARNING"}, text.format(names=", ".join(not_searched)))
 
-    def _count(self):
-        """How many parts are alike from the threshold on: they come first."""
-        return sum(each.likeness >= self.threshold for each in self.alike)
+    def _count_similar(self) -> int:
+        """The number of parts above the threshold; these come first."""
+        return sum(part.likeness >= self.threshold for part in self.similar)
 
-    def _show(self, context, count):
+    def _select(self, context: bpy.types.Context, count: int) -> None:
+        """Selects the picked part and the count most similar ones."""
         self.count = count
-        own = context.edit_object
-        nodes = {own: [self.pick.node]}
-        for each in self.alike[:count]:
-            nodes.setdefault(find_object(each.name), []).append(each.node)
-        faces = {obj: self._faces(obj, registry.find_hierarchy(obj.data), those, self.pick.snap) for obj, those in nodes.items()}
-        self.selections.select_in_each(faces, self.extend, active={own: self.pick.face})
+        active_obj = context.edit_object
+        nodes = {active_obj: [self.pick.node]}
+        for part in self.similar[:count]:
+            nodes.setdefault(find_object(part.name), []).append(part.node)
+        faces = {obj: self._union_of_nodes(obj, registry.find_hierarchy(obj.data), obj_nodes, self.pick.snap)
+                 for obj, obj_nodes in nodes.items()}
+        self.selections.select_in_each(faces, self.extend, active={active_obj: self.pick.face})
 
     # ---- With the wheel
 
-    def on_start(self, context, _event):
+    def on_start(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         obj = context.edit_object
         self.object_name, self.selections = obj.name_full, None
         with show_wait_cursor(context):
-            self._start(context, obj)
+            self._find(context, obj)
         self.scroll = keys.NotchCounter(keys.SCROLL_STEP)
-        return self._to(context, self._count())
+        return self._set_count(context, self._count_similar())
 
-    def _to(self, context, count):
-        """So many parts beside the one in hand; the threshold is between the last one and the next."""
-        count = min(max(count, 0), len(self.alike))
-        if count != self._count():
-            ends = [1.0, *(each.likeness for each in self.alike), 0.0]
-            self.threshold = (ends[count] + ends[count + 1]) / 2
-        self._show(context, count)
+    def _set_count(self, context: bpy.types.Context, count: int) -> set[str]:
+        """Selects count similar parts, and sets the threshold between the last one and the next."""
+        count = min(max(count, 0), len(self.similar))
+        if count != self._count_similar():
+            bounds = [1.0, *(part.likeness for part in self.similar), 0.0]
+            self.threshold = (bounds[count] + bounds[count + 1]) / 2
+        self._select(context, count)
         self._show_status(context, iface_("{count} parts, alike from {threshold:.2f} on").format(
             count=count + 1, threshold=self.threshold), keys.SIMILAR)
         return {"RUNNING_MODAL"}
 
-    def on_event(self, context, event):
+    def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if event.type in keys.SYSTEM or event.type in keys.MOVES:
             return {"PASS_THROUGH"}
-        over = picking.find_view_under_mouse(context, event) is not None
-        plain = not (event.shift or event.ctrl or event.alt or event.oskey)
-        if event.type == "TRACKPADPAN" and over and plain:
-            return self._to(context, self.count + self.scroll.notches(event.mouse_y - event.mouse_prev_y))
-        if event.type in keys.NAVIGATE.events or event.type in keys.WHEEL_STEPS and not (over and plain):
+        is_over_view = picking.find_view_under_mouse(context, event) is not None
+        is_plain = not (event.shift or event.ctrl or event.alt or event.oskey)
+        if event.type == "TRACKPADPAN" and is_over_view and is_plain:
+            return self._set_count(context, self.count + self.scroll.notches(event.mouse_y - event.mouse_prev_y))
+        if event.type in keys.NAVIGATE.events or event.type in keys.WHEEL_STEPS and not (is_over_view and is_plain):
             return {"PASS_THROUGH"}
         if event.value not in {"PRESS", "DOUBLE_CLICK"}:
             return {"RUNNING_MODAL"}
         if event.type in keys.CANCEL.events:
             return {"CANCELLED"}
         if event.type in keys.WHEEL_STEPS:
-            return self._to(context, self.count + keys.WHEEL_STEPS[event.type])
+            return self._set_count(context, self.count + keys.WHEEL_STEPS[event.type])
         if event.type in keys.MODIFIERS:
             return {"RUNNING_MODAL"}
-        if event.type in keys.CONFIRM.events or event.type == "LEFTMOUSE" and over:
+        if event.type in keys.CONFIRM.events or event.type == "LEFTMOUSE" and is_over_view:
             return {"FINISHED"}
-        return {"FINISHED", "PASS_THROUGH"}  # any other key means what it always means
+        return {"FINISHED", "PASS_THROUGH"}  # any other key keeps its meaning in Blender
 
-    def on_cancel(self, context):
+    def on_cancel(self, context: bpy.types.Context) -> None:
         if self.selections and self.can_continue(context):
             self.selections.restore()
 
-    def can_continue(self, context):
+    def can_continue(self, context: bpy.types.Context) -> bool:
         obj = context.edit_object
         return obj is not None and obj.name_full == self.object_name and self.selections.fits()
 
 
-class MESH_OT_partwheel_mirrored(_FromPart, bpy.types.Operator):
+class MESH_OT_partwheel_mirrored(_PartBasedSelection, bpy.types.Operator):
     """Select the part (segment, region) on the other side of the model, across its own plane of symmetry"""
 
     bl_idname = "mesh.partwheel_mirrored"
@@ -136,14 +142,14 @@ class MESH_OT_partwheel_mirrored(_FromPart, bpy.types.Operator):
     plane: bpy.props.IntProperty(
         name="Plane", description="Of the planes in which the model is its own mirror image, the best one first",
         default=1, min=1, max=3)
-    # The panel of the last operation does it again with the part that was in hand then.
+    # Adjust Last Operation repeats the operator with the part that was picked then.
     node: bpy.props.IntProperty(default=-1, options={"HIDDEN", "SKIP_SAVE"})
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         obj = context.edit_object
         try:
             hierarchy, self.node = picks.resolve_node(obj, self.node)
-            images = others.images(obj, hierarchy, self.node)
+            images = similar_parts.find_mirror_images(obj, hierarchy, self.node)
         except Refused as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -153,7 +159,7 @@ class MESH_OT_partwheel_mirrored(_FromPart, bpy.types.Operator):
         nodes = [self.node, node] if self.extend else [node]
         face = int(hierarchy.faces(node)[0])
         Selections(context.objects_in_mode_unique_data, obj).select(
-            obj, self._faces(obj, hierarchy, nodes, snap), face, self.extend)
+            obj, self._union_of_nodes(obj, hierarchy, nodes, snap), face, self.extend)
         if not self.extend:
             picks.remember(obj, face, node, snap)
         return {"FINISHED"}

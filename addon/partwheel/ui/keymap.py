@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The shortcuts in Edit Mode: Shift Ctrl W (W for wheel) over a mesh, and what is done with the part that was picked
-last. All keymaps of Blender 3.4 to 5.2 leave them free there; Ctrl W is Save in the one of Blender 2.7."""
+"""Shortcuts in Edit Mode: Shift Ctrl W (W for wheel) over a mesh, and commands for the picked part. All keymaps of
+Blender 3.4 to 5.2 leave them unassigned there; Ctrl W is Save in the keymap of Blender 2.7."""
 
 import bpy
 
@@ -9,9 +9,9 @@ from ..view import keys
 _items = []
 
 
-def register():
+def register() -> None:
     configuration = bpy.context.window_manager.keyconfigs.addon
-    if configuration is None:  # Blender without windows has none
+    if configuration is None:  # None without windows
         return
     keymap = configuration.keymaps.new(name="Mesh", space_type="EMPTY")
     _items.append((keymap, keymap.keymap_items.new("mesh.partwheel_select", "W", "PRESS", shift=True, ctrl=True)))
@@ -22,7 +22,7 @@ def register():
         _items.append((keymap, item))
 
 
-def unregister():
+def unregister() -> None:
     for keymap, item in _items:
         keymap.keymap_items.remove(item)
     _items.clear()

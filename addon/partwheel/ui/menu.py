@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Entries in menus of Edit, Object, Sculpt and the paint modes. The Mesh menu has a submenu: part_menus.py."""
+"""Entries in the menus of Edit, Object, Sculpt and the paint modes. The Mesh menu has a submenu: part_menus.py."""
+
+from collections.abc import Callable
 
 import bpy
 
 
-def _entries(*operators, write=None, **label):
-    """A function that draws these in a menu; write: what mesh.partwheel_paint makes a part."""
-    def draw(self, _context):
+def _create_draw_function(*operators: str, write: str | None = None, **label: str) -> Callable:
+    """A function that draws these operators in a menu. write: what mesh.partwheel_paint writes a part to."""
+    def draw(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
         self.layout.separator()
         self.layout.operator_context = "INVOKE_REGION_WIN"
         for operator in operators:
@@ -17,14 +19,14 @@ def _entries(*operators, write=None, **label):
 
 
 ENTRIES = (
-    ("VIEW3D_MT_sculpt", _entries("mesh.partwheel_parts")),
-    ("VIEW3D_MT_object", _entries("mesh.partwheel_copy", "mesh.partwheel_parts", "mesh.partwheel_split",
-                                  "mesh.partwheel_convex", "mesh.partwheel_swap", "object.partwheel_place",
-                                  "object.partwheel_unite")),
-    ("VIEW3D_MT_select_edit_mesh", _entries("mesh.partwheel_box", "mesh.partwheel_select")),
-    ("VIEW3D_MT_edit_mesh_select_similar", _entries("mesh.partwheel_similar", "mesh.partwheel_mirrored")),
-    ("VIEW3D_MT_select_object", _entries("object.partwheel_select")),
-    *((f"VIEW3D_MT_{menu}", _entries("mesh.partwheel_paint", write=write, text=text))
+    ("VIEW3D_MT_sculpt", _create_draw_function("mesh.partwheel_parts")),
+    ("VIEW3D_MT_object", _create_draw_function("mesh.partwheel_copy", "mesh.partwheel_parts", "mesh.partwheel_split",
+                                               "mesh.partwheel_convex", "mesh.partwheel_swap", "object.partwheel_place",
+                                               "object.partwheel_unite")),
+    ("VIEW3D_MT_select_edit_mesh", _create_draw_function("mesh.partwheel_box", "mesh.partwheel_select")),
+    ("VIEW3D_MT_edit_mesh_select_similar", _create_draw_function("mesh.partwheel_similar", "mesh.partwheel_mirrored")),
+    ("VIEW3D_MT_select_object", _create_draw_function("object.partwheel_select")),
+    *((f"VIEW3D_MT_{menu}", _create_draw_function("mesh.partwheel_paint", write=write, text=text))
       for menu, write, text in (("face_sets", "FACE_SET", "Face Set from Part by Wheel"),
                                 ("mask", "MASK", "Mask from Part by Wheel"),
                                 ("paint_weight", "VERTEX_GROUP", "Vertex Group from Part by Wheel"),
@@ -32,11 +34,11 @@ ENTRIES = (
 )
 
 
-def register():
+def register() -> None:
     for menu, draw in ENTRIES:
         getattr(bpy.types, menu).append(draw)
 
 
-def unregister():
+def unregister() -> None:
     for menu, draw in ENTRIES:
         getattr(bpy.types, menu).remove(draw)

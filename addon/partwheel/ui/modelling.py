@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The parts of the panel for modelling with parts: copy, remove, split, convex parts; swap, place, unite; deform."""
+"""Panels for modeling with parts: copy, remove, split, convex parts; swap, place, unite; deform."""
 
 import bpy
 
@@ -15,7 +15,7 @@ class VIEW3D_PT_partwheel_copy(_Panel, bpy.types.Panel):
     bl_label = "Parts as Solids"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         column = self.layout.column(align=True)
         column.operator("mesh.partwheel_copy")
         column.operator("mesh.partwheel_remove")
@@ -33,7 +33,7 @@ class VIEW3D_PT_partwheel_deform(_Panel, bpy.types.Panel):
     bl_label = "Deform"
     bl_context = "mesh_edit"
 
-    def draw(self, _context):
+    def draw(self, _context: bpy.types.Context) -> None:
         column = self.layout.column(align=True)
         column.operator_context = "INVOKE_REGION_WIN"
         column.operator("mesh.partwheel_deform", text="Drag a Handle")

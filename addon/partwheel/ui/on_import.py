@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the preferences say so, the parts of what was just imported or appended are found without being asked for: one
-mesh after the other, beside Blender's own work, as mesh.partwheel_build does it."""
+"""If the preferences say so, finds the parts of imported or appended meshes automatically, one after the other, in
+the background, as mesh.partwheel_build does."""
+
+from typing import Any
 
 import bpy
 from bpy.app.handlers import persistent
@@ -9,7 +11,7 @@ from ..mesh.poll import check_poll
 from ..pick.build import FindsParts, start_build, filter_without_parts
 from ..preferences import preferences
 
-_before = None  # how many objects there were at the last look, and where the last operation lies, its only identity
+_last_check = None  # (number of objects, address of the last operation, its only identity) at the last check
 
 
 class MESH_OT_partwheel_imported(FindsParts, bpy.types.Operator):
@@ -20,75 +22,77 @@ class MESH_OT_partwheel_imported(FindsParts, bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     @classmethod
-    def poll(cls, context):
-        return check_poll(cls, context.mode == "OBJECT" and lacking(context.view_layer),
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return check_poll(cls, context.mode == "OBJECT" and find_without_parts(context.view_layer),
                           "This is for selected meshes without parts, in Object Mode.")
 
-    def _lacking(self, context):
-        return lacking(context.view_layer)
+    def _lacking(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+        return find_without_parts(context.view_layer)
 
-    def _start(self, obj):
-        return start_build(_Quiet(self), obj)
+    def _start(self, obj: bpy.types.Object) -> Any:
+        return start_build(_WarningReporter(self), obj)
 
 
-class _Quiet:
-    """For an operator that nobody has asked for: what fails is no error that pops up."""
+class _WarningReporter:
+    """Replaces an operator that nobody asked for: its errors become warnings, which don't pop up."""
 
-    def __init__(self, operator):
+    def __init__(self, operator: bpy.types.Operator) -> None:
         self._operator = operator
 
-    def report(self, kind, sentences):
+    def report(self, kind: set[str], sentences: str) -> None:
         self._operator.report({"WARNING"} if kind == {"ERROR"} else kind, sentences)
 
 
-def lacking(view_layer):
-    """The selected objects whose meshes have faces but no parts; of those that share a mesh one."""
+def find_without_parts(view_layer: bpy.types.ViewLayer) -> list[bpy.types.Object]:
+    """The selected mesh objects with faces but without parts; one for each mesh."""
     return filter_without_parts(obj for obj in view_layer.objects.selected if obj.type == "MESH" and obj.data.polygons)
 
 
 @persistent
-def _changed(_scene, _depsgraph):
-    """What was done can be told when it is over."""
-    if not bpy.app.background and preferences().on_import and not bpy.app.timers.is_registered(_look):
-        bpy.app.timers.register(_look, first_interval=0)
+def _schedule_check(_scene: bpy.types.Scene, _depsgraph: bpy.types.Depsgraph) -> None:
+    """Checks when the current operation has ended."""
+    if not bpy.app.background and preferences().on_import and not bpy.app.timers.is_registered(_check):
+        bpy.app.timers.register(_check, first_interval=0)
 
 
-def _look():
+def _check() -> None:
+    """Starts the search for parts after an import."""
     window = bpy.context.window_manager.windows[0]
-    if _imported():
-        active = next(iter(window.view_layer.objects.selected), None)  # an import has not always made one of its own so
+    if _has_imported():
+        active = next(iter(window.view_layer.objects.selected), None)  # some imports don't set it
         with bpy.context.temp_override(window=window, active_object=active):
             if bpy.ops.mesh.partwheel_imported.poll():
                 bpy.ops.mesh.partwheel_imported("INVOKE_DEFAULT")
 
 
-def _imported():
-    """Whether there are more objects than at the last look and no operation that can be repeated has added them. For Blender
-    keeps no account of what its file browser was opened for; what is dropped on its window is an operation like others."""
-    before, last = _before, _last()
-    _begin_anew()
+def _has_imported() -> bool:
+    """Whether there are more objects than at the last check and no repeatable operation added them. Blender does not
+    record what its file browser was opened for; a file dropped on the window is an operation like others."""
+    before, last = _last_check, _last_operation()
+    _reset()
     if before is None or len(bpy.data.objects) <= before[0]:
         return False
-    return before[1] == _before[1] or "import" in last.bl_idname.lower() or last.bl_idname == "WM_OT_append"
+    return before[1] == _last_check[1] or "import" in last.bl_idname.lower() or last.bl_idname == "WM_OT_append"
 
 
-def _last():
+def _last_operation() -> bpy.types.Operator | None:
+    """The last repeatable operation, or None."""
     operations = bpy.context.window_manager.operators
     return operations[-1] if operations else None
 
 
 @persistent
-def _begin_anew(*_):
-    """What undo brings back, or another file, is no import."""
-    global _before
-    last = _last()
-    _before = len(bpy.data.objects), last and last.as_pointer()
+def _reset(*_: Any) -> None:
+    """Objects that undo or another file brings are not imports."""
+    global _last_check
+    last = _last_operation()
+    _last_check = len(bpy.data.objects), last and last.as_pointer()
 
 
-def unregister():
-    if bpy.app.timers.is_registered(_look):
-        bpy.app.timers.unregister(_look)
+def unregister() -> None:
+    if bpy.app.timers.is_registered(_check):
+        bpy.app.timers.unregister(_check)
 
 
 CLASSES = (MESH_OT_partwheel_imported,)
-HANDLERS = {"depsgraph_update_post": _changed, **dict.fromkeys(("undo_post", "redo_post", "load_post"), _begin_anew)}
+HANDLERS = {"depsgraph_update_post": _schedule_check, **dict.fromkeys(("undo_post", "redo_post", "load_post"), _reset)}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The panel in the 3D view's sidebar: the active mesh's hierarchy, and what can be done with a selected part."""
+"""The panel in the 3D view's sidebar: the active mesh's hierarchy, and the commands for a picked part."""
 
 import bpy
 
@@ -8,16 +8,17 @@ from ..parts import builds, picks, registry
 from ..pick.build import describe_fill
 from ..words.say import iface_, format_percent
 from . import measure
+from partwheel import Hierarchy
 
 State = registry.State
-STATES = {
+STATE_MESSAGES = {
     State.NONE: "No parts yet",
     State.UNOPENED: "Parts came with the file",
     State.FITS: "",
     State.MOVED: "Vertices have moved since: the parts can be recomputed",
     State.CHANGED: "The mesh has changed: its parts are found anew at the next use",
 }
-SHEET = "A sheet, not a solid: thicken it, close it, or have it taken for a thin solid"
+SHEET_MESSAGE = "A sheet, not a solid: thicken it, close it, or have it taken for a thin solid"
 
 
 class VIEW3D_PT_partwheel(bpy.types.Panel):
@@ -27,11 +28,11 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
     bl_region_type = "UI"
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.active_object
         return obj is not None and obj.type == "MESH"
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         if library_error.draw_library_error(context, layout):
             return
@@ -51,10 +52,10 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
         state, entry = registry.get_state(context.active_object.data)
         column = layout.column(align=True)
         if entry:
-            _describe(context, column, entry.hierarchy)
-        _say(context, column, STATES[state])
+            _draw_summary(context, column, entry.hierarchy)
+        _draw_text(context, column, STATE_MESSAGES[state])
         if state in {State.NONE, State.CHANGED} and builds.is_refused_as_sheet(context.active_object.data):
-            _say(context, column, SHEET)
+            _draw_text(context, column, SHEET_MESSAGE)
             column.operator("mesh.partwheel_build", text="Take as Thin Solid").open_surfaces = True
         if entry and entry.hierarchy.summary.rung == "coarse":
             column.operator("mesh.partwheel_build", text="Find Exactly").exactly = True
@@ -64,22 +65,23 @@ class VIEW3D_PT_partwheel(bpy.types.Panel):
             row.operator("mesh.partwheel_clear", text="", icon="X")
 
 
-def _describe(context, column, hierarchy):
-    """The part that was picked last, or else all; and what was done to the mesh, in a line."""
+def _draw_summary(context: bpy.types.Context, column: bpy.types.UILayout, hierarchy: Hierarchy) -> None:
+    """Draws the picked part, or the whole; and how the mesh was filled."""
     pick = picks.get_pick_for_poll(context.edit_object) if context.mode == "EDIT_MESH" else None
     if pick:
         share = format_percent(hierarchy.area[pick.node] / hierarchy.area[-1])
-        told = iface_("Part: {share} of the area").format(share=share)
-        size = " × ".join(measure.sides(context, context.edit_object, hierarchy, pick.node))
-        for text in (told, size):
+        label = iface_("Part: {share} of the area").format(share=share)
+        size = " × ".join(measure.format_box_sides(context, context.edit_object, hierarchy, pick.node))
+        for text in (label, size):
             column.label(text=text, translate=False)
     else:
-        told = iface_("Parts of {count:,} faces").format(count=len(hierarchy.order))
-        column.label(text=told, translate=False)
+        label = iface_("Parts of {count:,} faces").format(count=len(hierarchy.order))
+        column.label(text=label, translate=False)
     library_error.draw_wrapped_text(context, column, describe_fill(hierarchy))
 
 
-def _say(context, column, text):
+def _draw_text(context: bpy.types.Context, column: bpy.types.UILayout, text: str) -> None:
+    """Draws a text in lines, if there is any."""
     if text:
         library_error.draw_wrapped_text(context, column, iface_(text))
 

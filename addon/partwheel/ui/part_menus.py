@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is done with a part, as a menu (right click, Mesh; by F3 found as segment, region and island too) and as a pie,
-whose key is the user's choice: it has none until the preferences are given one."""
+"""Commands for a part as a menu (right click, Mesh; F3 also finds it as segment, region and island) and as a pie
+menu, whose shortcut the user sets in the preferences."""
 
 import bpy
 
 from ..preferences import PIE
 
-_keys = []
+_keymap_items = []
 
 
 class VIEW3D_MT_partwheel_part(bpy.types.Menu):
     bl_label = "Part (Segment, Region, Island)"
 
-    def draw(self, _context):
+    def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
         layout.operator_context = "INVOKE_REGION_WIN"
         for group in (("mesh.partwheel_select", "mesh.partwheel_similar", "mesh.partwheel_mirrored"),
@@ -29,16 +29,17 @@ class PieMenu(bpy.types.Menu):
     bl_idname = PIE
     bl_label = "Part"
 
-    def draw(self, _context):
+    def draw(self, _context: bpy.types.Context) -> None:
         pie = self.layout.menu_pie()
         pie.operator_context = "INVOKE_REGION_WIN"
-        for operator in ("mesh.partwheel_mirrored", "mesh.partwheel_similar", "mesh.partwheel_deform",  # west, east, south
+        for operator in ("mesh.partwheel_mirrored", "mesh.partwheel_similar",
+                         "mesh.partwheel_deform",  # west, east, south
                          "mesh.partwheel_select", "mesh.partwheel_remember", "mesh.partwheel_move",  # north, its sides
                          "mesh.partwheel_remove", "mesh.partwheel_copy"):  # south's
             pie.operator(operator)
 
 
-def _draw(self, _context):
+def _draw_submenu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     self.layout.separator()
     self.layout.menu("VIEW3D_MT_partwheel_part")
 
@@ -47,20 +48,20 @@ CLASSES = (VIEW3D_MT_partwheel_part, PieMenu)
 MENUS = "VIEW3D_MT_edit_mesh_context_menu", "VIEW3D_MT_edit_mesh"
 
 
-def register():
+def register() -> None:
     for menu in MENUS:
-        getattr(bpy.types, menu).append(_draw)
+        getattr(bpy.types, menu).append(_draw_submenu)
     configuration = bpy.context.window_manager.keyconfigs.addon
-    if configuration:  # Blender without windows has none
+    if configuration:  # None without windows
         keymap = configuration.keymaps.new(name="Mesh", space_type="EMPTY")
         item = keymap.keymap_items.new("wm.call_menu_pie", "NONE", "PRESS")
         item.properties.name = PIE
-        _keys.append((keymap, item))
+        _keymap_items.append((keymap, item))
 
 
-def unregister():
+def unregister() -> None:
     for menu in MENUS:
-        getattr(bpy.types, menu).remove(_draw)
-    for keymap, item in _keys:
+        getattr(bpy.types, menu).remove(_draw_submenu)
+    for keymap, item in _keymap_items:
         keymap.keymap_items.remove(item)
-    _keys.clear()
+    _keymap_items.clear()

@@ -48,7 +48,7 @@ def play(stage):
     sidebar = yield from stage.sidebar()
     yield from stage.settle()
     yield from stage.screenshot("remembered")
-    names = stage.part("related.remembered").names
+    names = stage.part("related.named_parts").part_names
 
     def click(down):
         stage.mouse.move(sidebar.x + 40, sidebar.y + sidebar.height - down)

@@ -5,7 +5,7 @@ it back; the panel of the last operation changes the threshold; Shift Ctrl F add
 def play(stage):
     yield from stage.open("homer")
     stage.use_tool()
-    likeness = stage.part("related.others").alike
+    likeness = stage.part("related.similar_parts").find_similar
 
     def has_its_like(spot):
         hierarchy = stage.registry.get_hierarchy(stage.object)
@@ -47,7 +47,7 @@ def play(stage):
     yield from stage.selected(arm, "after Ctrl Z")
 
     stage.shortcut("mesh.partwheel_mirrored")
-    other = frozenset(hierarchy.faces(stage.part("related.others").images(stage.object, hierarchy, node)[0].node).tolist())
+    other = frozenset(hierarchy.faces(stage.part("related.similar_parts").find_mirror_images(stage.object, hierarchy, node)[0].node).tolist())
     yield from stage.selected(arm | other, "on both sides")
     yield from stage.screenshot("mirrored")
     stage.mouse.key("Z", ctrl=True)

@@ -18,7 +18,7 @@ def play(stage):
     yield from stage.until("those of the copy are selected", lambda: selected(copy))
 
     pick = stage.part("parts.picks").get_pick(obj)
-    alike = stage.part("related.others").alike(obj, pick.hierarchy, pick.node, [copy])
+    alike = stage.part("related.similar_parts").find_similar(obj, pick.hierarchy, pick.node, [copy])
     threshold = stage.package("likeness").THRESHOLD
 
     def wanted(each, count):

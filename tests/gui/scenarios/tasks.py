@@ -338,7 +338,7 @@ def four_names(stage):
 
 
 def names(stage):
-    return stage.part("related.remembered").names(stage.object.data)
+    return stage.part("related.named_parts").part_names(stage.object.data)
 
 
 def grouping(hand, name):

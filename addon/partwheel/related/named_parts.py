@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Remembered parts. Each is a face attribute "part: NAME" of the mesh, 1 on its faces: so the .blend file stores it,
+Blender preserves it through edits and undo, and Geometry Nodes can use it. The node of a part is the one with the
+largest overlap of faces in the current hierarchy."""
+
+from __future__ import annotations
+
+import bmesh
+import bpy
+import numpy as np
+
+from ..mesh import arrays
+from ..mesh.errors import Refused
+from ..pick import borders
+from partwheel import Hierarchy
+from partwheel.likeness import best_node
+
+ATTRIBUTE_PREFIX = "part: "
+MAX_NAME_BYTES = 50  # bytes: Blender truncates attribute names at 63
+MIN_OVERLAP = 0.5  # least overlap of a node with the remembered faces
+
+
+def is_part_attribute(attribute: bpy.types.Attribute) -> bool:
+    """Whether the attribute is a remembered part."""
+    return (attribute.name.startswith(ATTRIBUTE_PREFIX) and attribute.domain == "FACE" and attribute.data_type == "INT")
+
+
+def part_names(mesh: bpy.types.Mesh) -> list[str]:
+    """The parts' names, in the order in which they were remembered. Cheap enough for panels."""
+    return [attribute.name[len(ATTRIBUTE_PREFIX):] for attribute in mesh.attributes if is_part_attribute(attribute)]
+
+
+def read_faces(mesh: bpy.types.Mesh, name: str) -> np.ndarray:
+    """(n,) the remembered faces. Raises Refused."""
+    _require_name(mesh, name)
+    if mesh.is_editmode:  # then attributes have no values in Python
+        bm = bmesh.from_edit_mesh(mesh)
+        layer = bm.faces.layers.int[ATTRIBUTE_PREFIX + name]
+        return np.flatnonzero(np.fromiter((face[layer] for face in bm.faces), np.int32, len(bm.faces)))
+    return np.flatnonzero(arrays.read(mesh.attributes[ATTRIBUTE_PREFIX + name].data, "value", np.int32))
+
+
+def remember_part(mesh: bpy.types.Mesh, name: str, faces: np.ndarray) -> None:
+    """Stores the faces (n,) under a new name. Raises Refused."""
+    name = _check_new_name(mesh, name)
+    if mesh.is_editmode:
+        bm = bmesh.from_edit_mesh(mesh)
+        layer = bm.faces.layers.int.new(ATTRIBUTE_PREFIX + name)
+        bm.faces.ensure_lookup_table()
+        for face in faces.tolist():
+            bm.faces[face][layer] = 1
+        bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
+    else:
+        mesh.attributes.new(ATTRIBUTE_PREFIX + name, "INT", "FACE").data.foreach_set(
+            "value", arrays.make_mask(len(mesh.polygons), faces).astype(np.int32))
+    arrays.invalidate_snapshot()
+
+
+def rename_part(mesh: bpy.types.Mesh, name: str, new: str) -> None:
+    """Raises Refused, for example for a name in use."""
+    _require_name(mesh, name)
+    if new != name:
+        mesh.attributes[ATTRIBUTE_PREFIX + name].name = ATTRIBUTE_PREFIX + _check_new_name(mesh, new)
+
+
+def forget_part(mesh: bpy.types.Mesh, name: str) -> None:
+    """Raises Refused."""
+    _require_name(mesh, name)
+    mesh.attributes.remove(mesh.attributes[ATTRIBUTE_PREFIX + name])
+
+
+def find_node(obj: bpy.types.Object, hierarchy: Hierarchy, name: str) -> tuple[int, bool]:
+    """(the node nearest to the remembered faces, whether their border is in creases). hierarchy: from
+    registry.get_hierarchy(obj). Raises Refused if no node is near."""
+    is_remembered = arrays.make_mask(len(hierarchy.order), read_faces(obj.data, name))
+    best, overlap = best_node(hierarchy, is_remembered)
+    if overlap < MIN_OVERLAP:
+        raise Refused("No part of {name} as it is now is much like the one remembered as {part}. Pick the part anew, "
+                      "forget this name, and remember the part under it again.", name=obj.name, part=name)
+    if overlap == 1:
+        return best, False
+    snapped = borders.get_part_mask(obj, hierarchy, best)
+    return best, bool((snapped & is_remembered).sum() / (snapped | is_remembered).sum() > overlap)
+
+
+def _require_name(mesh: bpy.types.Mesh, name: str) -> None:
+    """Raises Refused if no part has this name."""
+    if name not in part_names(mesh):
+        raise Refused("No part of {name} is remembered as {part}. Pick the part, and give it the name with "
+                      "Remember Part.",
+                      name=mesh.name, part=name)
+
+
+def _check_new_name(mesh: bpy.types.Mesh, name: str) -> str:
+    """The name without spaces around it. Raises Refused if it is empty, too long, or in use."""
+    name = name.strip()
+    if not name:
+        raise Refused("A part is remembered by a name: it can't be empty.")
+    if len(name.encode()) > MAX_NAME_BYTES:
+        raise Refused("{name} is too long for a name: it can have {count} letters, fewer of some alphabets.", name=name,
+                      count=MAX_NAME_BYTES)
+    if ATTRIBUTE_PREFIX + name in mesh.attributes:
+        raise Refused("There is a part that is remembered as {name}. Give another name, or forget that one first.",
+                      name=name)
+    return name

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Parts similar to a given one, in its own mesh and in other objects', and its mirror images. Results are cached,
+since wheel and Adjust Last Operation ask again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import bpy
+import numpy as np
+
+from ..mesh import arrays
+from ..mesh.errors import Refused
+from ..parts import registry
+from partwheel import Hierarchy, likeness
+
+_cache = {}  # kind of query -> ((the meshes' fingerprints, their hierarchies, ...), result)
+
+
+class SimilarPart(NamedTuple):
+    """A node of an object that is similar to another, by a likeness from 1 downward. name: the object's full name."""
+
+    name: str
+    node: int
+    likeness: float
+
+
+def find_similar(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
+                 objects: Sequence[bpy.types.Object] = ()) -> list[SimilarPart]:
+    """[SimilarPart, ...] of the object's other nodes, and of those of other objects with parts, the most similar
+    first: see partwheel.likeness.similar_parts(). Sizes are those in the world. hierarchy: from
+    registry.get_hierarchy(obj)."""
+    searched = [(obj, hierarchy)] + [(other, searched_hierarchy) for other in objects
+                                     if (searched_hierarchy := registry.get_hierarchy(other))]
+    matrices = [np.array(searched_obj.matrix_world) for searched_obj, _ in searched]
+
+    def search() -> list[SimilarPart]:
+        measured = [likeness.measure_nodes(searched_hierarchy, *arrays.read_surface(searched_obj.data)[:3], matrix)
+                    for (searched_obj, searched_hierarchy), matrix in zip(searched, matrices)]
+        among = [None, *((searched_hierarchy, measures)
+                         for (_, searched_hierarchy), measures in list(zip(searched, measured))[1:])]
+        parts = [SimilarPart(searched_obj.name_full, *pair) for (searched_obj, _), target in zip(searched, among)
+                 for pair in likeness.similar_parts(hierarchy, measured[0], node, target)]
+        return sorted(parts, key=lambda part: -part.likeness)
+
+    key = [(searched_obj.name_full, registry.find_entry(searched_obj.data).seen, searched_hierarchy)
+           for searched_obj, searched_hierarchy in searched]
+    return _cached("alike", (key, [matrix.tobytes() for matrix in matrices], node), search)
+
+
+def find_mirror_images(obj: bpy.types.Object, hierarchy: Hierarchy, node: int) -> list[likeness.MirrorImage]:
+    """[partwheel.likeness.MirrorImage, ...], one for each symmetry plane, the best first. Raises Refused if there is
+    none."""
+    if node == len(hierarchy.parent) - 1:
+        raise Refused("The part is the whole model, which has no other side. Pick a smaller one.")
+    key = registry.find_entry(obj.data).seen, hierarchy, node
+    mirror_images = _cached("images", key,
+                            lambda: likeness.mirrored_parts(hierarchy, *arrays.read_surface(obj.data)[:3], node))
+    if not mirror_images:
+        raise Refused("The part has no mirror image in {name}: it lies across the plane of symmetry, or the model "
+                      "is not the same on both sides.", name=obj.name)
+    return mirror_images
+
+
+def _cached(kind: str, key: tuple, search: Callable[[], Any]) -> Any:
+    """The cached result for this key, or a new one. One result of each kind is kept."""
+    if kind not in _cache or _cache[kind][0] != key:
+        _cache[kind] = key, search()
+    return _cache[kind][1]
+
+
+def unregister() -> None:
+    _cache.clear()
