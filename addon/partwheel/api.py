@@ -133,7 +133,7 @@ def part(obj, face, level=0, size=None, snap=False):
     picked = states.pick_face(built, operator.index(face))
     if size is not None:
         picked = picked.at(sum(built.area[stop] <= size * built.area[-1] for stop in picked.stops) - 1)
-    node = picked.turned(level).node
+    node = picked.turn(level).node
     return Part(node, picked.face, picked.stops, picked.start, borders.get_part_faces(obj, built, node, snap),
                 float(built.area[node]), int(built.parent[node]) if built.parent[node] >= 0 else None,
                 tuple(numpy.flatnonzero(built.parent == node).tolist()))

@@ -87,7 +87,7 @@ class MeshTest(unittest.TestCase):
             for item in list(data):
                 data.remove(item)
         part("parts.files").on_load()
-        part("view.status").StatusLine.lines.clear()
+        part("view.status").StatusLine.stack.clear()
         bpy.context.tool_settings.mesh_select_mode = (False, False, True)
 
     def tearDown(self):

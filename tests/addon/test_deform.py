@@ -462,12 +462,12 @@ class Deform(MeshTest):
         """What runs there can be asked to end; what went wrong is raised when it is fetched."""
         background = part("view.background").BackgroundTask
         task = background(lambda stop: stop.wait())
-        self.assertTrue(task.running())
-        task.abandon()
-        self.assertFalse(task.running(10))
+        self.assertTrue(task.is_running())
+        task.request_stop()
+        self.assertFalse(task.is_running(10))
         task.finish()
         task = background(lambda stop: [].pop())
-        self.assertFalse(task.running(10))
+        self.assertFalse(task.is_running(10))
         self.assertRaises(IndexError, task.finish)
 
     def test_no_operator_without_parts(self):

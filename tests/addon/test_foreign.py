@@ -54,7 +54,7 @@ class Foreign(MeshTest):
         obj = self.add(*read_off("cross_quad"))
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         entry = registry.find_entry(obj.data)
-        packed = stored.pack(entry.built, entry.hierarchy)
+        packed = stored.pack(entry.built_for, entry.hierarchy)
         cut_off = [packed[:size] for size in (1, 7, 8, 12, 44, 59, 60, 61, len(packed) // 2, len(packed) - 1)]
         for value in (*VALUES, *cut_off, packed + b"\1", packed[::-1]):
             registry.forget(obj.data)

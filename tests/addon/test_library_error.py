@@ -110,7 +110,7 @@ class OtherVersions(MeshTest):
         obj = self.add(*read_off("hand"))
         self.assertEqual(bpy.ops.mesh.partwheel_build(), {"FINISHED"})
         stored, registry = part("parts.stored"), part("parts.registry")
-        packed = bytearray(stored.pack(registry.find_entry(obj.data).built, registry.find_hierarchy(obj.data)))
+        packed = bytearray(stored.pack(registry.find_entry(obj.data).built_for, registry.find_hierarchy(obj.data)))
         packed[8:12] = struct.pack("<I", version)
         bpy.ops.mesh.partwheel_clear()
         obj.data[stored.PROPERTY] = bytes(packed)

@@ -111,7 +111,7 @@ class RandomEvents(ToolTest):
         for polygon in random.Random(7).sample(list(self.obj.data.polygons), 800):
             pixel = location_3d_to_region_2d(region, region_view, self.obj.matrix_world @ polygon.center)
             pixel = [int(value) for value in pixel]
-            hit = tree.under(self.obj.matrix_world, region, region_view, pixel)
+            hit = tree.cast(self.obj.matrix_world, region, region_view, pixel)
             if hit and hit[0] == polygon.index:
                 found.append((pixel, polygon.index))
         self.assertGreaterEqual(len(found), count)

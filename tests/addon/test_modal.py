@@ -145,7 +145,7 @@ class ToolTest(MeshTest):
                 if start + levels >= len(stops):
                     continue
             point = location_3d_to_region_2d(region, region_view, obj.matrix_world @ face.calc_center_median())
-            found = tree.under(obj.matrix_world, region, region_view, [int(value) for value in point])
+            found = tree.cast(obj.matrix_world, region, region_view, [int(value) for value in point])
             if found and found[0] == face.index:
                 return [int(value) for value in point], face.index
         self.fail("no face of the object is in view")
@@ -1027,7 +1027,7 @@ class Pick(MeshTest):
                     for x in range(1, 6):
                         for y in range(1, 6):
                             point = region.width * x // 6, region.height * y // 6
-                            found = tree.under(obj.matrix_world, region, region_view, point)
+                            found = tree.cast(obj.matrix_world, region, region_view, point)
                             ray = (region_2d_to_origin_3d(region, region_view, point),
                                    region_2d_to_vector_3d(region, region_view, point))
                             expected, close = (self.nearest(*shown, *ray, margin) for margin in (1e-4, -1e-4))

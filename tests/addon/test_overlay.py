@@ -31,8 +31,8 @@ class Tints(MeshTest):
 
         self.replace(self.overlay.layers, "draw_layers", draw)
         self.replace(self.overlay.layers, "create_line_batch", lambda _positions, edges: (None, edges))
-        self.replace(self.parts, "batch", lambda piece: (None, self.faces(self.parts.triangles[slice(*piece)])))
-        self.replace(self.parts, "of_faces", lambda _name, faces: (None, sorted(faces.tolist())))
+        self.replace(self.parts, "slice_batch", lambda piece: (None, self.faces(self.parts.triangles[slice(*piece)])))
+        self.replace(self.parts, "face_batch", lambda _name, faces: (None, sorted(faces.tolist())))
         self.overlay.draw_picked_part(bpy.context, self.obj, self.parts, *what)
         return found
 
@@ -69,10 +69,10 @@ class Tints(MeshTest):
                 for edge in polygon.edge_keys:
                     others.setdefault(edge, []).append(polygon.index in part_of)
             expected = {edge for edge, inside in others.items() if len(set(inside)) == 2}
-            for found in (self.parts.border(node), self.parts.border(node, self.h.faces(node)[::-1])):
+            for found in (self.parts.border_edges(node), self.parts.border_edges(node, self.h.faces(node)[::-1])):
                 self.assertEqual({tuple(sorted(edge)) for edge in found.tolist()}, expected)
                 self.assertEqual(len(found), len(expected))
-        self.assertEqual(len(self.parts.border(stops[-1])), 0)  # the model is closed
+        self.assertEqual(len(self.parts.border_edges(stops[-1])), 0)  # the model is closed
 
     def test_neighbours_of_any_triangles(self):
         """Sheets, edges of three and four triangles, none at all: by counting."""

@@ -104,13 +104,13 @@ class Seen(MeshTest):
         bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
         show(obj)
         tool = Tool("paint", write="AUTO")
-        self.assertEqual(tool._under(FakeContext(), event("LEFTMOUSE")), (None, None))
+        self.assertEqual(tool._find_face(FakeContext(), event("LEFTMOUSE")), (None, None))
         self.assertIn("belongs to no face", tool.reports[-1][1])
         bpy.ops.object.mode_set(mode="OBJECT")
         obj.modifiers.clear()
         bpy.context.view_layer.update()
         bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
-        self.assertEqual(tool._under(FakeContext(), event("LEFTMOUSE"))[0], obj)
+        self.assertEqual(tool._find_face(FakeContext(), event("LEFTMOUSE"))[0], obj)
 
     def test_nothing_of_the_user_s_changes(self):
         obj = self.modified("SUBSURF", levels=2)
@@ -262,7 +262,7 @@ class Seen(MeshTest):
             right = sum(face == self.face_at(obj, places, face, region, region_view) for face in moved)
             self.assertGreater(right, len(moved) / 4)  # those that are turned to the camera and not behind others
         node = h.wheel(700)[0][3]
-        parts = prepared(obj).parts(obj)
+        parts = prepared(obj).get_part_triangles(obj)
         np.testing.assert_array_equal(parts.positions, places)
         begin, end = parts.slice(node)
         drawn = {tuple(sorted(triangle)) for triangle in parts.triangles[begin:end].tolist()}
@@ -275,7 +275,7 @@ class Seen(MeshTest):
         bones.pose.bones["upper"].location = (0, 0, 0)
         bpy.context.view_layer.update()
         self.assertIsNot(prepared(obj), made)
-        np.testing.assert_allclose(prepared(obj).parts(obj).positions, positions(obj.data), atol=1e-4)
+        np.testing.assert_allclose(prepared(obj).get_part_triangles(obj).positions, positions(obj.data), atol=1e-4)
 
     def test_modifiers_on_the_cage_move_what_is_picked_in_edit_mode(self):
         """Those beside the cage don't; both as Blender shows it."""
@@ -298,7 +298,7 @@ class Seen(MeshTest):
             for face in obj.data.polygons:
                 middle = Vector(places[list(face.vertices)].mean(axis=0))
                 point = location_3d_to_region_2d(region, region_view, middle)
-                found = tree.under(obj.matrix_world, region, region_view, point)
+                found = tree.cast(obj.matrix_world, region, region_view, point)
                 right += bool(found and found[0] == face.index)
             self.assertGreater(right, len(obj.data.polygons) / 4)  # those that are turned to the camera
 
@@ -306,7 +306,7 @@ class Seen(MeshTest):
         """The face picked at the pixel of a face's middle."""
         middle = obj.matrix_world @ Vector(places[list(obj.data.polygons[face].vertices)].mean(axis=0))
         point = location_3d_to_region_2d(region, region_view, middle)
-        found = part("pick.view_cache").get_view_cache(obj).tree(obj).under(obj.matrix_world, region, region_view, point)
+        found = part("pick.view_cache").get_view_cache(obj).get_ray_caster(obj).cast(obj.matrix_world, region, region_view, point)
         return found and found[0]
 
     def test_kept_where_other_polygons_are_shown(self):
@@ -321,7 +321,7 @@ class Seen(MeshTest):
         """Each is picked where its own modifiers show it."""
         obj = self.modified("DISPLACE", strength=100, direction="Z", mid_level=0)
         twin = self.link(bpy.data.objects.new("twin", obj.data))
-        heights = [part("pick.view_cache").get_view_cache(each)._seen.positions[:, 2].mean() for each in (obj, twin, obj)]
+        heights = [part("pick.view_cache").get_view_cache(each)._surface.positions[:, 2].mean() for each in (obj, twin, obj)]
         np.testing.assert_allclose(heights, [100, 0, 100], atol=1e-3)
 
 

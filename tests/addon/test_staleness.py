@@ -82,7 +82,7 @@ class Staleness(MeshTest):
             with WritesBack() as writes:
                 registry.get_hierarchy(obj)
                 part("parts.builds").is_being_built(obj)
-                part("pick.view_cache").get_view_cache(obj).hierarchy(obj)
+                part("pick.view_cache").get_view_cache(obj).get_hierarchy(obj)
                 part("mesh.selection").Selection(obj)
                 registry.get_hierarchy(obj)
             return writes.count
@@ -150,12 +150,12 @@ class Staleness(MeshTest):
             first = Selection(obj)
             first.select(obj, [3, 4, 5])
             second = Selection(obj)
-            self.assertEqual(set(second.before["FACE"].nonzero()[0].tolist()), {3, 4, 5})
+            self.assertEqual(set(second.initial["FACE"].nonzero()[0].tolist()), {3, 4, 5})
             second.select(obj, [7])
             second.restore(obj)
             self.assertEqual(selected(obj), {3, 4, 5})
             first.restore(obj)
-            self.assertFalse(Selection(obj).before["FACE"].any())
+            self.assertFalse(Selection(obj).initial["FACE"].any())
 
     def test_other_edits_do_not(self):
         obj = self.built("hand")

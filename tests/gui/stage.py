@@ -292,17 +292,17 @@ class Stage:
 
     def hovered(self):
         """The faces of the part that hover shows, or None."""
-        what = self.part("pick.hover").hover.what
+        what = self.part("pick.hover").hover.target
         return what and frozenset(what[1].hierarchy.faces(what[2]).tolist())
 
     def held(self):
         """The faces of the part that is shown as held, or None."""
-        what = self.part("view.overlay").pick_overlay._what
+        what = self.part("view.overlay").pick_overlay._target
         return what and frozenset(what[1].hierarchy.faces(what[2]).tolist())
 
     def drawn_things(self):
         """How many handlers of the add-on draw in the 3D views."""
-        return int(self.part("view.overlay").pick_overlay.on)
+        return int(self.part("view.overlay").pick_overlay.is_shown)
 
     # ---- Setting the scene ----------------------------------------------------------------------------------------
 

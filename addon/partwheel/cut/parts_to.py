@@ -211,7 +211,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     def _start_editing(self, context: bpy.types.Context, obj: bpy.types.Object, hierarchy: Hierarchy) -> set[str]:
         self.state = states.CutState(_initial_cut(obj, hierarchy, self.count))
-        if highlight.shows(obj):
+        if highlight.is_showing(obj):
             self.state = self.state.click(picks.get_pick(obj).face)
         self.counts = element_counts(obj.data)
         self._add_draw_handler(self._draw)
@@ -230,7 +230,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         over = picking.find_view_under_mouse(context, event)
         plain = not (event.alt or event.oskey or event.ctrl or event.shift)
         if event.type == "TRACKPADPAN" and over and plain:
-            return self._set_state(context, self.state.turn(self.scroll.notches(event.mouse_y - event.mouse_prev_y)))
+            return self._set_state(context, self.state.turn(self.scroll.add_pixels(event.mouse_y - event.mouse_prev_y)))
         if event.type in keys.NAVIGATE.events or not plain or not over and (
                 event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE", "LEFTMOUSE"}):
             return {"PASS_THROUGH"}
@@ -242,7 +242,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     def _on_build_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """During the build, all events except Esc go to Blender."""
-        if not self.building.step(context, event):
+        if not self.building.on_event(context, event):
             return {"PASS_THROUGH"}
         hierarchy, self.building = self.building.hierarchy, None
         obj = mesh_identity.find_object(self.object_name)
@@ -272,7 +272,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
         """The object's face under the mouse, or NO_FACE."""
         _, *pixel = over
         _, face = picking.find_nearest_face([mesh_identity.find_object(self.object_name)],
-                                            lambda obj: get_view_cache(obj).tree(obj), *pixel)
+                                            lambda obj: get_view_cache(obj).get_ray_caster(obj), *pixel)
         return NO_FACE if face is None else face
 
     def _on_key(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -307,7 +307,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
                        keys.CUTTING_ONE_PART)
         if not bpy.app.background:
             obj = mesh_identity.find_object(self.object_name)
-            self.shown_surface = get_view_cache(obj).parts(obj)
+            self.shown_surface = get_view_cache(obj).get_part_triangles(obj)
             overlay.redraw_views()
         return {"RUNNING_MODAL"}
 
@@ -342,7 +342,7 @@ class MESH_OT_partwheel_parts(InView, bpy.types.Operator):
 
     def on_cancel(self, context: bpy.types.Context) -> None:
         if self.building:
-            self.building.abandon(context)
+            self.building.cancel(context)
 
 
 def _initial_cut(obj: bpy.types.Object, hierarchy: Hierarchy, count: int) -> Cut:

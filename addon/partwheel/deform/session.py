@@ -183,12 +183,12 @@ class DeformSession:
     def abandon(self) -> None:
         """Stops the background task, whose result is obsolete."""
         if self.task:
-            self.task.abandon()
+            self.task.request_stop()
 
     def is_ready(self, obj: bpy.types.Object, seconds: float = 0) -> bool:
         """Whether no task runs in the background, so that the shape can be queried. Writes the result of one that has
         ended."""
-        if self.task and self.task.running(seconds):
+        if self.task and self.task.is_running(seconds):
             return False
         self.finish(obj)
         return True
@@ -256,7 +256,7 @@ class DeformSession:
     def vertex_under(self, obj: bpy.types.Object, region: bpy.types.Region, view: bpy.types.RegionView3D,
                      point: tuple[float, float]) -> int | None:
         """The part's vertex nearest to what the view shows at a point of its region, or None."""
-        hit = FaceRayCaster(obj).under(obj.matrix_world, region, view, point)
+        hit = FaceRayCaster(obj).cast(obj.matrix_world, region, view, point)
         if not hit or hit[0] not in self.faces:
             return None
         face, distance = hit

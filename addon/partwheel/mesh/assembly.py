@@ -72,9 +72,9 @@ class ElementSources(NamedTuple):
     """Where n elements come from: first (n,) the source's that each is, -1 for new ones; but those at (k,) are midway
     between that one and other (k,)."""
 
-    first: np.ndarray
-    at: np.ndarray = _EMPTY
-    other: np.ndarray = _EMPTY
+    source: np.ndarray
+    midpoint_rows: np.ndarray = _EMPTY
+    midpoint_source: np.ndarray = _EMPTY
 
 
 class MeshPlan(NamedTuple):
@@ -90,16 +90,16 @@ class MeshPlan(NamedTuple):
     alias (V,)                      the source's vertex that each of the source's is taken for; None: itself
     """
 
-    places: np.ndarray
+    positions: np.ndarray
     vertices: ElementSources
     loops: ElementSources
-    corners: np.ndarray
-    begin: np.ndarray
-    polygons: np.ndarray
-    whole: int
-    wires: np.ndarray
-    number: np.ndarray
-    alias: np.ndarray = None
+    corner_vertices: np.ndarray
+    polygon_starts: np.ndarray
+    source_polygons: np.ndarray
+    n_unchanged: int
+    loose_edges: np.ndarray
+    old_to_new: np.ndarray
+    welded_to: np.ndarray = None
 
 
 def assemble_mesh(mesh, plan, name, selection):
@@ -111,20 +111,20 @@ def assemble_mesh(mesh, plan, name, selection):
     made.clear_geometry()
     _create_bmesh_layers(mesh, made)
     of_edge, ends, edge_from = _build_edges(mesh, plan)
-    made.vertices.add(len(plan.places))
+    made.vertices.add(len(plan.positions))
     _copy_vertex_groups(mesh, made, plan.vertices)
-    for elements, count in ((made.edges, len(ends)), (made.loops, len(plan.corners)), (made.polygons, len(plan.begin))):
+    for elements, count in ((made.edges, len(ends)), (made.loops, len(plan.corner_vertices)), (made.polygons, len(plan.polygon_starts))):
         elements.add(count)
-    write(made.vertices, "co", plan.places)
+    write(made.vertices, "co", plan.positions)
     write(made.edges, "vertices", ends)
-    write(made.loops, "vertex_index", plan.corners.astype(np.int32))
+    write(made.loops, "vertex_index", plan.corner_vertices.astype(np.int32))
     write(made.loops, "edge_index", of_edge)
-    write(made.polygons, "loop_start", plan.begin.astype(np.int32))
+    write(made.polygons, "loop_start", plan.polygon_starts.astype(np.int32))
     if bpy.app.version < (4, 0, 0):
-        write(made.polygons, "loop_total", np.diff(plan.begin, append=len(plan.corners)).astype(np.int32))
-    origins = {"POINT": plan.vertices, "CORNER": plan.loops, "EDGE": ElementSources(edge_from), "FACE": ElementSources(plan.polygons)}
+        write(made.polygons, "loop_total", np.diff(plan.polygon_starts, append=len(plan.corner_vertices)).astype(np.int32))
+    origins = {"POINT": plan.vertices, "CORNER": plan.loops, "EDGE": ElementSources(edge_from), "FACE": ElementSources(plan.source_polygons)}
     _copy_attributes(mesh, made, origins, _TOPOLOGY if selection else _TOPOLOGY | _SELECTION)
-    first = {"vertices": plan.vertices.first, "edges": edge_from, "polygons": plan.polygons}
+    first = {"vertices": plan.vertices.source, "edges": edge_from, "polygons": plan.source_polygons}
     _copy_element_properties(mesh, made, first)
     _copy_bmesh_layers(mesh, made, first)
     _copy_shape_keys(mesh, made, plan)
@@ -135,29 +135,29 @@ def assemble_mesh(mesh, plan, name, selection):
 
 def _build_edges(mesh, plan):
     """((L,) the edge from each corner to the next, (m,2) the edges' vertices, (m,) the source edge of each, or -1)"""
-    own, count = plan.loops.first, len(plan.corners)
-    numbers, all_ends = _read_loop_edges(mesh, plan.alias), arrays.read_edge_vertices(mesh)
+    own, count = plan.loops.source, len(plan.corner_vertices)
+    numbers, all_ends = _read_loop_edges(mesh, plan.welded_to), arrays.read_edge_vertices(mesh)
     # Of whole polygons they are the source's.
-    rest = int(plan.begin[plan.whole]) if plan.whole < len(plan.begin) else count
+    rest = int(plan.polygon_starts[plan.n_unchanged]) if plan.n_unchanged < len(plan.polygon_starts) else count
     of_edge = np.empty(count, np.int32)
     source = numbers[own[:rest]]
     used = np.flatnonzero(arrays.make_mask(len(all_ends), source))
     place = np.empty(len(all_ends), np.int32)
     place[used] = np.arange(len(used))
     of_edge[:rest] = place[source]
-    ends = all_ends[used] if plan.alias is None else plan.alias[all_ends[used]]
-    ends = plan.number[ends]
+    ends = all_ends[used] if plan.welded_to is None else plan.welded_to[all_ends[used]]
+    ends = plan.old_to_new[ends]
 
     # Of the others it is the source's if the next corner is the source's next one, or the one before: then it is the
     # one before's.
     following = np.arange(rest + 1, count + 1)
-    following[np.append(plan.begin[plan.whole + 1:], count)[:len(plan.begin) - plan.whole] - 1 - rest] = (
-        plan.begin[plan.whole:])
+    following[np.append(plan.polygon_starts[plan.n_unchanged + 1:], count)[:len(plan.polygon_starts) - plan.n_unchanged] - 1 - rest] = (
+        plan.polygon_starts[plan.n_unchanged:])
     begin, totals = arrays.read_polygon_sizes(mesh)
     after = np.arange(1, len(mesh.loops) + 1, dtype=np.int32)
     after[begin + totals - 1] = begin
     single = own >= 0
-    single[plan.loops.at] = False
+    single[plan.loops.midpoint_rows] = False
     here, beyond = own[rest:], own[following]
     plain = single[rest:] & single[following]
     back = plain & (after[beyond] == here) & (after[here] != beyond)
@@ -165,21 +165,21 @@ def _build_edges(mesh, plan):
     source = np.where(plain, numbers[np.where(back, beyond, here)], -1)
 
     # Among them an edge may be one that is already there.
-    low, high = (each(plan.corners[rest:], plan.corners[following]) for each in (np.minimum, np.maximum))
-    touched = arrays.make_mask(len(plan.places), [low, high])
+    low, high = (each(plan.corner_vertices[rest:], plan.corner_vertices[following]) for each in (np.minimum, np.maximum))
+    touched = arrays.make_mask(len(plan.positions), [low, high])
     near = np.flatnonzero(touched[ends[:, 0]] & touched[ends[:, 1]])
     key = np.concatenate([np.sort(ends[near], axis=1), np.stack([low, high], axis=1)]).astype(np.int64)
-    unique, which = np.unique(key[:, 0] * len(plan.places) + key[:, 1], return_inverse=True)
+    unique, which = np.unique(key[:, 0] * len(plan.positions) + key[:, 1], return_inverse=True)
     which = which.ravel()
     edge = np.full(len(unique), -1)
     edge[which[:len(near)]] = near
     new = np.flatnonzero(edge < 0)
     edge[new] = len(ends) + np.arange(len(new))
     of_edge[rest:] = edge[which[len(near):]]
-    edge_from = np.concatenate([used, np.full(len(new), -1), plan.wires])
+    edge_from = np.concatenate([used, np.full(len(new), -1), plan.loose_edges])
     edge_from[of_edge[rest:][plain]] = source[plain]
-    ends = np.concatenate([ends, np.stack(np.divmod(unique[new], len(plan.places)), axis=1),
-                           plan.number[all_ends[plan.wires]]])
+    ends = np.concatenate([ends, np.stack(np.divmod(unique[new], len(plan.positions)), axis=1),
+                           plan.old_to_new[all_ends[plan.loose_edges]]])
     return of_edge, ends.astype(np.int32), edge_from
 
 
@@ -195,10 +195,10 @@ def _read_loop_edges(mesh, alias):
 
 def _gather(values, origins, mean=False, otherwise=0):
     """values (n,) or (n, width) at Origins: their mean, or the first's; otherwise where there is none."""
-    taken = values[origins.first]
-    taken[origins.first < 0] = otherwise
-    if mean and len(origins.at):
-        taken[origins.at] = (taken[origins.at] + values[origins.other]) / 2
+    taken = values[origins.source]
+    taken[origins.source < 0] = otherwise
+    if mean and len(origins.midpoint_rows):
+        taken[origins.midpoint_rows] = (taken[origins.midpoint_rows] + values[origins.midpoint_source]) / 2
     return taken
 
 
@@ -210,15 +210,15 @@ def _copy_attributes(mesh, made, origins, but):
         if (new.data_type, new.domain) != (kind, domain):
             continue  # one that Blender itself keeps otherwise: from_pydata() of 5.0 spoils .select_edge
         if kind == "STRING":
-            for item, at in zip(new.data, of.first.tolist()):
+            for item, at in zip(new.data, of.source.tolist()):
                 item.value = old.data[at].value if at >= 0 else ""
             continue
         field, dtype, width, mean = _TYPES[kind]
         taken = _gather(read(old.data, field, dtype, width), of, mean)
         if name == "sharp_face":
-            taken[of.first < 0] = True
+            taken[of.source < 0] = True
         new.data.foreach_set(field, taken.ravel())
-    caps = origins["FACE"].first < 0
+    caps = origins["FACE"].source < 0
     if bpy.app.version >= (4, 0, 0) and "sharp_face" not in mesh.attributes and caps.any():
         made.attributes.new("sharp_face", "BOOLEAN", "FACE").data.foreach_set("value", caps)
     for uv in mesh.uv_layers:
@@ -281,10 +281,10 @@ def _copy_vertex_groups(mesh, made, origins):
         with edit_as_bmesh(made, made) as news:
             own = news.verts.layers.deform.verify()
             sources, verts = list(olds.verts), list(news.verts)
-            for vert, first in zip(verts, origins.first.tolist()):
+            for vert, first in zip(verts, origins.source.tolist()):
                 if first >= 0:
                     vert[own] = sources[first][layer]
-            for at, other in zip(origins.at.tolist(), origins.other.tolist()):
+            for at, other in zip(origins.midpoint_rows.tolist(), origins.midpoint_source.tolist()):
                 weights, beyond = verts[at][own], sources[other][layer]
                 for group in {*weights.keys(), *beyond.keys()}:
                     weights[group] = (weights.get(group, 0) + beyond.get(group, 0)) / 2
@@ -330,8 +330,8 @@ def _copy_shape_keys(mesh, made, plan):
     with _temporary_object(made) as holder:
         for old in mesh.shape_keys.key_blocks:
             new = holder.shape_key_add(name=old.name, from_mix=False)
-            places = plan.places.copy()
-            own = plan.vertices.first >= 0
+            places = plan.positions.copy()
+            own = plan.vertices.source >= 0
             old_places = read(old.data, "co", np.float32, 3)
             places[own] = _gather(old_places, plan.vertices, True)[own]
             new.data.foreach_set("co", places.ravel())

@@ -39,7 +39,7 @@ class Selection:
         bm = self._edited(obj)
         for kind in KINDS:
             _get_sequence(bm, kind).index_update()
-        self.before = {kind: _read_selected(mesh, kind) for kind in KINDS}
+        self.initial = {kind: _read_selected(mesh, kind) for kind in KINDS}
         # list(): with Python 3.13 the history of Blender 4.3 is not to be gone through in a comprehension.
         self.history = [(_element_kind(element), element.index) for element in list(bm.select_history)]
         self.active_face = bm.faces.active.index if bm.faces.active else None
@@ -49,7 +49,7 @@ class Selection:
             corners = arrays.read_polygon_sizes(mesh)[1]
             self.loop_face = np.repeat(np.arange(len(mesh.polygons)), corners)
             self.loop_element = arrays.read(mesh.loops, LOOP_INDEX[self.kind], np.int32)
-        self.now = self.before[self.kind]
+        self.current = self.initial[self.kind]
 
     def _edited(self, obj):
         """The object's BMesh. Kept, which undo or a mode change only make invalid: elements have a field for Python's
@@ -57,13 +57,13 @@ class Selection:
         self._bm = bmesh.from_edit_mesh(obj.data)
         return self._bm
 
-    def fits(self, obj):
+    def is_valid(self, obj):
         """Whether the object is still in Edit Mode with as many elements and the select mode of when this was made."""
         if obj is None or obj.type != "MESH" or obj.mode != "EDIT":
             return False
         bm = self._edited(obj)
         counts = len(bm.verts), len(bm.edges), len(bm.faces)
-        return counts == tuple(len(self.before[kind]) for kind in KINDS) and self.kind in bm.select_mode
+        return counts == tuple(len(self.initial[kind]) for kind in KINDS) and self.kind in bm.select_mode
 
     def select(self, obj, faces, active=None, extend=False, deselect=False):
         """Selects these faces (an array of indices), hidden ones left out, and nothing else; with extend also what was
@@ -71,21 +71,21 @@ class Selection:
         the face to make the active one."""
         target = chosen = arrays.make_mask(len(self.visible), faces) & self.visible
         if self.kind != "FACE":
-            target = arrays.make_mask(len(self.now), self.loop_element[chosen[self.loop_face]])
+            target = arrays.make_mask(len(self.current), self.loop_element[chosen[self.loop_face]])
         if deselect:
-            target = self.before[self.kind] & ~target
+            target = self.initial[self.kind] & ~target
         elif extend:
-            target |= self.before[self.kind]
+            target |= self.initial[self.kind]
         bm = self._edited(obj)
         arrays.invalidate_snapshot()
-        removed, kept = self.now & ~target, self.now & target
+        removed, kept = self.current & ~target, self.current & target
         if _is_only_edited_object(obj) and DESELECT_COST * np.count_nonzero(removed) > DESELECT_ALL_COST + np.count_nonzero(kept):
             bpy.ops.mesh.select_all(action="DESELECT")
             _set_selected(_get_sequence(bm, self.kind), target, True)
         else:
             _set_selected(_get_sequence(bm, self.kind), removed, False)
-            _set_selected(_get_sequence(bm, self.kind), target & ~self.now, True)
-        self.now = target
+            _set_selected(_get_sequence(bm, self.kind), target & ~self.current, True)
+        self.current = target
         if self.kind != "FACE":  # a face takes its edges and vertices along
             bm.select_flush_mode()
         if active is not None:
@@ -96,11 +96,11 @@ class Selection:
                 bm.select_history.add(face)
         _tag_selection_changed(obj)
 
-    def touched(self, obj, anew):
-        """(n,) the faces that have an element whose selection somebody else has changed since; anew: that is selected
+    def find_changed_faces(self, obj, only_selected):
+        """(n,) the faces that have an element whose selection somebody else has changed since; only_selected: that is selected
         now. The object's mesh must be up to date."""
         now = arrays.read(getattr(obj.data, ELEMENTS[self.kind]), "select", bool)
-        changed = now if anew else now != self.before[self.kind]
+        changed = now if only_selected else now != self.initial[self.kind]
         if self.kind != "FACE":
             changed = arrays.make_mask(len(self.visible), self.loop_face[changed[self.loop_element]])
         return np.flatnonzero(changed & self.visible)
@@ -114,18 +114,18 @@ class Selection:
         for kind in reversed(KINDS):
             elements = _get_sequence(bm, kind)
             now = arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool)
-            for index in np.flatnonzero(now & ~self.before[kind]).tolist():
+            for index in np.flatnonzero(now & ~self.initial[kind]).tolist():
                 elements[index].select = False
         for kind in KINDS:
             elements = _get_sequence(bm, kind)
-            for index in np.flatnonzero(self.before[kind]).tolist():
+            for index in np.flatnonzero(self.initial[kind]).tolist():
                 elements[index].select = True
         bm.select_flush_mode()  # also counts the selected elements anew
         bm.select_history.clear()
         for kind, index in self.history:
             bm.select_history.add(_get_sequence(bm, kind)[index])
         bm.faces.active = None if self.active_face is None else _get_sequence(bm, "FACE")[self.active_face]
-        self.now = self.before[self.kind]
+        self.current = self.initial[self.kind]
         _tag_selection_changed(obj)
 
 
@@ -178,10 +178,10 @@ class Selections:
 
     def any(self):
         """Whether anything is selected."""
-        return any(each.now.any() for each in self._each.values())
+        return any(each.current.any() for each in self._each.values())
 
-    def fits(self):
-        return all(each.fits(obj) for obj, each in self._objects())
+    def is_valid(self):
+        return all(each.is_valid(obj) for obj, each in self._objects())
 
     def select(self, obj, faces, active=None, extend=False, deselect=False):
         """As Selection.select() for one of the objects; in the others nothing stays selected, unless extend or deselect
@@ -189,7 +189,7 @@ class Selections:
         for other, each in self._objects():
             if other == obj:
                 each.select(obj, faces, active, extend, deselect)
-            elif not (extend or deselect) and each.now.any():
+            elif not (extend or deselect) and each.current.any():
                 each.select(other, [])
 
     def select_in_each(self, faces, extend=False, deselect=False, active=()):
@@ -198,10 +198,10 @@ class Selections:
         for obj, each in self._objects():
             each.select(obj, faces.get(obj, ()), dict(active).get(obj), extend, deselect)
 
-    def touched(self, obj, anew):
-        """See Selection.touched()."""
+    def find_changed_faces(self, obj, only_selected):
+        """See Selection.find_changed_faces()."""
         arrays.update_mesh(obj)
-        return self._each[obj.name_full].touched(obj, anew)
+        return self._each[obj.name_full].find_changed_faces(obj, only_selected)
 
     def restore(self):
         for obj, each in self._objects():

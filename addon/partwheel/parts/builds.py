@@ -30,7 +30,7 @@ def has_builds():
 def is_being_built(obj):
     """Whether parts of the object's mesh as it is now are being found, or are to be."""
     build = _builds.get(mesh_key(obj.data))
-    return build is not None and build.serves(arrays.current_fingerprint(obj))
+    return build is not None and build.matches(arrays.current_fingerprint(obj))
 
 
 def request_build(obj, **options):
@@ -39,7 +39,7 @@ def request_build(obj, **options):
     """
     former = _builds.get(mesh_key(obj.data))
     if former:
-        if former.serves(arrays.current_fingerprint(obj), options):
+        if former.matches(arrays.current_fingerprint(obj), options):
             return former
         former.cancel()
     return QueuedBuild(obj, **options)
@@ -70,12 +70,12 @@ class QueuedBuild:
         _builds[self._key] = self
         _advance_queue()
 
-    def serves(self, now, options=None):
+    def matches(self, now, options=None):
         """Whether whoever wants a build of the mesh as it is now, with these options or whatever, can have this one."""
         return now.topology == self._built.topology and (
             not options or now == self._built and self._options == {**self._options, **options})
 
-    def start(self):
+    def start_worker(self):
         """It is its turn: whether it has a worker now."""
         share, options = preferences().memory_share / 100, self._options
         try:
@@ -86,7 +86,7 @@ class QueuedBuild:
                            python=bpy.path.abspath(preferences().python))
         except Exception as error:  # whatever it is, result() raises it
             self._error = error
-            self._leave()
+            self._remove_from_queue()
         return self.job is not None
 
     def poll(self):
@@ -108,11 +108,11 @@ class QueuedBuild:
         hierarchy is kept, even if the answer is there: nobody has seen that yet, and what Esc does must not depend on
         who was faster."""
         self._cancelled = True
-        self._leave()
+        self._remove_from_queue()
         if self.job:
             self.job.cancel()
 
-    def _leave(self):
+    def _remove_from_queue(self):
         if _builds.get(self._key) is self:
             del _builds[self._key]
 
@@ -128,16 +128,16 @@ class QueuedBuild:
         except BaseException:  # what progress() raised, or Ctrl-C
             self.cancel()
             raise
-        self._leave()
+        self._remove_from_queue()
         if self._cancelled:
             raise PartwheelError(Status.CANCELLED, rpt_("The build was canceled."))
         if self._error:
             raise self._error
         if not self._hierarchy:
-            self._keep(self._answer())
+            self._store(self._read_answer())
         return self._hierarchy
 
-    def _answer(self):
+    def _read_answer(self):
         try:
             return self.job.result()
         except PartwheelError as error:
@@ -145,7 +145,7 @@ class QueuedBuild:
                 _sheet_counts[self._key] = self._counts
             raise
 
-    def _keep(self, built):
+    def _store(self, built):
         obj = _find_user(self._key)
         if obj is None:
             raise Outdated("The mesh {name} is gone, so its parts were left aside.", name=self.name)
@@ -154,13 +154,13 @@ class QueuedBuild:
             raise Outdated("{name} was edited while its parts were being found, so they were left aside. Find them again when "
                            "the mesh is as you want it.", name=mesh.name)
         for table in MeshTable.tables:
-            table.drop_gone()
+            table.remove_deleted()
         pending.pop(self._key, None)
         _sheet_counts.pop(self._key, None)
         registry.store(mesh, registry.HierarchyEntry(self._built, self._counts, built, open_surfaces=self._open_surfaces), now)
         self._hierarchy = built
 
-    def outdated(self):
+    def is_outdated(self):
         """Whether its mesh is gone, or is another one by now, be it only by places of vertices."""
         obj = _find_user(self._key)
         return obj is None or arrays.current_fingerprint(obj) != self._built
@@ -169,13 +169,13 @@ class QueuedBuild:
 def _advance_queue():
     """The Build that has a worker; if none has, the one that has waited longest gets one. None if none waits."""
     return (next((each for each in _builds.values() if each.job and each.job.poll()), None)
-            or next((each for each in list(_builds.values()) if not each.job and each.start()), None))
+            or next((each for each in list(_builds.values()) if not each.job and each.start_worker()), None))
 
 
 def cancel_outdated():
     """Cancels those whose mesh is not there any more as it was."""
     for each in list(_builds.values()):
-        if each.outdated():
+        if each.is_outdated():
             each.cancel()
 
 

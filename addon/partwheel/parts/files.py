@@ -19,7 +19,7 @@ def _on_save(*_):
             continue
         fits, entry = registry.get_state(mesh)
         if fits in registry.USABLE and not entry.packed:
-            entry.packed = stored.pack(entry.built, entry.hierarchy)
+            entry.packed = stored.pack(entry.built_for, entry.hierarchy)
         packed = pending.get(mesh_key(mesh)) if fits == registry.State.UNOPENED else entry and entry.packed
         if packed:
             take_property(mesh)  # Blender 4.2 to 5.0 cut bytes off at a 0 where they replace others

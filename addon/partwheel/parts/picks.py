@@ -32,7 +32,7 @@ class Pick(NamedTuple):
 
 MAX_PAST_PICKS = 32  # picks of a mesh that undo may come back to
 _past = MeshTable()  # [((_glance(), _digest()) after the pick, Picked), ...], the newest last
-_picks = MeshTable(gone=lambda picks, gone: registry.is_retired(picks[gone].hierarchy) or picks.pop(gone))
+_picks = MeshTable(on_removal=lambda picks, gone: registry.is_retired(picks[gone].hierarchy) or picks.pop(gone))
 
 
 def remember(obj, face, node, snap=False):

@@ -21,16 +21,16 @@ from partwheel import Hierarchy
 class HierarchyEntry:
     """A mesh's hierarchy."""
 
-    built: Fingerprint  # what it was built for
+    built_for: Fingerprint  # what it was built for
     counts: tuple  # of vertices and polygons then
     hierarchy: Hierarchy
     packed: bytes = None  # for files; made when a file is first saved
     open_surfaces: bool = False  # the user wants this mesh taken for a thin solid, should it be a sheet
-    seen: Fingerprint = None  # the mesh as it was when last looked at,
-    looked: tuple = None  # and what changes.geometry_revision() said then
+    fingerprint: Fingerprint = None  # the mesh as it was when last looked at,
+    revision: tuple = None  # and what changes.geometry_revision() said then
 
-    def look(self, mesh, fingerprint):
-        self.seen, self.looked = fingerprint, changes.geometry_revision(mesh)
+    def record_fingerprint(self, mesh, fingerprint):
+        self.fingerprint, self.revision = fingerprint, changes.geometry_revision(mesh)
 
 
 class State(Enum):
@@ -46,7 +46,7 @@ class State(Enum):
 USABLE = State.FITS, State.MOVED
 MAX_RETIRED = 3
 
-_entries = MeshTable(gone=lambda entries, gone: _retire(entries.pop(gone)))
+_entries = MeshTable(on_removal=lambda entries, gone: _retire(entries.pop(gone)))
 _unmatched = MeshTable()  # what changes.geometry_revision() said when a mesh was found to be no twin of those
 _retired = []  # of meshes that are gone, or others by now: undo may bring them back; the newest last, so many at most
 
@@ -58,12 +58,12 @@ def get_hierarchy(obj):
     entry = _entries.get(mesh_key(mesh))
     opening = None if entry else PendingLoad(mesh)
     now = arrays.current_fingerprint(obj)  # takes half as long as opening
-    if not entry or entry.built.topology != now.topology:
+    if not entry or entry.built_for.topology != now.topology:
         entry = _find_identical(now) or _load_stored(opening or PendingLoad(mesh), now) or entry
     if not entry:
         return None
     store(mesh, entry, now)
-    return entry.hierarchy if entry.built.topology == now.topology else None
+    return entry.hierarchy if entry.built_for.topology == now.topology else None
 
 
 def require_hierarchy(obj):
@@ -77,7 +77,7 @@ def require_hierarchy(obj):
 def _find_identical(now):
     """A new entry with the hierarchy of a mesh that is the same in all: the one that was duplicated, for instance, or
     the one that undo has brought back."""
-    entry = next((entry for entry in (*_entries.values(), *reversed(_retired)) if entry.built == now), None)
+    entry = next((entry for entry in (*_entries.values(), *reversed(_retired)) if entry.built_for == now), None)
     return entry and dataclasses.replace(entry)
 
 
@@ -90,10 +90,10 @@ def _load_stored(opening, now):
 def store(mesh, entry, now):
     """From now on it is the mesh's, whose Fingerprint is now; one of another topology that was there retires."""
     before = _entries.get(mesh_key(mesh))
-    if before and before.built.topology != entry.built.topology:
+    if before and before.built_for.topology != entry.built_for.topology:
         _retire(before)
     _entries[mesh_key(mesh)] = entry
-    entry.look(mesh, now)
+    entry.record_fingerprint(mesh, now)
 
 
 def _retire(entry):
@@ -130,15 +130,15 @@ def get_state(mesh):
     if mesh.is_editmode:
         if element_counts(mesh) != entry.counts:
             return State.CHANGED, entry
-    elif entry.looked != changes.geometry_revision(mesh):
-        entry.look(mesh, arrays.compute_fingerprint(mesh))
-    if entry.seen.topology != entry.built.topology:
-        twin = _find_identical(entry.seen)
+    elif entry.revision != changes.geometry_revision(mesh):
+        entry.record_fingerprint(mesh, arrays.compute_fingerprint(mesh))
+    if entry.fingerprint.topology != entry.built_for.topology:
+        twin = _find_identical(entry.fingerprint)
         if not twin:
             return State.CHANGED, entry
-        store(mesh, twin, entry.seen)
+        store(mesh, twin, entry.fingerprint)
         return State.FITS, twin
-    return (State.FITS if entry.seen == entry.built else State.MOVED), entry
+    return (State.FITS if entry.fingerprint == entry.built_for else State.MOVED), entry
 
 
 def _adopt_identical(mesh):

@@ -25,7 +25,7 @@ def get_part_mask(obj, hierarchy, node):
 def _get_creases(obj):
     """Of the object's mesh as it was when its hierarchy was asked for last."""
     global _cache
-    seen = registry.find_entry(obj.data).seen
+    seen = registry.find_entry(obj.data).fingerprint
     if not _cache or _cache[0] != seen:
         _cache = seen, Creases(*arrays.read_surface(obj.data))
     return _cache[1]

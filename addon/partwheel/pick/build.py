@@ -39,21 +39,21 @@ class BuildMonitor:
     def __init__(self, operator, obj, **options):
         """options: of builds.request_build(). Raises an Error when it can't even begin."""
         self.operator, self.hierarchy = operator, None
-        self.began = time.perf_counter()
+        self.start_time = time.perf_counter()
         self.build = builds.request_build(obj, **options)
         if stored.from_newer_version.pop(mesh_key(obj.data), False):
             operator.report({"WARNING"}, rpt_(
                 "The parts saved with {name} are of a newer Partwheel than this one, so they are found anew. Update "
                 "Partwheel to have those of the file.").format(name=obj.data.name))
-        self.timer, self.line = None, status.StatusLine()
-        self.printed = 0
+        self.timer, self.status_line = None, status.StatusLine()
+        self.printed_percent = 0
 
     # ---- Until it is done
 
     def wait(self, context):
         """For scripts: blocks, and shows progress at the cursor, or in the terminal when there are no windows."""
         try:
-            self._conclude(lambda *told: self._show(context, *told))
+            self._finish(lambda *told: self._show(context, *told))
         finally:
             self._end_progress(context)
         return self.hierarchy
@@ -67,11 +67,11 @@ class BuildMonitor:
         self.timer = context.window_manager.event_timer_add(TICK, window=context.window)
         self._show_in_status_bar(context, 0.0, "")
 
-    def step(self, context, event):
+    def on_event(self, context, event):
         """Looks after the build: whether it is over, or another operator goes on with it. Esc cancels it: also if the
         answer has come before, as long as it was not taken over, by a TIMER, and so shown."""
         if event.type == "ESC" and event.value == "PRESS":
-            self.abandon(context)
+            self.cancel(context)
             return True
         if event.type != "TIMER":
             return False
@@ -83,28 +83,28 @@ class BuildMonitor:
             return False
         self._stop_watching(context)
         if mine:
-            self._conclude()
+            self._finish()
         return True
 
-    def abandon(self, context):
+    def cancel(self, context):
         """Ends it before it is over."""
         self.build.cancel()
         self._stop_watching(context)
-        self._conclude()
+        self._finish()
 
     def _stop_watching(self, context):
         if self.timer:
             context.window_manager.event_timer_remove(self.timer)
             self.timer = None
         self._end_progress(context)
-        self.line.end(context)
+        self.status_line.remove(context)
 
     def _show_in_status_bar(self, context, fraction, stage):
         waits = stage and not self.build.job
         said = (iface_("Partwheel finds the parts of {name} after those of {other}") if waits
                 else iface_("Partwheel finds the parts of {name}: {fraction:.0%}"))
         said = said.format(name=self.build.name, other=stage, fraction=fraction)
-        self.line.say(context, "   ".join([said, iface_("Esc: Cancel")]))
+        self.status_line.show(context, "   ".join([said, iface_("Esc: Cancel")]))
 
     # ---- Both
 
@@ -119,11 +119,11 @@ class BuildMonitor:
         if not bpy.app.background:
             context.window_manager.progress_begin(0, 100)  # each time: another build may have ended it
             context.window_manager.progress_update(percent)
-        elif percent >= self.printed + 10:
+        elif percent >= self.printed_percent + 10:
             print(f"Partwheel: {percent:3d} % {stage}", flush=True)
-            self.printed = percent
+            self.printed_percent = percent
 
-    def _conclude(self, progress=None):
+    def _finish(self, progress=None):
         """Takes the result over, if there is one, and reports."""
         name, report = self.build.name, self.operator.report
         try:
@@ -142,7 +142,7 @@ class BuildMonitor:
         for failure in self.build.job.failures:
             report({"WARNING"}, rpt_("A way that was tried first failed: {reason}").format(reason=translate_error(failure)))
         found = rpt_("{name}, {count:,} faces: its parts were found in {seconds:.1f} s.").format(
-            name=name, count=len(self.hierarchy.order), seconds=time.perf_counter() - self.began)
+            name=name, count=len(self.hierarchy.order), seconds=time.perf_counter() - self.start_time)
         report({"INFO"}, f"{found} ({describe_fill(self.hierarchy)})")
 
 
@@ -172,22 +172,22 @@ def build_and_wait(operator, context, obj):
 
 class BuildsFirst(InView):
     """Mixed into an operator, ahead of those with an execute(): where there is a window, parts are found beside Blender's
-    own work first, with Esc; then _found() goes on. One object after the other, the queue is made at once."""
+    own work first, with Esc; then _on_parts_found() goes on. One object after the other, the queue is made at once."""
 
     buildings = ()
 
     def invoke(self, context, event):
         return self._start_modal(context, event) if context.window else self.execute(context)
 
-    def _lacking(self, context):
+    def _objects_to_build(self, context):
         """The objects whose parts are to be found before it can go on."""
         obj = context.active_object
         return [] if registry.get_hierarchy(obj) else [obj]
 
-    def _start(self, obj):
+    def _start_build(self, obj):
         return start_build(self, obj)
 
-    def _found(self, context):
+    def _on_parts_found(self, context):
         """They are found: it goes on where the user has not gone elsewhere meanwhile."""
         obj = context.active_object
         there = obj is not None and obj.name_full == self.object_name and self.poll(context)
@@ -195,11 +195,11 @@ class BuildsFirst(InView):
 
     def on_start(self, context, _event):
         self.object_name, self.buildings = context.active_object.name_full, []
-        lacking = self._lacking(context)
+        lacking = self._objects_to_build(context)
         if not lacking:
             return self.execute(context)
         for obj in lacking:
-            self.buildings += filter(None, [self._start(obj)])
+            self.buildings += filter(None, [self._start_build(obj)])
         if not self.buildings:
             return {"CANCELLED"}
         self.buildings[0].watch(context)
@@ -210,7 +210,7 @@ class BuildsFirst(InView):
 
     def on_event(self, context, event):
         """While the parts are being found all but Esc goes to Blender itself."""
-        if not self.buildings[0].step(context, event):
+        if not self.buildings[0].on_event(context, event):
             return {"PASS_THROUGH"}
         done, *self.buildings = self.buildings
         if event.type == "ESC":
@@ -218,21 +218,21 @@ class BuildsFirst(InView):
         if self.buildings:
             self.buildings[0].watch(context)
             return {"PASS_THROUGH"}
-        return self._found(context) if done.hierarchy else {"CANCELLED"}
+        return self._on_parts_found(context) if done.hierarchy else {"CANCELLED"}
 
     def on_cancel(self, context):
         for building in self.buildings:
-            building.abandon(context)
+            building.cancel(context)
 
 
 class FindsParts(BuildsFirst):
     """Mixed into an operator that finds parts and does nothing with them."""
 
     def execute(self, context):
-        buildings = list(filter(None, map(self._start, self._lacking(context))))
+        buildings = list(filter(None, map(self._start_build, self._objects_to_build(context))))
         return {"FINISHED"} if [each for each in buildings if each.wait(context)] else {"CANCELLED"}
 
-    def _found(self, _context):
+    def _on_parts_found(self, _context):
         return {"FINISHED"}
 
 
@@ -256,10 +256,10 @@ class _BuildOperator(NeedsActiveMesh, FindsParts):
         "coarser copy: some ten times the time and memory. The add-on's preferences can have it so for all",
         default=False)
 
-    def _lacking(self, context):
+    def _objects_to_build(self, context):
         return [context.active_object]
 
-    def _start(self, obj):
+    def _start_build(self, obj):
         return start_build(self, obj, quality=self.quality, open_surfaces=self.open_surfaces, exactly=self.exactly or None)
 
 
@@ -270,7 +270,7 @@ class MESH_OT_partwheel_build(_BuildOperator, bpy.types.Operator):
     bl_label = "Find Parts of Mesh"
     bl_options = {"REGISTER"}
 
-    def _lacking(self, context):
+    def _objects_to_build(self, context):
         obj = context.active_object
         return [obj, *filter_without_parts(each for each in context.selected_objects if each.data != obj.data)]
 

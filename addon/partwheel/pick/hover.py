@@ -32,7 +32,7 @@ class Hover:
     snapped, else None; or None."""
 
     def __init__(self):
-        self.what, self._later, self._waits = None, None, False
+        self.target, self._timer, self._is_waiting = None, None, False
 
     def move(self, context, point):
         """The mouse is at a point of the context's region. Redraws if that changes what is shown.
@@ -40,27 +40,27 @@ class Hover:
         After an edit that takes some steps, a slice of what is needed each: what is to be seen of the mouse meanwhile
         would come late."""
         if not is_at_rest():
-            self._to(None)
+            self._set_target(None)
             return
         edited = _find_edited_objects(context)
         if prepare_next_slice(edited):
-            self._go_on(context, point)
+            self._schedule_move(context, point)
             return
-        self._waits = False
+        self._is_waiting = False
         with arrays.use_snapshot():
             mark_written_meshes(edited)
-            found = self._found(context, point)
+            found = self._find_target(context, point)
             highlight.update(context)
-        if self._waits:
-            self._go_on(context, point)
-        self._to(found)
+        if self._is_waiting:
+            self._schedule_move(context, point)
+        self._set_target(found)
 
-    def _to(self, found):
-        if found is not self.what:
-            self.what = found
+    def _set_target(self, found):
+        if found is not self.target:
+            self.target = found
             overlay.redraw_views()
 
-    def _go_on(self, context, point):
+    def _schedule_move(self, context, point):
         """The next step follows once Blender has seen to what else there is."""
         window, area, region = context.window, context.area, context.region
 
@@ -72,45 +72,45 @@ class Hover:
                     self.move(bpy.context, point)
 
         self.stop()
-        self._later = move
+        self._timer = move
         bpy.app.timers.register(move, first_interval=0)
 
     def stop(self):
-        if self._later and bpy.app.timers.is_registered(self._later):
-            bpy.app.timers.unregister(self._later)
-        self._later = None
+        if self._timer and bpy.app.timers.is_registered(self._timer):
+            bpy.app.timers.unregister(self._timer)
+        self._timer = None
 
-    def _found(self, context, point):
-        obj, face = self._under(context, context.region, context.region_data, point)
-        parts = get_view_cache(obj).parts(obj) if obj and face != NO_FACE else None
+    def _find_target(self, context, point):
+        obj, face = self._find_face(context, context.region, context.region_data, point)
+        parts = get_view_cache(obj).get_part_triangles(obj) if obj and face != NO_FACE else None
         if not parts:
             return None
         node, snap = states.pick_face(parts.hierarchy, face).node, is_tool_snapping(context)
-        if self.what and self.what[:3] == (obj.name_full, parts, node) and snap == (self.what[3] is not None):
-            return self.what
+        if self.target and self.target[:3] == (obj.name_full, parts, node) and snap == (self.target[3] is not None):
+            return self.target
         return obj.name_full, parts, node, borders.get_part_faces(obj, parts.hierarchy, node, True) if snap else None
 
-    def _under(self, context, *view):
+    def _find_face(self, context, *view):
         """(object, face), (None, None) where nothing is that has faces to be picked."""
         if context.mode == "OBJECT":
             hit = picking.find_surface_under(context, context.area, *view)
             if not hit or hit.obj.type != "MESH" or registry.get_state(hit.obj.data)[0] not in HOVER_STATES:
                 return None, None
-            kept = self._ready(hit.obj)
-            found = kept and kept.tree(hit.obj).under(hit.matrix, *view)
+            kept = self._get_ready_cache(hit.obj)
+            found = kept and kept.get_ray_caster(hit.obj).cast(hit.matrix, *view)
             return (hit.obj, found[0]) if found else (None, None)
-        shown = [each for each in _find_edited_objects(context) if self._ready(each)]
-        return picking.find_nearest_face(shown, lambda each: get_view_cache(each).tree(each), *view)
+        shown = [each for each in _find_edited_objects(context) if self._get_ready_cache(each)]
+        return picking.find_nearest_face(shown, lambda each: get_view_cache(each).get_ray_caster(each), *view)
 
-    def _ready(self, obj):
+    def _get_ready_cache(self, obj):
         kept = get_ready_cache(obj)
-        self._waits = self._waits or kept is None
+        self._is_waiting = self._is_waiting or kept is None
         return kept
 
     def draw(self, context):
-        if not self.what or overlay.pick_overlay.on:
+        if not self.target or overlay.pick_overlay.is_shown:
             return
-        name, parts, node, snapped = self.what
+        name, parts, node, snapped = self.target
         obj = mesh_identity.find_object(name)
         if obj and overlay.is_visible(context, obj) and is_current(obj, parts):
             overlay.draw_hover(context, obj, parts, node, snapped)
@@ -132,33 +132,33 @@ class Highlight:
     """The faces of the active object that are selected in Object Mode, once a part of it was picked."""
 
     def __init__(self):
-        self.what = None  # as in Hover: an object's full name, its overlay.PartTriangles, the faces
+        self.target = None  # as in Hover: an object's full name, its overlay.PartTriangles, the faces
         self.shown = 0  # how often others have been
 
     def update(self, context):
         """To what is selected now."""
         obj = context.active_object
         if context.mode != "OBJECT" or obj is None or obj.type != "MESH" or not picks.get_pick_for_poll(obj):
-            self.what = None
+            self.target = None
             return
-        if get_ready_cache(obj) and not (self.what and self.what[0] == obj.name_full and is_current(obj, self.what[1])):
+        if get_ready_cache(obj) and not (self.target and self.target[0] == obj.name_full and is_current(obj, self.target[1])):
             self.show_selected(obj)
 
-    def shows(self, obj):
+    def is_showing(self, obj):
         """Whether it is on this object now."""
-        return bool(self.what and self.what[0] == obj.name_full and len(self.what[2]) and is_current(obj, self.what[1]))
+        return bool(self.target and self.target[0] == obj.name_full and len(self.target[2]) and is_current(obj, self.target[1]))
 
     def show_selected(self, obj):
         self.show(obj, np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)))
 
     def show(self, obj, faces):
-        self.what, self.shown = (obj.name_full, get_view_cache(obj).parts(obj), faces), self.shown + 1
+        self.target, self.shown = (obj.name_full, get_view_cache(obj).get_part_triangles(obj), faces), self.shown + 1
         overlay.redraw_views()
 
     def draw(self, context):
-        if not self.what:
+        if not self.target:
             return
-        name, parts, faces = self.what
+        name, parts, faces = self.target
         obj = mesh_identity.find_object(name)
         if context.mode == "OBJECT" and obj and len(faces) and overlay.is_visible(context, obj) and is_current(obj, parts):
             overlay.draw_faces(context, obj, parts, ("chosen", self.shown), faces)
@@ -200,6 +200,6 @@ CLASSES = (VIEW3D_GT_partwheel_hover, VIEW3D_GGT_partwheel_hover)
 
 
 def unregister():
-    hover.what = highlight.what = None
+    hover.target = highlight.target = None
     hover.stop()
     stop_timers()

@@ -27,13 +27,13 @@ class _InObjectMode(PartPicker):
         return check_poll(cls, context.mode == "OBJECT", "This is for Object Mode.")
 
     def on_start(self, context, event):
-        obj = self._target(context, event)
+        obj = self._find_target(context, event)
         if not obj:
             return {"CANCELLED"}
         self.object_name = obj.name_full
         return PartPicker.on_start(self, context, event)
 
-    def _target(self, context, event):
+    def _find_target(self, context, event):
         """The object under the mouse, or else the active one, if it can be edited; or None and a report."""
         view = picking.find_view_under_mouse(context, event)
         hit = view and picking.find_surface_under(context, *view)
@@ -51,18 +51,18 @@ class _InObjectMode(PartPicker):
             self.report({"WARNING"}, reason)
         return None if reason else obj
 
-    def _objects(self, context):
+    def _find_objects(self, context):
         """The one that was under the mouse at the beginning; without a mouse the active one."""
         obj = mesh_identity.find_object(self.object_name) if self.object_name else context.active_object
         return [obj] if context.mode == "OBJECT" and obj is not None and obj.type == "MESH" else []
 
-    def _under(self, context, event):
+    def _find_face(self, context, event):
         """Also on an instance of the object."""
-        view, (obj,) = picking.find_view_under_mouse(context, event), self._objects(context)
+        view, (obj,) = picking.find_view_under_mouse(context, event), self._find_objects(context)
         hit = view and picking.find_surface_under(context, *view)
-        found = get_view_cache(obj).tree(obj).under(hit.matrix, *view[1:]) if hit and hit.obj == obj else None
+        found = get_view_cache(obj).get_ray_caster(obj).cast(hit.matrix, *view[1:]) if hit and hit.obj == obj else None
         if found and found[0] == NO_FACE:
-            self._made_by_modifiers(obj)
+            self._report_generated_face(obj)
         return (obj, found[0]) if found and found[0] != NO_FACE else (None, None)
 
 
@@ -71,10 +71,10 @@ class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
 
     bl_idname = "object.partwheel_select"
     bl_label = "Select Part by Wheel"
-    bl_options = set()  # what is registered and undone is the pick in Edit Mode, see _edited()
+    bl_options = set()  # what is registered and undone is the pick in Edit Mode, see _enter_edit_mode()
     commands = keys.COMMANDS
 
-    def _aim(self, context, obj):
+    def create_target(self, context, obj):
         return PreviewTarget(obj)
 
     def _key_while_holding(self, context, event, over):
@@ -83,12 +83,12 @@ class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
         return PartPicker._key_while_holding(self, context, event, over)
 
     def _commit(self, context):
-        return self._edited(context, self._object(context))
+        return self._enter_edit_mode(context, self._find_object(context))
 
     def _apply(self, context, obj, _faces, _picked):
-        return self._edited(context, obj)
+        return self._enter_edit_mode(context, obj)
 
-    def _edited(self, context, obj):
+    def _enter_edit_mode(self, context, obj):
         """Edit Mode with the part that is picked: two undo steps, and the panel of the last operation is the second's.
         """
         _activate(context, obj)
@@ -106,10 +106,10 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
     bl_label = "Pick Part by Wheel"
     bl_options = {"REGISTER", "UNDO"}
 
-    def _aim(self, context, obj):
+    def create_target(self, context, obj):
         return _HighlightTarget(obj)
 
-    def _missed(self, context):
+    def on_miss(self, context):
         """As in Edit Mode: a click beside everything picks nothing."""
         obj = context.active_object
         if self.extend or self.deselect or not arrays.read(obj.data.polygons, "select", bool).any():
@@ -122,7 +122,7 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
         return {"FINISHED"}
 
     def _commit(self, context):
-        return self._apply(context, self._object(context), self.faces, self.state)
+        return self._apply(context, self._find_object(context), self.faces, self.state)
 
     def _apply(self, context, obj, faces, picked):
         _activate(context, obj)
@@ -151,7 +151,7 @@ class _HighlightTarget(PreviewTarget):
         (faces, active), mesh = self.before, mesh_identity.find_object(self.name).data
         if not np.array_equal(np.flatnonzero(arrays.read(mesh.polygons, "select", bool)), faces):
             select_outside_edit_mode(mesh, faces, active=active)
-        highlight.what = None
+        highlight.target = None
         highlight.update(bpy.context)
 
 

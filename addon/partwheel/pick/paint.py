@@ -48,16 +48,16 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
     def _apply(self, context, obj, faces, picked):
         return self._write(context, obj, faces, picked.node)
 
-    def _objects(self, context):
+    def _find_objects(self, context):
         return [context.active_object] if context.mode in TARGETS_BY_MODE else []
 
-    def _aim(self, context, obj):
+    def create_target(self, context, obj):
         return PreviewTarget(obj)
 
     def _commit(self, context):
-        return self._write(context, self._object(context), self.faces, self.state.node)
+        return self._write(context, self._find_object(context), self.faces, self.state.node)
 
-    def _missed(self, context):
+    def on_miss(self, context):
         """As in Edit Mode: a click beside everything leaves nothing masked."""
         obj, way = context.active_object, self._way(context)
         there = way in HAS_CONTENT and (HAS_CONTENT[way](obj.data) or UNDOES_LEVEL_MASKS and way == "MASK" and find_sculpted_multires(obj))

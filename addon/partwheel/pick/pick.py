@@ -2,7 +2,7 @@
 """Picking a part with mouse and keys: what the modal operators share. A click picks a face, the wheel grows and shrinks
 the part around it, until it is confirmed or cancelled.
 
-What happens to the part meanwhile, and once it is confirmed, is the business of a target (see PartPicker._aim).
+What happens to the part meanwhile, and once it is confirmed, is the business of a target (see PartPicker.create_target).
 """
 
 import contextlib
@@ -46,16 +46,16 @@ class PartPicker(InView):
 
     # ---- What operators differ in
 
-    def _objects(self, context):
+    def _find_objects(self, context):
         """The objects that can be picked from, the active one first."""
         raise NotImplementedError
 
-    def _aim(self, context, obj):
+    def create_target(self, context, obj):
         """A new target for a pick from this object, with select(obj, faces, face, extend, deselect), restore() and
         fits()."""
         raise NotImplementedError
 
-    def _missed(self, context):
+    def on_miss(self, context):
         """The answer to a click of the tool beside every mesh."""
         return {"CANCELLED"}
 
@@ -73,12 +73,12 @@ class PartPicker(InView):
     n_started = 0  # how many picks have begun, with the mouse, by whichever operator
     commands = ()  # keys.COMMANDS that the status bar shows while a part is held
     state, target, object_name = states.WaitingForClick(), None, ""
-    clicked, stepper, wheeling = None, None, True
+    click_view, step_buttons, is_wheel_active = None, None, True
 
     # ---- Without a window
 
     def execute(self, context):
-        obj = self._objects(context)[0]
+        obj = self._find_objects(context)[0]
         hierarchy = build_and_wait(self, context, obj)
         if not hierarchy:
             return {"CANCELLED"}
@@ -102,26 +102,26 @@ class PartPicker(InView):
 
     def on_start(self, context, event):
         PartPicker.n_started += 1
-        self.number = PartPicker.n_started
+        self.start_number = PartPicker.n_started
         self.scroll, self.drag = keys.NotchCounter(keys.SCROLL_STEP), None
         if self.tool:
-            self._click(context, event)
-        objects = self._objects(context)
+            self._record_click(context, event)
+        objects = self._find_objects(context)
         if not objects:
             self.report({"WARNING"}, rpt_("This 3D view does not show the mesh that is being edited."))
             return {"CANCELLED"}
         context.view_layer.update()  # whatever there is to be told is told
         self.state = states.Preparing(event.type, event.value, event.mouse_x, event.mouse_y)
         if not prepare_next_slice(objects):
-            return self._start_prepared(context)
+            return self._finish_start(context)
         # The window is not held up until all of them are made.
         self._slices = self._exit_stack.enter_context(contextlib.ExitStack())
         self._add_timer(context, 0, self._slices)
         return {"RUNNING_MODAL"}
 
-    def _prepared_on(self, context, event):
+    def _on_preparing(self, context, event):
         """One more slice; a key or a button that is pressed meanwhile has all of them made at once."""
-        objects, released = self._objects(context), event.value == "RELEASE"
+        objects, released = self._find_objects(context), event.value == "RELEASE"
         idle = released or event.type in keys.SYSTEM | keys.MOVES
         if released and event.type == self.state.type:
             self.state = replace(self.state, value=event.value)
@@ -129,81 +129,81 @@ class PartPicker(InView):
             if idle:
                 return {"RUNNING_MODAL"}
         self._slices.close()
-        answer = self._start_prepared(context)
+        answer = self._finish_start(context)
         return answer if idle or answer != {"RUNNING_MODAL"} else self.on_event(context, event)
 
-    def _start_prepared(self, context):
+    def _finish_start(self, context):
         """All that is needed of the meshes is there, and what was done is seen to."""
         event, self.state = self.state, states.WaitingForClick()
-        objects = self._objects(context)
+        objects = self._find_objects(context)
         mark_written_meshes(objects)
-        obj, face = self._under(context, event)
+        obj, face = self._find_face(context, event)
         if obj is not None:
-            return self._pick(context, event, obj, face)
+            return self._pick_face(context, event, obj, face)
         if self.tool:
-            return self._missed(context)
+            return self.on_miss(context)
         obj = objects[0]
-        if self._parts(obj) is None:
-            return self._build(context, obj, None)
-        return self._wait(context, iface_("Click a face of the mesh"))
+        if self._find_hierarchy(obj) is None:
+            return self._start_build(context, obj, None)
+        return self._wait_for_click(context, iface_("Click a face of the mesh"))
 
-    def _click(self, context, event):
+    def _record_click(self, context, event):
         """The wheel is ours as long as the mouse is there, and the view as it is."""
         view = picking.find_view_under_mouse(context, event)
         if view and preferences().wheel == "NEAR":
-            self.clicked = event.mouse_x, event.mouse_y, view[2].perspective_matrix.copy()
+            self.click_view = event.mouse_x, event.mouse_y, view[2].perspective_matrix.copy()
         if event.is_tablet or preferences().show_steps:
-            self.stepper = StepButtons(event.mouse_x, event.mouse_y)
+            self.step_buttons = StepButtons(event.mouse_x, event.mouse_y)
 
-    def _at_click(self, context, event):
+    def _is_at_click(self, context, event):
         """Whether the wheel is ours."""
         view = picking.find_view_under_mouse(context, event)
-        if not (view and self.clicked):
+        if not (view and self.click_view):
             return view is not None
-        x, y, looked = self.clicked
+        x, y, looked = self.click_view
         moved = hypot(event.mouse_x - x, event.mouse_y - y)
         return moved <= self.NEAR * get_ui_scale() and view[2].perspective_matrix == looked
 
-    def _under(self, context, event):
+    def _find_face(self, context, event):
         """(object, face index) under the mouse, or (None, None)."""
         view = picking.find_view_under_mouse(context, event)
         if not view:
             return None, None
         area, *pixel = view
-        shown = [each for each in self._objects(context) if each.visible_get(viewport=area.spaces.active)]
-        obj, face = picking.find_nearest_face(shown, lambda each: get_view_cache(each).tree(each), *pixel)
+        shown = [each for each in self._find_objects(context) if each.visible_get(viewport=area.spaces.active)]
+        obj, face = picking.find_nearest_face(shown, lambda each: get_view_cache(each).get_ray_caster(each), *pixel)
         if face == NO_FACE:
-            self._made_by_modifiers(obj)
+            self._report_generated_face(obj)
             return None, None
         return obj, face
 
-    def _made_by_modifiers(self, obj):
+    def _report_generated_face(self, obj):
         self.report({"INFO"}, rpt_("What is seen there was made by the modifiers of {name} and belongs to no face of its "
                                    "mesh.").format(name=obj.name))
 
     @staticmethod
-    def _parts(obj):
+    def _find_hierarchy(obj):
         """The hierarchy of the object's mesh; None if there is none, or a new one is on its way."""
         return None if builds.is_being_built(obj) else registry.get_hierarchy(obj)
 
-    def _pick(self, context, event, obj, face):
-        self.hierarchy = self._parts(obj)
+    def _pick_face(self, context, event, obj, face):
+        self.hierarchy = self._find_hierarchy(obj)
         if self.hierarchy is None:
             # Which face was meant is known now: the user may turn the view while the parts are being built.
-            return self._build(context, obj, face)
+            return self._start_build(context, obj, face)
         picked = states.pick_face(self.hierarchy, face)
         if event.type == "LEFTMOUSE" and event.value == "PRESS":
             self.drag = event.mouse_y, picked.index
         return self._start_holding(context, obj, picked)
 
     def _start_holding(self, context, obj, picked):
-        self.object_name, self.target, self.shown = obj.name_full, self._aim(context, obj), None
+        self.object_name, self.target, self.shown_part = obj.name_full, self.create_target(context, obj), None
         self._exit_stack.callback(overlay.pick_overlay.hide)
-        if self.stepper:
-            self._add_draw_handler(self.stepper.draw, "POST_PIXEL")
+        if self.step_buttons:
+            self._add_draw_handler(self.step_buttons.draw, "POST_PIXEL")
         return self._show(context, picked)
 
-    def _build(self, context, obj, face):
+    def _start_build(self, context, obj, face):
         self.building = start_build(self, obj)
         if not self.building:
             return {"CANCELLED"}
@@ -211,28 +211,28 @@ class PartPicker(InView):
         self.building.watch(context)
         return {"RUNNING_MODAL"}
 
-    def _built_on(self, context, event):
+    def _on_building(self, context, event):
         """While the parts are being built all but Esc goes to Blender itself; then the face is picked."""
-        if not self.building.step(context, event):
+        if not self.building.on_event(context, event):
             return {"PASS_THROUGH"}
         face, self.state = self.state.face, states.WaitingForClick()
         self.hierarchy = self.building.hierarchy
-        if not self.hierarchy or self.number < PartPicker.n_started:  # the last click counts: its part stays selected
+        if not self.hierarchy or self.start_number < PartPicker.n_started:  # the last click counts: its part stays selected
             return {"CANCELLED"}
-        obj = self._object(context)
+        obj = self._find_object(context)
         if obj is None or context.area is None:
             self.report({"INFO"}, rpt_("The parts are found. Start {operator} again to pick them.").format(
                 operator=get_operator_label(self)))
             return {"CANCELLED"}
         if face is not None:
             return self._start_holding(context, obj, states.pick_face(self.hierarchy, face))
-        return self._wait(context, iface_("Click a face of the mesh"))
+        return self._wait_for_click(context, iface_("Click a face of the mesh"))
 
-    def _object(self, context):
+    def _find_object(self, context):
         """The object that the part belongs to, if it can still be picked from."""
-        return next((each for each in self._objects(context) if each.name_full == self.object_name), None)
+        return next((each for each in self._find_objects(context) if each.name_full == self.object_name), None)
 
-    def _wait(self, context, header):
+    def _wait_for_click(self, context, header):
         self._show_status(context, header, keys.WAITING)
         return {"RUNNING_MODAL"}
 
@@ -240,25 +240,25 @@ class PartPicker(InView):
 
     def on_event(self, context, event):
         if isinstance(self.state, states.Preparing):
-            return self._prepared_on(context, event)
+            return self._on_preparing(context, event)
         if isinstance(self.state, states.WaitingForParts):
-            return self._built_on(context, event)
-        if self.target and registry.find_hierarchy(self._object(context).data) is not self.hierarchy:
+            return self._on_building(context, event)
+        if self.target and registry.find_hierarchy(self._find_object(context).data) is not self.hierarchy:
             self.report({"WARNING"}, rpt_("Partwheel stopped: the parts were found anew. Pick one of them."))
             return {"CANCELLED"}
         if self.target:
-            self._drawn_anew(self._object(context))
+            self._redraw_in_new_frame(self._find_object(context))
         if event.type in keys.SYSTEM:
             return {"PASS_THROUGH"}
         holding = isinstance(self.state, states.PickedPart)
         if event.type in keys.MOVES:
-            return self._dragged(context, event)
+            return self._on_drag(context, event)
         over = picking.find_view_under_mouse(context, event) is not None
         plain = not (event.alt or event.oskey or event.ctrl and not (self.deselect or event.type == "LEFTMOUSE"))
-        at_click = holding and self._at_click(context, event)
+        at_click = holding and self._is_at_click(context, event)
         if event.type == "TRACKPADPAN" and at_click and plain and not event.shift:
-            notches = self.scroll.notches(event.mouse_y - event.mouse_prev_y)
-            return self._show(context, self.state.turned(notches))
+            notches = self.scroll.add_pixels(event.mouse_y - event.mouse_prev_y)
+            return self._show(context, self.state.turn(notches))
         wheeled = event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE"}
         if event.type in keys.NAVIGATE.events or (wheeled and not (at_click if holding else over)) or (
                 not plain and (event.type in keys.WHEEL_STEPS or event.type in keys.BUTTONS)):
@@ -273,26 +273,26 @@ class PartPicker(InView):
 
     def _key_while_waiting(self, context, event):
         if event.type == "LEFTMOUSE":
-            obj, face = self._under(context, event)
+            obj, face = self._find_face(context, event)
             if obj is None:
-                return self._wait(context, iface_("There is no face there"))
+                return self._wait_for_click(context, iface_("There is no face there"))
             self.extend, self.deselect = self.extend or bool(event.shift), self.deselect or bool(event.ctrl)
-            return self._pick(context, event, obj, face)
+            return self._pick_face(context, event, obj, face)
         return {"RUNNING_MODAL"}
 
     def _key_while_holding(self, context, event, over):
-        step = self.stepper.sign(event) if self.stepper and event.type == "LEFTMOUSE" else 0
+        step = self.step_buttons.step_at(event) if self.step_buttons and event.type == "LEFTMOUSE" else 0
         if step:
-            return self._show(context, self.state.turned(step))
+            return self._show(context, self.state.turn(step))
         if event.type in keys.WHEEL_STEPS:
-            return self._show(context, self.state.turned(keys.WHEEL_STEPS[event.type]))
+            return self._show(context, self.state.turn(keys.WHEEL_STEPS[event.type]))
         if event.type in keys.DIGITS and not self.tool:
             return self._show(context, self.state.with_digit(keys.DIGITS[event.type]))
         if event.type in keys.ERASE.events and not self.tool:
             return self._show(context, self.state.without_digit())
         if event.type in keys.SNAP_BORDER.events and event.shift and event.ctrl:
             self.snap = not self.snap
-            self._tool_snaps(context)
+            self._set_tool_snap(context)
             return self._show(context, self.state)
         if event.type in keys.CONFIRM.events or (event.type == "LEFTMOUSE" and over and not self.tool):
             return self.on_confirm(context)
@@ -302,53 +302,53 @@ class PartPicker(InView):
         # in the keymap of the tool.
         return self.on_confirm(context) | {"PASS_THROUGH"}
 
-    def _dragged(self, context, event):
+    def _on_drag(self, context, event):
         """Up or down with the button, or a pen, still down."""
         if self.drag and isinstance(self.state, states.PickedPart):
             begin, index = self.drag
             index += int((event.mouse_y - begin) / keys.DRAG_STEP)
             if index != self.state.index:
-                return self._show(context, self.state.at(index))
-        if self.tool and self.target and self.wheeling != self._at_click(context, event):
-            self.wheeling = not self.wheeling
-            return self._say(context, self.state)
+                return self._show(context, self.state.at_stop(index))
+        if self.tool and self.target and self.is_wheel_active != self._is_at_click(context, event):
+            self.is_wheel_active = not self.is_wheel_active
+            return self._show_state(context, self.state)
         return {"RUNNING_MODAL"}
 
     def _show(self, context, state):
         """Goes to a state with a picked part and selects it."""
-        obj = self._object(context)
+        obj = self._find_object(context)
         self.state = state
-        if (state.node, self.snap) != self.shown:
-            self.shown = state.node, self.snap
+        if (state.node, self.snap) != self.shown_part:
+            self.shown_part = state.node, self.snap
             self.faces = borders.get_part_faces(obj, self.hierarchy, state.node, self.snap)
-            parts = None if bpy.app.background else get_view_cache(obj).parts(obj)  # reads the mesh: before it changes
+            parts = None if bpy.app.background else get_view_cache(obj).get_part_triangles(obj)  # reads the mesh: before it changes
             self.target.select(obj, self.faces, state.face, self.extend, self.deselect)
             if parts:
                 self._draw(obj, parts)
-        return self._say(context, state)
+        return self._show_state(context, state)
 
     def _draw(self, obj, parts):
         """What is held, as it is seen in this frame; in another one it is drawn no more."""
-        seen = self.seen = changes.display_revision(obj.data)
-        overlay.pick_overlay.show(self._guard_drawing, lambda obj: changes.display_revision(obj.data) == seen, obj, parts, self.state.node,
+        revision = self.display_revision = changes.display_revision(obj.data)
+        overlay.pick_overlay.show(self._guard_drawing, lambda obj: changes.display_revision(obj.data) == revision, obj, parts, self.state.node,
                                   self.state.next, self.faces if self.snap else None)
 
-    def _drawn_anew(self, obj):
+    def _redraw_in_new_frame(self, obj):
         """In another frame, once playback has ended."""
-        if overlay.pick_overlay.on and self.seen != changes.display_revision(obj.data) and is_at_rest():
-            self._draw(obj, get_view_cache(obj).parts(obj))
+        if overlay.pick_overlay.is_shown and self.display_revision != changes.display_revision(obj.data) and is_at_rest():
+            self._draw(obj, get_view_cache(obj).get_part_triangles(obj))
 
-    def _say(self, context, state):
+    def _show_state(self, context, state):
         share = self.hierarchy.area[state.node] / self.hierarchy.area[-1]
         number = state.typed + "_" if state.typed else state.index + 1
         told = iface_("Part {number} of {count}, {faces:,} faces, {share} of the area").format(
             number=number, count=len(state.stops), faces=len(self.faces), share=format_percent(share))
         self._show_status(context, ", ".join([told] + [iface_("border in creases")] * self.snap),
-                   (keys.PICKED if not self.tool else keys.TOOL_PICKED if self.wheeling else keys.TOOL_PICKED_AWAY) + self.commands
+                   (keys.PICKED if not self.tool else keys.TOOL_PICKED if self.is_wheel_active else keys.TOOL_PICKED_AWAY) + self.commands
                    + (keys.ENDS[1:] if self.tool else keys.ENDS))
         return {"RUNNING_MODAL"}
 
-    def _tool_snaps(self, context):
+    def _set_tool_snap(self, context):
         """The next clicks of the tool do as this one, and the tool's header says so."""
         tool = self.tool and context.workspace.tools.from_space_view3d_mode(context.mode)
         if tool and tool.idname == "partwheel.select":
@@ -357,7 +357,7 @@ class PartPicker(InView):
     # ---- Ends
 
     def on_confirm(self, context):
-        obj = self._object(context)
+        obj = self._find_object(context)
         # What the panel of the last operation, and Repeat Last, do again.
         self.face_index, self.level = self.state.face, self.state.level
         picks.remember(obj, self.state.face, self.state.node, self.snap)
@@ -367,7 +367,7 @@ class PartPicker(InView):
 
     def on_cancel(self, context):
         if isinstance(self.state, states.WaitingForParts):
-            self.building.abandon(context)
+            self.building.cancel(context)
         elif self.target and self.can_continue(context):
             self.target.restore()
 
@@ -375,5 +375,5 @@ class PartPicker(InView):
         if isinstance(self.state, states.WaitingForParts):
             return True
         if not self.target:
-            return bool(self._objects(context))
-        return self._object(context) is not None and self.target.fits()
+            return bool(self._find_objects(context))
+        return self._find_object(context) is not None and self.target.is_valid()

@@ -16,6 +16,6 @@ class PreviewTarget:
     def restore(self):
         """Nothing was changed."""
 
-    def fits(self):
+    def is_valid(self):
         obj = mesh_identity.find_object(self.name)
         return obj is not None and obj.mode == self.mode and len(obj.data.polygons) == self.faces

@@ -23,21 +23,21 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
                           "Parts are selected in Edit Mode of a mesh.")
 
     def _apply(self, context, obj, faces, picked):
-        self._aim(context, obj).select(obj, faces, picked.face, self.extend, self.deselect)
+        self.create_target(context, obj).select(obj, faces, picked.face, self.extend, self.deselect)
         return {"FINISHED"}
 
-    def _objects(self, context):
+    def _find_objects(self, context):
         """In Edit Mode; of objects that share a mesh, the one that is being edited."""
         if context.mode != "EDIT_MESH":
             return []
         return sorted(context.objects_in_mode_unique_data, key=lambda obj: obj != context.edit_object)
 
-    def _aim(self, context, obj):
-        return Selections(self._objects(context), obj)  # whose hierarchy was just asked for, or built
+    def create_target(self, context, obj):
+        return Selections(self._find_objects(context), obj)  # whose hierarchy was just asked for, or built
 
-    def _missed(self, context):
+    def on_miss(self, context):
         """As Blender's own select tools: a click beside everything selects nothing."""
-        selections = Selections(self._objects(context))
+        selections = Selections(self._find_objects(context))
         if self.extend or self.deselect or not selections.any():
             return {"CANCELLED"}
         selections.select(context.edit_object, [])
@@ -45,7 +45,7 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
 
     def _commit(self, context):
         """The object of the part becomes the active one, as with Blender's own selecting."""
-        context.view_layer.objects.active = self._object(context)
+        context.view_layer.objects.active = self._find_object(context)
         return {"FINISHED"}
 
 

@@ -50,28 +50,28 @@ class PickedPart:
         """The node that one more notch up takes; the same at the end of the path."""
         return self.stops[min(self.index + 1, len(self.stops) - 1)]
 
-    def at(self, index, typed=""):
+    def at_stop(self, index, typed=""):
         """The state at another stop, held at both ends of the path."""
         return replace(self, index=min(max(index, 0), len(self.stops) - 1), typed=typed)
 
-    def turned(self, notches):
+    def turn(self, notches):
         """The state after this many notches up (negative: down)."""
-        return self.at(self.index + notches)
+        return self.at_stop(self.index + notches)
 
     def with_digit(self, digit):
         """The state after one more digit: part 1 is the smallest. A digit too many begins a new number."""
         typed = self.typed + digit
         if len(typed) > len(str(len(self.stops))):
             typed = digit
-        return self.at(int(typed) - 1, typed)
+        return self.at_stop(int(typed) - 1, typed)
 
     def without_digit(self):
         """The state after the last digit was taken back; the part stays when none is left."""
         typed = self.typed[:-1]
-        return self.at(int(typed) - 1, typed) if typed else replace(self, typed="")
+        return self.at_stop(int(typed) - 1, typed) if typed else replace(self, typed="")
 
 
 def pick_face(hierarchy, face, level=0):
     """The state after a click on a source face and then level notches. Raises PartwheelError for no such face."""
     stops, start = hierarchy.wheel(face)
-    return PickedPart(face, tuple(stops.tolist()), start, start).turned(level)
+    return PickedPart(face, tuple(stops.tolist()), start, start).turn(level)

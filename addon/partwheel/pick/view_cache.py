@@ -23,45 +23,45 @@ class ViewCache:
     def __init__(self, obj, stamp):
         self.stamp = stamp
         arrays.update_mesh(obj)
-        self._seen = visible_surface.compute_visible_surface(obj)
-        self._tree = self._hierarchy = self._parts = self._known = None
+        self._surface = visible_surface.compute_visible_surface(obj)
+        self._ray_caster = self._hierarchy = self._part_triangles = self._known = None
         self._asked = False
 
-    def tree(self, obj):
+    def get_ray_caster(self, obj):
         """A picking.FaceRayCaster: made when it is asked for, which nobody does who has a face."""
-        self._tree = self._tree or picking.FaceRayCaster(obj, self._seen)
-        return self._tree
+        self._ray_caster = self._ray_caster or picking.FaceRayCaster(obj, self._surface)
+        return self._ray_caster
 
-    def hierarchy(self, obj):
+    def get_hierarchy(self, obj):
         """registry.get_hierarchy(obj), asked again only when there is a new one."""
         if not self._asked or registry.find_hierarchy(obj.data) is not self._known:
-            self._hierarchy, self._asked, self._parts = registry.get_hierarchy(obj), True, None
+            self._hierarchy, self._asked, self._part_triangles = registry.get_hierarchy(obj), True, None
             self._known = registry.find_hierarchy(obj.data)
         return self._hierarchy
 
-    def parts(self, obj):
+    def get_part_triangles(self, obj):
         """An overlay.PartTriangles, or None without a hierarchy."""
-        hierarchy = self.hierarchy(obj)
-        if hierarchy and not self._parts:
-            self._parts = overlay.PartTriangles(self._seen, hierarchy)
-        return self._parts
+        hierarchy = self.get_hierarchy(obj)
+        if hierarchy and not self._part_triangles:
+            self._part_triangles = overlay.PartTriangles(self._surface, hierarchy)
+        return self._part_triangles
 
     @property
-    def whole(self):
+    def is_complete(self):
         """Whether advance() has nothing left to do."""
-        drawn = not self._hierarchy or self._parts is not None and self._parts.whole
-        return self._tree is not None and self._asked and drawn
+        drawn = not self._hierarchy or self._part_triangles is not None and self._part_triangles.is_complete
+        return self._ray_caster is not None and self._asked and drawn
 
-    def advance(self, obj):
+    def prepare_next(self, obj):
         """Makes the next slice of what hovering needs."""
-        if not self._tree:
-            self.tree(obj)
+        if not self._ray_caster:
+            self.get_ray_caster(obj)
         elif not self._asked:
-            self.hierarchy(obj)
-        elif not self._parts:
-            self.parts(obj)
+            self.get_hierarchy(obj)
+        elif not self._part_triangles:
+            self.get_part_triangles(obj)
         else:
-            self._parts.advance()
+            self._part_triangles.prepare_next()
 
 
 def prepare_next_slice(objects):
@@ -85,7 +85,7 @@ def _prepare_slice(obj):
     """The next one: what is seen of the object to begin with, and then what is made of that."""
     kept = _caches.get(mesh_key(obj.data))
     if kept and kept.stamp == _compute_stamp(obj):
-        kept.advance(obj)
+        kept.prepare_next(obj)
     else:
         get_view_cache(obj)
 
@@ -103,7 +103,7 @@ def _is_written_back(obj):
 
 def _is_complete(obj):
     kept = _caches.get(mesh_key(obj.data))
-    return kept is not None and kept.stamp == _compute_stamp(obj) and kept.whole
+    return kept is not None and kept.stamp == _compute_stamp(obj) and kept.is_complete
 
 
 @contextlib.contextmanager
@@ -120,7 +120,7 @@ def get_view_cache(obj):
     """The Prepared of the object's mesh as it is now, as far as Blender has told of changes."""
     stamp, kept = _compute_stamp(obj), _caches.get(mesh_key(obj.data))
     if not kept or kept.stamp != stamp:
-        _caches.drop_gone()
+        _caches.remove_deleted()
         kept = _caches[mesh_key(obj.data)] = ViewCache(obj, stamp)
     return kept
 
@@ -164,7 +164,7 @@ def is_current(obj, parts):
     """Whether these parts are of the object's mesh as it is now. Makes nothing, so it may be asked while Blender draws.
     """
     kept = _caches.get(mesh_key(obj.data))
-    return kept is not None and kept._parts is parts and kept.stamp == _compute_stamp(obj)
+    return kept is not None and kept._part_triangles is parts and kept.stamp == _compute_stamp(obj)
 
 
 def _compute_stamp(obj):

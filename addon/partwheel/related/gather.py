@@ -56,7 +56,7 @@ class MESH_OT_partwheel_gather(_EditModeOperator, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         selections = _selections_before.pop()
         with arrays.use_snapshot():
-            touched = {obj: selections.touched(obj, self.mode == "SET") for obj in context.objects_in_mode_unique_data}
+            touched = {obj: selections.find_changed_faces(obj, self.mode == "SET") for obj in context.objects_in_mode_unique_data}
             selections.restore()
             parts = {obj: self._touched_parts(context, obj, faces) for obj, faces in touched.items()}
             if any(faces is None for faces in parts.values()):

@@ -108,7 +108,7 @@ class MESH_OT_partwheel_similar(_PartBasedSelection, InView, bpy.types.Operator)
         is_over_view = picking.find_view_under_mouse(context, event) is not None
         is_plain = not (event.shift or event.ctrl or event.alt or event.oskey)
         if event.type == "TRACKPADPAN" and is_over_view and is_plain:
-            return self._set_count(context, self.count + self.scroll.notches(event.mouse_y - event.mouse_prev_y))
+            return self._set_count(context, self.count + self.scroll.add_pixels(event.mouse_y - event.mouse_prev_y))
         if event.type in keys.NAVIGATE.events or event.type in keys.WHEEL_STEPS and not (is_over_view and is_plain):
             return {"PASS_THROUGH"}
         if event.value not in {"PRESS", "DOUBLE_CLICK"}:
@@ -129,7 +129,7 @@ class MESH_OT_partwheel_similar(_PartBasedSelection, InView, bpy.types.Operator)
 
     def can_continue(self, context: bpy.types.Context) -> bool:
         obj = context.edit_object
-        return obj is not None and obj.name_full == self.object_name and self.selections.fits()
+        return obj is not None and obj.name_full == self.object_name and self.selections.is_valid()
 
 
 class MESH_OT_partwheel_mirrored(_PartBasedSelection, bpy.types.Operator):

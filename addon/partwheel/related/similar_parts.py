@@ -44,7 +44,7 @@ def find_similar(obj: bpy.types.Object, hierarchy: Hierarchy, node: int,
                  for pair in likeness.similar_parts(hierarchy, measured[0], node, target)]
         return sorted(parts, key=lambda part: -part.likeness)
 
-    key = [(searched_obj.name_full, registry.find_entry(searched_obj.data).seen, searched_hierarchy)
+    key = [(searched_obj.name_full, registry.find_entry(searched_obj.data).fingerprint, searched_hierarchy)
            for searched_obj, searched_hierarchy in searched]
     return _cached("alike", (key, [matrix.tobytes() for matrix in matrices], node), search)
 
@@ -54,7 +54,7 @@ def find_mirror_images(obj: bpy.types.Object, hierarchy: Hierarchy, node: int) -
     none."""
     if node == len(hierarchy.parent) - 1:
         raise Refused("The part is the whole model, which has no other side. Pick a smaller one.")
-    key = registry.find_entry(obj.data).seen, hierarchy, node
+    key = registry.find_entry(obj.data).fingerprint, hierarchy, node
     mirror_images = _cached("images", key,
                             lambda: likeness.mirrored_parts(hierarchy, *arrays.read_surface(obj.data)[:3], node))
     if not mirror_images:

@@ -55,9 +55,9 @@ class PartsOperator(NeedsActiveMesh):
         """Warnings about what will be lost."""
         return []
 
-    def _lacking(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+    def _objects_to_build(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         self.check(context.active_object)
-        return super()._lacking(context)
+        return super()._objects_to_build(context)
 
     def check(self, obj: bpy.types.Object) -> None:
         """Raises Refused for what is wrong before the parts are found."""

@@ -363,7 +363,7 @@ def _concatenate(mesh: bpy.types.Mesh, parts: list[_PolygonGroup], n_whole: int,
         (part.loops.first, start + part.loops.at, part.loops.other) for part, start in zip(parts, starts)))))
     corners, totals, polygons = (np.concatenate(columns) for columns in list(zip(*parts))[1:])
     mesh_positions = arrays.read(mesh.vertices, "co", np.float32, 3)
-    kept_vertices = origins.first[:len(origins.first) - len(positions)]
+    kept_vertices = origins.source[:len(origins.source) - len(positions)]
     positions = np.concatenate([mesh_positions[kept_vertices], positions])
     return MeshPlan(positions, origins, loops, corners, np.cumsum(totals) - totals, polygons, n_whole, wires,
                     plan_vertices, alias)

@@ -26,10 +26,10 @@ class MESH_OT_partwheel_imported(FindsParts, bpy.types.Operator):
         return check_poll(cls, context.mode == "OBJECT" and find_without_parts(context.view_layer),
                           "This is for selected meshes without parts, in Object Mode.")
 
-    def _lacking(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+    def _objects_to_build(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         return find_without_parts(context.view_layer)
 
-    def _start(self, obj: bpy.types.Object) -> Any:
+    def _start_build(self, obj: bpy.types.Object) -> Any:
         return start_build(_WarningReporter(self), obj)
 
 

@@ -18,12 +18,12 @@ class BackgroundTask:
         except Exception as error:  # whatever it is, finish() raises it
             self._error = error
 
-    def running(self, seconds=0):
+    def is_running(self, seconds=0):
         """Whether it still does after at most so many seconds."""
         self._thread.join(seconds)
         return self._thread.is_alive()
 
-    def abandon(self):
+    def request_stop(self):
         """Asks it to end, and waits for nothing: its result is of no use any more."""
         self._stop.set()
 

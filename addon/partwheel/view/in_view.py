@@ -99,7 +99,7 @@ class InView:
     def _end(self, context):
         with self._exit_stack:
             shown, self._status = self._status, None
-            self._status_line.end(context)
+            self._status_line.remove(context)
             if shown and context.area:
                 context.area.header_text_set(None)
 
@@ -107,7 +107,7 @@ class InView:
         """A line in the view's header, and in the status bar the keys that count, see status.make_drawer()."""
         if (header, row) != self._status:  # each time both bars are drawn anew
             self._status = header, row
-            self._status_line.say(context, status.make_drawer(row))
+            self._status_line.show(context, status.make_drawer(row))
             if context.area:
                 context.area.header_text_set(f"Partwheel: {header}")
 

@@ -124,10 +124,10 @@ class NotchCounter:
     """Counts notches in a trackpad's scroll or a drag, both of which come as pixels."""
 
     def __init__(self, step):
-        self.step, self.rest = step, 0.0
+        self.step, self.remainder = step, 0.0
 
-    def notches(self, pixels):
-        self.rest += pixels
-        whole = int(self.rest / self.step)
-        self.rest -= whole * self.step
+    def add_pixels(self, pixels):
+        self.remainder += pixels
+        whole = int(self.remainder / self.step)
+        self.remainder -= whole * self.step
         return whole

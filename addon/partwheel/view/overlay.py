@@ -56,86 +56,86 @@ class PartTriangles:
         self._start = np.concatenate([[0], np.cumsum(counts)])
         self.triangles = triangles[by_face[np.arange(len(faces)) + np.repeat(begin - self._start[:-1], counts)]]
         self._batches = {}
-        self._beyond = layers.find_neighbor_triangles(self.triangles)
+        self._neighbor_steps = layers.find_neighbor_triangles(self.triangles)
 
     def slice(self, node):
         """(first, last) of a node's triangles."""
         return (int(self._start[self.hierarchy.first[node]]), int(self._start[self.hierarchy.last[node]]))
 
-    def shell(self, node, larger):
+    def difference_slices(self, node, larger):
         """What the larger node has more than the node, as slices of triangles."""
         (first, last), (begin, end) = self.slice(node), self.slice(larger)
         return [piece for piece in ((begin, first), (last, end)) if piece[0] < piece[1]]
 
-    def batch(self, piece):
+    def slice_batch(self, piece):
         """(shader, batch) of a slice of triangles."""
-        return layers.get_shader("flat"), self._kept(piece, lambda: layers.create_batch(self._buffer, self.triangles[slice(*piece)]))
+        return layers.get_shader("flat"), self._cached(piece, lambda: layers.create_batch(self._buffer, self.triangles[slice(*piece)]))
 
-    def of_faces(self, name, faces):
+    def face_batch(self, name, faces):
         """The same of the triangles of any faces, kept under a name."""
         def make():
-            return layers.create_batch(self._buffer, self.triangles[self._of(faces)])
-        return layers.get_shader("flat"), self._kept(name, make)
+            return layers.create_batch(self._buffer, self.triangles[self._triangles_of(faces)])
+        return layers.get_shader("flat"), self._cached(name, make)
 
-    def outline(self, node, faces=None):
+    def outline_batch(self, node, faces=None):
         """The same of a node's border, or that of these faces: lines."""
         def make():
-            edges = self.border(node, faces)
+            edges = self.border_edges(node, faces)
             return layers.create_line_batch(self.positions, edges) if len(edges) else None
-        return self._kept(("outline", node, faces is None), make)
+        return self._cached(("outline", node, faces is None), make)
 
-    def border(self, node, faces=None):
+    def border_edges(self, node, faces=None):
         """(n,2) the edges, by their vertices, where a node ends, or these faces."""
-        mine = np.arange(*self.slice(node)) if faces is None else self._of(faces)
-        return layers.find_border_edges(self.triangles, self.beyond, mine)
+        mine = np.arange(*self.slice(node)) if faces is None else self._triangles_of(faces)
+        return layers.find_border_edges(self.triangles, self.neighbors, mine)
 
     @cached_property
-    def beyond(self):
+    def neighbors(self):
         """The neighbours of all triangles: what takes longest of a first outline, so hovering makes it before."""
-        *_, found = self._beyond
+        *_, found = self._neighbor_steps
         return found
 
     @property
-    def whole(self):
+    def is_complete(self):
         """Whether that is there."""
-        return "beyond" in vars(self)
+        return "neighbors" in vars(self)
 
-    def advance(self):
+    def prepare_next(self):
         """Makes a slice of it."""
-        found = None if self.whole else next(self._beyond)
+        found = None if self.is_complete else next(self._neighbor_steps)
         if found is not None:
-            self.beyond = found
+            self.neighbors = found
 
-    def _of(self, faces):
+    def _triangles_of(self, faces):
         """(n,) the triangles of faces."""
         chosen = arrays.make_mask(len(self.hierarchy.order), faces)
         return np.flatnonzero(np.repeat(chosen[self.hierarchy.order], np.diff(self._start)))
 
-    def hull(self, node):
+    def hull_batch(self, node):
         """The same of a node's convex hull."""
         def make():
             vertices, triangles = self.hierarchy.hull(node)
             return layers.create_batch(layers.create_vertex_buffer(pos=vertices), np.ascontiguousarray(triangles))
-        return layers.get_shader("flat"), self._kept(node, make)
+        return layers.get_shader("flat"), self._cached(node, make)
 
-    def cut(self, node):
+    def cut_batch(self, node):
         """The same of all triangles, coloured by the parts of the dendrogram cut at the node's height."""
-        return self.painted(("cut", node), lambda: make_distinct_colors(self.hierarchy.face_labels(
+        return self.colored_batch(("cut", node), lambda: make_distinct_colors(self.hierarchy.face_labels(
             self.hierarchy.cut_height(self.hierarchy.height[node]))))
 
-    def painted(self, name, paint):
+    def colored_batch(self, name, paint):
         """The same of all triangles, kept under a name; paint(): (F,4) the colour of each face."""
         def make():
             corners = self.positions[self.triangles.ravel()]
             shades = np.repeat(paint()[self.hierarchy.order], 3 * np.diff(self._start), axis=0)
             return gpu.types.GPUBatch(type="TRIS", buf=layers.create_vertex_buffer(pos=corners, color=shades))
-        return layers.get_shader("colored"), self._kept(name, make)
+        return layers.get_shader("colored"), self._cached(name, make)
 
     @cached_property
     def _buffer(self):
         return layers.create_vertex_buffer(pos=self.positions)
 
-    def _kept(self, name, make):
+    def _cached(self, name, make):
         """Of what was drawn last, since the user goes back and forth."""
         if name not in self._batches:
             while len(self._batches) >= MAX_CACHED_BATCHES:
@@ -154,24 +154,24 @@ def draw_picked_part(context, obj, parts, node, larger, snapped):
     where its border is not the node's own, else None."""
     wanted, drawn, used = preferences(), [], get_theme_colors()
     if wanted.show_cut:
-        drawn.append(Layer(parts.cut(node), used.part))
+        drawn.append(Layer(parts.cut_batch(node), used.part))
     if wanted.show_next:
         drawn += _make_next_part_layers(parts, node, larger, snapped, used.next)
     if wanted.show_part:
         drawn += _make_tint_layers(parts, node, used.part, snapped) + _make_outline_layers(parts, node, used.part, snapped)
     if wanted.show_hull:
-        drawn.append(Layer(parts.hull(node), GLASS, glass=True))
+        drawn.append(Layer(parts.hull_batch(node), GLASS, glass=True))
     layers.draw_layers(context, obj, drawn)
 
 
 def draw_painted(context, obj, parts, name, paint):
-    """All faces, each in its colour: see Parts.painted()."""
-    layers.draw_layers(context, obj, [Layer(parts.painted(name, paint), GLASS)])
+    """All faces, each in its colour: see PartTriangles.colored_batch()."""
+    layers.draw_layers(context, obj, [Layer(parts.colored_batch(name, paint), GLASS)])
 
 
 def draw_faces(context, obj, parts, name, faces):
     """Any faces, kept under a name."""
-    layers.draw_layers(context, obj, [Layer(parts.of_faces(name, faces), get_theme_colors().part)])
+    layers.draw_layers(context, obj, [Layer(parts.face_batch(name, faces), get_theme_colors().part)])
 
 
 def draw_hover(context, obj, parts, node, snapped):
@@ -182,13 +182,13 @@ def draw_hover(context, obj, parts, node, snapped):
 
 def _make_tint_layers(parts, node, color, snapped):
     if snapped is not None:
-        return [Layer(parts.of_faces(("snapped", node), snapped), color)]
+        return [Layer(parts.face_batch(("snapped", node), snapped), color)]
     piece = parts.slice(node)
-    return [Layer(parts.batch(piece), color)] if piece[0] < piece[1] else []
+    return [Layer(parts.slice_batch(piece), color)] if piece[0] < piece[1] else []
 
 
 def _make_outline_layers(parts, node, color, snapped):
-    lines, width = parts.outline(node, snapped), get_line_width()
+    lines, width = parts.outline_batch(node, snapped), get_line_width()
     if not lines:
         return []
     pixel = bpy.context.preferences.system.pixel_size
@@ -197,11 +197,11 @@ def _make_outline_layers(parts, node, color, snapped):
 
 def _make_next_part_layers(parts, node, larger, snapped, color):
     if snapped is None:
-        return [Layer(parts.batch(piece), color) for piece in parts.shell(node, larger)]
+        return [Layer(parts.slice_batch(piece), color) for piece in parts.difference_slices(node, larger)]
     if node == larger:
         return []
     more = np.setdiff1d(parts.hierarchy.faces(larger), snapped)
-    return [Layer(parts.of_faces(("beyond", node, larger), more), color)]
+    return [Layer(parts.face_batch(("beyond", node, larger), more), color)]
 
 
 def is_visible(context, obj):
@@ -214,16 +214,16 @@ class PickOverlay:
     """Draws the held part in every 3D view for as long as it is on."""
 
     def __init__(self):
-        self._handler = self._what = self._fits = None
+        self._handler = self._target = self._fits = None
 
     @property
-    def on(self):
+    def is_shown(self):
         return self._handler is not None
 
     def show(self, guard, fits, obj, parts, node, larger, snapped):
         """guard: InView._guard_drawing of the operator that shows it. fits(object): whether its parts are still where it
         is seen, in another frame for instance."""
-        self._what, self._fits = (obj.name_full, parts, node, larger, snapped), fits
+        self._target, self._fits = (obj.name_full, parts, node, larger, snapped), fits
         if not self._handler:
             self._handler = bpy.types.SpaceView3D.draw_handler_add(guard(self._draw), (), "WINDOW", "POST_VIEW")
         redraw_views()
@@ -232,10 +232,10 @@ class PickOverlay:
         if self._handler:
             bpy.types.SpaceView3D.draw_handler_remove(self._handler, "WINDOW")
             redraw_views()
-        self._handler = self._what = self._fits = None
+        self._handler = self._target = self._fits = None
 
     def _draw(self):
-        context, (name, *what) = bpy.context, self._what
+        context, (name, *what) = bpy.context, self._target
         obj = mesh_identity.find_object(name)
         if obj and is_visible(context, obj) and self._fits(obj):
             draw_picked_part(context, obj, *what)

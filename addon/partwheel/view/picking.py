@@ -26,7 +26,7 @@ class FaceRayCaster:
             shown = compute_visible_surface(obj)
         self._faces, self._target = shown.faces, RayTarget(shown.positions, shown.triangles)
 
-    def under(self, matrix, region, view, point):
+    def cast(self, matrix, region, view, point):
         """(face index, distance along the ray in world units), or None; NO_FACE: modifiers have put there what is seen.
         matrix: the object's to the world. view: a RegionView3D. point: (x, y) in pixels of the region."""
         to_local = matrix.inverted_safe()
@@ -85,7 +85,7 @@ def _is_shown(space, depsgraph, obj, matrix):
 def find_nearest_face(objects, tree_of, region, view, point):
     """(object, face index) of the first face under a point of the region, or (None, None); the index may be NO_FACE.
     tree_of(object): a FaceTree."""
-    hits = [(tree_of(each).under(each.matrix_world, region, view, point), each) for each in objects]
+    hits = [(tree_of(each).cast(each.matrix_world, region, view, point), each) for each in objects]
     hits = [(*found, each) for found, each in hits if found]
     if not hits:
         return None, None

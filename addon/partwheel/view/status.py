@@ -15,22 +15,22 @@ class StatusLine:
     """What one operator says in the status bar. Of several the one is heard that began last: the keys for the part that
     is held, say, and not how far the build for another mesh is."""
 
-    lines = []
-    _said = None
+    stack = []
+    _content = None
 
-    def say(self, context, said):
+    def show(self, context, content):
         """said: a text or a drawer()."""
-        self._said = said
-        if self not in StatusLine.lines:
-            StatusLine.lines.append(self)
-        if self is StatusLine.lines[-1]:
-            context.workspace.status_text_set(said)
+        self._content = content
+        if self not in StatusLine.stack:
+            StatusLine.stack.append(self)
+        if self is StatusLine.stack[-1]:
+            context.workspace.status_text_set(content)
 
-    def end(self, context):
-        if self in StatusLine.lines:
-            StatusLine.lines.remove(self)
+    def remove(self, context):
+        if self in StatusLine.stack:
+            StatusLine.stack.remove(self)
             if context.workspace:
-                context.workspace.status_text_set(StatusLine.lines[-1]._said if StatusLine.lines else None)
+                context.workspace.status_text_set(StatusLine.stack[-1]._content if StatusLine.stack else None)
 
 
 def make_drawer(row):

@@ -26,7 +26,7 @@ class StepButtons:
         self._radius = RADIUS * scale
         self._middles = {sign: (x + OFFSET * scale, y + sign * 1.2 * self._radius) for sign in (1, -1)}
 
-    def sign(self, event):
+    def step_at(self, event):
         """1 over larger, -1 over smaller, else 0."""
         return next((sign for sign, (x, y) in self._middles.items()
                      if hypot(event.mouse_x - x, event.mouse_y - y) <= self._radius), 0)

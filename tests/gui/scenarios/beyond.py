@@ -91,7 +91,7 @@ def play(stage):
 
 def shown_faces(stage):
     """Those of the part that the overlay draws."""
-    _, parts, node, *_ = stage.part("view.overlay").pick_overlay._what
+    _, parts, node, *_ = stage.part("view.overlay").pick_overlay._target
     return set(parts.hierarchy.faces(node).tolist())
 
 

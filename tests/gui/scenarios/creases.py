@@ -34,8 +34,8 @@ def play(stage):
     others, begin = stage.wheels.stops(face)
     stage.mouse.move(x - 3, y)
     stage.mouse.move(x, y)
-    yield from stage.until("hover shows the snapped part", lambda: stage.part("pick.hover").hover.what is not None and
-                           frozenset(stage.part("pick.hover").hover.what[3].tolist()) == snapped(others[begin]))
+    yield from stage.until("hover shows the snapped part", lambda: stage.part("pick.hover").hover.target is not None and
+                           frozenset(stage.part("pick.hover").hover.target[3].tolist()) == snapped(others[begin]))
     stage.mouse.click(shift=True)
     both = snapped(stops[start + 2]) | snapped(others[begin])
     yield from stage.selected(both, "the next click is snapped too")

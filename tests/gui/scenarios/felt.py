@@ -65,8 +65,8 @@ class Watched:
 
 
 def watch_batches(parts):
-    """Has all that an overlay.Parts draws timed by the Clock that this returns."""
-    for name in ("batch", "hull", "cut", "outline"):
+    """Has all that an overlay.PartTriangles draws timed by the Clock that this returns."""
+    for name in ("slice_batch", "hull_batch", "cut_batch", "outline_batch"):
         def watched(*arguments, inner=getattr(parts, name)):
             drawn = inner(*arguments)
             return drawn and (drawn[0], Watched(drawn[1]))

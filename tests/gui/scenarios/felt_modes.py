@@ -96,7 +96,7 @@ def in_mode(stage, clocks, mode):
 
 
 def ready(stage):
-    what = stage.part("pick.hover").hover.what
+    what = stage.part("pick.hover").hover.target
     return what is not None and stage.part("pick.view_cache").is_current(stage.object, what[1])
 
 

@@ -19,7 +19,7 @@ def play(stage):
     stage.shortcut("mesh.partwheel_copy")
     yield from stage.until("a build has begun", stage.builds.has_builds)
     yield from stage.screenshot("0-building")
-    said = stage.part("view.status").StatusLine.lines[-1]._said
+    said = stage.part("view.status").StatusLine.stack[-1]._content
     stage.check("finds the parts of homer" in said and "Esc" in said, f"the status bar says so ({said})")
     stage.mouse.key("ESC")
     yield from stage.until("Esc ends it", lambda: not stage.builds.has_builds())

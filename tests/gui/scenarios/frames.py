@@ -37,8 +37,8 @@ def play(stage):
         yield from stage.until(f"it is held ({when})", lambda: stage.held() == stops[start])
         yield from stage.screenshot(f"held-{when}")
         stage.mouse.key("RET")
-        yield from stage.until(f"it is highlighted ({when})", lambda: highlight.what is not None
-                               and set(highlight.what[2].tolist()) == set(stops[start]))
+        yield from stage.until(f"it is highlighted ({when})", lambda: highlight.target is not None
+                               and set(highlight.target[2].tolist()) == set(stops[start]))
 
     yield from picked("first")
     for frame in (2, 3):
@@ -66,7 +66,7 @@ def play(stage):
     stage.mouse.move(x + 1, y)
     seen_now()
     yield from stage.until(f"it is drawn where it is seen in frame {frame}", lambda: numpy.allclose(
-        stage.part("view.overlay").pick_overlay._what[1].positions, stage.wheels.vertices, atol=1e-5))
+        stage.part("view.overlay").pick_overlay._target[1].positions, stage.wheels.vertices, atol=1e-5))
     yield from stage.screenshot("held-elsewhere")
     stage.mouse.key("ESC")
     stage.wheels.vertices = own

@@ -32,7 +32,7 @@ def play(stage):
 
     def lit(faces, when):
         yield from stage.until(f"{when}, the part is highlighted",
-                               lambda: highlight.shows(model()) and set(highlight.what[2].tolist()) == set(faces))
+                               lambda: highlight.is_showing(model()) and set(highlight.target[2].tolist()) == set(faces))
 
     yield from click(x, y)
     yield from lit(stops[start], "after a click")

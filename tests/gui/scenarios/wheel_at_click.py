@@ -75,7 +75,7 @@ def after_an_edit(stage):
     stage.select(())
     x, y, face = stage.spot(0.95, 0.6, above=4)
     stops, start = stage.wheels.stops(face)
-    slices = counted(stage.part("pick.pick").PartPicker, "_prepared_on")
+    slices = counted(stage.part("pick.pick").PartPicker, "_on_preparing")
     stage.mouse.move(x, y)
     yield from stage.until("the mouse rests over a part", lambda: stage.hovered() is not None)
     for notches, then in ((0, ()), (2, ()), (1, ("UP_ARROW",)), (0, ("ESC",))):
