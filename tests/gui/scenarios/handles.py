@@ -27,14 +27,14 @@ def play(stage):
         changed = yield from drawn(stage, plain, "1-point", lambda: gizmo.draw_points(Matrix(), [handle]))
         rows, columns = numpy.nonzero(changed)
         for extent in (numpy.ptp(rows), numpy.ptp(columns)):
-            stage.check(abs(extent + 1 - gizmo.SIZE) <= 1.5, f"a point of {gizmo.SIZE} is {extent + 1} pixels wide")
+            stage.check(abs(extent + 1 - gizmo.POINT_SIZE) <= 1.5, f"a point of {gizmo.POINT_SIZE} is {extent + 1} pixels wide")
         centre = Vector((columns.mean() - region.x, rows.mean() - region.y))
         stage.check((centre - Vector(middle)).length < 2, f"it is where it is meant: {centre}, not {middle}")
         wanted = "POINT_UNIFORM_COLOR" if bpy.app.version >= (4, 5) else "UNIFORM_COLOR"
         stage.check(set(used) == {wanted}, f"points are drawn by {used}")
 
         used.clear()
-        changed = yield from drawn(stage, plain, "2-gizmo", lambda: gizmo.draw(place, region, view))
+        changed = yield from drawn(stage, plain, "2-gizmo", lambda: gizmo.draw_gizmo(place, region, view))
         length = 0
         for _, _, line in gizmo._shapes(place, region, view):
             flat = [location_3d_to_region_2d(region, view, point) for point in line]
