@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Partwheel for Blender: select a meaningful part of a mesh with one click and a turn of the mouse wheel."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import ModuleType
 import importlib
 import sys
 from pathlib import Path
@@ -41,7 +45,7 @@ MODULES = (
 )
 
 
-def register():
+def register() -> None:
     for module in _modules():
         for each in getattr(module, "CLASSES", ()):
             bpy.utils.register_class(each)
@@ -51,7 +55,7 @@ def register():
             module.register()
 
 
-def unregister():
+def unregister() -> None:
     for module in reversed(_modules()):
         for handlers, function in _handlers(module):
             handlers.remove(function)
@@ -61,11 +65,11 @@ def unregister():
             bpy.utils.unregister_class(each)
 
 
-def _handlers(module):
+def _handlers(module: ModuleType) -> list[tuple[list, Callable]]:
     """[(a list of Blender's, the function for it)]; of newer lists none where this Blender hasn't got them."""
     return [(getattr(bpy.app.handlers, name), function) for name, function in getattr(module, "HANDLERS", {}).items()
             if hasattr(bpy.app.handlers, name)]
 
 
-def _modules():
+def _modules() -> list[ModuleType]:
     return [importlib.import_module(f".{name}", __name__) for name in MODULES]

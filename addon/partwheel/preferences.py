@@ -57,7 +57,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
         name="Buttons", description="Show two buttons beside the click, larger and smaller. With a pen they are always "
         "there", default=False)
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         library_error.draw_library_error(context, self.layout)
         column = self.layout.column()
         column.use_property_split = True
@@ -72,7 +72,7 @@ class PartwheelPreferences(bpy.types.AddonPreferences):
 PIE = "VIEW3D_MT_PIE_partwheel"
 
 
-def find_pie_key():
+def find_pie_key() -> bpy.types.KeyMapItem | None:
     """The user's KeyMapItem for the pie menu, which has no key until the user gives it one; None without a window."""
     configuration = bpy.context.window_manager.keyconfigs.user
     keymap = configuration and configuration.keymaps.get("Mesh")
@@ -83,14 +83,14 @@ def find_pie_key():
 OVERLAY_SETTINGS = ("show_part", "show_next", "show_hull", "show_cut", "show_steps")
 
 
-def draw_overlays(layout):
+def draw_overlays(layout: bpy.types.UILayout) -> None:
     """The settings of what is drawn over the model."""
     column = layout.column(heading="Overlay")
     for name in OVERLAY_SETTINGS:
         column.prop(preferences(), name)
 
 
-def preferences():
+def preferences() -> PartwheelPreferences | SimpleNamespace:
     """The user's preferences, or the defaults when the add-on runs without being enabled."""
     addon = bpy.context.preferences.addons.get(__package__)
     return addon.preferences if addon else Defaults

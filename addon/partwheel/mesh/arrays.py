@@ -1,9 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Blender mesh as numpy arrays: as it is, without modifiers, in its object's own space. Only reads, but for normals.
-Where the cage shows it under modifiers is asked for by name."""
+"""A Blender mesh as numpy arrays: without modifiers, in the space of its object. Reads only, except for write functions.
+
+read_cage_positions() alone takes modifiers into account. V, E, L and F count vertices, edges, loops (corners) and
+polygons of the mesh, T its triangles.
+"""
+
+from __future__ import annotations
 
 import contextlib
 import hashlib
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import bmesh
@@ -14,16 +20,18 @@ from partwheel.polygons import triangulate
 from partwheel.weld import weld_coincident_vertices
 from .mesh_identity import mesh_key
 
-# Modifiers whose mesh begins with the vertices of the one that they are given, moved or not.
-VERTEX_PRESERVING_MODIFIERS = {"ARRAY", "MIRROR", "MULTIRES", "SOLIDIFY", "SUBSURF",
-                               "ARMATURE", "CAST", "CORRECTIVE_SMOOTH", "CURVE", "DISPLACE", "HOOK", "LAPLACIANDEFORM", "LAPLACIANSMOOTH",
-                               "LATTICE", "MESH_DEFORM", "SHRINKWRAP", "SIMPLE_DEFORM", "SMOOTH", "SURFACE_DEFORM", "WARP", "WAVE"}
-# A triangle's doubled area by the square of its longest side; below this it is taken for one without area.
+# Modifiers whose result begins with the vertices of their input, moved or not.
+VERTEX_PRESERVING_MODIFIERS = {
+    "ARRAY", "MIRROR", "MULTIRES", "SOLIDIFY", "SUBSURF", "ARMATURE", "CAST", "CORRECTIVE_SMOOTH", "CURVE", "DISPLACE",
+    "HOOK", "LAPLACIANDEFORM", "LAPLACIANSMOOTH", "LATTICE", "MESH_DEFORM", "SHRINKWRAP", "SIMPLE_DEFORM", "SMOOTH",
+    "SURFACE_DEFORM", "WARP", "WAVE"}
+# A triangle is degenerate if twice its area, divided by the square of its longest side, is at most this.
 DEGENERATE_RATIO = 1e-9
 
 
 class MeshSurface(NamedTuple):
-    """What Hierarchy.build() takes: vertices (V,3), triangles (T,3), faces (T,) the polygon of each triangle."""
+    """The arguments of Hierarchy.build(): vertices (V, 3) float64, triangles (T, 3) and faces (T,) int32, the polygon of
+    each triangle, and the number of polygons."""
 
     vertices: np.ndarray
     triangles: np.ndarray
@@ -31,56 +39,101 @@ class MeshSurface(NamedTuple):
     face_count: int
 
 
-is_writing_back = False  # while Blender tells of a change of geometry that is none: edits were written back into a mesh
-# Within use_snapshot(): the meshes that are up to date, by key and mode: the Fingerprint of each, or None before that is
-# asked for.
-_reading = None
+class Fingerprint(NamedTuple):
+    """Digests of 16 bytes of what a hierarchy depends on.
+
+    topology: which polygons use which vertices, independent of where the vertices are. positions: where they are.
+    """
+
+    topology: bytes
+    positions: bytes
+
+
+class MeshSnapshot:
+    """Meshes that are known to be up to date during one step of the add-on, with their fingerprints.
+
+    Writing the edits of Edit Mode back into a mesh takes half a second for a million faces. Within a step, in which no
+    other code runs, it is done at most once per mesh, and each mesh is hashed at most once.
+    """
+
+    def __init__(self) -> None:
+        self._fingerprints: dict[tuple, Fingerprint | None] = {}  # by mesh key and mode; None: not computed yet
+
+    @staticmethod
+    def _key(obj: bpy.types.Object) -> tuple:
+        return mesh_key(obj.data), obj.mode
+
+    def is_up_to_date(self, obj: bpy.types.Object) -> bool:
+        return self._key(obj) in self._fingerprints
+
+    def mark_up_to_date(self, obj: bpy.types.Object) -> None:
+        self._fingerprints[self._key(obj)] = None
+
+    def fingerprint(self, obj: bpy.types.Object) -> Fingerprint:
+        key = self._key(obj)
+        self._fingerprints[key] = self._fingerprints.get(key) or compute_fingerprint(obj.data)
+        return self._fingerprints[key]
+
+    def clear(self) -> None:
+        self._fingerprints.clear()
+
+
+# True while Blender reports a change of geometry that is none, because edits are written back into a mesh.
+is_writing_back = False
+_snapshot: MeshSnapshot | None = None  # within use_snapshot()
 
 
 @contextlib.contextmanager
-def use_snapshot():
-    """Within it Blender writes its edits back into each mesh only once, half a second for a million faces, and the mesh
-    is hashed only once, for all who ask. For a step of the add-on's, in which nobody else runs: what changes a mesh
-    meanwhile says changed(), as parts.changes does for all that Blender tells of."""
-    global _reading
-    before, _reading = _reading, {} if _reading is None else _reading
+def use_snapshot() -> Iterator[None]:
+    """Use one MeshSnapshot for all calls within; nested contexts share the outermost one.
+
+    Code within that changes a mesh calls invalidate_snapshot(), as parts.changes does for all changes that Blender
+    reports.
+    """
+    global _snapshot
+    outer, _snapshot = _snapshot, _snapshot or MeshSnapshot()
     try:
         yield
     finally:
-        _reading = before
+        _snapshot = outer
 
 
-def invalidate_snapshot():
-    """What was read is not to be used any more, for a mesh, or what is selected in it, is another."""
-    if _reading:
-        _reading.clear()
+def invalidate_snapshot() -> None:
+    """Forget what is known of meshes, because one of them, or its selection, has changed."""
+    if _snapshot:
+        _snapshot.clear()
 
 
-def mark_up_to_date(obj):
-    """Within use_snapshot(): update_mesh(obj) was asked for in an earlier step, and nothing of its geometry has changed since."""
-    _reading[mesh_key(obj.data), obj.mode] = None
+def mark_up_to_date(obj: bpy.types.Object) -> None:
+    """Within use_snapshot(): declare that an earlier step called update_mesh(obj) and its geometry is unchanged since."""
+    _snapshot.mark_up_to_date(obj)
 
 
-def update_mesh(obj):
-    """The object's mesh; in Edit Mode after Blender wrote the edits back into it. Same order of elements in both. Not to
-    be called while Blender draws."""
-    if obj.mode == "EDIT" and not (_reading and (mesh_key(obj.data), obj.mode) in _reading):
+def update_mesh(obj: bpy.types.Object) -> bpy.types.Mesh:
+    """Return the object's mesh; in Edit Mode, write the edits back into it first. The order of elements stays the same.
+
+    Must not be called while Blender draws.
+    """
+    if obj.mode == "EDIT" and not (_snapshot and _snapshot.is_up_to_date(obj)):
         _write_back(obj.update_from_editmode)
-        if _reading is not None:
-            _reading[mesh_key(obj.data), obj.mode] = None
+        if _snapshot is not None:
+            _snapshot.mark_up_to_date(obj)
     return obj.data
 
 
-def flush_sculpt_strokes(obj):
-    """In Sculpt Mode the strokes on a multires modifier's levels are in the mesh then. Not to be called while Blender draws."""
+def flush_sculpt_strokes(obj: bpy.types.Object) -> None:
+    """In Sculpt Mode, write the strokes on the levels of a Multiresolution modifier into the mesh.
+
+    Must not be called while Blender draws.
+    """
     if obj.mode == "SCULPT":
         _write_back(bpy.ops.ed.flush_edits)
 
 
-def _write_back(write):
+def _write_back(write: Callable[[], object]) -> None:
     global is_writing_back
     layer = bpy.context.view_layer
-    layer.update()  # what was edited before is told of first
+    layer.update()  # so that earlier edits are reported first
     is_writing_back = True
     try:
         write()
@@ -89,18 +142,18 @@ def _write_back(write):
         is_writing_back = False
 
 
-# What Blender keeps as a layer, most of it since 4.0, and copies from there a hundred times faster: (its name, its field, its
-# type). "select" and "hide" have one for each kind of elements.
+# Properties that Blender stores as an attribute, most of them since 4.0: property -> (attribute, field, data type).
+# Copying the attribute is a hundred times faster. "select" and "hide" have one attribute per kind of element.
 _LAYERS = {"co": ("position", "vector", "FLOAT_VECTOR"), "vertex_index": (".corner_vert", "value", "INT"),
            "edge_index": (".corner_edge", "value", "INT"),
            "select": (".select_{kind}", "value", "BOOLEAN"), "hide": (".hide_{kind}", "value", "BOOLEAN")}
 _KINDS = {"MeshVertices": "vert", "MeshEdges": "edge", "MeshPolygons": "poly"}
-# What Blender copies as one block, ten times faster, if it is asked for without a sign.
+# Blender copies these as one block, ten times faster, into unsigned arrays.
 _UNSIGNED = {"vertex_index", "edge_index", "vertices", "loop_start", "loop_total", "polygon_index"}
 
 
-def read(collection, attribute, dtype, width=1):
-    """One attribute of all elements: (n,) or (n, width)."""
+def read(collection: bpy.types.bpy_prop_collection, attribute: str, dtype: type, width: int = 1) -> np.ndarray:
+    """Return one property of all elements, as an array of shape (n,) or (n, width)."""
     values = np.empty(len(collection) * width, dtype)
     layer, field = _find_layer(collection, attribute)
     if layer:
@@ -110,8 +163,8 @@ def read(collection, attribute, dtype, width=1):
     return values if width == 1 else values.reshape(-1, width)
 
 
-def write(collection, attribute, values):
-    """Sets one attribute of all elements: values (n,) or (n, width), int32 where they are numbers of elements."""
+def write(collection: bpy.types.bpy_prop_collection, attribute: str, values: np.ndarray) -> None:
+    """Set one property of all elements: values (n,) or (n, width), int32 if they are indices."""
     values = np.ascontiguousarray(values).ravel()
     layer, field = _find_layer(collection, attribute)
     if layer:
@@ -120,74 +173,75 @@ def write(collection, attribute, values):
         collection.foreach_set(attribute, values.view(np.uint32) if attribute in _UNSIGNED else values)
 
 
-def make_mask(count, indices):
-    """(count,) bool: True at these indices, an array or a list of any shape."""
+def make_mask(count: int, indices: np.ndarray | Sequence) -> np.ndarray:
+    """Return a (count,) bool array that is True at the indices, an array or list of any shape."""
     result = np.zeros(count, bool)
     result[np.asarray(indices, np.int64)] = True
     return result
 
 
-def _find_layer(collection, attribute):
-    """(what Blender keeps this attribute as, its field), or (None, "")."""
+def _find_layer(collection: bpy.types.bpy_prop_collection, attribute: str) -> tuple[bpy.types.Attribute | None, str]:
+    """Return (attribute that stores this property, its field), or (None, "")."""
     if attribute not in _LAYERS or not isinstance(collection.data, bpy.types.Mesh):
         return None, ""
-    name, field, kept_as = _LAYERS[attribute]
+    name, field, data_type = _LAYERS[attribute]
     layer = collection.data.attributes.get(name.format(kind=_KINDS.get(collection.bl_rna.identifier)))
-    # Blender 5.0.1 may give that of the selected edges a wrong type. In Edit Mode a layer has no elements.
-    fits = layer and layer.data_type == kept_as and len(layer.data) == len(collection)
+    # Blender 5.0.1 may give .select_edge a wrong type. In Edit Mode an attribute has no elements.
+    fits = layer and layer.data_type == data_type and len(layer.data) == len(collection)
     return (layer, field) if fits else (None, "")
 
 
-def read_edge_vertices(mesh):
-    """(E,2)"""
+def read_edge_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return the vertices of each edge, (E, 2) int32."""
     return read(mesh.edges, "vertices", np.int32, 2)
 
 
-def read_polygon_sizes(mesh):
-    """((F,) the first corner of each polygon, (F,) how many it has)"""
+def read_polygon_sizes(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """Return (first corner of each polygon (F,), number of its corners (F,))."""
     begin = read(mesh.polygons, "loop_start", np.int32)
     return begin, np.diff(begin, append=np.int32(len(mesh.loops)))
 
 
-def mask_elements_of_faces(mesh, chosen, elements="vertices", index="vertex_index"):
-    """(V,) or (E,) bool: the mesh's vertices or edges that faces have; chosen (F,) bool: which."""
+def mask_elements_of_faces(mesh: bpy.types.Mesh, chosen: np.ndarray, elements: str = "vertices",
+                           index: str = "vertex_index") -> np.ndarray:
+    """Return a mask (V,) or (E,) of the vertices or edges of the chosen faces, a mask (F,)."""
     corners = np.repeat(chosen, read_polygon_sizes(mesh)[1])
     return make_mask(len(getattr(mesh, elements)), read(mesh.loops, index, np.int32)[corners])
 
 
-def add_coincident_vertices(mesh, chosen):
-    """(V,) bool: the vertices chosen (V,) bool, and those that are welded with them (partwheel.weld)."""
+def add_coincident_vertices(mesh: bpy.types.Mesh, chosen: np.ndarray) -> np.ndarray:
+    """Return the mask (V,) of the chosen vertices, a mask (V,), and of those coincident with them (partwheel.weld)."""
     old_to_new = weld_coincident_vertices(read(mesh.vertices, "co", np.float32, 3), read_triangles(mesh)[0])
     return make_mask(len(chosen), old_to_new[chosen])[old_to_new]
 
 
-def find_attribute(mesh, name, kind, domain):
-    """The mesh's attribute of this name, data type and domain, or None: others may have given the name to another one."""
+def find_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str) -> bpy.types.Attribute | None:
+    """Return the attribute of this name, data type and domain, or None. Another one may have the same name."""
     found = mesh.attributes.get(name)
     return found if found and (found.data_type, found.domain) == (kind, domain) else None
 
 
-def ensure_attribute(mesh, name, kind, domain):
-    """The same, made in place of whatever has its name."""
+def ensure_attribute(mesh: bpy.types.Mesh, name: str, kind: str, domain: str) -> bpy.types.Attribute:
+    """Return the attribute as find_attribute() does; if missing, create it, replacing any other of its name."""
     found = find_attribute(mesh, name, kind, domain)
     if not found and name in mesh.attributes:
         mesh.attributes.remove(mesh.attributes[name])
     return found or mesh.attributes.new(name, kind, domain)
 
 
-def read_material_indices(mesh):
-    """(F,)"""
+def read_material_indices(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return the material slot of each polygon, (F,) int32."""
     layer = find_attribute(mesh, "material_index", "INT", "FACE")
     return read(layer.data, "value", np.int32) if layer else np.zeros(len(mesh.polygons), np.int32)
 
 
-def write_material_indices(mesh, indices):
+def write_material_indices(mesh: bpy.types.Mesh, indices: np.ndarray) -> None:
     if indices.any() or find_attribute(mesh, "material_index", "INT", "FACE"):
         ensure_attribute(mesh, "material_index", "INT", "FACE").data.foreach_set("value", indices)
 
 
-def read_triangles(mesh):
-    """((T,3) the vertices of Blender's triangles, (T,) the polygon of each)"""
+def read_triangles(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """Return (vertices of Blender's triangles (T, 3) int32, polygon of each (T,) int32)."""
     if len(mesh.loops) == 3 * len(mesh.polygons):
         begin, sizes = read_polygon_sizes(mesh)
         if (sizes == 3).all():
@@ -197,9 +251,12 @@ def read_triangles(mesh):
             read(mesh.loop_triangles, "polygon_index", np.int32))
 
 
-def read_surface(mesh):
-    """The mesh's surface as Blender triangulates it, save for polygons of which it makes triangles without area (three
-    corners on a line do that). With shape keys it is the basis, whichever key is shown."""
+def read_surface(mesh: bpy.types.Mesh) -> MeshSurface:
+    """Return the MeshSurface of the mesh, triangulated by Blender.
+
+    Polygons of which Blender makes degenerate triangles, for example with three collinear corners, are triangulated
+    anew. With shape keys the positions are those of the basis.
+    """
     vertices = read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
     corner_vertices, faces = read_triangles(mesh)
     thin = np.unique(faces[_is_degenerate(vertices, corner_vertices)]) if len(faces) > len(mesh.polygons) else faces[:0]
@@ -211,24 +268,26 @@ def read_surface(mesh):
     return MeshSurface(vertices, corner_vertices, faces, len(mesh.polygons))
 
 
-def _is_degenerate(vertices, triangles):
-    """(T,) whether a triangle has no area to speak of. Coordinate by coordinate: numpy's own cross product takes four times
-    as long, which millions of them are held up by."""
+def _is_degenerate(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Return a mask (T,) of the degenerate triangles.
+
+    Works coordinate by coordinate: np.cross takes four times as long, noticeable for millions of triangles.
+    """
     ends = [vertices[:, k][triangles] for k in range(3)]
-    ab, ac = ([each[:, k] - each[:, 0] for each in ends] for k in (1, 2))
+    ab, ac = ([end[:, k] - end[:, 0] for end in ends] for k in (1, 2))
     bc = [far - near for near, far in zip(ab, ac)]
     normal = [ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2], ab[0] * ac[1] - ab[1] * ac[0]]
-    squared = [sum(each * each for each in side) for side in (normal, ab, ac, bc)]
+    squared = [sum(component * component for component in side) for side in (normal, ab, ac, bc)]
     return np.sqrt(squared[0]) <= DEGENERATE_RATIO * np.maximum(np.maximum(squared[1], squared[2]), squared[3])
 
 
-def _triangulate_polygon(polygon, vertices):
+def _triangulate_polygon(polygon: bpy.types.MeshPolygon, vertices: np.ndarray) -> list[tuple[int, int, int]]:
     corners = list(polygon.vertices)
     return triangulate(vertices[corners], corners)
 
 
-def read_custom_normals(mesh):
-    """(L,3) of each loop, if the mesh has normals set by hand; else None."""
+def read_custom_normals(mesh: bpy.types.Mesh) -> np.ndarray | None:
+    """Return the normal of each loop, (L, 3) float32, if the mesh has custom normals; else None."""
     if not mesh.has_custom_normals:
         return None
     if hasattr(mesh, "corner_normals"):
@@ -239,22 +298,15 @@ def read_custom_normals(mesh):
     return normals
 
 
-def write_custom_normals(mesh, normals):
-    """normals (L,3): of each loop; 0, 0, 0: as Blender computes it."""
+def write_custom_normals(mesh: bpy.types.Mesh, normals: np.ndarray) -> None:
+    """Set the normal of each loop, (L, 3); a zero vector means the normal that Blender computes."""
     if hasattr(mesh, "use_auto_smooth"):  # before Blender 4.1
         mesh.use_auto_smooth = True
     mesh.normals_split_custom_set(normals)
 
 
-class Fingerprint(NamedTuple):
-    """What a hierarchy depends on, as digests of 16 bytes. topology: which polygons use which vertices, the same
-    wherever the vertices are. positions: where they are."""
-
-    topology: bytes
-    positions: bytes
-
-
-def compute_fingerprint(mesh):
+def compute_fingerprint(mesh: bpy.types.Mesh) -> Fingerprint:
+    """Hash the mesh, O(V + L). It must be up to date."""
     topology = hashlib.blake2b(np.int64(len(mesh.vertices)).tobytes(), digest_size=16)
     topology.update(read_polygon_sizes(mesh)[1])
     topology.update(read(mesh.loops, "vertex_index", np.int32))
@@ -262,26 +314,23 @@ def compute_fingerprint(mesh):
     return Fingerprint(topology.digest(), positions.digest())
 
 
-def current_fingerprint(obj):
-    """The Fingerprint of the object's mesh, brought up to date."""
-    mesh = update_mesh(obj)
-    reading = {} if _reading is None else _reading
-    name = mesh_key(mesh), obj.mode
-    reading[name] = reading.get(name) or compute_fingerprint(mesh)
-    return reading[name]
+def current_fingerprint(obj: bpy.types.Object) -> Fingerprint:
+    """Update the object's mesh and return its Fingerprint."""
+    update_mesh(obj)
+    return (_snapshot or MeshSnapshot()).fingerprint(obj)
 
 
-def find_cage_modifiers(obj):
-    """The object's modifiers that act in Edit Mode, if any of them is shown on the cage, else none."""
-    acting = [each for each in obj.modifiers if each.show_viewport and each.show_in_editmode]
-    return acting if any(each.show_on_cage for each in acting) else []
+def find_cage_modifiers(obj: bpy.types.Object) -> list[bpy.types.Modifier]:
+    """Return the modifiers that act in Edit Mode, if at least one of them is shown on the cage; else []."""
+    modifiers = [modifier for modifier in obj.modifiers if modifier.show_viewport and modifier.show_in_editmode]
+    return modifiers if any(modifier.show_on_cage for modifier in modifiers) else []
 
 
-def read_cage_positions(obj):
-    """(V,3) float32: where modifiers on the cage show the vertices in Edit Mode, in the object's own space; None
-    without such modifiers, or if it can't be told. Not to be called while Blender draws.
+def read_cage_positions(obj: bpy.types.Object) -> np.ndarray | None:
+    """Return the vertex positions on the cage that Edit Mode shows, (V, 3) float32, in the space of the object.
 
-    Blender lets nobody ask for the cage, so this is the mesh after all modifiers; those after the cage move it little.
+    None without modifiers on the cage, or if they don't preserve vertices. Blender gives no access to the cage, so this
+    is the mesh after all modifiers; those after the cage move it little. Must not be called while Blender draws.
     """
     modifiers = find_cage_modifiers(obj) if obj.mode == "EDIT" else []
     if not modifiers:
@@ -297,15 +346,15 @@ def read_cage_positions(obj):
         evaluated.to_mesh_clear()
 
 
-def read_edited_positions(obj):
-    """(V,3) float32: the vertices that an edit of the object moves, in its own space: those of the active shape key, if
-    it has one. The mesh must be up to date."""
+def read_edited_positions(obj: bpy.types.Object) -> np.ndarray:
+    """Return the vertex positions that an edit changes, (V, 3) float32, in the space of the object: those of the active
+    shape key, if there is one. The mesh must be up to date."""
     key = obj.active_shape_key
     return read(key.data if key else obj.data.vertices, "co", np.float32, 3)
 
 
-def read_displayed_positions(obj):
-    """(V,3) float32: where the vertices are shown in Edit Mode, in the object's own space: of the shape key that is
-    edited, or of the cage. The mesh must be up to date. Not to be called while Blender draws."""
+def read_displayed_positions(obj: bpy.types.Object) -> np.ndarray:
+    """Return the vertex positions that Edit Mode shows, (V, 3) float32, in the space of the object: on the cage, or of
+    the active shape key. The mesh must be up to date. Must not be called while Blender draws."""
     cage = read_cage_positions(obj)
     return read_edited_positions(obj) if cage is None else cage

@@ -2,6 +2,9 @@
 """A mesh put together from pieces of another, with all their layers, by whole arrays: a bmesh of the same costs ten
 times as much. (Not taken along: multires displacements, which Python can't write.)"""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import NamedTuple
 
@@ -55,7 +58,7 @@ _EMPTY = np.empty(0, np.int64)
 
 
 @contextmanager
-def edit_as_bmesh(mesh, into=None):
+def edit_as_bmesh(mesh: bpy.types.Mesh | None, into: bpy.types.Mesh | None = None) -> Iterator[bmesh.types.BMesh]:
     """A bmesh of the mesh, or of nothing, for a while; what was done with it is written into another, or the same."""
     bm = bmesh.new()
     try:
@@ -102,7 +105,7 @@ class MeshPlan(NamedTuple):
     welded_to: np.ndarray = None
 
 
-def assemble_mesh(mesh, plan, name, selection):
+def assemble_mesh(mesh: bpy.types.Mesh, plan: MeshPlan, name: str, selection: bool) -> bpy.types.Mesh:
     """A new mesh: materials, settings and properties are the source's; and what is selected, if selection."""
     made = mesh.copy()
     made.name = name
@@ -133,7 +136,7 @@ def assemble_mesh(mesh, plan, name, selection):
     return made
 
 
-def _build_edges(mesh, plan):
+def _build_edges(mesh: bpy.types.Mesh, plan: MeshPlan) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """((L,) the edge from each corner to the next, (m,2) the edges' vertices, (m,) the source edge of each, or -1)"""
     own, count = plan.loops.source, len(plan.corner_vertices)
     numbers, all_ends = _read_loop_edges(mesh, plan.welded_to), arrays.read_edge_vertices(mesh)
@@ -183,7 +186,7 @@ def _build_edges(mesh, plan):
     return of_edge, ends.astype(np.int32), edge_from
 
 
-def _read_loop_edges(mesh, alias):
+def _read_loop_edges(mesh: bpy.types.Mesh, alias: np.ndarray | None) -> np.ndarray:
     """(L,) the edge of each of the mesh's loops; by alias, of several between the same two vertices the first."""
     edges = read(mesh.loops, "edge_index", np.int32)
     if alias is None:
@@ -193,7 +196,7 @@ def _read_loop_edges(mesh, alias):
     return first[which.ravel()][edges]
 
 
-def _gather(values, origins, mean=False, otherwise=0):
+def _gather(values: np.ndarray, origins: ElementSources, mean: bool = False, otherwise: float = 0) -> np.ndarray:
     """values (n,) or (n, width) at Origins: their mean, or the first's; otherwise where there is none."""
     taken = values[origins.source]
     taken[origins.source < 0] = otherwise
@@ -202,7 +205,8 @@ def _gather(values, origins, mean=False, otherwise=0):
     return taken
 
 
-def _copy_attributes(mesh, made, origins, but):
+def _copy_attributes(mesh: bpy.types.Mesh, made: bpy.types.Mesh, origins: dict[str, ElementSources],
+                     but: set[str]) -> None:
     layers = [(each.name, each.data_type, each.domain) for each in mesh.attributes if each.name not in but]
     for name, kind, domain in layers:
         of = origins[domain]
@@ -230,7 +234,7 @@ def _copy_attributes(mesh, made, origins, but):
             new.foreach_set("pin_uv", _gather(read(uv.data, "pin_uv", bool), origins["CORNER"]))
 
 
-def _copy_element_properties(mesh, made, origins):
+def _copy_element_properties(mesh: bpy.types.Mesh, made: bpy.types.Mesh, origins: dict[str, np.ndarray]) -> None:
     for kind, marks in _ELEMENT_PROPERTIES.items():
         for field, dtype in marks:
             if not getattr(mesh, _HAS_PROPERTY.get((kind, field), ""), True):
@@ -240,7 +244,7 @@ def _copy_element_properties(mesh, made, origins):
                 getattr(made, kind).foreach_set(field, _gather(values, ElementSources(origins[kind])))
 
 
-def _create_bmesh_layers(mesh, made):
+def _create_bmesh_layers(mesh: bpy.types.Mesh, made: bpy.types.Mesh) -> None:
     """made has no elements yet."""
     names = [each[1:3] for collection, each in _BMESH_LAYERS.items() if len(getattr(mesh, collection))]
     if names:
@@ -249,7 +253,7 @@ def _create_bmesh_layers(mesh, made):
                 getattr(getattr(bm, elements).layers, name).verify()
 
 
-def _copy_bmesh_layers(mesh, made, origins):
+def _copy_bmesh_layers(mesh: bpy.types.Mesh, made: bpy.types.Mesh, origins: dict[str, np.ndarray]) -> None:
     for collection, (elements, _, _, fields) in _BMESH_LAYERS.items():
         of = ElementSources(origins[elements])
         for old, new in zip(getattr(mesh, collection), getattr(made, collection)):
@@ -259,7 +263,7 @@ def _copy_bmesh_layers(mesh, made, origins):
 
 
 @contextmanager
-def _temporary_object(mesh):
+def _temporary_object(mesh: bpy.types.Mesh) -> Iterator[bpy.types.Object]:
     """An object that holds the mesh while its groups and keys are at work."""
     holder = bpy.data.objects.new("partwheel", mesh)
     try:
@@ -268,7 +272,7 @@ def _temporary_object(mesh):
         bpy.data.objects.remove(holder)
 
 
-def _copy_vertex_groups(mesh, made, origins):
+def _copy_vertex_groups(mesh: bpy.types.Mesh, made: bpy.types.Mesh, origins: ElementSources) -> None:
     """made has its vertices, and nothing else yet: so a bmesh, which copies a vertex's weights as one, costs little."""
     if not _copy_group_names(mesh, made):
         return
@@ -290,7 +294,7 @@ def _copy_vertex_groups(mesh, made, origins):
                     weights[group] = (weights.get(group, 0) + beyond.get(group, 0)) / 2
 
 
-def _copy_group_names(mesh, made):
+def _copy_group_names(mesh: bpy.types.Mesh, made: bpy.types.Mesh) -> bool:
     """Gives made groups of the same names; whether there are any."""
     with _temporary_object(mesh) as old, _temporary_object(made) as new:
         new.vertex_groups.clear()
@@ -299,7 +303,7 @@ def _copy_group_names(mesh, made):
         return len(old.vertex_groups) > 0
 
 
-def _copy_vertices_only(mesh):
+def _copy_vertices_only(mesh: bpy.types.Mesh) -> bpy.types.Mesh:
     """A new mesh: the vertices with their layers, and nothing else. Nothing but Blender's own validation takes faces
     away quickly: those, and edges, whose corners are all one vertex."""
     bare = mesh.copy()
@@ -313,7 +317,7 @@ def _copy_vertices_only(mesh):
     return bare
 
 
-def clear_shape_keys(mesh):
+def clear_shape_keys(mesh: bpy.types.Mesh) -> None:
     """Blender counts one user too many of a copied mesh's keys, and leaves them behind: a file with such a key opens with
     an error."""
     keys = mesh.shape_keys
@@ -324,7 +328,7 @@ def clear_shape_keys(mesh):
         bpy.data.batch_remove([keys])
 
 
-def _copy_shape_keys(mesh, made, plan):
+def _copy_shape_keys(mesh: bpy.types.Mesh, made: bpy.types.Mesh, plan: MeshPlan) -> None:
     if not mesh.shape_keys:
         return
     with _temporary_object(made) as holder:
@@ -345,7 +349,7 @@ def _copy_shape_keys(mesh, made, plan):
     copy_animation(mesh.shape_keys, made.shape_keys)
 
 
-def _find_active_layers(mesh):
+def _find_active_layers(mesh: bpy.types.Mesh) -> dict[str, str]:
     """The names of the layers that Blender shows, renders, clones and masks by."""
     uv = mesh.uv_layers
     found = {"active": uv.active, "render": next((each for each in uv if each.active_render), None),
@@ -356,7 +360,7 @@ def _find_active_layers(mesh):
     return {role: layer.name for role, layer in found.items() if layer}
 
 
-def _set_active_layers(mesh, chosen):
+def _set_active_layers(mesh: bpy.types.Mesh, chosen: dict[str, str]) -> None:
     """Only those that the mesh has, too."""
     for role, name in chosen.items():
         if role.endswith("color_index"):
@@ -371,7 +375,7 @@ def _set_active_layers(mesh, chosen):
                 setattr(mesh, role, mesh.uv_layers[name])
 
 
-def replace_geometry(target, made, keys=None):
+def replace_geometry(target: bpy.types.Mesh, made: bpy.types.Mesh, keys: dict[str, np.ndarray] | None = None) -> None:
     """Puts a mesh's geometry, with all layers, into another, whose name, properties and users stay, and shape keys but for the
     places. keys: {name: (V,3) places} for them; None: made has the same."""
     kept, chosen = len(target.shape_keys.key_blocks) if target.shape_keys else 0, _find_active_layers(target)

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's data-blocks: made all or none; settings and animation of one given to another."""
 
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 
 import bpy
@@ -12,7 +15,7 @@ _NOT_SETTINGS = {"action", "action_slot", "action_slot_handle", "last_slot_ident
 
 
 @contextmanager
-def rollback_on_error():
+def rollback_on_error() -> Iterator[None]:
     """If an error leaves the block, each data-block that was made in it is removed again, and what was selected, active and
     in which mode is so again. What was there before must not change until nothing can fail any more."""
     before = {block.as_pointer() for block in _iter_blocks()}  # what is there stays at its place
@@ -37,11 +40,11 @@ def rollback_on_error():
         raise
 
 
-def _iter_blocks():
+def _iter_blocks() -> Iterator[bpy.types.ID]:
     return (block for kind in KINDS for block in getattr(bpy.data, kind))
 
 
-def remove_object(obj):
+def remove_object(obj: bpy.types.Object) -> None:
     """Removes an object, and its mesh with its shape keys if nothing else has it."""
     mesh = obj.data
     bpy.data.objects.remove(obj)
@@ -49,7 +52,7 @@ def remove_object(obj):
         bpy.data.batch_remove([mesh, *filter(None, [mesh.shape_keys])])  # Blender alone leaves keys of a copied mesh behind
 
 
-def copy_settings(source, target, but=()):
+def copy_settings(source: bpy.types.bpy_struct, target: bpy.types.bpy_struct, but: Collection[str] = ()) -> None:
     """Gives target all that can be set of source, both of one type, but for these properties."""
     for each in source.bl_rna.properties:
         name = each.identifier
@@ -60,7 +63,7 @@ def copy_settings(source, target, but=()):
             setattr(target, name, value)
 
 
-def copy_animation(source, target):
+def copy_animation(source: bpy.types.ID, target: bpy.types.ID) -> None:
     """Gives target, a data-block without any, the animation of source: action, drivers and NLA strips that play actions."""
     old = source.animation_data
     if not old:
@@ -80,14 +83,14 @@ def copy_animation(source, target):
         copy_settings(track, other, {"is_solo"})
 
 
-def _assign_action(old, new):
+def _assign_action(old: bpy.types.bpy_struct, new: bpy.types.bpy_struct) -> None:
     """Both an AnimData or an NlaStrip."""
     new.action = old.action
     if getattr(old, "action_slot", None):  # from Blender 4.4 on
         new.action_slot = old.action_slot
 
 
-def copy_actions(block):
+def copy_actions(block: bpy.types.ID) -> None:
     """Gives a copied data-block actions of its own, if the preferences say so of duplicates, as Blender's Separate does."""
     data = block.animation_data
     if not data or data.use_tweak_mode or not bpy.context.preferences.edit.use_duplicate_action:
@@ -100,7 +103,7 @@ def copy_actions(block):
                 user.action_slot = user.action.slots[slot.identifier]
 
 
-def redirect_drivers(block, images):
+def redirect_drivers(block: bpy.types.ID, images: dict[bpy.types.ID, bpy.types.ID]) -> None:
     """Drivers of a copied data-block that ask one of the originals ask its copy from now on. images: {original: copy}."""
     for curve in block.animation_data.drivers if block.animation_data else ():
         for variable in curve.driver.variables:

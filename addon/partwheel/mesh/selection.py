@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The selection of a mesh in Edit Mode: sets of faces are selected by differences; the selection before comes back."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
 from collections import deque
 from itertools import repeat
 
@@ -20,7 +23,7 @@ LOOP_INDEX = {"VERT": "vertex_index", "EDGE": "edge_index"}
 DESELECT_COST, DESELECT_ALL_COST = 2, 6000
 
 
-def _get_sequence(bm, kind):
+def _get_sequence(bm: bmesh.types.BMesh, kind: str) -> bmesh.types.BMElemSeq:
     sequence = {"VERT": bm.verts, "EDGE": bm.edges, "FACE": bm.faces}[kind]
     sequence.ensure_lookup_table()
     return sequence
@@ -33,7 +36,7 @@ class Selection:
     method. Masks are (n,) bool, one for each vertex, edge or face of the mesh.
     """
 
-    def __init__(self, obj, mesh=None):
+    def __init__(self, obj: bpy.types.Object, mesh: bpy.types.Mesh | None = None) -> None:
         """mesh: the object's, if that is known to be up to date."""
         mesh = mesh or arrays.update_mesh(obj)
         bm = self._edited(obj)
@@ -51,13 +54,13 @@ class Selection:
             self.loop_element = arrays.read(mesh.loops, LOOP_INDEX[self.kind], np.int32)
         self.current = self.initial[self.kind]
 
-    def _edited(self, obj):
+    def _edited(self, obj: bpy.types.Object) -> bmesh.types.BMesh:
         """The object's BMesh. Kept, which undo or a mode change only make invalid: elements have a field for Python's
         references to them as long as there is one to the BMesh, and adding and removing it takes as long as a notch."""
         self._bm = bmesh.from_edit_mesh(obj.data)
         return self._bm
 
-    def is_valid(self, obj):
+    def is_valid(self, obj: bpy.types.Object | None) -> bool:
         """Whether the object is still in Edit Mode with as many elements and the select mode of when this was made."""
         if obj is None or obj.type != "MESH" or obj.mode != "EDIT":
             return False
@@ -65,7 +68,8 @@ class Selection:
         counts = len(bm.verts), len(bm.edges), len(bm.faces)
         return counts == tuple(len(self.initial[kind]) for kind in KINDS) and self.kind in bm.select_mode
 
-    def select(self, obj, faces, active=None, extend=False, deselect=False):
+    def select(self, obj: bpy.types.Object, faces: np.ndarray | Sequence[int], active: int | None = None,
+               extend: bool = False, deselect: bool = False) -> None:
         """Selects these faces (an array of indices), hidden ones left out, and nothing else; with extend also what was
         selected before; with deselect only what was selected before and is not in these faces. active: the index of
         the face to make the active one."""
@@ -96,7 +100,7 @@ class Selection:
                 bm.select_history.add(face)
         _tag_selection_changed(obj)
 
-    def find_changed_faces(self, obj, only_selected):
+    def find_changed_faces(self, obj: bpy.types.Object, only_selected: bool) -> np.ndarray:
         """(n,) the faces that have an element whose selection somebody else has changed since; only_selected: that is selected
         now. The object's mesh must be up to date."""
         now = arrays.read(getattr(obj.data, ELEMENTS[self.kind]), "select", bool)
@@ -105,7 +109,7 @@ class Selection:
             changed = arrays.make_mask(len(self.visible), self.loop_face[changed[self.loop_element]])
         return np.flatnonzero(changed & self.visible)
 
-    def restore(self, obj):
+    def restore(self, obj: bpy.types.Object) -> None:
         """Everything as it was: vertices, edges, faces, the active face and the history of picks."""
         bm = self._edited(obj)
         mesh = arrays.update_mesh(obj)
@@ -129,7 +133,7 @@ class Selection:
         _tag_selection_changed(obj)
 
 
-def _read_selected(mesh, kind):
+def _read_selected(mesh: bpy.types.Mesh, kind: str) -> np.ndarray:
     """(n,) bool: which elements of the mesh are selected. That none is is known at once."""
     elements = getattr(mesh, ELEMENTS[kind])
     if not (mesh.total_vert_sel or mesh.total_edge_sel or mesh.total_face_sel):
@@ -137,12 +141,12 @@ def _read_selected(mesh, kind):
     return arrays.read(elements, "select", bool)
 
 
-def _is_only_edited_object(obj):
+def _is_only_edited_object(obj: bpy.types.Object) -> bool:
     """Whether what Blender's operators do to all that is being edited, they do to this object only."""
     return list(bpy.context.objects_in_mode_unique_data) == [obj]
 
 
-def _set_selected(elements, which, value):
+def _set_selected(elements: bmesh.types.BMElemSeq, which: np.ndarray, value: bool) -> None:
     """Selects or deselects the elements where which is True. Without a loop of Python's own, for there may be many."""
     indices = np.flatnonzero(which).tolist()
     if indices:
@@ -150,11 +154,11 @@ def _set_selected(elements, which, value):
         deque(map(select_set, map(elements.__getitem__, indices), repeat(value)), maxlen=0)
 
 
-def _element_kind(element):
+def _element_kind(element: bmesh.types.BMVert | bmesh.types.BMEdge | bmesh.types.BMFace) -> str:
     return {bmesh.types.BMVert: "VERT", bmesh.types.BMEdge: "EDGE", bmesh.types.BMFace: "FACE"}[type(element)]
 
 
-def _tag_selection_changed(obj):
+def _tag_selection_changed(obj: bpy.types.Object) -> None:
     """Tells Blender that the selection of a mesh in Edit Mode has changed."""
     if obj == bpy.context.view_layer.objects.active:
         # The setting's update function says "selection" and no more; the call below says "geometry", upon which Blender
@@ -168,22 +172,23 @@ def _tag_selection_changed(obj):
 class Selections:
     """The selections of all meshes that are in Edit Mode together, for a part of one of them."""
 
-    def __init__(self, objects, fresh=None):
+    def __init__(self, objects: Iterable[bpy.types.Object], fresh: bpy.types.Object | None = None) -> None:
         """fresh: an object whose mesh is known to be up to date."""
         self._each = {obj.name_full: Selection(obj, obj.data if obj == fresh else None) for obj in objects}
 
-    def _objects(self):
+    def _objects(self) -> list[tuple[bpy.types.Object | None, Selection]]:
         """(object or None, its Selection) of each."""
         return [(find_object(name), each) for name, each in self._each.items()]
 
-    def any(self):
+    def any(self) -> bool:
         """Whether anything is selected."""
         return any(each.current.any() for each in self._each.values())
 
-    def is_valid(self):
+    def is_valid(self) -> bool:
         return all(each.is_valid(obj) for obj, each in self._objects())
 
-    def select(self, obj, faces, active=None, extend=False, deselect=False):
+    def select(self, obj: bpy.types.Object, faces: np.ndarray | Sequence[int], active: int | None = None,
+               extend: bool = False, deselect: bool = False) -> None:
         """As Selection.select() for one of the objects; in the others nothing stays selected, unless extend or deselect
         leaves what is."""
         for other, each in self._objects():
@@ -192,23 +197,24 @@ class Selections:
             elif not (extend or deselect) and each.current.any():
                 each.select(other, [])
 
-    def select_in_each(self, faces, extend=False, deselect=False, active=()):
+    def select_in_each(self, faces: dict[bpy.types.Object, np.ndarray], extend: bool = False, deselect: bool = False,
+                       active: dict[bpy.types.Object, int] | tuple = ()) -> None:
         """As Selection.select() for each of the objects. faces: those of each, none where it isn't named; active: likewise,
         a dict."""
         for obj, each in self._objects():
             each.select(obj, faces.get(obj, ()), dict(active).get(obj), extend, deselect)
 
-    def find_changed_faces(self, obj, only_selected):
+    def find_changed_faces(self, obj: bpy.types.Object, only_selected: bool) -> np.ndarray:
         """See Selection.find_changed_faces()."""
         arrays.update_mesh(obj)
         return self._each[obj.name_full].find_changed_faces(obj, only_selected)
 
-    def restore(self):
+    def restore(self) -> None:
         for obj, each in self._objects():
             each.restore(obj)
 
 
-def is_exact_selection(mesh, faces, kind):
+def is_exact_selection(mesh: bpy.types.Mesh, faces: np.ndarray, kind: str) -> bool:
     """Whether these faces, but for hidden ones, are selected and nothing else is: as vertices, edges or faces, kind. The mesh
     must be up to date."""
     chosen = arrays.make_mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
@@ -217,7 +223,8 @@ def is_exact_selection(mesh, faces, kind):
     return np.array_equal(arrays.read(getattr(mesh, ELEMENTS[kind]), "select", bool), chosen)
 
 
-def predict_face_selection(mesh, faces, extend=False, deselect=False):
+def predict_face_selection(mesh: bpy.types.Mesh, faces: np.ndarray, extend: bool = False,
+                           deselect: bool = False) -> np.ndarray:
     """(F,) bool: what would be selected, as Selection.select() has it, in a mesh that is not in Edit Mode."""
     chosen = arrays.make_mask(len(mesh.polygons), faces) & ~arrays.read(mesh.polygons, "hide", bool)
     if not (extend or deselect):
@@ -226,7 +233,8 @@ def predict_face_selection(mesh, faces, extend=False, deselect=False):
     return before & ~chosen if deselect else before | chosen
 
 
-def select_outside_edit_mode(mesh, faces, extend=False, deselect=False, active=None):
+def select_outside_edit_mode(mesh: bpy.types.Mesh, faces: np.ndarray | Sequence[int], extend: bool = False,
+                             deselect: bool = False, active: int | None = None) -> None:
     """Selects that: the faces, and their edges and vertices. active: the face to make the active one."""
     chosen = predict_face_selection(mesh, faces, extend, deselect)
     arrays.write(mesh.polygons, "select", chosen)
@@ -237,7 +245,7 @@ def select_outside_edit_mode(mesh, faces, extend=False, deselect=False, active=N
     mesh.update()
 
 
-def _select_edges(mesh, values):
+def _select_edges(mesh: bpy.types.Mesh, values: np.ndarray) -> None:
     """Blender 5.0.1 gives the attribute behind this property a wrong type, and crashes where the property is set."""
     attribute = mesh.attributes.get(".select_edge") if bpy.app.version >= (5, 0) else None
     if attribute and attribute.data_type != "BOOLEAN":

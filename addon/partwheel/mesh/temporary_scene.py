@@ -2,6 +2,9 @@
 """A scene for temporary objects, so that the user's scenes never have them, not for a moment: other add-ons, playback and
 renders go through what is in those."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
 import contextlib
 
 import bpy
@@ -10,7 +13,7 @@ is_active = False  # while there is one: what Blender tells of then are no chang
 
 
 @contextlib.contextmanager
-def create_temporary_scene(*objects):
+def create_temporary_scene(*objects: bpy.types.Object) -> Iterator[bpy.types.ViewLayer]:
     """The view layer of a new scene with these objects alone, in the frame and with the settings by which the user's scene
     evaluates modifiers. The objects stay the caller's. Not to be called while Blender draws."""
     global is_active
@@ -28,11 +31,11 @@ def create_temporary_scene(*objects):
         is_active = before
 
 
-def _is_simplify_setting(name):
+def _is_simplify_setting(name: str) -> bool:
     return name == "use_simplify" or name.startswith("simplify_")
 
 
-def update_depsgraph(layer):
+def update_depsgraph(layer: bpy.types.ViewLayer) -> bpy.types.Depsgraph:
     """Of a view layer, up to date."""
     layer.update()
     return layer.depsgraph

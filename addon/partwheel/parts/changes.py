@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What Blender has told of changes to meshes, and of what is shown of them in another frame."""
 
+from __future__ import annotations
+
 import bpy
 from bpy.app.handlers import persistent
 
@@ -12,29 +14,29 @@ _geometry_counts, _display_counts, _update_counts = MeshTable(), MeshTable(), Me
 _undo_count = 0
 
 
-def geometry_revision(mesh):
+def geometry_revision(mesh: bpy.types.Mesh) -> tuple[int, int]:
     """Something that is another after each change of the mesh's geometry, or of what is hidden, that Blender told of.
     Selecting is none."""
     return _geometry_counts.get(mesh_key(mesh), 0), _undo_count
 
 
-def revision(mesh):
+def revision(mesh: bpy.types.Mesh) -> tuple:
     """The same, and another also after a change of what modifiers show of it, be it on the cage."""
     return geometry_revision(mesh), display_revision(mesh)
 
 
-def display_revision(mesh):
+def display_revision(mesh: bpy.types.Mesh) -> int:
     """Something that is another after a change of what modifiers show of the mesh: in another frame, for instance."""
     return _display_counts.get(mesh_key(mesh), 0)
 
 
-def update_revision(mesh):
+def update_revision(mesh: bpy.types.Mesh) -> tuple[int, int]:
     """Something that is another after whatever Blender told of the mesh, be it that something was selected in it."""
     return _update_counts.get(mesh_key(mesh), 0), _undo_count
 
 
 @persistent
-def _on_depsgraph_update(_scene, depsgraph):
+def _on_depsgraph_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     if arrays.is_writing_back or temporary_scene.is_active:
         return
     for update in depsgraph.updates:
@@ -51,7 +53,7 @@ def _on_depsgraph_update(_scene, depsgraph):
 
 
 @persistent
-def _on_frame_change(_scene, depsgraph):
+def _on_frame_change(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """A new frame evaluates what is animated, and Blender calls no other handler for it. No mesh is edited by it. A render
     has an evaluation of its own, which no 3D view shows."""
     if depsgraph.mode == "RENDER" or temporary_scene.is_active:
@@ -62,25 +64,25 @@ def _on_frame_change(_scene, depsgraph):
             _increment_display(update.id)
 
 
-def _increment_display(evaluated):
+def _increment_display(evaluated: bpy.types.Object) -> None:
     """In Edit Mode only modifiers on the cage change what is shown."""
     if evaluated.mode != "EDIT" or arrays.find_cage_modifiers(evaluated):
         _increment(_display_counts, evaluated.original.data)
 
 
-def _is_sculpt_stroke(update, depsgraph):
+def _is_sculpt_stroke(update: bpy.types.DepsgraphUpdate, depsgraph: bpy.types.Depsgraph) -> bool:
     """Whether an update of an object tells of a stroke of Sculpt Mode: of its shading, which is all that is told of one.
     Newer Blenders tell of the shading of all objects, and of the scene, when something was added or removed."""
     return (update.id.mode == "SCULPT" and update.is_updated_shading
             and not any(isinstance(each.id, bpy.types.Scene) for each in depsgraph.updates))
 
 
-def _increment(table, mesh):
+def _increment(table: MeshTable, mesh: bpy.types.Mesh) -> None:
     table[mesh_key(mesh)] = table.get(mesh_key(mesh), 0) + 1
 
 
 @persistent
-def _on_undo(*_):
+def _on_undo(*_: object) -> None:
     global _undo_count
     arrays.invalidate_snapshot()
     _undo_count += 1

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Hierarchies on their way into .blend files and out of them."""
 
+from __future__ import annotations
+
 import bpy
 from bpy.app.handlers import persistent
 
@@ -11,7 +13,7 @@ from .stored import take_property, pending
 
 
 @persistent
-def _on_save(*_):
+def _on_save(*_: object) -> None:
     if not preferences().save_with_file:
         return
     for mesh in bpy.data.meshes:
@@ -27,14 +29,14 @@ def _on_save(*_):
 
 
 @persistent
-def _on_saved(*_):
+def _on_saved(*_: object) -> None:
     for mesh in bpy.data.meshes:
         if stored.PROPERTY in mesh:
             take_property(mesh)
 
 
 @persistent
-def on_load(*_):
+def on_load(*_: object) -> None:
     """Another file was opened: its meshes are others."""
     unregister()
     for mesh in bpy.data.meshes:
@@ -46,7 +48,7 @@ HANDLERS = {"load_post": on_load, "save_pre": _on_save, "save_post": _on_saved,
             "save_post_fail": _on_saved}  # from Blender 4.0
 
 
-def unregister():
+def unregister() -> None:
     """Nothing goes on, and nothing is remembered."""
     builds.cancel_all()
     registry.forget_all()

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The part that was picked last in each mesh, and confirmed. Undo brings the one before back."""
 
+from __future__ import annotations
+
 import hashlib
 from operator import attrgetter
 from typing import NamedTuple
@@ -35,12 +37,12 @@ _past = MeshTable()  # [((_glance(), _digest()) after the pick, Picked), ...], t
 _picks = MeshTable(on_removal=lambda picks, gone: registry.is_retired(picks[gone].hierarchy) or picks.pop(gone))
 
 
-def remember(obj, face, node, snap=False):
+def remember(obj: bpy.types.Object, face: int, node: int, snap: bool = False) -> None:
     """The user has chosen this part of the object's mesh, which has a hierarchy."""
     _picks[mesh_key(obj.data)] = Pick(int(node), int(face), registry.find_hierarchy(obj.data), bool(snap))
 
 
-def record_selection(obj):
+def record_selection(obj: bpy.types.Object) -> None:
     """What the pick has made of the mesh's selection is there now."""
     mesh = obj.data
     pick, past = _picks.get(mesh_key(mesh)), _past.setdefault(mesh_key(mesh), [])
@@ -49,7 +51,7 @@ def record_selection(obj):
             ((_summarize_selection(mesh), _hash_selection(mesh)), pick)]
 
 
-def _summarize_selection(mesh):
+def _summarize_selection(mesh: bpy.types.Mesh) -> tuple[int, int]:
     """(active face, how many are selected): at once. Where it differs from that after a pick, so does the selection."""
     if mesh.is_editmode:
         active = bmesh.from_edit_mesh(mesh).faces.active
@@ -57,7 +59,7 @@ def _summarize_selection(mesh):
     return mesh.polygons.active, int(np.count_nonzero(arrays.read(mesh.polygons, "select", bool)))
 
 
-def _hash_selection(mesh):
+def _hash_selection(mesh: bpy.types.Mesh) -> bytes:
     """Of which faces are selected."""
     if mesh.is_editmode:
         faces = bmesh.from_edit_mesh(mesh).faces
@@ -68,7 +70,7 @@ def _hash_selection(mesh):
 
 
 @persistent
-def _on_undo(*_):
+def _on_undo(*_: object) -> None:
     """The newest pick after which the selection was as it is now; in Object Mode none where nothing is. Else it stays."""
     for mesh in bpy.data.meshes:
         past = _past.get(mesh_key(mesh))
@@ -83,19 +85,19 @@ def _on_undo(*_):
                 _picks.pop(mesh_key(mesh), None)
 
 
-def clear_pick(obj):
+def clear_pick(obj: bpy.types.Object) -> None:
     """No part of the object's mesh is picked any more."""
     _picks.pop(mesh_key(obj.data), None)
 
 
-def get_pick(obj):
+def get_pick(obj: bpy.types.Object) -> Pick | None:
     """The Picked that was chosen last in the object's mesh; None if there is none, or its hierarchy is not the mesh's
     any more."""
     pick = _picks.get(mesh_key(obj.data))
     return pick if pick and registry.get_hierarchy(obj) is pick.hierarchy else None
 
 
-def get_pick_for_poll(obj):
+def get_pick_for_poll(obj: bpy.types.Object) -> Pick | None:
     """The same for panels and poll(), which Blender calls often: as far as registry.get_state() tells."""
     pick = _picks.get(mesh_key(obj.data))
     if not pick:
@@ -104,7 +106,7 @@ def get_pick_for_poll(obj):
     return pick if fits in registry.USABLE and entry.hierarchy is pick.hierarchy else None
 
 
-def resolve_node(obj, node):
+def resolve_node(obj: bpy.types.Object, node: int) -> tuple[Hierarchy, int]:
     """(the hierarchy of the object's mesh as it is now, one of its nodes): this one, or for -1 the one that was picked
     last. Raises Refused."""
     found = registry.require_hierarchy(obj)
@@ -120,11 +122,11 @@ class NeedsPick:
     """Mixed into an operator, ahead of bpy.types.Operator: it needs a part that was picked, in Edit Mode."""
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return check_poll(cls, context.mode == "EDIT_MESH" and get_pick_for_poll(context.edit_object), NO_PICK)
 
 
-def forget_parts(obj):
+def forget_parts(obj: bpy.types.Object) -> None:
     """Lets the hierarchy of the object's mesh go, and with it the part."""
     registry.forget(obj.data)
     _past.pop(mesh_key(obj.data), None)

@@ -5,8 +5,12 @@ A hierarchy belongs to a topology: polygons and their vertices. Moving vertices 
 anew; any other edit makes it stale, and a stale one is never used: every use compares fingerprints.
 """
 
+from __future__ import annotations
+
 import dataclasses
 from enum import Enum, auto
+
+import bpy
 
 from ..mesh import arrays
 from ..mesh.arrays import Fingerprint
@@ -29,7 +33,7 @@ class HierarchyEntry:
     fingerprint: Fingerprint = None  # the mesh as it was when last looked at,
     revision: tuple = None  # and what changes.geometry_revision() said then
 
-    def record_fingerprint(self, mesh, fingerprint):
+    def record_fingerprint(self, mesh: bpy.types.Mesh, fingerprint: Fingerprint) -> None:
         self.fingerprint, self.revision = fingerprint, changes.geometry_revision(mesh)
 
 
@@ -52,7 +56,7 @@ _retired = []  # of meshes that are gone, or others by now: undo may bring them 
 
 
 @arrays.use_snapshot()
-def get_hierarchy(obj):
+def get_hierarchy(obj: bpy.types.Object) -> Hierarchy | None:
     """The hierarchy of the object's mesh, or None if there is none for its present topology."""
     mesh = arrays.update_mesh(obj)
     entry = _entries.get(mesh_key(mesh))
@@ -66,7 +70,7 @@ def get_hierarchy(obj):
     return entry.hierarchy if entry.built_for.topology == now.topology else None
 
 
-def require_hierarchy(obj):
+def require_hierarchy(obj: bpy.types.Object) -> Hierarchy:
     """The same. Raises Refused if there is none."""
     found = get_hierarchy(obj)
     if not found:
@@ -74,20 +78,20 @@ def require_hierarchy(obj):
     return found
 
 
-def _find_identical(now):
+def _find_identical(now: Fingerprint) -> HierarchyEntry | None:
     """A new entry with the hierarchy of a mesh that is the same in all: the one that was duplicated, for instance, or
     the one that undo has brought back."""
     entry = next((entry for entry in (*_entries.values(), *reversed(_retired)) if entry.built_for == now), None)
     return entry and dataclasses.replace(entry)
 
 
-def _load_stored(opening, now):
+def _load_stored(opening: PendingLoad, now: Fingerprint) -> HierarchyEntry | None:
     """A new entry with what came from a file, or None."""
     found = opening.result(now)
     return found and HierarchyEntry(found[0], element_counts(opening.mesh), found[1], opening.packed)
 
 
-def store(mesh, entry, now):
+def store(mesh: bpy.types.Mesh, entry: HierarchyEntry, now: Fingerprint) -> None:
     """From now on it is the mesh's, whose Fingerprint is now; one of another topology that was there retires."""
     before = _entries.get(mesh_key(mesh))
     if before and before.built_for.topology != entry.built_for.topology:
@@ -96,24 +100,24 @@ def store(mesh, entry, now):
     entry.record_fingerprint(mesh, now)
 
 
-def _retire(entry):
+def _retire(entry: HierarchyEntry) -> None:
     _retired[:] = [other for other in _retired if other.hierarchy is not entry.hierarchy] + [entry]
     del _retired[:-MAX_RETIRED]
 
 
-def is_retired(hierarchy):
+def is_retired(hierarchy: Hierarchy) -> bool:
     """Whether undo may bring it back."""
     return any(entry.hierarchy is hierarchy for entry in _retired)
 
 
-def forget(mesh):
+def forget(mesh: bpy.types.Mesh) -> None:
     """Lets the mesh's hierarchy go, also the one that came with the file."""
     _entries.pop(mesh_key(mesh), None)
     pending.pop(mesh_key(mesh), None)
     take_property(mesh)
 
 
-def forget_all():
+def forget_all() -> None:
     """Of every mesh."""
     for table in (*MeshTable.tables, _retired):
         table.clear()
@@ -122,7 +126,7 @@ def forget_all():
 # ---- For panels and poll(), which Blender calls often
 
 
-def get_state(mesh):
+def get_state(mesh: bpy.types.Mesh) -> tuple[State, HierarchyEntry | None]:
     """(State, Entry or None). In Edit Mode as far as the counts and the last use tell; else exactly."""
     entry = _entries.get(mesh_key(mesh)) or _adopt_identical(mesh)
     if not entry:
@@ -141,7 +145,7 @@ def get_state(mesh):
     return (State.FITS if entry.fingerprint == entry.built_for else State.MOVED), entry
 
 
-def _adopt_identical(mesh):
+def _adopt_identical(mesh: bpy.types.Mesh) -> HierarchyEntry | None:
     """The Entry of a mesh that undo has brought back, or of a duplicate, which nobody has used since; or None."""
     if mesh.is_editmode or has_stored(mesh) or _unmatched.get(mesh_key(mesh)) == changes.geometry_revision(mesh):
         return None
@@ -157,12 +161,12 @@ def _adopt_identical(mesh):
     return twin
 
 
-def find_entry(mesh):
+def find_entry(mesh: bpy.types.Mesh) -> HierarchyEntry | None:
     """The Entry that was made for the mesh, fitting or not, or None. At once."""
     return _entries.get(mesh_key(mesh))
 
 
-def find_hierarchy(mesh):
+def find_hierarchy(mesh: bpy.types.Mesh) -> Hierarchy | None:
     """The hierarchy of that, or None."""
     entry = find_entry(mesh)
     return entry and entry.hierarchy

@@ -6,9 +6,13 @@ undo step and every copy of the mesh that Blender makes for drawing would drag t
 here, until they are opened, or refused, at their first use.
 """
 
+from __future__ import annotations
+
+import threading
 import hashlib
 import struct
 
+import bpy
 import numpy as np
 
 from partwheel import Hierarchy, PartwheelError
@@ -41,12 +45,13 @@ class NewerVersion(UnsoundData):
     """Bytes of a version after this one."""
 
 
-def pack(fingerprint, hierarchy):
+def pack(fingerprint: Fingerprint, hierarchy: Hierarchy) -> bytes:
     header = HEADER.pack(MAGIC, VERSION, *fingerprint)
     return b"".join([header, _hash(header), hierarchy.save()])
 
 
-def matches_mesh(hierarchy, positions, begin, corners, moved):
+def matches_mesh(hierarchy: Hierarchy, positions: np.ndarray, begin: np.ndarray, corners: np.ndarray,
+                 moved: bool) -> bool:
     """Whether a hierarchy can be of a mesh, which its hashes don't tell: the vertices that it names are there, and each
     face lies where its tetrahedron is.
 
@@ -72,7 +77,7 @@ def matches_mesh(hierarchy, positions, begin, corners, moved):
     return (np.linalg.norm(gap, axis=1) <= reach).all()
 
 
-def unpack(data):
+def unpack(data: object) -> tuple[Fingerprint, Hierarchy]:
     """(Fingerprint when it was built, Hierarchy). Raises Unsound."""
     start = HEADER.size + HASH_SIZE
     if not isinstance(data, bytes) or len(data) < start or not data.startswith(MAGIC):
@@ -90,16 +95,16 @@ def unpack(data):
     return fingerprint, hierarchy
 
 
-def _hash(data):
+def _hash(data: bytes) -> bytes:
     return hashlib.blake2b(data, digest_size=HASH_SIZE).digest()
 
 
-def has_stored(mesh):
+def has_stored(mesh: bpy.types.Mesh) -> bool:
     """Whether one is there."""
     return mesh_key(mesh) in pending or PROPERTY in mesh
 
 
-def take_property(mesh):
+def take_property(mesh: bpy.types.Mesh) -> bytes | None:
     """What an appended or linked mesh has brought along, packed, or None; taken off it, if it can be changed."""
     packed = mesh.get(PROPERTY)
     if packed is not None and not mesh.library:
@@ -110,15 +115,15 @@ def take_property(mesh):
 class PendingLoad:
     """The hierarchy, if any, that came with the mesh, being opened while the caller does other things."""
 
-    def __init__(self, mesh):
+    def __init__(self, mesh: bpy.types.Mesh) -> None:
         self.mesh, self.packed = mesh, pending.pop(mesh_key(mesh), None) or take_property(mesh)
         self._opened = None
         self._task = None if self.packed is None else BackgroundTask(self._unpack)
 
-    def _unpack(self, _stop):
+    def _unpack(self, _stop: threading.Event) -> None:
         self._opened = unpack(self.packed)
 
-    def result(self, now):
+    def result(self, now: Fingerprint) -> tuple[Fingerprint, Hierarchy] | None:
         """(Fingerprint when it was built, Hierarchy), or None. now: the Fingerprint of the mesh."""
         if not self._task:
             return None

@@ -5,13 +5,14 @@ How a build looks to the user is here too: beside Blender's own work, with its p
 bar, or, for scripts and without windows, until it is done.
 """
 
+from collections.abc import Callable, Iterable
 import time
 
 import bpy
 
 from .. import library_error
 from ..parts import builds, picks, registry, stored
-from partwheel import Error, LibraryError, PartwheelError, Status
+from partwheel import Error, Hierarchy, LibraryError, PartwheelError, Status
 from ..mesh.mesh_identity import mesh_key
 from ..view import status
 from ..view.in_view import InView
@@ -26,7 +27,7 @@ FILL_DESCRIPTIONS = {
 TICK = 0.1  # seconds between two looks at the worker
 
 
-def describe_fill(hierarchy):
+def describe_fill(hierarchy: Hierarchy) -> str:
     """What was done to the mesh, so that its parts could be found, in a line."""
     return iface_(FILL_DESCRIPTIONS[hierarchy.summary.rung]).format(off=format_percent(hierarchy.summary.deviation))
 
@@ -36,7 +37,7 @@ class BuildMonitor:
 
     hierarchy: None until it is done, and if it fails."""
 
-    def __init__(self, operator, obj, **options):
+    def __init__(self, operator: bpy.types.Operator, obj: bpy.types.Object, **options: object) -> None:
         """options: of builds.request_build(). Raises an Error when it can't even begin."""
         self.operator, self.hierarchy = operator, None
         self.start_time = time.perf_counter()
@@ -50,7 +51,7 @@ class BuildMonitor:
 
     # ---- Until it is done
 
-    def wait(self, context):
+    def wait(self, context: bpy.types.Context) -> Hierarchy | None:
         """For scripts: blocks, and shows progress at the cursor, or in the terminal when there are no windows."""
         try:
             self._finish(lambda *told: self._show(context, *told))
@@ -60,14 +61,14 @@ class BuildMonitor:
 
     # ---- Beside Blender's own work
 
-    def watch(self, context):
+    def watch(self, context: bpy.types.Context) -> None:
         """From now on step() is to be called with every event. Another that watches the same build ends: who asked last
         gets the parts."""
         self.build.watcher = self
         self.timer = context.window_manager.event_timer_add(TICK, window=context.window)
         self._show_in_status_bar(context, 0.0, "")
 
-    def on_event(self, context, event):
+    def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
         """Looks after the build: whether it is over, or another operator goes on with it. Esc cancels it: also if the
         answer has come before, as long as it was not taken over, by a TIMER, and so shown."""
         if event.type == "ESC" and event.value == "PRESS":
@@ -86,20 +87,20 @@ class BuildMonitor:
             self._finish()
         return True
 
-    def cancel(self, context):
+    def cancel(self, context: bpy.types.Context) -> None:
         """Ends it before it is over."""
         self.build.cancel()
         self._stop_watching(context)
         self._finish()
 
-    def _stop_watching(self, context):
+    def _stop_watching(self, context: bpy.types.Context) -> None:
         if self.timer:
             context.window_manager.event_timer_remove(self.timer)
             self.timer = None
         self._end_progress(context)
         self.status_line.remove(context)
 
-    def _show_in_status_bar(self, context, fraction, stage):
+    def _show_in_status_bar(self, context: bpy.types.Context, fraction: float, stage: str) -> None:
         waits = stage and not self.build.job
         said = (iface_("Partwheel finds the parts of {name} after those of {other}") if waits
                 else iface_("Partwheel finds the parts of {name}: {fraction:.0%}"))
@@ -108,11 +109,11 @@ class BuildMonitor:
 
     # ---- Both
 
-    def _end_progress(self, context):
+    def _end_progress(self, context: bpy.types.Context) -> None:
         if not bpy.app.background:
             context.window_manager.progress_end()
 
-    def _show(self, context, fraction, stage):
+    def _show(self, context: bpy.types.Context, fraction: float, stage: str) -> None:
         if not self.build.job:
             return  # the cursor tells of the build that runs
         percent = int(fraction * 100)
@@ -123,7 +124,7 @@ class BuildMonitor:
             print(f"Partwheel: {percent:3d} % {stage}", flush=True)
             self.printed_percent = percent
 
-    def _finish(self, progress=None):
+    def _finish(self, progress: Callable[[float, str], object] | None = None) -> None:
         """Takes the result over, if there is one, and reports."""
         name, report = self.build.name, self.operator.report
         try:
@@ -146,7 +147,7 @@ class BuildMonitor:
         report({"INFO"}, f"{found} ({describe_fill(self.hierarchy)})")
 
 
-def start_build(operator, obj, **options):
+def start_build(operator: bpy.types.Operator, obj: bpy.types.Object, **options: object) -> BuildMonitor | None:
     """A Building, or None and a report."""
     try:
         return BuildMonitor(operator, obj, **options)
@@ -157,11 +158,11 @@ def start_build(operator, obj, **options):
     return None
 
 
-def _report_refusal(operator, obj, reason):
+def _report_refusal(operator: bpy.types.Operator, obj: bpy.types.Object, reason: str | Exception) -> None:
     operator.report({"ERROR"}, rpt_("No parts for {name}: {reason}").format(name=obj.data.name, reason=translate_error(reason)))
 
 
-def build_and_wait(operator, context, obj):
+def build_and_wait(operator: bpy.types.Operator, context: bpy.types.Context, obj: bpy.types.Object) -> Hierarchy | None:
     """The hierarchy of the object's mesh, found now if there is none; or None and a report."""
     hierarchy = registry.get_hierarchy(obj)
     if not hierarchy:
@@ -176,24 +177,24 @@ class BuildsFirst(InView):
 
     buildings = ()
 
-    def invoke(self, context, event):
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         return self._start_modal(context, event) if context.window else self.execute(context)
 
-    def _objects_to_build(self, context):
+    def _objects_to_build(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         """The objects whose parts are to be found before it can go on."""
         obj = context.active_object
         return [] if registry.get_hierarchy(obj) else [obj]
 
-    def _start_build(self, obj):
+    def _start_build(self, obj: bpy.types.Object) -> BuildMonitor | None:
         return start_build(self, obj)
 
-    def _on_parts_found(self, context):
+    def _on_parts_found(self, context: bpy.types.Context) -> set[str]:
         """They are found: it goes on where the user has not gone elsewhere meanwhile."""
         obj = context.active_object
         there = obj is not None and obj.name_full == self.object_name and self.poll(context)
         return self.execute(context) if there else {"CANCELLED"}
 
-    def on_start(self, context, _event):
+    def on_start(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         self.object_name, self.buildings = context.active_object.name_full, []
         lacking = self._objects_to_build(context)
         if not lacking:
@@ -205,10 +206,10 @@ class BuildsFirst(InView):
         self.buildings[0].watch(context)
         return {"RUNNING_MODAL"}
 
-    def can_continue(self, _context):
+    def can_continue(self, _context: bpy.types.Context) -> bool:
         return True  # the build itself knows
 
-    def on_event(self, context, event):
+    def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """While the parts are being found all but Esc goes to Blender itself."""
         if not self.buildings[0].on_event(context, event):
             return {"PASS_THROUGH"}
@@ -220,7 +221,7 @@ class BuildsFirst(InView):
             return {"PASS_THROUGH"}
         return self._on_parts_found(context) if done.hierarchy else {"CANCELLED"}
 
-    def on_cancel(self, context):
+    def on_cancel(self, context: bpy.types.Context) -> None:
         for building in self.buildings:
             building.cancel(context)
 
@@ -228,15 +229,15 @@ class BuildsFirst(InView):
 class FindsParts(BuildsFirst):
     """Mixed into an operator that finds parts and does nothing with them."""
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         buildings = list(filter(None, map(self._start_build, self._objects_to_build(context))))
         return {"FINISHED"} if [each for each in buildings if each.wait(context)] else {"CANCELLED"}
 
-    def _on_parts_found(self, _context):
+    def _on_parts_found(self, _context: bpy.types.Context) -> set[str]:
         return {"FINISHED"}
 
 
-def filter_without_parts(objects):
+def filter_without_parts(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
     """Those whose meshes have none; of those that share a mesh one."""
     meshes = {obj.data: obj for obj in objects if obj.type == "MESH"}
     return [obj for mesh, obj in meshes.items() if registry.get_state(mesh)[0] not in registry.USABLE]
@@ -256,10 +257,10 @@ class _BuildOperator(NeedsActiveMesh, FindsParts):
         "coarser copy: some ten times the time and memory. The add-on's preferences can have it so for all",
         default=False)
 
-    def _objects_to_build(self, context):
+    def _objects_to_build(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         return [context.active_object]
 
-    def _start_build(self, obj):
+    def _start_build(self, obj: bpy.types.Object) -> BuildMonitor | None:
         return start_build(self, obj, quality=self.quality, open_surfaces=self.open_surfaces, exactly=self.exactly or None)
 
 
@@ -270,7 +271,7 @@ class MESH_OT_partwheel_build(_BuildOperator, bpy.types.Operator):
     bl_label = "Find Parts of Mesh"
     bl_options = {"REGISTER"}
 
-    def _objects_to_build(self, context):
+    def _objects_to_build(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         obj = context.active_object
         return [obj, *filter_without_parts(each for each in context.selected_objects if each.data != obj.data)]
 
@@ -291,19 +292,19 @@ class MESH_OT_partwheel_clear(bpy.types.Operator):
     bl_options = {"REGISTER"}
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.active_object
         return check_poll(cls, obj is not None and obj.type == "MESH" and registry.get_state(obj.data)[0] != registry.State.NONE,
                           "The active object has no parts.")
 
-    def invoke(self, context, event):
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Undo is Blender's and knows nothing of parts: so it asks."""
         texts = {} if bpy.app.version < (4, 1) else {
             "title": iface_("Clear the parts?"),
             "message": iface_("Those saved with the file go, too. Undo does not bring them back.")}
         return context.window_manager.invoke_confirm(self, event, **texts)
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         picks.forget_parts(context.active_object)
         for area in context.screen.areas if context.screen else ():
             area.tag_redraw()

@@ -6,6 +6,8 @@ A gizmo, as in Blender's own tools that show what is under the mouse: Blender as
 draws it in every 3D view, for as long as the tool is active and no longer. It never takes an event.
 """
 
+from __future__ import annotations
+
 import bpy
 import numpy as np
 
@@ -15,7 +17,7 @@ from ..parts import picks, registry
 from ..view import overlay, picking
 from ..view.visible_surface import NO_FACE
 from . import borders, states
-from .view_cache import prepare_next_slice, is_at_rest, is_current, mark_written_meshes, get_view_cache, get_ready_cache, stop_timers
+from .view_cache import prepare_next_slice, is_at_rest, is_current, mark_written_meshes, get_view_cache, get_ready_cache, stop_timers, ViewCache
 
 HOVER_STATES = *registry.USABLE, registry.State.UNOPENED
 
@@ -31,10 +33,10 @@ class Hover:
     """What the mouse is over: an object's full name, its overlay.PartTriangles, a node, and the faces of it where its border is
     snapped, else None; or None."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.target, self._timer, self._is_waiting = None, None, False
 
-    def move(self, context, point):
+    def move(self, context: bpy.types.Context, point: tuple) -> None:
         """The mouse is at a point of the context's region. Redraws if that changes what is shown.
 
         After an edit that takes some steps, a slice of what is needed each: what is to be seen of the mouse meanwhile
@@ -55,12 +57,12 @@ class Hover:
             self._schedule_move(context, point)
         self._set_target(found)
 
-    def _set_target(self, found):
+    def _set_target(self, found: tuple | None) -> None:
         if found is not self.target:
             self.target = found
             overlay.redraw_views()
 
-    def _schedule_move(self, context, point):
+    def _schedule_move(self, context: bpy.types.Context, point: tuple) -> None:
         """The next step follows once Blender has seen to what else there is."""
         window, area, region = context.window, context.area, context.region
 
@@ -75,12 +77,12 @@ class Hover:
         self._timer = move
         bpy.app.timers.register(move, first_interval=0)
 
-    def stop(self):
+    def stop(self) -> None:
         if self._timer and bpy.app.timers.is_registered(self._timer):
             bpy.app.timers.unregister(self._timer)
         self._timer = None
 
-    def _find_target(self, context, point):
+    def _find_target(self, context: bpy.types.Context, point: tuple) -> tuple | None:
         obj, face = self._find_face(context, context.region, context.region_data, point)
         parts = get_view_cache(obj).get_part_triangles(obj) if obj and face != NO_FACE else None
         if not parts:
@@ -90,7 +92,7 @@ class Hover:
             return self.target
         return obj.name_full, parts, node, borders.get_part_faces(obj, parts.hierarchy, node, True) if snap else None
 
-    def _find_face(self, context, *view):
+    def _find_face(self, context: bpy.types.Context, *view: object) -> tuple[bpy.types.Object | None, int | None]:
         """(object, face), (None, None) where nothing is that has faces to be picked."""
         if context.mode == "OBJECT":
             hit = picking.find_surface_under(context, context.area, *view)
@@ -102,12 +104,12 @@ class Hover:
         shown = [each for each in _find_edited_objects(context) if self._get_ready_cache(each)]
         return picking.find_nearest_face(shown, lambda each: get_view_cache(each).get_ray_caster(each), *view)
 
-    def _get_ready_cache(self, obj):
+    def _get_ready_cache(self, obj: bpy.types.Object) -> ViewCache | None:
         kept = get_ready_cache(obj)
         self._is_waiting = self._is_waiting or kept is None
         return kept
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         if not self.target or overlay.pick_overlay.is_shown:
             return
         name, parts, node, snapped = self.target
@@ -116,13 +118,13 @@ class Hover:
             overlay.draw_hover(context, obj, parts, node, snapped)
 
 
-def _find_edited_objects(context):
+def _find_edited_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The meshes of the context's mode that are seen in its view."""
     edited = context.objects_in_mode_unique_data if context.mode == "EDIT_MESH" else [context.active_object]
     return [each for each in edited if each and each.type == "MESH" and each.visible_get(viewport=context.space_data)]
 
 
-def is_tool_snapping(context):
+def is_tool_snapping(context: bpy.types.Context) -> bool:
     """Whether the tool is set to snap borders."""
     tool = context.workspace.tools.from_space_view3d_mode(context.mode)
     return bool(tool and tool.operator_properties(OPERATORS[context.mode]).snap)
@@ -131,11 +133,11 @@ def is_tool_snapping(context):
 class Highlight:
     """The faces of the active object that are selected in Object Mode, once a part of it was picked."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.target = None  # as in Hover: an object's full name, its overlay.PartTriangles, the faces
         self.shown = 0  # how often others have been
 
-    def update(self, context):
+    def update(self, context: bpy.types.Context) -> None:
         """To what is selected now."""
         obj = context.active_object
         if context.mode != "OBJECT" or obj is None or obj.type != "MESH" or not picks.get_pick_for_poll(obj):
@@ -144,18 +146,18 @@ class Highlight:
         if get_ready_cache(obj) and not (self.target and self.target[0] == obj.name_full and is_current(obj, self.target[1])):
             self.show_selected(obj)
 
-    def is_showing(self, obj):
+    def is_showing(self, obj: bpy.types.Object) -> bool:
         """Whether it is on this object now."""
         return bool(self.target and self.target[0] == obj.name_full and len(self.target[2]) and is_current(obj, self.target[1]))
 
-    def show_selected(self, obj):
+    def show_selected(self, obj: bpy.types.Object) -> None:
         self.show(obj, np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)))
 
-    def show(self, obj, faces):
+    def show(self, obj: bpy.types.Object, faces: np.ndarray) -> None:
         self.target, self.shown = (obj.name_full, get_view_cache(obj).get_part_triangles(obj), faces), self.shown + 1
         overlay.redraw_views()
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         if not self.target:
             return
         name, parts, faces = self.target
@@ -170,11 +172,11 @@ hover, highlight = Hover(), Highlight()
 class VIEW3D_GT_partwheel_hover(bpy.types.Gizmo):
     bl_idname = "VIEW3D_GT_partwheel_hover"
 
-    def test_select(self, context, location):
+    def test_select(self, context: bpy.types.Context, location: tuple) -> int:
         hover.move(context, location)
         return -1
 
-    def draw(self, context):
+    def draw(self, context: bpy.types.Context) -> None:
         highlight.draw(context)
         hover.draw(context)
 
@@ -187,19 +189,19 @@ class VIEW3D_GGT_partwheel_hover(bpy.types.GizmoGroup):
     bl_options = {"3D"}
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.active_object
         return (context.mode in OPERATORS and not library_error.library_error()
                 and not (context.mode == "SCULPT" and obj.use_dynamic_topology_sculpting))
 
-    def setup(self, _context):
+    def setup(self, _context: bpy.types.Context) -> None:
         self.gizmos.new(VIEW3D_GT_partwheel_hover.bl_idname)
 
 
 CLASSES = (VIEW3D_GT_partwheel_hover, VIEW3D_GGT_partwheel_hover)
 
 
-def unregister():
+def unregister() -> None:
     hover.target = highlight.target = None
     hover.stop()
     stop_timers()

@@ -2,6 +2,8 @@
 """Picking in Object Mode: object.partwheel_pick, the tool's, selects the part in its mesh, where it stays highlighted for
 what is done with it; object.partwheel_select enters Edit Mode with it at the end."""
 
+from __future__ import annotations
+
 import bpy
 import numpy as np
 
@@ -17,23 +19,24 @@ from .hover import highlight
 from .pick import PartPicker
 from .view_cache import get_view_cache, keep_view_cache
 from .preview import PreviewTarget
+from . import states
 
 
 class _InObjectMode(PartPicker):
     """What both share: the part is of the object under the mouse."""
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return check_poll(cls, context.mode == "OBJECT", "This is for Object Mode.")
 
-    def on_start(self, context, event):
+    def on_start(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         obj = self._find_target(context, event)
         if not obj:
             return {"CANCELLED"}
         self.object_name = obj.name_full
         return PartPicker.on_start(self, context, event)
 
-    def _find_target(self, context, event):
+    def _find_target(self, context: bpy.types.Context, event: bpy.types.Event) -> bpy.types.Object | None:
         """The object under the mouse, or else the active one, if it can be edited; or None and a report."""
         view = picking.find_view_under_mouse(context, event)
         hit = view and picking.find_surface_under(context, *view)
@@ -51,12 +54,13 @@ class _InObjectMode(PartPicker):
             self.report({"WARNING"}, reason)
         return None if reason else obj
 
-    def _find_objects(self, context):
+    def _find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         """The one that was under the mouse at the beginning; without a mouse the active one."""
         obj = mesh_identity.find_object(self.object_name) if self.object_name else context.active_object
         return [obj] if context.mode == "OBJECT" and obj is not None and obj.type == "MESH" else []
 
-    def _find_face(self, context, event):
+    def _find_face(self, context: bpy.types.Context,
+                   event: bpy.types.Event) -> tuple[bpy.types.Object | None, int | None]:
         """Also on an instance of the object."""
         view, (obj,) = picking.find_view_under_mouse(context, event), self._find_objects(context)
         hit = view and picking.find_surface_under(context, *view)
@@ -74,21 +78,22 @@ class OBJECT_OT_partwheel_select(_InObjectMode, bpy.types.Operator):
     bl_options = set()  # what is registered and undone is the pick in Edit Mode, see _enter_edit_mode()
     commands = keys.COMMANDS
 
-    def create_target(self, context, obj):
+    def create_target(self, context: bpy.types.Context, obj: bpy.types.Object) -> PreviewTarget:
         return PreviewTarget(obj)
 
-    def _key_while_holding(self, context, event, over):
+    def _key_while_holding(self, context: bpy.types.Context, event: bpy.types.Event, over: bool) -> set[str]:
         if event.type == "TAB" and not (event.shift or event.ctrl):  # confirming does what it asks for
             return self.on_confirm(context)
         return PartPicker._key_while_holding(self, context, event, over)
 
-    def _commit(self, context):
+    def _commit(self, context: bpy.types.Context) -> set[str]:
         return self._enter_edit_mode(context, self._find_object(context))
 
-    def _apply(self, context, obj, _faces, _picked):
+    def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, _faces: np.ndarray,
+               _picked: states.PickedPart) -> set[str]:
         return self._enter_edit_mode(context, obj)
 
-    def _enter_edit_mode(self, context, obj):
+    def _enter_edit_mode(self, context: bpy.types.Context, obj: bpy.types.Object) -> set[str]:
         """Edit Mode with the part that is picked: two undo steps, and the panel of the last operation is the second's.
         """
         _activate(context, obj)
@@ -106,10 +111,10 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
     bl_label = "Pick Part by Wheel"
     bl_options = {"REGISTER", "UNDO"}
 
-    def create_target(self, context, obj):
+    def create_target(self, context: bpy.types.Context, obj: bpy.types.Object) -> PreviewTarget:
         return _HighlightTarget(obj)
 
-    def on_miss(self, context):
+    def on_miss(self, context: bpy.types.Context) -> set[str]:
         """As in Edit Mode: a click beside everything picks nothing."""
         obj = context.active_object
         if self.extend or self.deselect or not arrays.read(obj.data.polygons, "select", bool).any():
@@ -121,10 +126,11 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
         highlight.update(context)
         return {"FINISHED"}
 
-    def _commit(self, context):
+    def _commit(self, context: bpy.types.Context) -> set[str]:
         return self._apply(context, self._find_object(context), self.faces, self.state)
 
-    def _apply(self, context, obj, faces, picked):
+    def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
+               picked: states.PickedPart) -> set[str]:
         _activate(context, obj)
         context.view_layer.update()
         with keep_view_cache(obj):
@@ -138,15 +144,15 @@ class OBJECT_OT_partwheel_pick(_InObjectMode, bpy.types.Operator):
 class _HighlightTarget(PreviewTarget):
     """What else is picked stays highlighted beside the part, as far as it will be picked still."""
 
-    def __init__(self, obj):
+    def __init__(self, obj: bpy.types.Object) -> None:
         super().__init__(obj)
         self.before = np.flatnonzero(arrays.read(obj.data.polygons, "select", bool)), obj.data.polygons.active
 
-    def select(self, obj, faces, _face, extend, deselect):
+    def select(self, obj: bpy.types.Object, faces: np.ndarray, _face: int, extend: bool, deselect: bool) -> None:
         chosen = predict_face_selection(obj.data, faces, extend, deselect)
         highlight.show(obj, np.flatnonzero(chosen & ~arrays.make_mask(len(chosen), faces)))
 
-    def restore(self):
+    def restore(self) -> None:
         """Also what an error in the middle of confirming has selected."""
         (faces, active), mesh = self.before, mesh_identity.find_object(self.name).data
         if not np.array_equal(np.flatnonzero(arrays.read(mesh.polygons, "select", bool)), faces):
@@ -155,7 +161,7 @@ class _HighlightTarget(PreviewTarget):
         highlight.update(bpy.context)
 
 
-def _activate(context, obj):
+def _activate(context: bpy.types.Context, obj: bpy.types.Object) -> None:
     """The object becomes the active one and is selected, alone if it wasn't."""
     if not obj.select_get():
         for other in context.selected_objects:

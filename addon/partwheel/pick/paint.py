@@ -2,6 +2,7 @@
 """mesh.partwheel_paint: a part becomes a face set, a mask, a vertex group or a paint mask, in the modes that have them."""
 
 import bpy
+import numpy as np
 
 from ..mesh.errors import Refused
 from ..mesh.poll import check_poll, poll_is_editable
@@ -10,6 +11,7 @@ from ..words.say import iface_, rpt_
 from .pick import PartPicker
 from .preview import PreviewTarget
 from .writers import HAS_CONTENT, UNDOES_LEVEL_MASKS, WRITERS, write_level_mask
+from . import states
 
 # Mode of the context -> what a part can become there, the first by default.
 TARGETS_BY_MODE = {
@@ -38,26 +40,27 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
     )
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.active_object
         return (check_poll(cls, context.mode in TARGETS_BY_MODE and obj is not None and obj.type == "MESH",
                            "This is for Sculpt Mode and the paint modes of a mesh.")
                 and poll_is_editable(cls, obj)
                 and check_poll(cls, not obj.use_dynamic_topology_sculpting, DYNAMIC_TOPOLOGY_REASON))
 
-    def _apply(self, context, obj, faces, picked):
+    def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
+               picked: states.PickedPart) -> set[str]:
         return self._write(context, obj, faces, picked.node)
 
-    def _find_objects(self, context):
+    def _find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         return [context.active_object] if context.mode in TARGETS_BY_MODE else []
 
-    def create_target(self, context, obj):
+    def create_target(self, context: bpy.types.Context, obj: bpy.types.Object) -> PreviewTarget:
         return PreviewTarget(obj)
 
-    def _commit(self, context):
+    def _commit(self, context: bpy.types.Context) -> set[str]:
         return self._write(context, self._find_object(context), self.faces, self.state.node)
 
-    def on_miss(self, context):
+    def on_miss(self, context: bpy.types.Context) -> set[str]:
         """As in Edit Mode: a click beside everything leaves nothing masked."""
         obj, way = context.active_object, self._way(context)
         there = way in HAS_CONTENT and (HAS_CONTENT[way](obj.data) or UNDOES_LEVEL_MASKS and way == "MASK" and find_sculpted_multires(obj))
@@ -65,10 +68,11 @@ class MESH_OT_partwheel_paint(PartPicker, bpy.types.Operator):
             return {"CANCELLED"}
         return self._write(context, obj, [], -1)
 
-    def _way(self, context):
+    def _way(self, context: bpy.types.Context) -> str:
         return TARGETS_BY_MODE[context.mode][0] if self.write == "AUTO" else self.write
 
-    def _write(self, context, obj, faces, node):
+    def _write(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray | list,
+               node: int) -> set[str]:
         way = self._way(context)
         if way not in TARGETS_BY_MODE[context.mode]:
             self.report({"ERROR"}, rpt_("Parts can't become this in this mode: {made}.").format(made=iface_(TARGET_LABELS[way])))

@@ -6,10 +6,12 @@ What happens to the part meanwhile, and once it is confirmed, is the business of
 """
 
 import contextlib
+from collections.abc import Callable
 from dataclasses import replace
 from math import hypot
 
 import bpy
+import numpy as np
 
 from ..mesh import arrays
 from ..parts import builds, changes, picks, registry
@@ -17,12 +19,14 @@ from ..preferences import preferences
 from ..view import keys, overlay, picking
 from ..view.stepper import StepButtons, get_ui_scale
 from . import borders, states
-from partwheel import PartwheelError
+from partwheel import Hierarchy, PartwheelError
 from .view_cache import prepare_next_slice, is_at_rest, mark_written_meshes, get_view_cache
 from ..view.visible_surface import NO_FACE
 from .build import start_build, build_and_wait
 from ..view.in_view import InView
 from ..words.say import iface_, get_operator_label, format_percent, rpt_
+from .preview import PreviewTarget
+from ..mesh.selection import Selections
 
 
 class PartPicker(InView):
@@ -46,24 +50,25 @@ class PartPicker(InView):
 
     # ---- What operators differ in
 
-    def _find_objects(self, context):
+    def _find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         """The objects that can be picked from, the active one first."""
         raise NotImplementedError
 
-    def create_target(self, context, obj):
+    def create_target(self, context: bpy.types.Context, obj: bpy.types.Object) -> PreviewTarget | Selections:
         """A new target for a pick from this object, with select(obj, faces, face, extend, deselect), restore() and
         fits()."""
         raise NotImplementedError
 
-    def on_miss(self, context):
+    def on_miss(self, context: bpy.types.Context) -> set[str]:
         """The answer to a click of the tool beside every mesh."""
         return {"CANCELLED"}
 
-    def _commit(self, context):
+    def _commit(self, context: bpy.types.Context) -> set[str]:
         """The part is confirmed; the answer of the operator."""
         return {"FINISHED"}
 
-    def _apply(self, context, obj, faces, picked):
+    def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
+               picked: states.PickedPart) -> set[str]:
         """Does at once with these faces what otherwise a target and _commit() do; the answer of the operator. picked: a
         states.PickedPart."""
         raise NotImplementedError
@@ -77,7 +82,7 @@ class PartPicker(InView):
 
     # ---- Without a window
 
-    def execute(self, context):
+    def execute(self, context: bpy.types.Context) -> set[str]:
         obj = self._find_objects(context)[0]
         hierarchy = build_and_wait(self, context, obj)
         if not hierarchy:
@@ -95,12 +100,12 @@ class PartPicker(InView):
 
     # ---- With the mouse: from nothing to a part
 
-    def _run_guarded(self, context, step):
+    def _run_guarded(self, context: bpy.types.Context, step: Callable[[], set[str]]) -> set[str]:
         """Nobody else runs during a step."""
         with arrays.use_snapshot():
             return InView._run_guarded(self, context, step)
 
-    def on_start(self, context, event):
+    def on_start(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         PartPicker.n_started += 1
         self.start_number = PartPicker.n_started
         self.scroll, self.drag = keys.NotchCounter(keys.SCROLL_STEP), None
@@ -119,7 +124,7 @@ class PartPicker(InView):
         self._add_timer(context, 0, self._slices)
         return {"RUNNING_MODAL"}
 
-    def _on_preparing(self, context, event):
+    def _on_preparing(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """One more slice; a key or a button that is pressed meanwhile has all of them made at once."""
         objects, released = self._find_objects(context), event.value == "RELEASE"
         idle = released or event.type in keys.SYSTEM | keys.MOVES
@@ -132,7 +137,7 @@ class PartPicker(InView):
         answer = self._finish_start(context)
         return answer if idle or answer != {"RUNNING_MODAL"} else self.on_event(context, event)
 
-    def _finish_start(self, context):
+    def _finish_start(self, context: bpy.types.Context) -> set[str]:
         """All that is needed of the meshes is there, and what was done is seen to."""
         event, self.state = self.state, states.WaitingForClick()
         objects = self._find_objects(context)
@@ -147,7 +152,7 @@ class PartPicker(InView):
             return self._start_build(context, obj, None)
         return self._wait_for_click(context, iface_("Click a face of the mesh"))
 
-    def _record_click(self, context, event):
+    def _record_click(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
         """The wheel is ours as long as the mouse is there, and the view as it is."""
         view = picking.find_view_under_mouse(context, event)
         if view and preferences().wheel == "NEAR":
@@ -155,7 +160,7 @@ class PartPicker(InView):
         if event.is_tablet or preferences().show_steps:
             self.step_buttons = StepButtons(event.mouse_x, event.mouse_y)
 
-    def _is_at_click(self, context, event):
+    def _is_at_click(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
         """Whether the wheel is ours."""
         view = picking.find_view_under_mouse(context, event)
         if not (view and self.click_view):
@@ -164,7 +169,8 @@ class PartPicker(InView):
         moved = hypot(event.mouse_x - x, event.mouse_y - y)
         return moved <= self.NEAR * get_ui_scale() and view[2].perspective_matrix == looked
 
-    def _find_face(self, context, event):
+    def _find_face(self, context: bpy.types.Context,
+                   event: bpy.types.Event) -> tuple[bpy.types.Object | None, int | None]:
         """(object, face index) under the mouse, or (None, None)."""
         view = picking.find_view_under_mouse(context, event)
         if not view:
@@ -177,16 +183,17 @@ class PartPicker(InView):
             return None, None
         return obj, face
 
-    def _report_generated_face(self, obj):
+    def _report_generated_face(self, obj: bpy.types.Object) -> None:
         self.report({"INFO"}, rpt_("What is seen there was made by the modifiers of {name} and belongs to no face of its "
                                    "mesh.").format(name=obj.name))
 
     @staticmethod
-    def _find_hierarchy(obj):
+    def _find_hierarchy(obj: bpy.types.Object) -> Hierarchy | None:
         """The hierarchy of the object's mesh; None if there is none, or a new one is on its way."""
         return None if builds.is_being_built(obj) else registry.get_hierarchy(obj)
 
-    def _pick_face(self, context, event, obj, face):
+    def _pick_face(self, context: bpy.types.Context, event: bpy.types.Event, obj: bpy.types.Object,
+                   face: int) -> set[str]:
         self.hierarchy = self._find_hierarchy(obj)
         if self.hierarchy is None:
             # Which face was meant is known now: the user may turn the view while the parts are being built.
@@ -196,14 +203,14 @@ class PartPicker(InView):
             self.drag = event.mouse_y, picked.index
         return self._start_holding(context, obj, picked)
 
-    def _start_holding(self, context, obj, picked):
+    def _start_holding(self, context: bpy.types.Context, obj: bpy.types.Object, picked: states.PickedPart) -> set[str]:
         self.object_name, self.target, self.shown_part = obj.name_full, self.create_target(context, obj), None
         self._exit_stack.callback(overlay.pick_overlay.hide)
         if self.step_buttons:
             self._add_draw_handler(self.step_buttons.draw, "POST_PIXEL")
         return self._show(context, picked)
 
-    def _start_build(self, context, obj, face):
+    def _start_build(self, context: bpy.types.Context, obj: bpy.types.Object, face: int | None) -> set[str]:
         self.building = start_build(self, obj)
         if not self.building:
             return {"CANCELLED"}
@@ -211,7 +218,7 @@ class PartPicker(InView):
         self.building.watch(context)
         return {"RUNNING_MODAL"}
 
-    def _on_building(self, context, event):
+    def _on_building(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """While the parts are being built all but Esc goes to Blender itself; then the face is picked."""
         if not self.building.on_event(context, event):
             return {"PASS_THROUGH"}
@@ -228,17 +235,17 @@ class PartPicker(InView):
             return self._start_holding(context, obj, states.pick_face(self.hierarchy, face))
         return self._wait_for_click(context, iface_("Click a face of the mesh"))
 
-    def _find_object(self, context):
+    def _find_object(self, context: bpy.types.Context) -> bpy.types.Object | None:
         """The object that the part belongs to, if it can still be picked from."""
         return next((each for each in self._find_objects(context) if each.name_full == self.object_name), None)
 
-    def _wait_for_click(self, context, header):
+    def _wait_for_click(self, context: bpy.types.Context, header: str) -> set[str]:
         self._show_status(context, header, keys.WAITING)
         return {"RUNNING_MODAL"}
 
     # ---- With a part, or waiting for one
 
-    def on_event(self, context, event):
+    def on_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if isinstance(self.state, states.Preparing):
             return self._on_preparing(context, event)
         if isinstance(self.state, states.WaitingForParts):
@@ -271,7 +278,7 @@ class PartPicker(InView):
             return {"CANCELLED"}
         return self._key_while_holding(context, event, over) if holding else self._key_while_waiting(context, event)
 
-    def _key_while_waiting(self, context, event):
+    def _key_while_waiting(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if event.type == "LEFTMOUSE":
             obj, face = self._find_face(context, event)
             if obj is None:
@@ -280,7 +287,7 @@ class PartPicker(InView):
             return self._pick_face(context, event, obj, face)
         return {"RUNNING_MODAL"}
 
-    def _key_while_holding(self, context, event, over):
+    def _key_while_holding(self, context: bpy.types.Context, event: bpy.types.Event, over: bool) -> set[str]:
         step = self.step_buttons.step_at(event) if self.step_buttons and event.type == "LEFTMOUSE" else 0
         if step:
             return self._show(context, self.state.turn(step))
@@ -302,7 +309,7 @@ class PartPicker(InView):
         # in the keymap of the tool.
         return self.on_confirm(context) | {"PASS_THROUGH"}
 
-    def _on_drag(self, context, event):
+    def _on_drag(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Up or down with the button, or a pen, still down."""
         if self.drag and isinstance(self.state, states.PickedPart):
             begin, index = self.drag
@@ -314,7 +321,7 @@ class PartPicker(InView):
             return self._show_state(context, self.state)
         return {"RUNNING_MODAL"}
 
-    def _show(self, context, state):
+    def _show(self, context: bpy.types.Context, state: states.PickedPart) -> set[str]:
         """Goes to a state with a picked part and selects it."""
         obj = self._find_object(context)
         self.state = state
@@ -327,18 +334,18 @@ class PartPicker(InView):
                 self._draw(obj, parts)
         return self._show_state(context, state)
 
-    def _draw(self, obj, parts):
+    def _draw(self, obj: bpy.types.Object, parts: overlay.PartTriangles) -> None:
         """What is held, as it is seen in this frame; in another one it is drawn no more."""
         revision = self.display_revision = changes.display_revision(obj.data)
         overlay.pick_overlay.show(self._guard_drawing, lambda obj: changes.display_revision(obj.data) == revision, obj, parts, self.state.node,
                                   self.state.next, self.faces if self.snap else None)
 
-    def _redraw_in_new_frame(self, obj):
+    def _redraw_in_new_frame(self, obj: bpy.types.Object) -> None:
         """In another frame, once playback has ended."""
         if overlay.pick_overlay.is_shown and self.display_revision != changes.display_revision(obj.data) and is_at_rest():
             self._draw(obj, get_view_cache(obj).get_part_triangles(obj))
 
-    def _show_state(self, context, state):
+    def _show_state(self, context: bpy.types.Context, state: states.PickedPart) -> set[str]:
         share = self.hierarchy.area[state.node] / self.hierarchy.area[-1]
         number = state.typed + "_" if state.typed else state.index + 1
         told = iface_("Part {number} of {count}, {faces:,} faces, {share} of the area").format(
@@ -348,7 +355,7 @@ class PartPicker(InView):
                    + (keys.ENDS[1:] if self.tool else keys.ENDS))
         return {"RUNNING_MODAL"}
 
-    def _set_tool_snap(self, context):
+    def _set_tool_snap(self, context: bpy.types.Context) -> None:
         """The next clicks of the tool do as this one, and the tool's header says so."""
         tool = self.tool and context.workspace.tools.from_space_view3d_mode(context.mode)
         if tool and tool.idname == "partwheel.select":
@@ -356,7 +363,7 @@ class PartPicker(InView):
 
     # ---- Ends
 
-    def on_confirm(self, context):
+    def on_confirm(self, context: bpy.types.Context) -> set[str]:
         obj = self._find_object(context)
         # What the panel of the last operation, and Repeat Last, do again.
         self.face_index, self.level = self.state.face, self.state.level
@@ -365,13 +372,13 @@ class PartPicker(InView):
         picks.record_selection(obj)
         return answer
 
-    def on_cancel(self, context):
+    def on_cancel(self, context: bpy.types.Context) -> None:
         if isinstance(self.state, states.WaitingForParts):
             self.building.cancel(context)
         elif self.target and self.can_continue(context):
             self.target.restore()
 
-    def can_continue(self, context):
+    def can_continue(self, context: bpy.types.Context) -> bool:
         if isinstance(self.state, states.WaitingForParts):
             return True
         if not self.target:

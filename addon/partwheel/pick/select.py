@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """mesh.partwheel_select: in Edit Mode a click picks a face, the wheel grows and shrinks the part around it."""
 
+from __future__ import annotations
+
 import bpy
+import numpy as np
 
 from ..mesh.poll import check_poll
 from ..mesh.selection import Selections
 from ..view import keys
 from .pick import PartPicker
+from . import states
 
 
 class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
@@ -18,24 +22,25 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
     commands = keys.COMMANDS
 
     @classmethod
-    def poll(cls, context):
+    def poll(cls, context: bpy.types.Context) -> bool:
         return check_poll(cls, context.mode == "EDIT_MESH" and context.edit_object,
                           "Parts are selected in Edit Mode of a mesh.")
 
-    def _apply(self, context, obj, faces, picked):
+    def _apply(self, context: bpy.types.Context, obj: bpy.types.Object, faces: np.ndarray,
+               picked: states.PickedPart) -> set[str]:
         self.create_target(context, obj).select(obj, faces, picked.face, self.extend, self.deselect)
         return {"FINISHED"}
 
-    def _find_objects(self, context):
+    def _find_objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         """In Edit Mode; of objects that share a mesh, the one that is being edited."""
         if context.mode != "EDIT_MESH":
             return []
         return sorted(context.objects_in_mode_unique_data, key=lambda obj: obj != context.edit_object)
 
-    def create_target(self, context, obj):
+    def create_target(self, context: bpy.types.Context, obj: bpy.types.Object) -> Selections:
         return Selections(self._find_objects(context), obj)  # whose hierarchy was just asked for, or built
 
-    def on_miss(self, context):
+    def on_miss(self, context: bpy.types.Context) -> set[str]:
         """As Blender's own select tools: a click beside everything selects nothing."""
         selections = Selections(self._find_objects(context))
         if self.extend or self.deselect or not selections.any():
@@ -43,7 +48,7 @@ class MESH_OT_partwheel_select(PartPicker, bpy.types.Operator):
         selections.select(context.edit_object, [])
         return {"FINISHED"}
 
-    def _commit(self, context):
+    def _commit(self, context: bpy.types.Context) -> set[str]:
         """The object of the part becomes the active one, as with Blender's own selecting."""
         context.view_layer.objects.active = self._find_object(context)
         return {"FINISHED"}

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The toolbar's tool in each mode that has parts: each click picks one, the wheel grows and shrinks it."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import bpy
@@ -42,7 +44,7 @@ GESTURES = {
 }
 
 
-def _create_tool(mode):
+def _create_tool(mode: str) -> type[bpy.types.WorkSpaceTool]:
     """The tool in one mode: a click, the wheel, Shift and Ctrl mean the same in all."""
     return type(f"SelectPart_{mode}", (bpy.types.WorkSpaceTool,), {
         "bl_space_type": "VIEW_3D",
@@ -59,7 +61,7 @@ def _create_tool(mode):
     })
 
 
-def _create_gesture_tool(name, operator, gesture):
+def _create_gesture_tool(name: str, operator: str, gesture: str) -> type[bpy.types.WorkSpaceTool]:
     """A tool of Edit Mode: a drag selects whole parts, a click is the other tool's."""
     held = (({}, "SET", ()), ({"shift": True}, "ADD", [("extend", True)]), ({"ctrl": True}, "SUB", [("deselect", True)]))
     return type(f"SelectParts_{name}", (bpy.types.WorkSpaceTool,), {
@@ -80,7 +82,7 @@ def _create_gesture_tool(name, operator, gesture):
     })
 
 
-def _draw_settings(context, layout, tool):
+def _draw_settings(context: bpy.types.Context, layout: bpy.types.UILayout, tool: bpy.types.WorkSpaceTool) -> None:
     obj, mode = context.active_object, context.mode
     if obj is None or obj.type != "MESH":
         return
@@ -105,7 +107,7 @@ class VIEW3D_PT_partwheel_overlays(bpy.types.Panel):
     bl_region_type = "HEADER"
     bl_options = {"INSTANCED"}
 
-    def draw(self, _context):
+    def draw(self, _context: bpy.types.Context) -> None:
         draw_overlays(self.layout)
 
 
@@ -115,7 +117,7 @@ CLASSES = (VIEW3D_PT_partwheel_overlays,)
 _tools = []
 
 
-def register():
+def register() -> None:
     """Where Blender starts without a window it has no keymaps yet when it enables add-ons, and can't take a tool."""
     if bpy.context.window_manager.keyconfigs.default is None:
         return
@@ -128,7 +130,7 @@ def register():
         bpy.utils.register_tool(_tools[-1], after={"partwheel.select", "partwheel.box"})
 
 
-def unregister():
+def unregister() -> None:
     for tool in reversed(_tools):
         bpy.utils.unregister_tool(tool)
     _tools.clear()

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a part becomes outside Edit Mode: a face set, a mask, a vertex group, a paint mask, written into the mesh."""
 
+from __future__ import annotations
+
 import bpy
 import numpy as np
 
@@ -16,12 +18,12 @@ MASK = ".sculpt_mask"  # an attribute from Blender 4.1 on
 UNDOES_LEVEL_MASKS = bpy.app.version < (4, 1)
 
 
-def _part_vertices(mesh, faces):
+def _part_vertices(mesh: bpy.types.Mesh, faces: np.ndarray) -> np.ndarray:
     """(V,) bool: the vertices of these faces, and those welded with them."""
     return arrays.add_coincident_vertices(mesh, arrays.mask_elements_of_faces(mesh, arrays.make_mask(len(mesh.polygons), faces)))
 
 
-def _write_face_set(obj, faces, _node, _extend, deselect):
+def _write_face_set(obj: bpy.types.Object, faces: np.ndarray, _node: int, _extend: bool, deselect: bool) -> None:
     """A set of its own; with deselect the part goes back to the first one."""
     mesh = obj.data
     attribute = arrays.ensure_attribute(mesh, FACE_SET, "INT", "FACE")
@@ -31,7 +33,7 @@ def _write_face_set(obj, faces, _node, _extend, deselect):
     attribute.data.foreach_set("value", values)
 
 
-def _write_mask(obj, faces, _node, extend, deselect):
+def _write_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, extend: bool, deselect: bool) -> None:
     mesh = obj.data
     if find_mask(mesh) is None:
         if bpy.app.version >= (4, 1):
@@ -44,7 +46,7 @@ def _write_mask(obj, faces, _node, extend, deselect):
     values.foreach_set("value", _merge_mask(before, _part_vertices(mesh, faces), extend, deselect))
 
 
-def write_level_mask(obj, faces, _node, extend, deselect):
+def write_level_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, extend: bool, deselect: bool) -> None:
     """The mask of a multires modifier's own levels, which Python can't write: Blender fills what is not hidden."""
     polygons = obj.data.polygons
     hidden = arrays.read(polygons, "hide", bool)
@@ -57,7 +59,7 @@ def write_level_mask(obj, faces, _node, extend, deselect):
         arrays.write(polygons, "hide", hidden)
 
 
-def _fill_mask(value):
+def _fill_mask(value: float) -> None:
     bpy.ops.object.mode_set(mode="SCULPT")
     try:
         bpy.ops.paint.mask_flood_fill(mode="VALUE", value=value)
@@ -65,7 +67,7 @@ def _fill_mask(value):
         bpy.ops.object.mode_set(mode="OBJECT")
 
 
-def find_mask(mesh):
+def find_mask(mesh: bpy.types.Mesh) -> bpy.types.bpy_prop_collection | None:
     """What holds the mask's value of each vertex, or None. Not of the levels that a multires modifier has of its own."""
     if bpy.app.version >= (4, 1):
         layer = arrays.find_attribute(mesh, MASK, "FLOAT", "POINT")
@@ -74,14 +76,14 @@ def find_mask(mesh):
     return layer and layer.data
 
 
-def _merge_mask(before, part, extend, deselect):
+def _merge_mask(before: np.ndarray, part: np.ndarray, extend: bool, deselect: bool) -> np.ndarray:
     """(V,) float32: the mask with the part in it, or taken out of it."""
     if deselect:
         return np.where(part, 0, before).astype(np.float32)
     return np.where(part, 1, before if extend else 0).astype(np.float32)
 
 
-def _write_vertex_group(obj, faces, node, extend, deselect):
+def _write_vertex_group(obj: bpy.types.Object, faces: np.ndarray, node: int, extend: bool, deselect: bool) -> str:
     """A new group, which becomes the active one; extend and deselect change the active one, unless it is locked. What
     was done, as a sentence."""
     part = np.flatnonzero(_part_vertices(obj.data, faces)).tolist()
@@ -102,7 +104,7 @@ def _write_vertex_group(obj, faces, node, extend, deselect):
     return rpt_("The part is the new vertex group {name}.").format(name=group.name)
 
 
-def _write_paint_mask(obj, faces, _node, extend, deselect):
+def _write_paint_mask(obj: bpy.types.Object, faces: np.ndarray, _node: int, extend: bool, deselect: bool) -> None:
     select_outside_edit_mode(obj.data, faces, extend, deselect)
     obj.data.use_paint_mask = bool(arrays.read(obj.data.polygons, "select", bool).any())
 

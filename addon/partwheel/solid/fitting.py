@@ -325,7 +325,7 @@ def _face_mask(hierarchy: Hierarchy, tet_first: int | np.ndarray, tet_last: int 
 
 
 class _PolygonGroup(NamedTuple):
-    """Some of a Plan's polygons: the Origins of their loops, their corners (L,), corner counts (P,), and source
+    """Some of a MeshPlan's polygons: the ElementSources of their loops, their corners (L,), corner counts (P,), and source
     polygons (P,)."""
 
     loops: ElementSources
@@ -356,11 +356,12 @@ def _kept_elements(mesh: bpy.types.Mesh, loops: np.ndarray, standalone: bool,
 def _concatenate(mesh: bpy.types.Mesh, parts: list[_PolygonGroup], n_whole: int, origins: ElementSources,
                  positions: np.ndarray, wires: np.ndarray, plan_vertices: np.ndarray,
                  alias: np.ndarray | None = None) -> MeshPlan:
-    """The Plan of several _PolygonGroups; the first n_whole polygons are unchanged. positions (m, 3): of the last
+    """The MeshPlan of several _PolygonGroups; the first n_whole polygons are unchanged. positions (m, 3): of the last
     vertices; all before are the mesh's own."""
     starts = np.cumsum([0] + [len(part.corners) for part in parts])
     loops = ElementSources(*(np.concatenate(columns) for columns in zip(*(
-        (part.loops.first, start + part.loops.at, part.loops.other) for part, start in zip(parts, starts)))))
+        (part.loops.source, start + part.loops.midpoint_rows, part.loops.midpoint_source)
+        for part, start in zip(parts, starts)))))
     corners, totals, polygons = (np.concatenate(columns) for columns in list(zip(*parts))[1:])
     mesh_positions = arrays.read(mesh.vertices, "co", np.float32, 3)
     kept_vertices = origins.source[:len(origins.source) - len(positions)]

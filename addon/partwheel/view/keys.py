@@ -6,6 +6,8 @@ here, and the status bar is drawn from the same rows. What starts another operat
 keymap, where users can edit it: COMMANDS.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 
@@ -123,10 +125,10 @@ SCROLL_STEP, DRAG_STEP = 30, 24  # pixels of a trackpad's scroll, and of a drag,
 class NotchCounter:
     """Counts notches in a trackpad's scroll or a drag, both of which come as pixels."""
 
-    def __init__(self, step):
+    def __init__(self, step: float) -> None:
         self.step, self.remainder = step, 0.0
 
-    def add_pixels(self, pixels):
+    def add_pixels(self, pixels: float) -> int:
         self.remainder += pixels
         whole = int(self.remainder / self.step)
         self.remainder -= whole * self.step

@@ -5,8 +5,12 @@ Everything on the graphics card is made when it is first drawn: without a window
 our own shader puts up, so all backends draw them alike and the clipping region cuts them.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
+import bpy
 import gpu
 import numpy as np
 from mathutils import Matrix, Vector
@@ -61,6 +65,7 @@ void main()
 # Attributes beside "pos", and how the vertices are put.
 SHADER_KINDS = {"flat": ({}, PAINT_VERTEX), "colored": ({"color": 4}, PAINT_VERTEX), "line": ({"other": 3, "side": 1}, LINE_VERTEX)}
 _shaders = {}
+Drawable = tuple  # (gpu.types.GPUShader, gpu.types.GPUBatch)
 
 
 class Layer(NamedTuple):
@@ -72,7 +77,7 @@ class Layer(NamedTuple):
     width: float = 0.0
 
 
-def get_shader(kind):
+def get_shader(kind: str) -> gpu.types.GPUShader:
     """One of KINDS; made at its first use."""
     if kind not in _shaders:
         attributes, source = SHADER_KINDS[kind]
@@ -94,7 +99,7 @@ def get_shader(kind):
     return _shaders[kind]
 
 
-def create_vertex_buffer(**attributes):
+def create_vertex_buffer(**attributes: np.ndarray) -> gpu.types.GPUVertBuf:
     """A buffer of these (n, width) attributes."""
     form = gpu.types.GPUVertFormat()
     for name, values in attributes.items():
@@ -105,11 +110,11 @@ def create_vertex_buffer(**attributes):
     return buffer
 
 
-def create_batch(buffer, triangles):
+def create_batch(buffer: gpu.types.GPUVertBuf, triangles: np.ndarray) -> gpu.types.GPUBatch:
     return gpu.types.GPUBatch(type="TRIS", buf=buffer, elem=gpu.types.GPUIndexBuf(type="TRIS", seq=triangles))
 
 
-def create_line_batch(positions, edges):
+def create_line_batch(positions: np.ndarray, edges: np.ndarray) -> tuple[gpu.types.GPUShader, gpu.types.GPUBatch]:
     """(shader, batch) of edges (n,2) of positions: a rectangle for each, whose corners know both ends and their side."""
     ends = positions[edges]  # (n, 2, 3)
     places = ends[:, (0, 0, 1, 1)].reshape(-1, 3)
@@ -119,7 +124,7 @@ def create_line_batch(positions, edges):
     return get_shader("line"), create_batch(create_vertex_buffer(pos=places, other=others, side=sides), corners.reshape(-1, 3))
 
 
-def find_neighbor_triangles(triangles):
+def find_neighbor_triangles(triangles: np.ndarray) -> Iterator[np.ndarray | None]:
     """(T,3) the triangle beyond each edge of triangles (T,3), from the edge 0 1 on; T where there is none. Edges of more
     than two triangles lead from each to the next. A generator, for this takes a while: the last that it yields is that,
     before it None."""
@@ -145,7 +150,7 @@ def find_neighbor_triangles(triangles):
     yield result.reshape(3, number).T
 
 
-def find_border_edges(triangles, beyond, mine):
+def find_border_edges(triangles: np.ndarray, beyond: np.ndarray, mine: np.ndarray) -> np.ndarray:
     """(n,2) the edges of some of the triangles, mine (n,), beyond which is none of these. beyond: of all triangles."""
     inside = np.zeros(len(triangles) + 1, bool)
     inside[mine] = True
@@ -155,13 +160,13 @@ def find_border_edges(triangles, beyond, mine):
     return np.column_stack([ends[each, edge], ends[each, (edge + 1) % 3]])
 
 
-def is_see_through(context):
+def is_see_through(context: bpy.types.Context) -> bool:
     """Whether the view shows what lies behind, too: X-ray and wireframe. Then nothing hides what is drawn here."""
     shading = context.space_data.shading if context.space_data else None
     return shading is not None and (shading.type == "WIREFRAME" or shading.type == "SOLID" and shading.show_xray)
 
 
-def draw_layers(context, obj, layers):
+def draw_layers(context: bpy.types.Context, obj: bpy.types.Object, layers: Iterable[Layer]) -> None:
     """Layers, one over the other in the context's view."""
     view = context.region_data
     to_local = obj.matrix_world.inverted_safe()
@@ -194,5 +199,5 @@ def draw_layers(context, obj, layers):
     gpu.state.depth_mask_set(before[2])
 
 
-def unregister():
+def unregister() -> None:
     _shaders.clear()

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Parts drawn over the model: the triangles of a part are one slice of one array of indices."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
 from functools import cached_property
 from typing import NamedTuple
 
@@ -11,9 +14,9 @@ import numpy as np
 from ..mesh import arrays, mesh_identity
 from ..preferences import preferences
 from . import layers
-from .layers import Layer
-from .visible_surface import NO_FACE
-from partwheel import cut
+from .layers import Drawable, Layer
+from .visible_surface import NO_FACE, VisibleSurface
+from partwheel import cut, Hierarchy
 
 CUT_OPACITY = 0.55
 GLASS = (0.75, 0.9, 1.0, 0.75)
@@ -29,14 +32,14 @@ class OverlayColors(NamedTuple):
     next: tuple
 
 
-def get_theme_colors():
+def get_theme_colors() -> OverlayColors:
     """The user's theme's: those of what is active, selected, and second to that."""
     theme = bpy.context.preferences.themes[0]
     return OverlayColors((*theme.view_3d.object_active, 0.35), (*theme.view_3d.object_selected, 0.35),
                          (*theme.user_interface.gizmo_secondary, 0.22))
 
 
-def get_line_width():
+def get_line_width() -> float:
     """In pixels of this screen: as wide as Blender's own outlines."""
     preferences = bpy.context.preferences
     return (0.5 + preferences.themes[0].view_3d.outline_width) * preferences.system.pixel_size
@@ -45,7 +48,7 @@ def get_line_width():
 class PartTriangles:
     """What is seen of an object (a visible_surface.VisibleSurface): its triangles in the order of its hierarchy's faces."""
 
-    def __init__(self, seen, hierarchy):
+    def __init__(self, seen: VisibleSurface, hierarchy: Hierarchy) -> None:
         self.hierarchy, self.positions = hierarchy, seen.positions
         known = seen.faces != NO_FACE
         triangles, faces = seen.triangles[known], seen.faces[known]
@@ -58,72 +61,72 @@ class PartTriangles:
         self._batches = {}
         self._neighbor_steps = layers.find_neighbor_triangles(self.triangles)
 
-    def slice(self, node):
+    def slice(self, node: int) -> tuple[int, int]:
         """(first, last) of a node's triangles."""
         return (int(self._start[self.hierarchy.first[node]]), int(self._start[self.hierarchy.last[node]]))
 
-    def difference_slices(self, node, larger):
+    def difference_slices(self, node: int, larger: int) -> list[tuple[int, int]]:
         """What the larger node has more than the node, as slices of triangles."""
         (first, last), (begin, end) = self.slice(node), self.slice(larger)
         return [piece for piece in ((begin, first), (last, end)) if piece[0] < piece[1]]
 
-    def slice_batch(self, piece):
+    def slice_batch(self, piece: tuple[int, int]) -> Drawable:
         """(shader, batch) of a slice of triangles."""
         return layers.get_shader("flat"), self._cached(piece, lambda: layers.create_batch(self._buffer, self.triangles[slice(*piece)]))
 
-    def face_batch(self, name, faces):
+    def face_batch(self, name: Hashable, faces: np.ndarray) -> Drawable:
         """The same of the triangles of any faces, kept under a name."""
         def make():
             return layers.create_batch(self._buffer, self.triangles[self._triangles_of(faces)])
         return layers.get_shader("flat"), self._cached(name, make)
 
-    def outline_batch(self, node, faces=None):
+    def outline_batch(self, node: int, faces: np.ndarray | None = None) -> Drawable | None:
         """The same of a node's border, or that of these faces: lines."""
         def make():
             edges = self.border_edges(node, faces)
             return layers.create_line_batch(self.positions, edges) if len(edges) else None
         return self._cached(("outline", node, faces is None), make)
 
-    def border_edges(self, node, faces=None):
+    def border_edges(self, node: int, faces: np.ndarray | None = None) -> np.ndarray:
         """(n,2) the edges, by their vertices, where a node ends, or these faces."""
         mine = np.arange(*self.slice(node)) if faces is None else self._triangles_of(faces)
         return layers.find_border_edges(self.triangles, self.neighbors, mine)
 
     @cached_property
-    def neighbors(self):
+    def neighbors(self) -> np.ndarray:
         """The neighbours of all triangles: what takes longest of a first outline, so hovering makes it before."""
         *_, found = self._neighbor_steps
         return found
 
     @property
-    def is_complete(self):
+    def is_complete(self) -> bool:
         """Whether that is there."""
         return "neighbors" in vars(self)
 
-    def prepare_next(self):
+    def prepare_next(self) -> None:
         """Makes a slice of it."""
         found = None if self.is_complete else next(self._neighbor_steps)
         if found is not None:
             self.neighbors = found
 
-    def _triangles_of(self, faces):
+    def _triangles_of(self, faces: np.ndarray) -> np.ndarray:
         """(n,) the triangles of faces."""
         chosen = arrays.make_mask(len(self.hierarchy.order), faces)
         return np.flatnonzero(np.repeat(chosen[self.hierarchy.order], np.diff(self._start)))
 
-    def hull_batch(self, node):
+    def hull_batch(self, node: int) -> Drawable:
         """The same of a node's convex hull."""
         def make():
             vertices, triangles = self.hierarchy.hull(node)
             return layers.create_batch(layers.create_vertex_buffer(pos=vertices), np.ascontiguousarray(triangles))
         return layers.get_shader("flat"), self._cached(node, make)
 
-    def cut_batch(self, node):
+    def cut_batch(self, node: int) -> Drawable:
         """The same of all triangles, coloured by the parts of the dendrogram cut at the node's height."""
         return self.colored_batch(("cut", node), lambda: make_distinct_colors(self.hierarchy.face_labels(
             self.hierarchy.cut_height(self.hierarchy.height[node]))))
 
-    def colored_batch(self, name, paint):
+    def colored_batch(self, name: Hashable, paint: Callable[[], np.ndarray]) -> Drawable:
         """The same of all triangles, kept under a name; paint(): (F,4) the colour of each face."""
         def make():
             corners = self.positions[self.triangles.ravel()]
@@ -132,10 +135,10 @@ class PartTriangles:
         return layers.get_shader("colored"), self._cached(name, make)
 
     @cached_property
-    def _buffer(self):
+    def _buffer(self) -> gpu.types.GPUVertBuf:
         return layers.create_vertex_buffer(pos=self.positions)
 
-    def _cached(self, name, make):
+    def _cached(self, name: Hashable, make: Callable[[], object]) -> object:
         """Of what was drawn last, since the user goes back and forth."""
         if name not in self._batches:
             while len(self._batches) >= MAX_CACHED_BATCHES:
@@ -144,12 +147,13 @@ class PartTriangles:
         return self._batches[name]
 
 
-def make_distinct_colors(labels, opacity=CUT_OPACITY):
+def make_distinct_colors(labels: np.ndarray, opacity: float = CUT_OPACITY) -> np.ndarray:
     """(n,4) a colour for each label, far from those of the labels next to it."""
     return np.column_stack([cut.colors(labels), np.broadcast_to(opacity, len(labels))])
 
 
-def draw_picked_part(context, obj, parts, node, larger, snapped):
+def draw_picked_part(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, node: int, larger: int,
+                     snapped: np.ndarray | None) -> None:
     """The part that is held, what the next notch adds, and what else the preferences want. snapped: the part's faces
     where its border is not the node's own, else None."""
     wanted, drawn, used = preferences(), [], get_theme_colors()
@@ -164,30 +168,33 @@ def draw_picked_part(context, obj, parts, node, larger, snapped):
     layers.draw_layers(context, obj, drawn)
 
 
-def draw_painted(context, obj, parts, name, paint):
+def draw_painted(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, name: Hashable,
+                 paint: Callable[[], np.ndarray]) -> None:
     """All faces, each in its colour: see PartTriangles.colored_batch()."""
     layers.draw_layers(context, obj, [Layer(parts.colored_batch(name, paint), GLASS)])
 
 
-def draw_faces(context, obj, parts, name, faces):
+def draw_faces(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, name: Hashable,
+               faces: np.ndarray) -> None:
     """Any faces, kept under a name."""
     layers.draw_layers(context, obj, [Layer(parts.face_batch(name, faces), get_theme_colors().part)])
 
 
-def draw_hover(context, obj, parts, node, snapped):
+def draw_hover(context: bpy.types.Context, obj: bpy.types.Object, parts: PartTriangles, node: int,
+               snapped: np.ndarray | None) -> None:
     """The part that a click would take."""
     color = get_theme_colors().hover
     layers.draw_layers(context, obj, _make_tint_layers(parts, node, color, snapped) + _make_outline_layers(parts, node, color, snapped))
 
 
-def _make_tint_layers(parts, node, color, snapped):
+def _make_tint_layers(parts: PartTriangles, node: int, color: tuple, snapped: np.ndarray | None) -> list[Layer]:
     if snapped is not None:
         return [Layer(parts.face_batch(("snapped", node), snapped), color)]
     piece = parts.slice(node)
     return [Layer(parts.slice_batch(piece), color)] if piece[0] < piece[1] else []
 
 
-def _make_outline_layers(parts, node, color, snapped):
+def _make_outline_layers(parts: PartTriangles, node: int, color: tuple, snapped: np.ndarray | None) -> list[Layer]:
     lines, width = parts.outline_batch(node, snapped), get_line_width()
     if not lines:
         return []
@@ -195,7 +202,8 @@ def _make_outline_layers(parts, node, color, snapped):
     return [Layer(lines, OUTLINE_CASING, width=width + 2 * pixel), Layer(lines, (*color[:3], 1.0), width=width)]
 
 
-def _make_next_part_layers(parts, node, larger, snapped, color):
+def _make_next_part_layers(parts: PartTriangles, node: int, larger: int, snapped: np.ndarray | None,
+                           color: tuple) -> list[Layer]:
     if snapped is None:
         return [Layer(parts.slice_batch(piece), color) for piece in parts.difference_slices(node, larger)]
     if node == larger:
@@ -204,7 +212,7 @@ def _make_next_part_layers(parts, node, larger, snapped, color):
     return [Layer(parts.face_batch(("beyond", node, larger), more), color)]
 
 
-def is_visible(context, obj):
+def is_visible(context: bpy.types.Context, obj: bpy.types.Object) -> bool:
     """Whether this 3D view shows the object and overlays at all: not in another's local view, or hidden."""
     space = context.space_data
     return space.overlay.show_overlays and obj.visible_get(viewport=space)
@@ -213,14 +221,15 @@ def is_visible(context, obj):
 class PickOverlay:
     """Draws the held part in every 3D view for as long as it is on."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._handler = self._target = self._fits = None
 
     @property
-    def is_shown(self):
+    def is_shown(self) -> bool:
         return self._handler is not None
 
-    def show(self, guard, fits, obj, parts, node, larger, snapped):
+    def show(self, guard: Callable[[Callable[[], None]], Callable[[], None]], fits: Callable[[bpy.types.Object], bool],
+             obj: bpy.types.Object, parts: PartTriangles, node: int, larger: int, snapped: np.ndarray | None) -> None:
         """guard: InView._guard_drawing of the operator that shows it. fits(object): whether its parts are still where it
         is seen, in another frame for instance."""
         self._target, self._fits = (obj.name_full, parts, node, larger, snapped), fits
@@ -228,20 +237,20 @@ class PickOverlay:
             self._handler = bpy.types.SpaceView3D.draw_handler_add(guard(self._draw), (), "WINDOW", "POST_VIEW")
         redraw_views()
 
-    def hide(self):
+    def hide(self) -> None:
         if self._handler:
             bpy.types.SpaceView3D.draw_handler_remove(self._handler, "WINDOW")
             redraw_views()
         self._handler = self._target = self._fits = None
 
-    def _draw(self):
+    def _draw(self) -> None:
         context, (name, *what) = bpy.context, self._target
         obj = mesh_identity.find_object(name)
         if obj and is_visible(context, obj) and self._fits(obj):
             draw_picked_part(context, obj, *what)
 
 
-def redraw_views():
+def redraw_views() -> None:
     """Of every 3D view."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
@@ -252,6 +261,6 @@ def redraw_views():
 pick_overlay = PickOverlay()  # what the picking operator that runs now shows; there is one at a time
 
 
-def unregister():
+def unregister() -> None:
     pick_overlay.hide()
     layers.unregister()

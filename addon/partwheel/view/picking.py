@@ -2,6 +2,9 @@
 """What is under the mouse: rays against what a 3D view shows. What is hidden, clipped or not in its local view is left
 out, and what is seen under modifiers leads to the mesh's own faces."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 import bpy
@@ -10,7 +13,7 @@ from mathutils import Matrix, Vector
 
 from partwheel import RayTarget
 from ..mesh import arrays
-from .visible_surface import compute_visible_surface
+from .visible_surface import compute_visible_surface, VisibleSurface
 
 CLIPPED_STEP = 1e-5  # how far behind a clipped face the search goes on, as a share of the way there
 HIDDEN_STEP = 1e-6  # the same behind what a view does not show, as a share of the coordinates, which have 24 bits
@@ -19,14 +22,15 @@ HIDDEN_STEP = 1e-6  # the same behind what a view does not show, as a share of t
 class FaceRayCaster:
     """What is seen of an object's faces as they are now, to be searched by rays. Not to be made while Blender draws."""
 
-    def __init__(self, obj, shown=None):
+    def __init__(self, obj: bpy.types.Object, shown: VisibleSurface | None = None) -> None:
         """shown: its visible_surface.VisibleSurface, if that is there already."""
         if not shown:
             arrays.update_mesh(obj)
             shown = compute_visible_surface(obj)
         self._faces, self._target = shown.faces, RayTarget(shown.positions, shown.triangles)
 
-    def cast(self, matrix, region, view, point):
+    def cast(self, matrix: Matrix, region: bpy.types.Region, view: bpy.types.RegionView3D,
+             point: tuple) -> tuple[int, float] | None:
         """(face index, distance along the ray in world units), or None; NO_FACE: modifiers have put there what is seen.
         matrix: the object's to the world. view: a RegionView3D. point: (x, y) in pixels of the region."""
         to_local = matrix.inverted_safe()
@@ -42,7 +46,7 @@ class FaceRayCaster:
         return None
 
 
-def is_clipped(view, point):
+def is_clipped(view: bpy.types.RegionView3D, point: Sequence[float]) -> bool:
     """Whether the view's clipping region (Alt B) leaves out a point of the world."""
     return view.use_clip_planes and any(Vector(plane).dot((*point, 1.0)) < 0 for plane in list(view.clip_planes)[:4])
 
@@ -57,7 +61,9 @@ class SurfaceHit(NamedTuple):
     matrix: Matrix
 
 
-def find_surface_under(context, area, region, view, point, wanted=lambda obj: True):
+def find_surface_under(context: bpy.types.Context, area: bpy.types.Area, region: bpy.types.Region,
+                       view: bpy.types.RegionView3D, point: tuple,
+                       wanted: Callable[[bpy.types.Object], bool] = lambda obj: True) -> SurfaceHit | None:
     """The Surface that a 3D view shows under a point of its region, or None. wanted(object): whether it is not looked
     through."""
     depsgraph = context.evaluated_depsgraph_get()
@@ -74,7 +80,8 @@ def find_surface_under(context, area, region, view, point, wanted=lambda obj: Tr
         origin = location + towards * HIDDEN_STEP * max(location.length, origin.length)
 
 
-def _is_shown(space, depsgraph, obj, matrix):
+def _is_shown(space: bpy.types.SpaceView3D, depsgraph: bpy.types.Depsgraph, obj: bpy.types.Object,
+              matrix: Matrix) -> bool:
     """Whether a 3D view shows the object, or an instance of it, with this matrix: scene.ray_cast() does not know."""
     if obj.evaluated_get(depsgraph).matrix_world == matrix and obj.visible_get(viewport=space):
         return True
@@ -82,7 +89,9 @@ def _is_shown(space, depsgraph, obj, matrix):
                and each.parent.original.visible_get(viewport=space) for each in depsgraph.object_instances)
 
 
-def find_nearest_face(objects, tree_of, region, view, point):
+def find_nearest_face(objects: Iterable[bpy.types.Object], tree_of: Callable[[bpy.types.Object], FaceRayCaster],
+                      region: bpy.types.Region, view: bpy.types.RegionView3D,
+                      point: tuple) -> tuple[bpy.types.Object | None, int | None]:
     """(object, face index) of the first face under a point of the region, or (None, None); the index may be NO_FACE.
     tree_of(object): a FaceTree."""
     hits = [(tree_of(each).cast(each.matrix_world, region, view, point), each) for each in objects]
@@ -93,12 +102,12 @@ def find_nearest_face(objects, tree_of, region, view, point):
     return obj, face
 
 
-def find_view_under_mouse(context, event):
+def find_view_under_mouse(context: bpy.types.Context, event: bpy.types.Event) -> tuple | None:
     """(area, region, RegionView3D, point of the region) of the 3D view that the mouse is over, or None."""
     return find_view_at(context.window, event.mouse_x, event.mouse_y) if context.window else None
 
 
-def find_view_at(window, x, y):
+def find_view_at(window: bpy.types.Window, x: int, y: int) -> tuple | None:
     """The same at a window's pixel; a panel lying over the view counts as not the view."""
     for area in window.screen.areas:
         if area.type != "VIEW_3D" or not _contains_point(area, x, y):
@@ -110,12 +119,12 @@ def find_view_at(window, x, y):
     return None
 
 
-def get_region_view(area, region):
+def get_region_view(area: bpy.types.Area, region: bpy.types.Region) -> bpy.types.RegionView3D:
     """The RegionView3D of a 3D view's region of type WINDOW."""
     space, windows = area.spaces.active, [each for each in area.regions if each.type == "WINDOW"]
     views = list(space.region_quadviews) or [space.region_3d]  # four in quad view, in the order of the regions
     return views[windows.index(region)]
 
 
-def _contains_point(box, x, y):
+def _contains_point(box: bpy.types.Area | bpy.types.Region, x: int, y: int) -> bool:
     return box.x <= x < box.x + box.width and box.y <= y < box.y + box.height

@@ -2,6 +2,8 @@
 """Objects that only show what a tool would do, and the object that is hidden for them. All of it is marked, and goes
 when the tool ends; should Blender end first and save by itself, when that file is opened."""
 
+from __future__ import annotations
+
 import bpy
 from bpy.app.handlers import persistent
 
@@ -11,7 +13,7 @@ MARK = "partwheel_preview"
 PREVIEW, HIDDEN, WAS_SELECTED, WAS_ACTIVE = 0, 1, 2, 4  # what was hidden, with what it was before
 
 
-def mark_preview(obj):
+def mark_preview(obj: bpy.types.Object) -> bpy.types.Object:
     """A new object with a mesh of its own is a preview from now on; it."""
     obj[MARK] = PREVIEW
     for each in (obj, obj.data):
@@ -23,14 +25,14 @@ def mark_preview(obj):
     return obj
 
 
-def hide_original(obj):
+def hide_original(obj: bpy.types.Object) -> None:
     """Until end(). Blender may then have no active object."""
     obj[MARK] = HIDDEN | WAS_SELECTED * obj.select_get() | WAS_ACTIVE * (obj == bpy.context.view_layer.objects.active)
     obj.hide_viewport = True
 
 
 @persistent
-def remove_previews(*_):
+def remove_previews(*_: object) -> None:
     """No preview is left, and what was hidden is seen again, selected and active if it was."""
     for obj in [obj for obj in bpy.data.objects if MARK in obj and not obj.library]:
         if obj.type != "MESH" or not isinstance(obj[MARK], int):  # not ours
@@ -51,5 +53,5 @@ def remove_previews(*_):
 HANDLERS = {"load_post": remove_previews}
 
 
-def unregister():
+def unregister() -> None:
     remove_previews()

@@ -2,6 +2,10 @@
 """What the status bar shows while a modal operator runs: the keys that count now, with Blender's icons if it has them,
 or how far a build is."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
 import bpy
 
 from ..words.say import iface_
@@ -18,7 +22,7 @@ class StatusLine:
     stack = []
     _content = None
 
-    def show(self, context, content):
+    def show(self, context: bpy.types.Context, content: str | Callable) -> None:
         """said: a text or a drawer()."""
         self._content = content
         if self not in StatusLine.stack:
@@ -26,14 +30,14 @@ class StatusLine:
         if self is StatusLine.stack[-1]:
             context.workspace.status_text_set(content)
 
-    def remove(self, context):
+    def remove(self, context: bpy.types.Context) -> None:
         if self in StatusLine.stack:
             StatusLine.stack.remove(self)
             if context.workspace:
                 context.workspace.status_text_set(StatusLine.stack[-1]._content if StatusLine.stack else None)
 
 
-def make_drawer(row):
+def make_drawer(row: Sequence[keys.Key | keys.Command]) -> Callable:
     """A function for WorkSpace.status_text_set(): these keys.Key, and keys.Command as far as the user has keys for
     them. Modifiers that several have are shown before the first."""
     def draw(header, _context):
@@ -44,7 +48,7 @@ def make_drawer(row):
     return draw
 
 
-def _key_label(key):
+def _key_label(key: keys.Key | keys.Command) -> tuple[list[str], str] | None:
     """(icons, text), or None."""
     if isinstance(key, keys.Key):
         return list(key.icons), f"{iface_(key.names)}: {iface_(key.label)}" if key.names else iface_(key.label)
@@ -55,13 +59,13 @@ def _key_label(key):
     return item and ([], f"{item.to_string()}: {iface_(key.label)}")
 
 
-def _draw_entry(layout, icons, text):
+def _draw_entry(layout: bpy.types.UILayout, icons: list[str], text: str) -> None:
     for icon in icons[:-1]:
         layout.label(text="", icon=icon)
     layout.label(text=text, icon=icons[-1] if icons else "NONE")
 
 
-def _find_keymap_item(command):
+def _find_keymap_item(command: keys.Command) -> bpy.types.KeyMapItem | None:
     """The KeyMapItem that starts a keys.Command as the user has set it, or None."""
     configuration = bpy.context.window_manager.keyconfigs.user
     keymap = configuration and configuration.keymaps.get("Mesh")

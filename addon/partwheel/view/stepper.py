@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Two buttons beside a click, larger and smaller, for pens and whatever else has no wheel."""
 
+from __future__ import annotations
+
 from itertools import pairwise
 from math import cos, hypot, pi, sin
 
@@ -13,7 +15,7 @@ BUTTON_COLOR, SIGN_COLOR = (0.12, 0.12, 0.12, 0.8), (0.95, 0.95, 0.95, 1.0)
 CIRCLE_CORNERS = 24
 
 
-def get_ui_scale():
+def get_ui_scale() -> float:
     """Blender's resolution scale, which is 0 without a window."""
     return bpy.context.preferences.system.ui_scale or 1.0
 
@@ -21,17 +23,17 @@ def get_ui_scale():
 class StepButtons:
     """Larger is above the click's height, smaller below. x, y: the click's, in the window."""
 
-    def __init__(self, x, y):
+    def __init__(self, x: float, y: float) -> None:
         scale = get_ui_scale()
         self._radius = RADIUS * scale
         self._middles = {sign: (x + OFFSET * scale, y + sign * 1.2 * self._radius) for sign in (1, -1)}
 
-    def step_at(self, event):
+    def step_at(self, event: bpy.types.Event) -> int:
         """1 over larger, -1 over smaller, else 0."""
         return next((sign for sign, (x, y) in self._middles.items()
                      if hypot(event.mouse_x - x, event.mouse_y - y) <= self._radius), 0)
 
-    def draw(self):
+    def draw(self) -> None:
         """In pixels of the context's region, where the click was in it."""
         region = bpy.context.region
         before = gpu.state.blend_get()
@@ -44,17 +46,17 @@ class StepButtons:
         gpu.state.blend_set(before)
 
 
-def _circle_lines(x, y, radius):
+def _circle_lines(x: float, y: float, radius: float) -> list[tuple[float, float]]:
     rim = [(x + radius * cos(2 * pi * k / CIRCLE_CORNERS), y + radius * sin(2 * pi * k / CIRCLE_CORNERS)) for k in range(CIRCLE_CORNERS + 1)]
     return [corner for a, b in pairwise(rim) for corner in ((x, y), a, b)]
 
 
-def _bar_triangles(x, y, wide, high):
+def _bar_triangles(x: float, y: float, wide: float, high: float) -> list[tuple[float, float]]:
     a, b, c, d = (x - wide, y - high), (x + wide, y - high), (x + wide, y + high), (x - wide, y + high)
     return [a, b, c, a, c, d]
 
 
-def _draw_triangles(corners, color):
+def _draw_triangles(corners: list[tuple[float, float]], color: tuple) -> None:
     shader = gpu.shader.from_builtin("UNIFORM_COLOR")
     shader.uniform_float("color", color)
     batch_for_shader(shader, "TRIS", {"pos": [(*corner, 0.0) for corner in corners]}).draw(shader)

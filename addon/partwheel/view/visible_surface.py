@@ -6,6 +6,9 @@ Where modifiers make other polygons, a double of the object is evaluated for a m
 faces their numbers are written: modifiers copy those as any other attribute. The user's own data is not touched.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterator
 import contextlib
 from typing import NamedTuple
 
@@ -42,7 +45,7 @@ class _EvaluatedMesh(NamedTuple):
     origins: np.ndarray
 
 
-def compute_visible_surface(obj):
+def compute_visible_surface(obj: bpy.types.Object) -> VisibleSurface:
     """The Seen of an object. In Edit Mode its mesh must be up to date. Not to be called while Blender draws."""
     mesh, sculpted = obj.data, None
     if obj.mode == "EDIT":
@@ -66,13 +69,14 @@ def compute_visible_surface(obj):
     return _remove_hidden_faces(obj, result.positions, result.triangles, faces)
 
 
-def find_sculpted_multires(obj):
+def find_sculpted_multires(obj: bpy.types.Object) -> bpy.types.Modifier | None:
     """The multires modifier whose levels Sculpt Mode works on, or None."""
     return next((each for each in obj.modifiers
                  if each.type == "MULTIRES" and each.show_viewport and each.sculpt_levels), None)
 
 
-def _remove_hidden_faces(obj, positions, triangles, faces):
+def _remove_hidden_faces(obj: bpy.types.Object, positions: np.ndarray, triangles: np.ndarray,
+                         faces: np.ndarray) -> VisibleSurface:
     hidden = arrays.read(obj.data.polygons, "hide", bool)
     if obj.mode != "OBJECT" and hidden.any():
         kept = (faces == NO_FACE) | ~hidden[faces]
@@ -80,7 +84,7 @@ def _remove_hidden_faces(obj, positions, triangles, faces):
     return VisibleSurface(positions, triangles, faces)
 
 
-def _evaluate_mesh(obj, depsgraph):
+def _evaluate_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _EvaluatedMesh:
     """The _Evaluated of an object as it is now."""
     evaluated = obj.evaluated_get(depsgraph)
     mesh = evaluated.to_mesh()
@@ -95,7 +99,7 @@ def _evaluate_mesh(obj, depsgraph):
 
 
 @contextlib.contextmanager
-def _temporary_copy(obj):
+def _temporary_copy(obj: bpy.types.Object) -> Iterator[tuple[bpy.types.Object, bpy.types.ViewLayer]]:
     """(an object that is evaluated as this one is in Object Mode, its faces numbered; the view layer that it is in): gone
     afterwards."""
     arrays.flush_sculpt_strokes(obj)
@@ -111,7 +115,7 @@ def _temporary_copy(obj):
         bpy.data.meshes.remove(mesh)
 
 
-def _set_sculpt_levels(double, name):
+def _set_sculpt_levels(double: bpy.types.Object, name: str) -> None:
     """Sets a double's modifiers as Sculpt Mode shows them for the multires modifier of this name."""
     after = False
     for modifier in double.modifiers:
@@ -121,7 +125,7 @@ def _set_sculpt_levels(double, name):
             modifier.show_viewport = False
 
 
-def _find_source_faces(double, layer, result):
+def _find_source_faces(double: bpy.types.Object, layer: bpy.types.ViewLayer, result: _EvaluatedMesh) -> np.ndarray:
     """(T,) the face that each triangle of an _Evaluated comes from, NO_FACE where that can't be told; double, layer: as of
     _double(), of the object that it was made of."""
     numbered = _evaluate_mesh(double, temporary_scene.update_depsgraph(layer))

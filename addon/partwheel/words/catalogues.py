@@ -2,6 +2,8 @@
 """The catalogues beside this file, one per language: {English message: translation}. Blender shows a message that has none
 in English."""
 
+from __future__ import annotations
+
 import importlib
 
 import bpy
@@ -12,7 +14,7 @@ from .say import OPERATOR
 LANGUAGES = {"german": ("de_DE",), "spanish": ("es",), "japanese": ("ja_JP",), "chinese": ("zh_HANS", "zh_CN")}
 
 
-def register():
+def register() -> None:
     """Blender wants all at once, and looks up only what it has no words for itself. A button of an operator looks for its
     text among operators' labels, so all are there too."""
     words = {}
@@ -23,5 +25,5 @@ def register():
     bpy.app.translations.register(__package__, words)
 
 
-def unregister():
+def unregister() -> None:
     bpy.app.translations.unregister(__package__)

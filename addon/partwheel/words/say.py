@@ -6,6 +6,9 @@ it is looked up first and filled in then: rpt_("{name} has no parts.").format(na
 is not looked up here: labels, descriptions, texts of layouts that are constant.
 """
 
+from __future__ import annotations
+
+import bpy
 from bpy.app import translations
 
 iface_, tip_ = translations.pgettext_iface, translations.pgettext_tip
@@ -13,12 +16,12 @@ rpt_ = getattr(translations, "pgettext_rpt", tip_)  # from Blender 4.2 on
 OPERATOR = "Operator"  # the context of operators' labels
 
 
-def get_operator_label(operator):
+def get_operator_label(operator: bpy.types.Operator) -> str:
     """An operator's label, as it is drawn."""
     return iface_(operator.bl_label, OPERATOR)
 
 
-def translate_error(error):
+def translate_error(error: Exception) -> str:
     """What an error of the package says, or part of one (partwheel.worker.translatable)."""
     if sentences := getattr(error, "sentences", ()):
         values = {name: translate_error(value) if isinstance(value, Exception) or hasattr(value, "sentences") else value
@@ -27,6 +30,6 @@ def translate_error(error):
     return rpt_(str(error))
 
 
-def format_percent(share):
+def format_percent(share: float) -> str:
     """Of 1, short enough to be read at a glance: never in powers of ten."""
     return "< 0.1%" if 0 < share < 0.0005 else f"{share:.1%}"
