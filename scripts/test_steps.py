@@ -47,7 +47,8 @@ class Result:
 
 
 def run_parallel(run, arguments, count):
-    """Calls run(argument) for each argument, count calls at a time; returns the sum of the Results in the arguments' order."""
+    """Calls run(argument) for each argument, count calls at a time; returns the sum of the Results in the arguments'
+    order."""
     total = Result()
     with concurrent.futures.ThreadPoolExecutor(count) as pool:
         for result in pool.map(run, arguments):
@@ -83,7 +84,8 @@ def build(log, preset, *targets):
 
 
 def make_packages():
-    """Builds the add-on, once for all tiers; returns the paths of the extension for Blender 4.2+ and of the legacy add-on."""
+    """Builds the add-on, once for all tiers; returns the paths of the extension for Blender 4.2+ and of the legacy
+    add-on."""
     with compiling:
         return _cached_packages()
 
@@ -206,8 +208,8 @@ def require(log, *command):
 
 
 def run(log, command, environment=None):
-    """Runs a command, at most for the time limit; returns its exit code. numpy gets one thread: the test processes share the
-    cores, and threads for tiny matrices make some tests ten times as slow."""
+    """Runs a command, at most for the time limit; returns its exit code. numpy gets one thread: the test processes
+    share the cores, and threads for tiny matrices make some tests ten times as slow."""
     environment = {**(os.environ if environment is None else environment), "OPENBLAS_NUM_THREADS": "1"}
     path = OUTPUT / f"{log}.log"
     with path.open("w") as output:

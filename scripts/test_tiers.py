@@ -1,7 +1,7 @@
 """The test tiers. Each is a function that builds what it needs, runs its tests and returns a Result.
 
-scripts/test calls this. The requirements of all tiers are installed in the tiers' order while the first tests run. Two tiers
-run at a time, because each is idle now and then, waiting for a window, the linker or its last test.
+scripts/test calls this. The requirements of all tiers are installed in the tiers' order while the first tests run. Two
+tiers run at a time, because each is idle now and then, waiting for a window, the linker or its last test.
 """
 
 import argparse
@@ -26,12 +26,12 @@ NEWEST_SCENARIOS = ("adjust", "anything", "beyond", "blender_itself", "bones", "
              "restore", "seen", "select_modes", "similar_across", "three_clicks", "tool", "tool_keys", "ways",
              "wheel_at_click", "while_building", "windows", "words")
 THREADED = "[Tt]hread|ProgressNever"  # names of tests that use threads
-# Tests that add nothing under the sanitizers. Native: tests that build the same model again to compare or count, and shapes by
-# formula, since real models run the same code.
+# Tests that add nothing under the sanitizers. Native: tests that build the same model again to compare or count, and
+# shapes by formula, since real models run the same code.
 REDUNDANT_NATIVE = r"Invariance\.|SameTree|OrderOfTheInput|PowersOfTwo|SameOnEachRun|SameBytes|TheSameForAny|AreFew|AreBounded" \
            r"|SurfacesByFormula|OfShapesByFormula|KeepTheError"
-# Core: files about Python code, whose calls of the library other files make, too; and "border", "convex", "progress", "regroup",
-# which take long and whose calls the native tests make.
+# Core: files about Python code, whose calls of the library other files make, too; and "border", "convex", "progress",
+# "regroup", which take long and whose calls the native tests make.
 REDUNDANT_CORE = ("bones", "border", "command_line", "compatible", "convex", "cut", "docs", "docs_commands", "layers",
                   "interpreter", "joint", "likeness", "locale", "meshes", "primitives", "printing", "progress", "regroup", "seams",
                   "shipping", "symmetry", "versions", "words", "worker")
@@ -48,7 +48,8 @@ WINDOWS = (*PACKAGES, "setup_core", "setup_blender", "setup_display")  # require
 
 
 def needs(*functions, optional=()):
-    """Declares the functions of setup.sh that a tier requires, and those that are started, too, but awaited by the tier itself."""
+    """Declares the functions of setup.sh that a tier requires, and those that are started, too, but awaited by the tier
+    itself."""
     def decorate(tier):
         tier.needs, tier.setup = functions, (*functions, *optional)
         return tier
@@ -64,8 +65,8 @@ def native(**environment):
 
 @needs("setup_build", "setup_core")
 def sanitizers():
-    """Native and core tests, without redundant ones, under AddressSanitizer and UndefinedBehaviorSanitizer; the core tests in
-    a host program with a decimal comma."""
+    """Native and core tests, without redundant ones, under AddressSanitizer and UndefinedBehaviorSanitizer; the core
+    tests in a host program with a decimal comma."""
     build("sanitizers", "asan")
     result = ctest("sanitizers-native", "asan", "--exclude-regex", REDUNDANT_NATIVE)
     tests = [path for path in sorted((ROOT / "tests/core").glob("test_*.py")) if path.stem[5:] not in REDUNDANT_CORE]
@@ -122,14 +123,16 @@ def batch():
 
 @needs("setup_build", "setup_core", "setup_blender")  # Blender's primitives are among the models
 def reliability():
-    """Every available model: it is built or recognized as a sheet, and nothing crashes. Writes a table to build/test."""
+    """Every available model: it is built or recognized as a sheet, and nothing crashes. Writes a table to
+    build/test."""
     build("reliability", "release", "partwheel")
     return pytest("reliability", "tests/reliability", dist="loadfile")
 
 
 @needs("setup_build", "setup_core", *(["setup_psb"] if HAS_BENCHMARK else []))
 def quality():
-    """The quality of selected parts: 24 models of the benchmark, if it is available, and mirror images, against minimum scores."""
+    """The quality of selected parts: 24 models of the benchmark, if it is available, and mirror images, against minimum
+    scores."""
     build("quality", "release", "partwheel")
     build("quality", "bench", "quality_trace")
     return pytest("quality", "tests/quality", "--deselect", TEN_MODELS, dist="loadfile")
@@ -255,8 +258,8 @@ def gate_quality():
 
 @needs(*PACKAGES, "setup_core", "setup_bpy", "setup_workflows", optional=["setup_newest sid"])
 def ship():
-    """The packages for all platforms: built, run as far as possible, and installed as users do; and the native tests of this
-    platform and of two others, by wine and qemu. Compiles for an hour, so it must be named."""
+    """The packages for all platforms: built, run as far as possible, and installed as users do; and the native tests of
+    this platform and of two others, by wine and qemu. Compiles for an hour, so it must be named."""
     require("ship-package", "scripts/package", "all")
     print((OUTPUT / "ship-package.log").read_text().split("distribution\n")[-1], end="")
     install_suite("sid")

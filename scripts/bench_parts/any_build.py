@@ -1,7 +1,8 @@
-"""Builds one model at default settings in a separate process and prints the result or the error as JSON. Times are processor
-seconds of all threads, which depend little on the machine's load.
+"""Builds one model at default settings in a separate process and prints the result or the error as JSON. Times are
+processor seconds of all threads, which depend little on the machine's load.
 
-Run as: build/venv/core/bin/python any_build.py MODEL [MUTATION SEED]   MUTATION: a function of tests/reliability/mutations.py
+Run as: build/venv/core/bin/python any_build.py MODEL [MUTATION SEED]   MUTATION: a function of
+tests/reliability/mutations.py
 """
 
 import json

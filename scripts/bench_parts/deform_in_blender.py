@@ -3,10 +3,10 @@
 
     blender -b --factory-startup --python deform_in_blender.py -- MESH.npz MOVES RESULT.json
 
-The steps are the operator's: the region follows its handle, its positions are read and written to Blender's mesh, and the
-normals are computed. MESH.npz: vertices, triangles, and part, the vertices of the part, of which the first tenth is the
-handle. RESULT.json, in seconds: begin, done once while Blender waits; prepare, done once in the background; and the medians
-over the moves of follow, write, whole and blender_update, Blender's own update of the scene.
+The steps are the operator's: the region follows its handle, its positions are read and written to Blender's mesh, and
+the normals are computed. MESH.npz: vertices, triangles, and part, the vertices of the part, of which the first tenth is
+the handle. RESULT.json, in seconds: begin, done once while Blender waits; prepare, done once in the background; and the
+medians over the moves of follow, write, whole and blender_update, Blender's own update of the scene.
 """
 import importlib.util
 import json

@@ -1,9 +1,10 @@
-"""Builds a large mesh in a separate process and prints time and memory as JSON. Times are processor seconds of all threads.
+"""Builds a large mesh in a separate process and prints time and memory as JSON. Times are processor seconds of all
+threads.
 
 Run as: build/venv/core/bin/python large_build.py MODEL.npz [compare]
 compare: also builds the mesh at full resolution, and measures how well the wheel stops of the two hierarchies overlap.
-Two bounds on that: the overlap of two builds at full resolution, one with vertices moved by a millionth of the model's size;
-and how well sets of the copy's tetrahedra can represent the stops, independent of the tree.
+Two bounds on that: the overlap of two builds at full resolution, one with vertices moved by a millionth of the model's
+size; and how well sets of the copy's tetrahedra can represent the stops, independent of the tree.
 """
 
 import json
@@ -37,7 +38,8 @@ def build(vertices, triangles, exactly):
 
 
 def overlaps(vertices, triangles, coarse, exact):
-    """For each wheel stop of CLICKS random faces, its largest overlap (intersection over union of area) with an exact stop."""
+    """For each wheel stop of CLICKS random faces, its largest overlap (intersection over union of area) with an exact
+    stop."""
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
     areas, result = np.linalg.norm(np.cross(b - a, c - a), axis=1), []
     for face in np.random.default_rng(1).choice(len(areas), CLICKS, p=areas / areas.sum()):
@@ -51,7 +53,8 @@ def overlaps(vertices, triangles, coarse, exact):
 
 
 def best_overlaps(vertices, triangles, coarse, exact):
-    """For each exact wheel stop of CLICKS random faces, its largest overlap with any set of tetrahedra of the coarse tree."""
+    """For each exact wheel stop of CLICKS random faces, its largest overlap with any set of tetrahedra of the coarse
+    tree."""
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
     areas, result = np.linalg.norm(np.cross(b - a, c - a), axis=1), []
     count = len(coarse.tetrahedra)

@@ -1,5 +1,5 @@
-"""Models for benchmarks: real ones, and generated shapes. Generated coordinates are rounded to single precision, as in Blender;
-this also avoids exactly regular input, on which TetGen is very slow.
+"""Models for benchmarks: real ones, and generated shapes. Generated coordinates are rounded to single precision, as in
+Blender; this also avoids exactly regular input, on which TetGen is very slow.
 
 A mesh is (vertices (V,3) float64, triangles (T,3) int), closed and counter-clockwise seen from outside.
 """
@@ -76,8 +76,8 @@ def write(name, mesh):
 
 
 def subdivided(mesh, faces):
-    """The mesh, subdivided to this number of faces by bisecting the longest edges first. New vertices lie on the PN triangles of
-    Vlachos et al. 2001, so that the surface stays smooth and no faces become coplanar."""
+    """The mesh, subdivided to this number of faces by bisecting the longest edges first. New vertices lie on the PN
+    triangles of Vlachos et al. 2001, so that the surface stays smooth and no faces become coplanar."""
     vertices, triangles = np.array(mesh[0], float), np.array(mesh[1], int)
     while len(triangles) < faces:
         normals = vertex_normals(vertices, triangles)
@@ -85,8 +85,8 @@ def subdivided(mesh, faces):
         length = np.linalg.norm(vertices[half[:, :, 0]] - vertices[half[:, :, 1]], axis=2)
         ends = np.sort(half, axis=2)
         key = ends[:, :, 0] * len(vertices) + ends[:, :, 1]
-        # The longest edge of each triangle, ties broken by its vertices. Edges that are the longest of both their triangles
-        # can be bisected independently.
+        # The longest edge of each triangle, ties broken by its vertices. Edges that are the longest of both their
+        # triangles can be bisected independently.
         corner = np.lexsort((key, length), axis=1)[:, -1]
         mine = key[np.arange(len(triangles)), corner]
         order = np.argsort(mine, kind="stable")
@@ -139,8 +139,8 @@ def strip(faces):
 
 
 def box(faces):
-    """A cube with random points on its sides: irregular and exactly coplanar. Convex unions of tetrahedra cost exactly 0, and
-    there are very many of them."""
+    """A cube with random points on its sides: irregular and exactly coplanar. Convex unions of tetrahedra cost exactly
+    0, and there are very many of them."""
     random = np.random.default_rng(SEED)
     # Two sides share the points on their edge, so that the sides match; V - 2 = F / 2.
     n = faces // 2 + 2 - 8

@@ -18,8 +18,9 @@ TIME_LIMIT = 600
 
 
 def measure(quick):
-    """Runs each tool with its default options, each model in a separate process, the tools alternating. Partwheel builds the whole
-    hierarchy, from arrays to saved bytes, in one thread; CoACD and V-HACD use all cores. Seconds are wall time."""
+    """Runs each tool with its default options, each model in a separate process, the tools alternating. Partwheel
+    builds the whole hierarchy, from arrays to saved bytes, in one thread; CoACD and V-HACD use all cores. Seconds are
+    wall time."""
     files, source = models.real(10_000, 30_000)
     rows = []
     for first in [0] if quick else models.spread(range(len(files)), 6)[:-1]:

@@ -42,8 +42,8 @@ def stages(model, repetitions, quality=0):
 
 
 class Stages(contextlib.AbstractContextManager):
-    """A stages_bench process with one model that can be built repeatedly, so that several models can alternate. Raises Failure
-    with the program's last line of output."""
+    """A stages_bench process with one model that can be built repeatedly, so that several models can alternate. Raises
+    Failure with the program's last line of output."""
 
     def __init__(self, model, quality=0):
         self._errors = tempfile.TemporaryFile("w+")

@@ -1,7 +1,7 @@
 """One natural model with 50,000 to 1,000,000 faces: time and memory against size.
 
-Growth is relative to the smallest size. Runs of the smallest and of each other size alternate, and the median is taken, because
-a machine's speed may change within seconds. Short runs are repeated more often, because their times vary more.
+Growth is relative to the smallest size. Runs of the smallest and of each other size alternate, and the median is taken,
+because a machine's speed may change within seconds. Short runs are repeated more often, because their times vary more.
 """
 
 from contextlib import ExitStack

@@ -11,8 +11,8 @@ KERNEL = numpy.array([1.0, 2.0, 1.0], numpy.float32) / 4.0
 def denoise(light, normal, depth, strength=1.0, passes=5):
     """Smooths light (h, w, channels) between pixels with similar normals, depths and first three channels.
 
-    normal: (h, w, 3) noise-free surface normals. depth: (h, w) distances from the camera. strength: the largest relative
-    difference of light that counts as noise; the first pass ignores it, so that no dark specks remain.
+    normal: (h, w, 3) noise-free surface normals. depth: (h, w) distances from the camera. strength: the largest
+    relative difference of light that counts as noise; the first pass ignores it, so that no dark specks remain.
     """
     # At slivers of a hull the renderer may return NaN or infinity.
     light = numpy.nan_to_num(light.astype(numpy.float32), posinf=0.0)

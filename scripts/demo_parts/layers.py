@@ -8,8 +8,8 @@ OVERSAMPLING = 2  # pixels of a layer per pixel of the final image, along each a
 
 
 class Layers(NamedTuple):
-    """light: (h, w, 3) linear irradiance. gloss: (h, w, 3) specular light, added after coloring. shown: (h, w) int32 id of the
-    polygon that each pixel shows, -1 for the backdrop."""
+    """light: (h, w, 3) linear irradiance. gloss: (h, w, 3) specular light, added after coloring. shown: (h, w) int32 id
+    of the polygon that each pixel shows, -1 for the backdrop."""
 
     light: numpy.ndarray
     gloss: numpy.ndarray

@@ -1,7 +1,8 @@
 """Combines perform.py's layers into the demo's images: colors them, arranges them in rows, labels them.
 
-Run as: python paint.py FOLDER MODEL...   For each model it writes FOLDER/MODEL.png, a row for each click with every wheel stop;
-FOLDER/MODEL-parts.png, the dendrogram cut into convex polyhedra; and FOLDER/MODEL-ways.png, the fill methods.
+Run as: python paint.py FOLDER MODEL...   For each model it writes FOLDER/MODEL.png, a row for each click with every
+wheel stop; FOLDER/MODEL-parts.png, the dendrogram cut into convex polyhedra; and FOLDER/MODEL-ways.png, the fill
+methods.
 """
 
 import json
@@ -75,8 +76,8 @@ def paint_parts(picture, parts, palette):
 
 
 def palettes(cuts):
-    """For each cut (coarse to fine), the linear colors of its parts. The largest piece of a coarser part keeps its color, so that
-    the eye can follow it; the other pieces get new colors."""
+    """For each cut (coarse to fine), the linear colors of its parts. The largest piece of a coarser part keeps its
+    color, so that the eye can follow it; the other pieces get new colors."""
     colors, count = [], 0
     for number, cut in enumerate(cuts):
         bounds = numpy.array(cut["bounds"])

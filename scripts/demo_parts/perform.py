@@ -1,9 +1,9 @@
 """Runs the demo inside Blender for one model: opens it, builds its hierarchy, clicks and turns the wheel.
 
 Run as: blender -b --python perform.py -- MODEL MESHES FOLDER [--all]
-with the add-on installed and enabled. It writes MODEL.blend to FOLDER, and to layers/MODEL/ report.json (events, sizes, times)
-and a .npz of layers for each image, which paint.py creates. If the build fails, report.json has the error and there are no
-layers.
+with the add-on installed and enabled. It writes MODEL.blend to FOLDER, and to layers/MODEL/ report.json (events, sizes,
+times) and a .npz of layers for each image, which paint.py creates. If the build fails, report.json has the error and
+there are no layers.
 """
 
 import json
@@ -218,8 +218,8 @@ def play_cut(count, studio, whole, hierarchy, folder, report):
 
 
 def play_ways(count, thing, hierarchy, folder, report):
-    """Saves the parts of each face, cut into this number, after three builds: exact, from points, and on a copy with a tenth of
-    the triangles. Parts are numbered so that they match the first build's as well as possible."""
+    """Saves the parts of each face, cut into this number, after three builds: exact, from points, and on a copy with a
+    tenth of the triangles. Parts are numbered so that they match the first build's as well as possible."""
     surface = arrays.surface(thing.data)
     built = {"exact": hierarchy, "points": Hierarchy.build(*surface, rungs=Rung.POINTS),
              "coarse": Hierarchy.build(*surface, exact_triangles=4 * len(surface.triangles) // 10)}

@@ -1,8 +1,8 @@
 """The demo's photo studio: a backdrop, lights and a camera around one model; renders images as layers.
 
-Runs inside Blender. An image has three layers, which paint.py combines: the light at each pixel, the gloss, and the id of the
-face that each pixel shows. A model is rendered once per view and then colored for each wheel stop, which is many times faster
-than a render per stop.
+Runs inside Blender. An image has three layers, which paint.py combines: the light at each pixel, the gloss, and the id
+of the face that each pixel shows. A model is rendered once per view and then colored for each wheel stop, which is many
+times faster than a render per stop.
 """
 
 import math
@@ -22,8 +22,8 @@ SAMPLES = 2  # light paths per pixel of a layer; denoise() removes the noise
 
 
 class View(NamedTuple):
-    """An image's rectangle, centered at (x, y) on the plane at distance 1 in front of the camera, and the size of the final image
-    in pixels."""
+    """An image's rectangle, centered at (x, y) on the plane at distance 1 in front of the camera, and the size of the
+    final image in pixels."""
 
     x: float
     y: float
@@ -147,7 +147,8 @@ class Studio:
         return local[:, :2] / -local[:, 2:]
 
     def view(self, points, width, height, margin=0.06):
-        """The View of this size in pixels that fits all points; margin: on each side, as a fraction of the size, 0..0.5."""
+        """The View of this size in pixels that fits all points; margin: on each side, as a fraction of the size,
+        0..0.5."""
         flat = self.project(points)
         low, high = flat.min(0), flat.max(0)
         span = max(high[0] - low[0], (high[1] - low[1]) * width / height) / (1.0 - 2.0 * margin)

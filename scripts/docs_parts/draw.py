@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws images for the docs: convex parts, parts for a 3D printer, and the paper's figures 4 and 9.
 
-usage: draw.py MESHES IMAGES NAME...     NAME: convex, printing, figure4, figure9. Needs numpy, scipy, Pillow, manifold3d.
+usage: draw.py MESHES IMAGES NAME...     NAME: convex, printing, figure4, figure9. Needs numpy, scipy, Pillow,
+manifold3d.
 """
 
 import sys
@@ -69,8 +70,8 @@ def printing_(folder, images):
 
 
 def figure4(_, images):
-    """The tree of a simple shape before and after Listing 2: three tetrahedra around an axis, where the paper has three triangles
-    around a point. Heights are concavities (Eq. 1)."""
+    """The tree of a simple shape before and after Listing 2: three tetrahedra around an axis, where the paper has three
+    triangles around a point. Heights are concavities (Eq. 1)."""
     angles = np.arange(3) * 2 * np.pi / 3
     vertices = np.vstack([np.column_stack([np.cos(angles), np.sin(angles), 0 * angles]), [(0, 0, 0.3), (0, 0, -0.3)]])
     triangles = [(a, (a + 1) % 3, 3) for a in range(3)] + [((a + 1) % 3, a, 4) for a in range(3)]

@@ -1,5 +1,5 @@
-"""MkDocs hooks: they generate the C API's page from the headers, and replace links to source files, which the site doesn't have,
-with the files' paths."""
+"""MkDocs hooks: they generate the C API's page from the headers, and replace links to source files, which the site
+doesn't have, with the files' paths."""
 
 import re
 from pathlib import Path

@@ -44,10 +44,11 @@ def _remove_timestamps(path):
 
 
 def repository(wheels, packages, target):
-    """Builds a folder with two repositories for Blender, each with the extensions and an index.json, to be served anywhere.
+    """Builds a folder with two repositories for Blender, each with the extensions and an index.json, to be served
+    anywhere.
 
-    stable has the extensions in the directory packages. latest has the same with a version that contains a hash of their
-    content, since Blender updates an extension when its version differs."""
+    stable has the extensions in the directory packages. latest has the same with a version that contains a hash of
+    their content, since Blender updates an extension when its version differs."""
     stable, latest = target / "stable", target / "latest"
     stable.mkdir(parents=True)
     latest.mkdir()

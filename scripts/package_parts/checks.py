@@ -1,5 +1,5 @@
-"""Checks a native library of any platform with LLVM's tools, on any machine: its exports, the oldest system that it supports,
-its dependencies, its signature. A check returns its finding, for the table, or raises Refused.
+"""Checks a native library of any platform with LLVM's tools, on any machine: its exports, the oldest system that it
+supports, its dependencies, its signature. A check returns its finding, for the table, or raises Refused.
 """
 
 import hashlib

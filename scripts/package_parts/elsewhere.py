@@ -1,5 +1,5 @@
-"""Tests packages on their own platform with Python 3.11 only: the wheel in a new environment with the core tests that need no
-compiler, and the extension in Blender as a Python module. Public CI runs this on Windows and macOS.
+"""Tests packages on their own platform with Python 3.11 only: the wheel in a new environment with the core tests that
+need no compiler, and the extension in Blender as a Python module. Public CI runs this on Windows and macOS.
 
     python scripts/package_parts/elsewhere.py build/ship
 

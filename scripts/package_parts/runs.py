@@ -1,5 +1,5 @@
-"""Runs the C example with the libraries, for Windows under wine and for ARM under qemu, on real models. All libraries must save
-the same bytes."""
+"""Runs the C example with the libraries, for Windows under wine and for ARM under qemu, on real models. All libraries
+must save the same bytes."""
 
 import hashlib
 import os

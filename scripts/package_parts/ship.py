@@ -1,5 +1,6 @@
-"""Builds everything that is shipped, for all platforms or some: libraries, wheels, Blender extensions, legacy add-ons, a
-repository folder, the source distribution; and prints a table of the checks. Called by scripts/package, in build/venv/package.
+"""Builds everything that is shipped, for all platforms or some: libraries, wheels, Blender extensions, legacy add-ons,
+a repository folder, the source distribution; and prints a table of the checks. Called by scripts/package, in
+build/venv/package.
 
     ship.py all | PLATFORM ...
 """
@@ -62,8 +63,8 @@ def main():
 
 
 def build_library(platform):
-    """Builds the library and links it twice, to check that linking is reproducible; returns its path. Each time zig gets an empty
-    cache for linked files; its cache of system libraries is elsewhere."""
+    """Builds the library and links it twice, to check that linking is reproducible; returns its path. Each time zig
+    gets an empty cache for linked files; its cache of system libraries is elsewhere."""
     libraries = []
     logged("cmake", "--preset", platform)
     for _ in range(2):

@@ -1,5 +1,5 @@
-"""Builds the source distribution. It has everything that `pip install` needs besides g++ and CMake, including the headers of
-CGAL, Boost and Eigen that the library includes, and TetGen's source."""
+"""Builds the source distribution. It has everything that `pip install` needs besides g++ and CMake, including the
+headers of CGAL, Boost and Eigen that the library includes, and TetGen's source."""
 
 import pathlib
 import re
@@ -17,7 +17,8 @@ WHOLE = ("root/usr/include/boost/config", "root/usr/include/boost/predef")
 
 
 def distribution(target, builds):
-    """Writes partwheel-VERSION.tar.gz to target. builds: build directories of the library; the headers used there are included."""
+    """Writes partwheel-VERSION.tar.gz to target. builds: build directories of the library; the headers used there are
+    included."""
     with tempfile.TemporaryDirectory() as directory:
         folder = pathlib.Path(directory) / "partwheel"
         for name in OURS:

@@ -2,9 +2,9 @@
 
     zips.py build/package/partwheel-VERSION-py3-none-TAG.whl
 
-Next to the wheel it writes partwheel-VERSION-PLATFORM.zip, an extension for Blender 4.2 and later, which installs the wheel;
-and -legacy.zip for 3.4 to 4.1, which has the wheel's content. zips.py --version prints the version, which must be the same in
-all files.
+Next to the wheel it writes partwheel-VERSION-PLATFORM.zip, an extension for Blender 4.2 and later, which installs the
+wheel; and -legacy.zip for 3.4 to 4.1, which has the wheel's content. zips.py --version prints the version, which must
+be the same in all files.
 """
 
 import ast
@@ -49,8 +49,8 @@ def write(target, folder, files):
     """Writes a zip of files in one folder, as both installers require."""
     partial = target.with_suffix(".partial")
     with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-        # Before an update, Blender older than 4.2 removes the old add-on only if the zip has an entry for its folder. Otherwise it
-        # overwrites the library while it is in use, and crashes.
+        # Before an update, Blender older than 4.2 removes the old add-on only if the zip has an entry for its folder.
+        # Otherwise it overwrites the library while it is in use, and crashes.
         archive.writestr(entry(f"{folder}/", 0o040755), b"")
         for name in sorted(files):
             archive.writestr(entry(f"{folder}/{name}", 0o100644), files[name])

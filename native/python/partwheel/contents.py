@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Detects what a mesh file contains besides its surface. Partwheel reads the surface only, so no output has the rest."""
+"""Detects what a mesh file contains besides its surface. Partwheel reads the surface only, so no output has the
+rest."""
 
 import os
 import re

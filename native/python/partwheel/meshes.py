@@ -14,8 +14,8 @@ from .library import Error
 from .polygons import fan_or_ears, is_fan, triangulate
 from .requirements import load_module
 
-# Formats in which triangles share vertices by index. The others store the corners of each triangle separately (STL) or split
-# vertices along texture seams (OBJ, glTF); for these, vertices with identical coordinates are welded.
+# Formats in which triangles share vertices by index. The others store the corners of each triangle separately (STL) or
+# split vertices along texture seams (OBJ, glTF); for these, vertices with identical coordinates are welded.
 INDEXED_FORMATS = {"off", "ply"}
 # The units of 3MF files.
 MILLIMETERS = {"micron": 0.001, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
@@ -126,8 +126,8 @@ def _transformed_piece(scene: Any, matrix: np.ndarray, name: str) -> Optional[Tu
 
 
 def _piece_triangles(piece: Any) -> np.ndarray:
-    """(m, 3) triangles of a trimesh mesh. trimesh splits polygons into fans; if a polygon of a PLY file has no valid fan, all
-    polygons of the file are triangulated again."""
+    """(m, 3) triangles of a trimesh mesh. trimesh splits polygons into fans; if a polygon of a PLY file has no valid
+    fan, all polygons of the file are triangulated again."""
     data = piece.metadata.get("_ply_raw", {}).get("face", {}).get("data")
     names = getattr(getattr(data, "dtype", None), "names", None) or (data if isinstance(data, dict) else ())
     name = next((name for name in ("vertex_index", "vertex_indices") if name in names), None)
@@ -142,8 +142,8 @@ def _piece_triangles(piece: Any) -> np.ndarray:
 
 
 def _strip_triangles(cloud: Any) -> np.ndarray:
-    """(m, 3) triangles of the element "tristrips" of a PLY file, which trimesh reads as a point cloud. Each corner forms a
-    triangle with the two before it, with alternating orientation; -1 starts a new strip."""
+    """(m, 3) triangles of the element "tristrips" of a PLY file, which trimesh reads as a point cloud. Each corner
+    forms a triangle with the two before it, with alternating orientation; -1 starts a new strip."""
     strips = cloud.metadata.get("_ply_raw", {}).get("tristrips", {}).get("data")
     if strips is None:
         return np.zeros((0, 3), int)
@@ -185,7 +185,8 @@ def _read_obj(path: Path) -> Mesh:
 
 
 def _read_off(path: Path) -> Mesh:
-    """Reads an OFF file. trimesh would drop polygons with more than four corners and forget which triangles form a quad."""
+    """Reads an OFF file. trimesh would drop polygons with more than four corners and forget which triangles form a
+    quad."""
     text = re.sub(r"\A(\s*(?:#.*\s+)*\w*OFF)(?=\d)", r"\1 ", path.read_text("utf-8-sig", "replace"), flags=re.IGNORECASE)
     lines = [words for words in (line.split("#", 1)[0].split() for line in text.splitlines()) if words]
     try:

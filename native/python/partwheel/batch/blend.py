@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads the mesh objects of a .blend file as one mesh, with modifiers and transforms applied, by Blender in the background."""
+"""Reads the mesh objects of a .blend file as one mesh, with modifiers and transforms applied, by Blender in the
+background."""
 
 from __future__ import annotations
 

@@ -78,7 +78,8 @@ def settings(options: argparse.Namespace) -> Dict[str, Any]:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Runs partwheel batch. Exit code: 0 success, 1 models failed or the run could not start, 2 wrong usage, 130 Ctrl-C."""
+    """Runs partwheel batch. Exit code: 0 success, 1 models failed or the run could not start, 2 wrong usage, 130
+    Ctrl-C."""
     if options.ray:
         return _run_on_ray(options)
     try:

@@ -49,7 +49,8 @@ def expand_inputs(names: Iterable[str]) -> List[str]:
 
 
 def shard_files(paths: Iterable[str], index: int, count: int) -> List[str]:
-    """The files of a shard, 1 <= index <= count. A hash of its path decides, so a file keeps its shard when files are added."""
+    """The files of a shard, 1 <= index <= count. A hash of its path decides, so a file keeps its shard when files are
+    added."""
     def path_hash(path: str) -> int:
         return int.from_bytes(hashlib.sha256(os.fsencode(path)).digest()[:8], "big")
     return [path for path in paths if path_hash(path) % count == index - 1]
@@ -136,7 +137,8 @@ def _hash_file(path: str, is_stopped: Callable[[], bool]) -> str:
 
 
 def _referenced_files(path: str) -> Iterator[Tuple[str, str]]:
-    """(name, path) of each existing file that a glTF refers to. Found by a pattern in the mapped file, so memory stays small."""
+    """(name, path) of each existing file that a glTF refers to. Found by a pattern in the mapped file, so memory stays
+    small."""
     with open(path, "rb") as file:
         if not os.fstat(file.fileno()).st_size:
             return

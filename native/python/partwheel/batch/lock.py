@@ -2,8 +2,8 @@
 """A named lock in a shared folder, for processes on several machines. The lock of a killed process can be taken over.
 
 The lock is a file NAME.NUMBER. Its owner creates it and touches it while it is alive. A process takes the lock over by
-creating the file with the next number, which succeeds for one process only. The file with the highest number is never removed,
-so numbers are not reused. (Not flock(): on many network file systems it works within one machine only.)
+creating the file with the next number, which succeeds for one process only. The file with the highest number is never
+removed, so numbers are not reused. (Not flock(): on many network file systems it works within one machine only.)
 """
 
 from __future__ import annotations

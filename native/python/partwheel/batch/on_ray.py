@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """partwheel batch on a Ray cluster, with inputs and results in any file system of fsspec (a shared folder, s3://).
 
-The files are divided into tasks of about a hundred models. A task copies each file to its node, builds it there and uploads the
-result, model.json last: a model with a complete model.json is finished. Ray restarts a task when its node dies; the task then
-skips finished models, and so does a driver that is restarted. Results, keys and reports are those of a run on one machine.
+The files are divided into tasks of about a hundred models. A task copies each file to its node, builds it there and
+uploads the result, model.json last: a model with a complete model.json is finished. Ray restarts a task when its node
+dies; the task then skips finished models, and so does a driver that is restarted. Results, keys and reports are those
+of a run on one machine.
 """
 
 from __future__ import annotations
@@ -104,7 +105,8 @@ def _expand_inputs(fsspec: Any, names: Iterable[str]) -> List[str]:
 
 def process_files(paths: List[str], output: str, options: BatchOptions,
                   needs: Sequence[Need] = ()) -> List[Tuple[Optional[str], int]]:
-    """Builds files; returns [(error name or None, number of files)]. Raises RequirementError if the node lacks a package."""
+    """Builds files; returns [(error name or None, number of files)]. Raises RequirementError if the node lacks a
+    package."""
     check(needs)
     import fsspec
 
@@ -161,8 +163,8 @@ def _download(fsspec: Any, path: str, local: Path) -> None:
 
 
 class _ResultFolder:
-    """The folder of results, laid out as by store.Store, in a file system without rename: each task writes a file of its own in
-    inputs/ and done/."""
+    """The folder of results, laid out as by store.Store, in a file system without rename: each task writes a file of
+    its own in inputs/ and done/."""
 
     def __init__(self, fsspec: Any, output: str, paths: List[str]) -> None:
         self._files, self._root = fsspec.core.url_to_fs(output)

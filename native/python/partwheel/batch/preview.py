@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws a preview of a model in the colors of its parts, without a window or a GPU: rays by Embree (embreex), PNG by Pillow."""
+"""Draws a preview of a model in the colors of its parts, without a window or a GPU: rays by Embree (embreex), PNG by
+Pillow."""
 
 from __future__ import annotations
 

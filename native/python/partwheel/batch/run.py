@@ -90,7 +90,8 @@ def available_cores() -> int:
 
 
 def default_memory() -> int:
-    """The default memory of a run in bytes: 80 % of what is available to the system and to this process's control group."""
+    """The default memory of a run in bytes: 80 % of what is available to the system and to this process's control
+    group."""
     return int(MEMORY_FRACTION * min((size for size in (available_memory(), _cgroup_memory()) if size), default=0))
 
 
@@ -144,7 +145,8 @@ class BatchRun:
 
         Parameters
         ----------
-        progress : called about ten times a second; if it raises (KeyboardInterrupt), the run stops and leaves no partial result
+        progress : called about ten times a second; if it raises (KeyboardInterrupt), the run stops and leaves no
+            partial result
 
         Raises
         ------
@@ -190,8 +192,8 @@ class BatchRun:
                       self._finished_cost / self._total_cost, time.monotonic() - self._start_time, dict(self._dropped))
 
     def _check_shard_count(self) -> None:
-        """Raises FolderInUseError if a run with another number of shards uses the folder. Called with this run's lock held, so
-        that of two runs that start at the same time at least one sees the other."""
+        """Raises FolderInUseError if a run with another number of shards uses the folder. Called with this run's lock
+        held, so that of two runs that start at the same time at least one sees the other."""
         suffix = "-of-{}".format(self._options.shard[1])
         others = {name for name in lock.held_locks(self.store.folder / "locks", "shard-") if not name.endswith(suffix)}
         if others:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A process that builds one model after another, and the run's handle to it.
 
-If a file makes its reader crash, hang or run out of memory, only this process is affected; the native build runs in yet another
-process, see worker. For each model, one line of JSON goes to standard input and one comes from standard output.
+If a file makes its reader crash, hang or run out of memory, only this process is affected; the native build runs in yet
+another process, see worker. For each model, one line of JSON goes to standard input and one comes from standard output.
 """
 
 from __future__ import annotations
@@ -41,13 +41,13 @@ class Slot:
 
         Parameters
         ----------
-        task : {"path", "folder", "settings", "memory", "seconds", "threads"}, see model.build_model(), and "size", that of the
-            file in bytes
+        task : {"path", "folder", "settings", "memory", "seconds", "threads"}, see model.build_model(), and "size", that
+            of the file in bytes
 
         Returns
         -------
-        the report of model.build_model(), or {"error": {"name", "message"}, "has_preview"}; and "processor_seconds", of all
-        processes together
+        the report of model.build_model(), or {"error": {"name", "message"}, "has_preview"}; and "processor_seconds", of
+        all processes together
         """
         process, self._is_overdue = self._ensure_process(), False
         assert process.stdin and process.stdout

@@ -39,8 +39,9 @@ def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], f
     mjcf    NAME.xml, a free MuJoCo body with a mesh and a geom for each hull; meshes in NAME_hulls/
     usd     NAME.usda, a UsdPhysics body with the model and the hulls, which are guides
 
-    Coordinates are the model's; simulators take them as meters, with z up. In glb files each node of a hull has the extras
-    "collider" ("hull" or the kind of the primitive), "of" (the model's name) and, for primitives, "size" along the node's axes.
+    Coordinates are the model's; simulators take them as meters, with z up. In glb files each node of a hull has the
+    extras "collider" ("hull" or the kind of the primitive), "of" (the model's name) and, for primitives, "size" along
+    the node's axes.
 
     Parameters
     ----------
@@ -49,8 +50,9 @@ def write(folder: Path, name: str, mesh: Mesh, hulls: Sequence[Sequence[Any]], f
     mesh : the model
     hulls : [(vertices (n, 3), triangles (m, 3), ...), ...]
     formats : from FORMATS
-    primitives : the max_excess of fit_primitive(), for formats that have primitives: mjcf and usd; urdf, except for capsules;
-        glb and unreal, except for cylinders, with the names UBX_NAME_00, USP_NAME_00, UCP_NAME_00. None: hulls only
+    primitives : the max_excess of fit_primitive(), for formats that have primitives: mjcf and usd; urdf, except for
+        capsules; glb and unreal, except for cylinders, with the names UBX_NAME_00, USP_NAME_00, UCP_NAME_00. None:
+        hulls only
 
     Returns
     -------

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fits boxes, spheres, capsules and cylinders around convex hulls: engines collide them several times faster than hulls.
+"""Fits boxes, spheres, capsules and cylinders around convex hulls: engines collide them several times faster than
+hulls.
 
-A primitive contains its hull. Its excess is the one-sided Hausdorff distance from the primitive to the hull: exact, except
-for a cylinder, where it is an upper bound, at most 0.2 % of the radius too large. The axes of capsules and cylinders are found
-by a local search from a few directions, so they are good but not optimal."""
+A primitive contains its hull. Its excess is the one-sided Hausdorff distance from the primitive to the hull: exact,
+except for a cylinder, where it is an upper bound, at most 0.2 % of the radius too large. The axes of capsules and
+cylinders are found by a local search from a few directions, so they are good but not optimal."""
 
 from functools import cached_property
 from itertools import combinations
@@ -41,7 +42,8 @@ class Primitive(NamedTuple):
         return matrix
 
     def mesh(self) -> Tuple[np.ndarray, np.ndarray]:
-        """A closed mesh in local space with the primitive's bounding box: vertices (n, 3), triangles (m, 3), outward."""
+        """A closed mesh in local space with the primitive's bounding box: vertices (n, 3), triangles (m, 3),
+        outward."""
         if self.kind == "box":
             vertices = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * self.half_extents
             sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -132,8 +134,8 @@ class _Hull:
         """(n,) distances of points (n, 3) from the hull's surface, negative inside."""
         heights = points @ self.normals.T - self.offsets
         distances = heights.max(axis=1)
-        # The hull's nearest point to an outside point lies on a facet visible from it. The tolerance keeps facets of one
-        # plane that rounding would make invisible.
+        # The hull's nearest point to an outside point lies on a facet visible from it. The tolerance keeps facets of
+        # one plane that rounding would make invisible.
         outside, visible = np.nonzero((distances > 0)[:, None] & (heights > -1e-9 * self.size))
         if len(outside):
             to_facets = _triangle_distances(points[outside], self.corners[visible], self.normals[visible])
@@ -161,8 +163,8 @@ class _Hull:
         return normals
 
     def _box_on(self, normal: np.ndarray) -> Tuple[float, np.ndarray]:
-        """(volume, axes (3, 3)) of the smallest bounding box with a side across the normal. A second side contains an edge
-        of the silhouette: the minimum-area rectangle around a convex polygon has a side along an edge of it."""
+        """(volume, axes (3, 3)) of the smallest bounding box with a side across the normal. A second side contains an
+        edge of the silhouette: the minimum-area rectangle around a convex polygon has a side along an edge of it."""
         plane = np.column_stack(_orthonormal_pair(normal))
         visible = self.triangles[self.normals @ normal > 0]
         edges, counts = np.unique(np.sort(np.vstack([visible[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1), axis=0,
@@ -206,8 +208,8 @@ _FITS = {"sphere": _fit_sphere, "capsule": _fit_capsule, "box": _fit_box, "cylin
 
 
 def _search_axis(hull: _Hull, max_excess: float, fit_along: Callable[[_Hull, np.ndarray], Fit]) -> Fit:
-    """The best fit over the initial axes; if its excess is at most SEARCH_LIMIT * max_excess, improved by a pattern search
-    that tilts the axis in four directions and halves the step."""
+    """The best fit over the initial axes; if its excess is at most SEARCH_LIMIT * max_excess, improved by a pattern
+    search that tilts the axis in four directions and halves the step."""
     best = min((fit_along(hull, axis) for axis in hull.axes()), key=lambda fit: fit[0])
     step = 0.2
     for _ in range(SEARCH_STEPS if best[0] <= SEARCH_LIMIT * max_excess else 0):
@@ -278,8 +280,8 @@ def _circle(count: int) -> np.ndarray:
 def _smallest_ball(points: np.ndarray) -> Tuple[np.ndarray, float]:
     """(center, radius) of the smallest enclosing ball of points (n, d), d 2 or 3.
 
-    Active-set method: while a point is outside, the farthest one joins the support set, and the smallest ball of that set
-    is found among the circumscribed balls of its subsets. The radius grows each time, so the method terminates."""
+    Active-set method: while a point is outside, the farthest one joins the support set, and the smallest ball of that
+    set is found among the circumscribed balls of its subsets. The radius grows each time, so the method terminates."""
     support = points[:1]
     center, radius = support[0], 0.0
     while True:

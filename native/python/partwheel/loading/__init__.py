@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Loads the native library so that its file can be replaced while it is in use, and explains why it can't be loaded.
 
-The worker's bare Python imports this module, too, and must start fast: it uses the standard library only, and imports most
-of it inside functions.
+The worker's bare Python imports this module, too, and must start fast: it uses the standard library only, and imports
+most of it inside functions.
 """
 
 from __future__ import annotations
@@ -44,7 +44,8 @@ def _open_copy(path: str | Path) -> ctypes.CDLL:
 def temporary_copy(path: str | Path) -> Path:
     """Copies the library into the temporary directory; returns the path of the copy, or of the file if that fails.
 
-    Windows locks the file of a library that is in use: without a copy, Blender could not update or remove the add-on."""
+    Windows locks the file of a library that is in use: without a copy, Blender could not update or remove the
+    add-on."""
     import hashlib
     import tempfile
 
@@ -100,8 +101,8 @@ def library_platform(path: str | Path) -> str | None:
 
 
 def is_truncated(path: str | Path) -> bool:
-    """Whether an ELF file ends before the end of its section table, which is its last part. Linux would load such a file and
-    crash with a bus error; the loaders of other systems check for themselves."""
+    """Whether an ELF file ends before the end of its section table, which is its last part. Linux would load such a
+    file and crash with a bus error; the loaders of other systems check for themselves."""
     try:
         with open(path, "rb") as file:
             head = file.read(64)

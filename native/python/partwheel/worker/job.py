@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Job: a build in a separate process, so that a crash, a hang or memory exhaustion in the native library can't harm this one.
+"""Job: a build in a separate process, so that a crash, a hang or memory exhaustion in the native library can't harm
+this one.
 
 All data goes through two pipes, so no files and no shared memory can be left behind, and the end of a pipe tells each
 process that the other has died. process.py runs on the other side.
@@ -28,7 +29,8 @@ if TYPE_CHECKING:
 
 ENTRY = Path(__file__).with_name("process.py")
 MEMORY_FRACTION = 0.8  # of the memory that is available when the build starts
-# Default limit on processor time, about fifty times what an ordinary build takes: only an endless build should reach it.
+# Default limit on processor time, about fifty times what an ordinary build takes: only an endless build should reach
+# it.
 CPU_SECONDS, CPU_SECONDS_PER_TRIANGLE = 120, 0.002
 POLL_SECONDS = 0.1  # between two checks of the time limit
 # result() waits in steps: an endless wait would not notice a Ctrl-C that comes just before it.
@@ -76,16 +78,16 @@ class Job(NonCopyable):
     """One build in a worker process. Every method may be called from any thread.
 
     A worker that crashes, exits or exceeds a limit is followed by another one that starts with the next fill method, if
-    there is one. The worker ends when this process does, however that happens. It starts when any method is called after a
-    Python was found; these calls also enforce the time limit.
+    there is one. The worker ends when this process does, however that happens. It starts when any method is called
+    after a Python was found; these calls also enforce the time limit.
 
     Parameters
     ----------
     vertices ... exact_triangles : see Hierarchy.build()
     memory_limit : bytes that the worker may use; None: 80 % of what is available now; 0: no limit. Linux only: macOS
         ignores such limits, and none is set on Windows
-    cpu_limit : seconds of processor time of one worker, all threads together, so that a busy machine stops no build; also
-        seconds of wall-clock time without any work. None: 120 s plus 2 ms per triangle
+    cpu_limit : seconds of processor time of one worker, all threads together, so that a busy machine stops no build;
+        also seconds of wall-clock time without any work. None: 120 s plus 2 ms per triangle
     python : path of the Python that runs the worker, if it works; "": see interpreter.candidates()
 
     Attributes
@@ -176,9 +178,9 @@ class Job(NonCopyable):
     def _begin(self) -> None:
         """Starts the worker and the job's thread as soon as a Python was found.
 
-        The caller's thread does this, not the job's, and not the constructor, so that the job's thread runs as little Python
-        as possible: up to Python 3.11, Blender mistakes any thread that holds the interpreter lock for its own, and crashes
-        if a script calls operators under temp_override() at that time (observed in 3.4).
+        The caller's thread does this, not the job's, and not the constructor, so that the job's thread runs as little
+        Python as possible: up to Python 3.11, Blender mistakes any thread that holds the interpreter lock for its own,
+        and crashes if a script calls operators under temp_override() at that time (observed in 3.4).
         """
         with self._lock:
             if not self._search:
@@ -289,8 +291,8 @@ class Job(NonCopyable):
             pass
 
     def _listen(self, pipe: IO[bytes]) -> Union[Tuple[bytes, Dict[str, float]], PartwheelError, None]:
-        """Receives messages up to the answer: (the saved hierarchy, stage name -> seconds), or an error, or None if the pipe
-        ends without one."""
+        """Receives messages up to the answer: (the saved hierarchy, stage name -> seconds), or an error, or None if the
+        pipe ends without one."""
         seconds: Dict[str, float] = {}
         while True:
             header = _read(pipe, MESSAGE.size)

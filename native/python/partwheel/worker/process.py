@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The worker process: reads a surface from standard input, writes progress and a saved hierarchy to standard output.
 
-job.py starts it by its path with a bare Python: no numpy, no site-packages, nothing from Blender. A message is a kind, a
-length and that many bytes.
+job.py starts it by its path with a bare Python: no numpy, no site-packages, nothing from Blender. A message is a kind,
+a length and that many bytes.
 
 Input:  B {options, face_count, memory_limit, sizes}, then the bytes of the arrays
 Output: P [fraction, stage, fill method, seconds of processor time], every TICK seconds
@@ -59,8 +59,8 @@ def die_with_parent() -> None:
 
 
 def exit_at_end_of_input() -> None:
-    """Exits when the parent has died. The parent writes nothing after the arrays and keeps the pipe open. This thread runs
-    during the build, because ctypes releases the interpreter lock."""
+    """Exits when the parent has died. The parent writes nothing after the arrays and keeps the pipe open. This thread
+    runs during the build, because ctypes releases the interpreter lock."""
     while os.read(0, 4096):
         pass
     os._exit(1)
