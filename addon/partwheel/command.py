@@ -5,6 +5,8 @@
     blender --command partwheel cut scene.blend --parts 8 --attribute part --output cut.blend
 """
 
+from __future__ import annotations
+
 import argparse
 
 import bpy
@@ -12,18 +14,18 @@ import bpy
 from . import api
 from partwheel import Error
 
-NAME = "partwheel"
-_handle = None
+COMMAND = "partwheel"
+_registration = None
 
 
-def run(arguments):
-    """The command. arguments: the words after its name. The exit code: 0, or 1 if any object failed."""
-    options = _parser().parse_args(arguments)
+def run(arguments: list[str]) -> int:
+    """Runs the command with these arguments, without its name. Returns the exit code: 0, or 1 if any object failed."""
+    options = _create_parser().parse_args(arguments)
     bpy.ops.wm.open_mainfile(filepath=options.file, load_ui=False)
     objects = [obj for obj in bpy.data.objects if obj.type == "MESH" and not obj.library
                and options.object in (None, obj.name)]
     if not objects:
-        print(f"{options.file} holds no mesh object" + (f" named {options.object}" if options.object else ""))
+        print(f"{options.file} contains no mesh object" + (f" named {options.object}" if options.object else ""))
         return 1
     failed = 0
     for obj in {obj.data: obj for obj in objects}.values():
@@ -37,12 +39,12 @@ def run(arguments):
     return 1 if failed else 0
 
 
-def _build(obj, options):
-    built = api.build(obj, options.quality, options.open_surfaces, exactly=options.exactly or None)
-    return f"{obj.name}: {len(built.order)} faces, their parts found. {built.account}".rstrip()
+def _build(obj: bpy.types.Object, options: argparse.Namespace) -> str:
+    hierarchy = api.build(obj, options.quality, options.open_surfaces, exactly=options.exactly or None)
+    return f"{obj.name}: {len(hierarchy.order)} faces, their parts found. {hierarchy.account}".rstrip()
 
 
-def _cut(obj, options):
+def _cut(obj: bpy.types.Object, options: argparse.Namespace) -> str:
     labels = api.cut(obj, options.parts, options.height, options.least_concavity).labels
     attributes = obj.data.attributes
     if options.attribute in attributes:
@@ -51,14 +53,14 @@ def _cut(obj, options):
     return f"{obj.name}: {len(set(labels.tolist()))} parts in the face attribute {options.attribute}"
 
 
-def _parser():
-    parser = argparse.ArgumentParser(prog=f"blender --command {NAME}",
+def _create_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog=f"blender --command {COMMAND}",
                                      description="Finds the parts of the meshes in a .blend file and saves it.")
     commands = parser.add_subparsers(required=True, metavar="build | cut")
-    for name, do, text in (("build", _build, "find the parts, which are saved with the file"),
-                           ("cut", _cut, "number the faces by part, as a face attribute")):
-        command = commands.add_parser(name, help=text, description=text)
-        command.set_defaults(do=do)
+    for name, function, help_text in (("build", _build, "find the parts, which are saved with the file"),
+                                      ("cut", _cut, "number the faces by part, as a face attribute")):
+        command = commands.add_parser(name, help=help_text, description=help_text)
+        command.set_defaults(do=function)
         command.add_argument("file", help="the .blend file")
         command.add_argument("--object", help="only this object (default: every mesh)")
         command.add_argument("--output", help="save there (default: the file itself)")
@@ -67,23 +69,23 @@ def _parser():
             command.add_argument("--open-surfaces", action="store_true", help="take sheets for thin solids")
             command.add_argument("--exactly", action="store_true", help="find parts of large meshes on all triangles")
         else:
-            size = command.add_mutually_exclusive_group(required=True)
-            size.add_argument("--parts", type=int, help="into so many, the last merges undone")
-            size.add_argument("--least-concavity", type=int, metavar="PARTS",
-                              help="into so many, those with the least concavity in total")
-            size.add_argument("--height", type=float, help="at this height of the dendrogram")
+            group = command.add_mutually_exclusive_group(required=True)
+            group.add_argument("--parts", type=int, help="into so many, the last merges undone")
+            group.add_argument("--least-concavity", type=int, metavar="PARTS",
+                               help="into so many, those with the least concavity in total")
+            group.add_argument("--height", type=float, help="at this height of the dendrogram")
             command.add_argument("--attribute", default="part", help="its name (default: part)")
     return parser
 
 
-def register():
-    global _handle
+def register() -> None:
+    global _registration
     if hasattr(bpy.utils, "register_cli_command"):
-        _handle = bpy.utils.register_cli_command(NAME, run)
+        _registration = bpy.utils.register_cli_command(COMMAND, run)
 
 
-def unregister():
-    global _handle
-    if _handle is not None:
-        bpy.utils.unregister_cli_command(_handle)
-        _handle = None
+def unregister() -> None:
+    global _registration
+    if _registration is not None:
+        bpy.utils.unregister_cli_command(_registration)
+        _registration = None

@@ -79,4 +79,4 @@ class Command(MeshTest):
         self.assertEqual(told, [[], ["a:"], ["a:", "b:"]])
 
     def test_registered_where_blender_has_commands(self):
-        self.assertEqual(part("command")._handle is not None, hasattr(bpy.utils, "register_cli_command"))
+        self.assertEqual(part("command")._registration is not None, hasattr(bpy.utils, "register_cli_command"))

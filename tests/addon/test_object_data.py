@@ -542,7 +542,7 @@ class ObjectData(SolidTest):
                 with self.assertRaisesRegex(ValueError, "whole model: nothing would be left"):
                     api.remove(obj, root, snap=snap)
             with self.assertRaisesRegex(ValueError, "whole model"):
-                api.mirrored(obj, root)
+                api.mirror_image(obj, root)
             with self.assertRaisesRegex(ValueError, "whole model"):
                 api.swap(obj, root, obj)
             with self.assertRaisesRegex(ValueError, "whole mesh"):

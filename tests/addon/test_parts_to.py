@@ -66,12 +66,12 @@ class Written(PartsCase):
             self.assertEqual((attribute.domain, attribute.data_type), ("FACE", "INT"))
             self.assertTrue((read(attribute.data, "value", numpy.int32) == cut.labels).all())
             self.assertEqual(json.loads(obj.data["partwheel_parts"]), {str(k): n for k, n in enumerate(names)})
-            found, known = part("api").kept_parts(obj)
+            found, known = part("api").load_cut(obj)
             self.assertEqual(found, cut)
             self.assertEqual(known, names)
             # Gone on with: what stays as it is keeps its name, also one that the user gave.
             part("api").write(obj, found, names=["Nose", *names[1:]])
-            more = part("api").kept_parts(obj)[0].split(1)
+            more = part("api").load_cut(obj)[0].split(1)
             after = part("api").write(obj, more).names
             self.assertEqual(len(set(after)), len(more))
             self.assertEqual(after[0], "Nose")
@@ -81,7 +81,7 @@ class Written(PartsCase):
         obj, cut = self.model("homer")
         names = part("api").write(obj, cut.merge(0, 3)).names
         again = self.linked(obj)
-        found, known = part("api").kept_parts(again)
+        found, known = part("api").load_cut(again)
         self.assertEqual(len({*zip(found.labels.tolist(), cut.merge(0, 3).labels.tolist())}), len(found))
         self.assertEqual(known, names)
 
@@ -89,9 +89,9 @@ class Written(PartsCase):
         obj, cut = self.model("pig")
         obj.data["partwheel_parts"] = "no JSON"
         obj.data.attributes.new("partwheel_part", "FLOAT", "POINT")
-        self.assertIsNone(part("api").kept_parts(obj))
+        self.assertIsNone(part("api").load_cut(obj))
         part("api").write(obj, cut)
-        self.assertEqual(part("api").kept_parts(obj)[0], cut)
+        self.assertEqual(part("api").load_cut(obj)[0], cut)
 
     def test_face_sets(self):
         for _, obj, cut in self.each():
@@ -136,7 +136,7 @@ class Written(PartsCase):
             part("api").write(obj, cut.split(0), {"VERTEX_GROUPS", "COLORS", "OBJECTS"})
         self.assertEqual([group.name for group in obj.vertex_groups], before)
         self.assertEqual((len(obj.data.materials), len(bpy.data.objects)), (0, 1))
-        self.assertEqual(part("api").kept_parts(obj)[0], cut)
+        self.assertEqual(part("api").load_cut(obj)[0], cut)
 
     def test_materials_of_own_colours(self):
         for _, obj, cut in self.each(("elephant", "cow")):
@@ -368,7 +368,7 @@ class Operator(PartsCase):
         obj, _ = self.model("elephant")
         self.run_parts(obj, to={"VERTEX_GROUPS", "COLORS", "FACE_SETS"}, count=5)
         self.assertEqual((len(obj.vertex_groups), len(obj.data.materials), len(bpy.data.objects)), (5, 5, 1))
-        self.assertEqual(part("api").kept_parts(obj)[0], Cut.into(part("api").hierarchy(obj), 5))
+        self.assertEqual(part("api").load_cut(obj)[0], Cut.into(part("api").hierarchy(obj), 5))
 
     def test_goes_on_with_what_is_kept_in_every_mode(self):
         obj, cut = self.model("elephant")
@@ -378,20 +378,20 @@ class Operator(PartsCase):
             bpy.ops.object.mode_set(mode=mode)
             self.run_parts(obj, to=set())
             bpy.ops.object.mode_set(mode="OBJECT")
-            self.assertEqual(part("api").kept_parts(obj)[0], edited)
+            self.assertEqual(part("api").load_cut(obj)[0], edited)
 
     def test_repeats_with_other_options(self):
         # What the panel of the last operation and Repeat Last give it: the parts as they were, or so many of them.
         obj, cut = self.model("elephant")
         edited = cut.merge(0, 4)
         self.run_parts(obj, to=set(), clusters=json.dumps(edited.parts), count=len(edited))
-        self.assertEqual(part("api").kept_parts(obj)[0], edited)
+        self.assertEqual(part("api").load_cut(obj)[0], edited)
         self.run_parts(obj, to=set(), clusters=json.dumps(edited.parts), count=len(edited) + 3)
-        self.assertEqual(part("api").kept_parts(obj)[0], edited.resize(len(edited) + 3))
+        self.assertEqual(part("api").load_cut(obj)[0], edited.resize(len(edited) + 3))
         for wrong in ("no JSON", "[[1]]", "[[-5]]", "5", '[["a"]]', "[[99999999]]"):
             with self.assertRaises(RuntimeError):
                 self.run_parts(obj, clusters=wrong)
-        self.assertEqual(part("api").kept_parts(obj)[0], edited.resize(len(edited) + 3))
+        self.assertEqual(part("api").load_cut(obj)[0], edited.resize(len(edited) + 3))
 
     def test_states_come_back_by_the_way_they_went(self):
         _, cut = self.model("homer")

@@ -110,7 +110,7 @@ class Print(PartsCase):
         self.assertEqual(bpy.ops.mesh.partwheel_parts(to={"PRINT"}, count=4, clearance=GAP, wall=WALL), {"FINISHED"})
         made = new()
         self.assertEqual(len(made.objects), 4)
-        self.assertEqual({each.name for each in made.objects}, set(part("api").kept_parts(obj)[1]))
+        self.assertEqual({each.name for each in made.objects}, set(part("api").load_cut(obj)[1]))
         self.assertTrue(obj.hide_get())
         size = 0.6 * SIZE
         obj.hide_set(False)
@@ -131,7 +131,7 @@ class Print(PartsCase):
         with patch.dict(sys.modules, {"manifold3d": None}), self.assertRaisesRegex(RuntimeError, "pip install manifold3d"):
             bpy.ops.mesh.partwheel_parts(to={"PRINT", "FACE_SETS"})
         self.assertEqual((len(bpy.data.objects), len(bpy.data.collections)), before)
-        self.assertIsNone(part("api").kept_parts(obj))
+        self.assertIsNone(part("api").load_cut(obj))
         obj.scale.x *= 2
         bpy.context.view_layer.update()
         self.with_manifold3d()

@@ -188,7 +188,7 @@ class Seams(PartsCase):
         with self.assertRaisesRegex(ValueError, "UV maps"):
             part("api").write(obj, cut, {"SEAMS"}, unwrap=True)
         self.assertEqual(state(), before)
-        self.assertIsNone(part("api").kept_parts(obj))
+        self.assertIsNone(part("api").load_cut(obj))
 
     def test_the_operator_in_all_modes(self):
         obj, cut = self.model("elephant")

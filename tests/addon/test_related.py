@@ -67,7 +67,7 @@ class Related(ToolTest):
 
     def remembered(self):
         """{name: its faces}. Not its node: another one may have the same faces, and other tetrahedra inside."""
-        return {name: self.faces(node) for name, node in self.api.remembered(self.obj).items()}
+        return {name: self.faces(node) for name, node in self.api.remembered_parts(self.obj).items()}
 
     def in_hand(self, node):
         self.edit(self.obj)
@@ -186,10 +186,10 @@ class Related(ToolTest):
     def test_the_other_side(self):
         self.use(6, 6, 4, 7, 3, 8)
         left, right = self.bar(0, -1), self.bar(0, 1)
-        self.assertEqual((self.api.mirrored(self.obj, left), self.api.mirrored(self.obj, right)), (right, left))
-        self.assertEqual(self.api.mirrored(self.obj, left, plane=0), right)
+        self.assertEqual((self.api.mirror_image(self.obj, left), self.api.mirror_image(self.obj, right)), (right, left))
+        self.assertEqual(self.api.mirror_image(self.obj, left, plane=0), right)
         with self.assertRaisesRegex(ValueError, "numbered from 0 to 0"):
-            self.api.mirrored(self.obj, left, plane=1)
+            self.api.mirror_image(self.obj, left, plane=1)
         self.in_hand(left)
         self.assertEqual(bpy.ops.mesh.partwheel_mirrored(), {"FINISHED"})
         self.assertEqual(selected(self.obj), self.faces(left, right))
@@ -206,7 +206,7 @@ class Related(ToolTest):
         hand = self.add(*read_off("hand"), "hand")
         for obj, node in ((self.obj, self.bar(1, 1)), (hand, self.api.part(hand, 900))):
             with self.assertRaisesRegex(part("mesh.errors").Refused, f"no mirror image in {obj.name}"):
-                self.api.mirrored(obj, node)
+                self.api.mirror_image(obj, node)
             bpy.context.view_layer.objects.active = obj
             self.edit(obj)
             self.api.select(obj, node)
@@ -291,12 +291,12 @@ class Related(ToolTest):
                 wanted.objects = ["model"]
         self.obj = obj = self.link(wanted.objects[0])
         self.h = self.api.build(obj)
-        found, wanted = self.faces(self.api.remembered(obj)["Bar"]), self.faces(self.bar(1, 1, 6))
+        found, wanted = self.faces(self.api.remembered_parts(obj)["Bar"]), self.faces(self.bar(1, 1, 6))
         self.assertGreater(len(found & wanted), 0.7 * len(found | wanted))
         with self.assertRaisesRegex(part("mesh.errors").Refused, "No part of model as it is now is much like"):
             few = obj.data.attributes.new("part: every other", "INT", "FACE")
             few.data.foreach_set("value", (numpy.arange(len(obj.data.polygons)) % 3 == 0).astype(numpy.int32))
-            self.api.remembered(obj)
+            self.api.remembered_parts(obj)
 
     def test_a_gesture_takes_whole_parts(self):
         """Those that a click takes, and a notch where the last pick was a notch away; what it grazes is left out."""
