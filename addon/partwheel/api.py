@@ -184,7 +184,7 @@ def part(obj: bpy.types.Object, face: int, level: int = 0, size: float | None = 
     built = hierarchy(obj)
     pick = states.pick_face(built, operator.index(face))
     if size is not None:
-        pick = pick.at(sum(built.area[stop] <= size * built.area[-1] for stop in pick.stops) - 1)
+        pick = pick.at_stop(sum(built.area[stop] <= size * built.area[-1] for stop in pick.stops) - 1)
     node = pick.turn(level).node
     return Part(node, pick.face, pick.stops, pick.start, borders.get_part_faces(obj, built, node, snap),
                 float(built.area[node]), int(built.parent[node]) if built.parent[node] >= 0 else None,

@@ -216,7 +216,7 @@ class Api(MeshTest):
                            lambda **options: self.api.bend(obj, found, turn, **options)):
                 told = []
                 for options in ({"progress": lambda *_: True}, {"time_limit": 0}):
-                    with self.assertRaisesRegex(package().PartwheelError, "as it was") as raised:
+                    with self.assertRaisesRegex(package().PartwheelError, "is unchanged") as raised:
                         change(**options)
                     self.assertEqual(raised.exception.status, package().Status.CANCELLED)
                     self.assertTrue((places(obj) == before).all())
@@ -297,7 +297,7 @@ class Api(MeshTest):
                 with self.subTest(number), self.assertRaisesRegex(ValueError, "not a mesh object"):
                     call()
         for others in ([], [obj]):
-            with self.assertRaisesRegex(ValueError, "united with"):
+            with self.assertRaisesRegex(ValueError, "to unite"):
                 self.api.unite(obj, others)
 
     def test_build_path_faces(self):
