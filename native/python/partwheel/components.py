@@ -4,17 +4,27 @@
 import numpy as np
 
 
-def components(count, pairs):
-    """(count,) the number, from 0, of the group that each is in: both of a pair (n,2) are in one."""
+def components(count: int, pairs: np.ndarray) -> np.ndarray:
+    """Connected components of a graph, by label propagation with pointer jumping.
+
+    Parameters
+    ----------
+    count : number of vertices
+    pairs : (n, 2) edges
+
+    Returns
+    -------
+    (count,) the component of each vertex, numbered from 0 by their lowest vertices
+    """
     lowest = np.arange(count)
     while True:
         ends = lowest[pairs]
         low, high = ends.min(axis=1), ends.max(axis=1)
-        apart = low < high
-        if not apart.any():
+        differs = low < high
+        if not differs.any():
             return np.unique(lowest, return_inverse=True)[1].ravel()
-        pairs, low, high = pairs[apart], low[apart], high[apart]
-        order = np.argsort(-low, kind="stable")  # the lowest one is written last
+        pairs, low, high = pairs[differs], low[differs], high[differs]
+        order = np.argsort(-low, kind="stable")  # the lowest label is written last, and stays
         lowest[high[order]] = low[order]
-        while ((further := lowest[lowest]) != lowest).any():
-            lowest = further
+        while ((jumped := lowest[lowest]) != lowest).any():
+            lowest = jumped

@@ -1,81 +1,97 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Coincident vertices as one vertex. glTF and other formats split a vertex where faces meet that differ in UV or normal,
-so that the surface falls into pieces; welding joins these again."""
+"""Welds coincident vertices. glTF and other formats split vertices between faces with different UVs or normals, so the
+surface falls into pieces; welding joins them again."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Tuple
 
 import numpy as np
 
 from .components import components
 
-# Odd random numbers that mix the bits of x, y and z.
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+# Odd random multipliers for hashing x, y and z.
 _MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
 
 
-def weld_coincident_vertices(vertices, triangles):
-    """old_to_new (V,): the vertex that each vertex counts as, the first of those that are welded. vertices (V,3),
-    triangles (T,3) indices into them.
+def weld_coincident_vertices(vertices: ArrayLike, triangles: ArrayLike) -> np.ndarray:
+    """Finds the vertices to weld.
 
-    Two vertices at exactly the same place are welded where edges of theirs coincide, and one of these edges is open: it
-    has a single triangle. So what was split along an edge is joined again. A mesh without open edges stays as it is, and
-    so do solids that touch, and surfaces that share a single point. Positions are compared exactly: without coincident
-    vertices old_to_new is 0, 1, 2..."""
+    Two vertices with identical coordinates are welded if edges of theirs coincide and one of these edges is open, that
+    is, has a single triangle. This joins what was split along an edge. Meshes without open edges, solids that touch,
+    and surfaces that share a single point don't change.
+
+    Parameters
+    ----------
+    vertices : (V, 3)
+    triangles : (T, 3)
+
+    Returns
+    -------
+    old_to_new (V,), the first of the vertices that are welded with each vertex; 0, 1, 2, ... if none are
+    """
     vertices, triangles = np.asarray(vertices, np.float64), np.asarray(triangles)
     old_to_new = np.arange(len(vertices))
     if not triangles.size or triangles.min() < 0 or triangles.max() >= len(vertices):
-        return old_to_new  # what is wrong with the surface, its user says
+        return old_to_new  # the function that uses the surface reports the error
     used = np.zeros(len(vertices), bool)
     used[triangles] = True
-    place, shared = _places(vertices + 0.0, used)  # + 0.0: -0.0 is 0.0
-    edges = triangles[shared[triangles].sum(axis=1) >= 2][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-    edges = np.sort(edges[shared[edges].all(axis=1)], axis=1)
+    place, is_shared = _places(vertices + 0.0, used)  # + 0.0 turns -0.0 into 0.0
+    edges = triangles[is_shared[triangles].sum(axis=1) >= 2][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    edges = np.sort(edges[is_shared[edges].all(axis=1)], axis=1)
     edges, count = _distinct(edges, len(vertices))
-    # Of each edge the end at the lower place first; without edges that are a point.
+    # Orient each edge from the lower to the higher place; drop edges of length 0.
     swap = place[edges[:, 0]] > place[edges[:, 1]]
     edges = np.where(swap[:, None], edges[:, ::-1], edges)
     ends = place[edges]
-    proper = ends[:, 0] < ends[:, 1]
-    edges, is_open = edges[proper], count[proper] == 1
-    _, first, group = np.unique(ends[proper] @ [len(vertices), 1], return_index=True, return_inverse=True)
-    welds = np.zeros(len(first), bool)
-    welds[group[is_open]] = True
-    chosen = welds[group]
-    pairs = np.stack([edges[chosen], edges[first[group[chosen]]]], axis=2).reshape(-1, 2)
+    has_length = ends[:, 0] < ends[:, 1]
+    edges, is_open = edges[has_length], count[has_length] == 1
+    _, first, group = np.unique(ends[has_length] @ [len(vertices), 1], return_index=True, return_inverse=True)
+    has_open_edge = np.zeros(len(first), bool)
+    has_open_edge[group[is_open]] = True
+    is_welded = has_open_edge[group]
+    pairs = np.stack([edges[is_welded], edges[first[group[is_welded]]]], axis=2).reshape(-1, 2)
     if not len(pairs):
         return old_to_new
-    number = components(len(vertices), pairs)
-    return np.unique(number, return_index=True)[1][number]
+    component = components(len(vertices), pairs)
+    return np.unique(component, return_index=True)[1][component]
 
 
-def weld_surface(vertices, triangles):
-    """(old_to_new, triangles (T,3) of the welded vertices)"""
+def weld_surface(vertices: ArrayLike, triangles: ArrayLike) -> Tuple[np.ndarray, np.ndarray]:
+    """(old_to_new (V,), see weld_coincident_vertices(); triangles (T, 3) of the welded vertices)"""
     old_to_new = weld_coincident_vertices(vertices, triangles)
     triangles = np.asarray(triangles)
     return old_to_new, old_to_new[triangles].astype(triangles.dtype) if is_welding(old_to_new) else triangles
 
 
-def is_welding(old_to_new):
+def is_welding(old_to_new: np.ndarray) -> bool:
     """Whether any vertices are welded."""
     return bool((old_to_new != np.arange(len(old_to_new))).any())
 
 
-def _places(vertices, used):
-    """((V,) a number of the place of each used vertex, (V,) bool: several are at it). Other vertices have -1."""
-    place, shared = np.full(len(vertices), -1), np.zeros(len(vertices), bool)
+def _places(vertices: np.ndarray, used: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """(place (V,), is_shared (V,) bool): an id of the position of each used vertex that shares it with others; -1 for
+    the rest."""
+    place, is_shared = np.full(len(vertices), -1), np.zeros(len(vertices), bool)
     with np.errstate(over="ignore"):
         bits = np.ascontiguousarray(vertices).view(np.uint64)
-        mixed = ((bits ^ (bits >> np.uint64(32))) * _MIX).sum(axis=1, dtype=np.uint64)
-    of_used = np.sort(mixed[used])
-    repeated = of_used[1:][of_used[1:] == of_used[:-1]]
-    candidates = np.flatnonzero(used & np.isin(mixed, repeated)) if len(repeated) else np.empty(0, int)
+        hashes = ((bits ^ (bits >> np.uint64(32))) * _MIX).sum(axis=1, dtype=np.uint64)
+    sorted_hashes = np.sort(hashes[used])
+    repeated = sorted_hashes[1:][sorted_hashes[1:] == sorted_hashes[:-1]]
+    candidates = np.flatnonzero(used & np.isin(hashes, repeated)) if len(repeated) else np.empty(0, int)
     if not len(candidates):
-        return place, shared
+        return place, is_shared
     order = candidates[np.lexsort(vertices[candidates].T)]
-    same = (vertices[order[1:]] == vertices[order[:-1]]).all(axis=1)
-    place[order] = np.cumsum(np.append(True, ~same)) - 1
-    shared[order[1:][same]] = shared[order[:-1][same]] = True
-    return place, shared
+    is_same = (vertices[order[1:]] == vertices[order[:-1]]).all(axis=1)
+    place[order] = np.cumsum(np.append(True, ~is_same)) - 1
+    is_shared[order[1:][is_same]] = is_shared[order[:-1][is_same]] = True
+    return place, is_shared
 
 
-def _distinct(edges, count):
-    """((E,2) the distinct edges, (E,) how often each is there)"""
-    keys, times = np.unique(edges[:, 0].astype(np.int64) * count + edges[:, 1], return_counts=True)
-    return np.column_stack(np.divmod(keys, max(count, 1))), times
+def _distinct(edges: np.ndarray, vertex_count: int) -> Tuple[np.ndarray, np.ndarray]:
+    """((E, 2) the distinct edges, (E,) how often each occurs)"""
+    keys, times = np.unique(edges[:, 0].astype(np.int64) * vertex_count + edges[:, 1], return_counts=True)
+    return np.column_stack(np.divmod(keys, max(vertex_count, 1))), times
