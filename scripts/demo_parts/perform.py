@@ -176,7 +176,7 @@ def build(thing, report):
 
 
 def play_click(spot, thing, studio, whole, hierarchy, folder, report):
-    """Plays a click and every wheel stop after it; returns the faces of the start level."""
+    """Plays a click and every wheel stop after it; returns the faces of the start stop."""
     mesh = thing.data
     face, point = click(thing, studio, spot.at)
     bpy.ops.object.mode_set(mode="EDIT")
