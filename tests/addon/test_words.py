@@ -79,7 +79,7 @@ class Words(MeshTest):
         for error, kept, parts in (
                 (job.WorkerError("crash", job.WORKER_DIED, job.MESH_UNCHANGED, job.HINT_REPAIR, how=describe_exit(-11)), ["SIGSEGV"], ["crashed", "before"]),
                 (job.WorkerError("worker", job.NO_PYTHON, job.HINT_PYTHON, reason=none), ["/a/{python}", "3", "/b"],
-                 ["without an answer", "want of memory", "There is"]),
+                 ["without an answer", "memory ran out", "There is"]),
                 (job.WorkerError("crash", job.DAMAGED_ANSWER_REASON, reason=refused), [], ["damaged", "no faces"])):
             self.speak("en_US" if self.spoken() else "DEFAULT")
             self.assertEqual(told(error), str(error))
